@@ -93,7 +93,7 @@ impl Columns {
 
 /// What the table of a campaign says.
 pub fn findings(campaign: &Campaign, table: &Table) -> Findings {
-    let columns = Columns::of(table, &campaign.metrics);
+    let columns = Columns::of(table, &campaign.design.metrics);
     let mut of_arm: Vec<Vec<usize>> = vec![Vec::new(); campaign.arms()];
     (0..table.len()).for_each(|row| of_arm[campaign.arm(columns.cases[row])].push(row));
     let first = pairs(campaign, &columns, &of_arm[0]);
@@ -101,14 +101,14 @@ pub fn findings(campaign: &Campaign, table: &Table) -> Findings {
     let count =
         |word: &str| columns.status.iter().filter(|status| status.as_deref() == Some(word)).count() as u64;
     Findings {
-        name: campaign.name.clone(),
+        name: campaign.design.name.clone(),
         planned: campaign.cases(),
         rows: table.len() as u64,
         refused: count("refused"),
         failed: count("failed"),
         with_faults: table.numbers("planner_faults").iter().filter(|n| n.is_some_and(|n| n > 0.0)).count()
             as u64,
-        metrics: campaign.metrics.clone(),
+        metrics: campaign.design.metrics.clone(),
         arms: (0..campaign.arms()).map(arm).collect(),
         worst: worst(campaign, table, &columns),
     }
@@ -136,7 +136,7 @@ fn arm(
         });
         mean(off)
     };
-    let metrics = 1..=campaign.metrics.len();
+    let metrics = 1..=campaign.design.metrics.len();
     let mut sorted: Vec<f64> = flown.iter().filter_map(|row| columns.value(1, *row)).collect();
     sorted.sort_by(f64::total_cmp);
     Arm {
@@ -148,7 +148,7 @@ fn arm(
         differences: if at == 0 {
             Vec::new()
         } else {
-            (0..=campaign.metrics.len()).map(difference).collect()
+            (0..=campaign.design.metrics.len()).map(difference).collect()
         },
         scenarios: by_scenario(campaign, columns, &flown),
         quantiles: (0..=40).filter_map(|k| quantile(&sorted, f64::from(k) / 40.0)).collect(),
@@ -172,7 +172,7 @@ fn by_scenario(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> Vec<(S
 
 /// Missions that failed first, then those that did not succeed, each by the first metric.
 fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
-    let Some(metric) = campaign.metrics.first() else { return Vec::new() };
+    let Some(metric) = campaign.design.metrics.first() else { return Vec::new() };
     let sign = if more_is_better(metric) { 1.0 } else { -1.0 };
     let rank = |row: usize| match columns.status[row].as_deref() {
         Some("failed") => 0,

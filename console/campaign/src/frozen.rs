@@ -1,6 +1,6 @@
 //! A campaign as it is frozen before the first mission: what every block is flown from, and nothing else.
 
-use crate::{plan::Plan, until::Until, value::Value};
+use crate::{design::Design, plan::Plan, value::Value};
 use scenario::Settings;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, ops::Range};
@@ -11,15 +11,6 @@ const FORMAT: u32 = 1;
 const BLOCK: u64 = 64;
 /// ... unless that were more blocks than this.
 const MOST_BLOCKS: u64 = 1000;
-
-/// Seeds that follow each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Seeds {
-    /// The first.
-    pub first: u64,
-    /// How many.
-    pub count: u64,
-}
 
 /// The program and the plugins that fly the missions.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,26 +40,13 @@ pub struct ScenarioText {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Campaign {
     format: u32,
-    /// What it is called.
-    pub name: String,
     /// What flies it.
     pub program: Program,
     /// Scenarios.
     pub scenarios: Vec<ScenarioText>,
-    /// Planners; empty for those of the scenarios.
-    pub planners: Vec<String>,
-    /// Keys that change from mission to mission.
-    pub keys: Vec<String>,
-    /// Their values; at least one point.
-    pub points: Vec<Vec<Value>>,
-    /// Bounds that every run is held to.
-    pub expect: Vec<(String, Value)>,
-    /// Seeds.
-    pub seeds: Seeds,
-    /// Columns of the table that the summary is about.
-    pub metrics: Vec<String>,
-    /// When it may end early.
-    pub until: Option<Until>,
+    /// What varies and what is measured.
+    #[serde(flatten)]
+    pub design: Design,
     /// Missions of a block; has no part in the table.
     block: u64,
 }
@@ -91,21 +69,8 @@ pub struct Case<'a> {
 impl Campaign {
     /// Freezes a plan.
     pub fn freeze(plan: Plan, program: Program, scenarios: Vec<ScenarioText>) -> Self {
-        let Plan { name, planners, keys, points, expect, seeds, metrics, until, block, .. } = plan;
-        let mut campaign = Self {
-            format: FORMAT,
-            name,
-            program,
-            scenarios,
-            planners,
-            keys,
-            points,
-            expect,
-            seeds,
-            metrics,
-            until,
-            block: 1,
-        };
+        let Plan { design, block, .. } = plan;
+        let mut campaign = Self { format: FORMAT, design, program, scenarios, block: 1 };
         campaign.block = block.unwrap_or(BLOCK).max(campaign.cases().div_ceil(MOST_BLOCKS));
         campaign
     }
@@ -120,7 +85,7 @@ impl Campaign {
         if campaign.format != FORMAT {
             return Err(format!("has format {}; this tankops knows format {FORMAT}", campaign.format));
         }
-        if campaign.block == 0 || campaign.points.is_empty() || campaign.scenarios.is_empty() {
+        if campaign.block == 0 || campaign.design.points.is_empty() || campaign.scenarios.is_empty() {
             return Err("was changed by hand: it has no missions".to_owned());
         }
         Ok(campaign)
@@ -133,12 +98,12 @@ impl Campaign {
 
     /// Missions of one seed.
     pub fn per_seed(&self) -> u64 {
-        (self.scenarios.len() * self.planners.len().max(1) * self.points.len()) as u64
+        (self.scenarios.len() * self.design.planners.len().max(1) * self.design.points.len()) as u64
     }
 
     /// Number of missions.
     pub fn cases(&self) -> u64 {
-        self.per_seed() * self.seeds.count
+        self.per_seed() * self.design.seeds.count
     }
 
     /// Number of blocks.
@@ -160,20 +125,20 @@ impl Campaign {
             rest /= count;
             digit
         };
-        let point = &self.points[take(self.points.len())];
-        let planner = take(self.planners.len().max(1));
+        let point = &self.design.points[take(self.design.points.len())];
+        let planner = take(self.design.planners.len().max(1));
         Case {
             n,
             scenario: &self.scenarios[take(self.scenarios.len())],
-            planner: self.planners.get(planner).map(String::as_str),
+            planner: self.design.planners.get(planner).map(String::as_str),
             point,
-            seed: self.seeds.first + n / self.per_seed(),
+            seed: self.design.seeds.first + n / self.per_seed(),
         }
     }
 
     /// What is compared: every planner at every point, counted from 0.
     pub(crate) fn arms(&self) -> usize {
-        self.planners.len().max(1) * self.points.len()
+        self.design.planners.len().max(1) * self.design.points.len()
     }
 
     /// Which of them a mission is of.
@@ -183,9 +148,12 @@ impl Campaign {
 
     /// What one of them is called.
     pub(crate) fn arm_name(&self, arm: usize) -> String {
-        let planner =
-            self.planners.get(arm / self.points.len()).map_or("planner of the scenario", String::as_str);
-        let values = self.keys.iter().zip(&self.points[arm % self.points.len()]);
+        let planner = self
+            .design
+            .planners
+            .get(arm / self.design.points.len())
+            .map_or("planner of the scenario", String::as_str);
+        let values = self.design.keys.iter().zip(&self.design.points[arm % self.design.points.len()]);
         let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
         let set = values.map(|(key, value)| format!(" {}={value}", last(key))).collect::<Vec<_>>().concat();
         format!("{planner}{set}")
@@ -193,13 +161,13 @@ impl Campaign {
 
     /// What a mission changes about its scenario.
     pub fn settings(&self, case: &Case<'_>) -> Settings {
-        let expect = self.expect.iter().map(|(key, bound)| format!("expect.{key}={}", quoted(bound)));
+        let expect = self.design.expect.iter().map(|(key, bound)| format!("expect.{key}={}", quoted(bound)));
         let set = expect.chain(self.set(case)).collect();
         Settings { set, planner: case.planner.map(str::to_owned), seed: Some(case.seed) }
     }
 
     fn set(&self, case: &Case<'_>) -> impl Iterator<Item = String> {
-        self.keys.iter().zip(case.point).map(|(key, value)| format!("{key}={}", quoted(value)))
+        self.design.keys.iter().zip(case.point).map(|(key, value)| format!("{key}={}", quoted(value)))
     }
 
     /// The command that flies a mission again.

@@ -5,6 +5,7 @@
 //! and as a page. Nothing here knows files, threads, clocks or processes: the table's bytes depend on nothing but the plan.
 
 mod compare;
+mod design;
 mod findings;
 mod frozen;
 mod grid;
@@ -20,8 +21,9 @@ mod until;
 mod value;
 
 pub use compare::{Comparison, compare};
+pub use design::{Design, Seeds};
 pub use findings::{Findings, findings};
-pub use frozen::{Campaign, Case, Program, ScenarioText, Seeds};
+pub use frozen::{Campaign, Case, Program, ScenarioText};
 pub use page::page;
 pub use plan::{Plan, PlanKey};
 pub use row::{Row, Status};

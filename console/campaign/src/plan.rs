@@ -1,7 +1,7 @@
 //! The plan of a campaign: a TOML file.
 
 use crate::{
-    frozen::Seeds,
+    design::{Design, Seeds},
     grid::{Axis, latin_hypercube, product},
     reader::{Placed, Reader},
     table::is_metric,
@@ -38,24 +38,10 @@ const SEEDS: Range<u64> = 0..(1 << 62);
 /// A plan, checked as far as it can be without its scenarios and planners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What it is called.
-    pub name: String,
+    /// What varies and what is measured.
+    pub design: Design,
     /// Scenario files as written, beside the plan.
     pub scenarios: Vec<String>,
-    /// Ids of planners; empty for those of the scenarios.
-    pub planners: Vec<String>,
-    /// Keys of scenarios and parameters of planners that change from mission to mission.
-    pub keys: Vec<String>,
-    /// Values of these keys; at least one point.
-    pub points: Vec<Vec<Value>>,
-    /// Bounds that every run is held to, beside those of its scenario: key of `[expect]` and value.
-    pub expect: Vec<(String, Value)>,
-    /// Seeds.
-    pub seeds: Seeds,
-    /// Columns of the table that the summary is about.
-    pub metrics: Vec<String>,
-    /// When the campaign may end early.
-    pub until: Option<Until>,
     /// Missions of a block, if the plan sets it.
     pub block: Option<u64>,
     shown_name: String,
@@ -102,7 +88,7 @@ impl Plan {
         let name = match key {
             PlanKey::Scenario(at) => format!("scenarios.{at}"),
             PlanKey::Planner(at) => format!("planners.{at}"),
-            PlanKey::Grid(at) => format!("grid.{}", self.keys[at]),
+            PlanKey::Grid(at) => format!("grid.{}", self.design.keys[at]),
             PlanKey::Expect => "expect".to_owned(),
         };
         let value = at.clone().and_then(|at| self.text.get(at)).map(str::to_owned);
@@ -134,9 +120,8 @@ fn read(root: &Reader<'_>, shown_name: &str, text: &str, name: &str) -> Plan {
     places.extend(placed(&planners, PlanKey::Planner));
     places.extend(grid.iter().enumerate().map(|(at, (_, _, place))| (PlanKey::Grid(at), place.clone())));
     places.extend(root.get("expect").map(|value| (PlanKey::Expect, value.span())));
-    Plan {
+    let design = Design {
         name: root.word("name").unwrap_or_else(|| name.to_owned()),
-        scenarios: scenarios.into_iter().map(|(word, _)| word).collect(),
         planners: planners.into_iter().map(|(word, _)| word).collect(),
         keys: grid.into_iter().map(|(key, ..)| key).collect(),
         points,
@@ -144,6 +129,10 @@ fn read(root: &Reader<'_>, shown_name: &str, text: &str, name: &str) -> Plan {
         seeds,
         metrics: metrics(root),
         until: until(root),
+    };
+    Plan {
+        design,
+        scenarios: scenarios.into_iter().map(|(word, _)| word).collect(),
         block: root.whole("block", 1..1_000_001),
         shown_name: shown_name.to_owned(),
         text: text.to_owned(),
@@ -309,11 +298,14 @@ mod tests {
                     [grid]\nk_rep = [0.5, 1]\n\"mission.swath_m\" = { from = 0.4, to = 0.8, steps = 3 }\n\
                     [until]\nci95 = { metric = \"success\", below = 0.1 }\n[expect]\ncollisions_max = 0\n";
         let plan = Plan::parse(text, "plan.toml", "plan").expect("nothing is wrong");
-        assert_eq!((plan.name.as_str(), plan.points.len(), plan.seeds.first), ("plan", 6, 7));
-        assert_eq!(plan.keys, ["k_rep", "mission.swath_m"]);
-        assert_eq!(plan.points[5], [Value::Whole(1), Value::Number(0.8)]);
-        assert_eq!(plan.expect, [("collisions_max".to_owned(), Value::Whole(0))]);
-        assert_eq!(plan.until.map(|until| until.metric).as_deref(), Some("success"));
+        assert_eq!(
+            (plan.design.name.as_str(), plan.design.points.len(), plan.design.seeds.first),
+            ("plan", 6, 7)
+        );
+        assert_eq!(plan.design.keys, ["k_rep", "mission.swath_m"]);
+        assert_eq!(plan.design.points[5], [Value::Whole(1), Value::Number(0.8)]);
+        assert_eq!(plan.design.expect, [("collisions_max".to_owned(), Value::Whole(0))]);
+        assert_eq!(plan.design.until.map(|until| until.metric).as_deref(), Some("success"));
     }
 
     #[test]

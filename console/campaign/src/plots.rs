@@ -12,7 +12,7 @@ const LINE: f64 = 20.0;
 const HEIGHT: f64 = 300.0;
 /// Colours of arms, in turn; distinguishable without red and green.
 const COLOURS: [&str; 6] = ["#2C5F7C", "#B26A00", "#7A3E8C", "#39444E", "#C23B1E", "#5A8DA6"];
-/// Curves that can be told from each other.
+/// Curves that can be distinguished.
 const MOST_CURVES: usize = 6;
 
 fn colour(arm: usize) -> &'static str {

@@ -146,7 +146,8 @@ fn schema(campaign: &Campaign) -> SchemaRef {
         field("seed", DataType::UInt64, false),
     ];
     fields.extend(
-        (0..campaign.keys.len()).map(|key| field(&set_name(campaign, key), set_type(campaign, key), false)),
+        (0..campaign.design.keys.len())
+            .map(|key| field(&set_name(campaign, key), set_type(campaign, key), false)),
     );
     fields.extend([
         field("status", DataType::Utf8, false),
@@ -166,12 +167,12 @@ fn schema(campaign: &Campaign) -> SchemaRef {
 }
 
 fn set_name(campaign: &Campaign, key: usize) -> String {
-    format!("set.{}", campaign.keys[key])
+    format!("set.{}", campaign.design.keys[key])
 }
 
 /// The narrowest type that all values of a key have.
 fn set_type(campaign: &Campaign, key: usize) -> DataType {
-    let all = |is: fn(&Value) -> bool| campaign.points.iter().all(|point| is(&point[key]));
+    let all = |is: fn(&Value) -> bool| campaign.design.points.iter().all(|point| is(&point[key]));
     if all(|value| matches!(value, Value::Whole(_))) {
         DataType::Int64
     } else if all(|value| value.number().is_some()) {
@@ -229,7 +230,7 @@ fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
         words(&planner),
         Arc::new(rows.iter().map(|row| Some(campaign.case(row.case).seed)).collect::<UInt64Array>()),
     ];
-    columns.extend((0..campaign.keys.len()).map(|key| set_column(campaign, key, rows)));
+    columns.extend((0..campaign.design.keys.len()).map(|key| set_column(campaign, key, rows)));
     columns.push(words(&|row| Some(row.status.word().to_owned())));
     columns.push(words(&|row| row.error.clone()));
     columns.push(Arc::new(rows.iter().map(|row| Some(row.success)).collect::<BooleanArray>()));

@@ -38,7 +38,7 @@ pub struct Watch<'a> {
 impl<'a> Watch<'a> {
     /// Nothing seen yet; `None` for a campaign that flies every seed.
     pub fn new(campaign: &'a Campaign) -> Option<Self> {
-        let until = campaign.until.as_ref()?;
+        let until = campaign.design.until.as_ref()?;
         let arms = vec![(0, 0, Sums::default()); campaign.arms()];
         Some(Self { campaign, until, arms, taken: 0, enough: None })
     }
