@@ -133,8 +133,8 @@ fn what_a_planner_prints_and_its_crash_are_kept_and_the_crash_can_be_replayed() 
     assert!(replayed.code == Some(1) && replayed.out.contains("killed by SIGABRT"), "{replayed:?}");
     std::fs::write(&source, good).unwrap();
     rebuilt(&plugin);
-    let mended = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
-    assert!(mended.code == Some(0) && mended.out.contains("every request was answered"), "{mended:?}");
+    let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+    assert!(replayed.code == Some(0) && replayed.out.contains("every request was answered"), "{replayed:?}");
 }
 
 #[test]

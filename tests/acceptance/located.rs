@@ -37,7 +37,7 @@ fn readings_of_a_run_are_located_where_the_mission_believed_to_be() {
     let table = std::fs::read_to_string(bench.path().join("fixes.csv")).unwrap();
     assert_eq!(table.lines().count() as u64, 1 + figures["emissions"].as_u64().unwrap());
 
-    // Both may have begun in the same second: the name tells which is which.
+    // Both may have begun in the same second: their names differ.
     let is_located = |run: &std::path::PathBuf| run.to_string_lossy().contains("-located-");
     let located = bench.runs().into_iter().find(is_located).unwrap();
     let verified = bench.verify(&located, &[]);

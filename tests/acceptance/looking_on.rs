@@ -78,7 +78,7 @@ fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
 }
 
 #[test]
-fn an_onlooker_is_told_that_the_console_of_the_run_was_killed() {
+fn an_onlooker_is_informed_that_the_console_of_the_run_was_killed() {
     let bench = Bench::new();
     let mut pilot = Console::open(bench.command(), &["--speed", "4"]);
     pilot.hear("Press S to start");

@@ -21,7 +21,7 @@ const CLOCK_LIMIT: Duration = Duration::from_millis(20);
 /// Space that is wanted besides what the mission is expected to take, bytes.
 const RESERVE_BYTES: u64 = 50_000_000;
 
-/// Checks everything in a thread of its own, and tells the screen.
+/// Checks everything in a thread of its own, and reports to the screen.
 pub(super) fn begin(tools: &Tools, engine: Option<EngineHandle>, screen: RunOutbox, needed_bytes: u64) {
     let (tools, fallback) = (tools.clone(), screen.clone());
     let began = thread::Builder::new().name("check".into()).spawn(move || {

@@ -114,7 +114,7 @@ struct EngineThread {
     reported: Receiver<(AskId, Progress)>,
     /// The planners' work that the screen shows.
     shown_work: Option<Work>,
-    /// Whether the screen was told what a plan promises.
+    /// Whether the estimate of the plan was sent to the screen.
     has_estimated: bool,
     asked: Receiver<Request>,
     screen: RunOutbox,

@@ -37,7 +37,7 @@ impl Disk {
         Self { tools, read: Mutex::default() }
     }
 
-    /// Looks at it, and tells the screen.
+    /// Looks at it, and reports to the screen.
     pub(super) fn look(&self) {
         let outbox: &Outbox = &self.tools.outbox;
         outbox.send(Msg::Presets(presets::load(&self.tools.planners.get())));

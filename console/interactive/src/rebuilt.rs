@@ -1,4 +1,4 @@
-//! Plugins that are built anew while the console is open: they are looked at again once their files rest.
+//! Plugins that are rebuilt while the console is open: they are looked at again once their files rest.
 
 use super::desk::{DeskHandle, Request};
 use anyhow::Context;

@@ -31,7 +31,7 @@ pub enum Order {
     FlyUncertified,
     /// End the mission here.
     Abort,
-    /// End the mission here: the process that runs it was told to exit by a signal.
+    /// End the mission here: the process that runs it was asked to exit by a signal.
     Terminate,
     /// While held or waiting: another planner takes over.
     ChoosePlanner(PlannerChoice),

@@ -92,7 +92,7 @@ impl Tether {
     }
 
     /// Puts the cable among the obstacles known now, as the way driven leads.
-    pub fn lay_anew(&mut self, world: &World) {
+    pub fn lay_again(&mut self, world: &World) {
         let shapes = shapes(world);
         let obstacles = Arc::new(CableObstacles::new(&world.boundary, &shapes));
         // An obstacle on top of the anchor is an error of the estimate: the cable stays as it was.

@@ -119,7 +119,7 @@ impl Host {
     }
 
     /// Ends a mission, so that the next one begins as with a new host, but for the processes: a planner that has answered all
-    /// it was asked is made anew in the process that has loaded it, when it is opened again.
+    /// it was asked is created again in the process that has loaded it, when it is next opened.
     pub fn end_mission(&mut self) {
         for planner in std::mem::take(&mut self.planners) {
             let Some(worker) = planner.worker else { continue };

@@ -51,7 +51,7 @@ impl PositionSolver for Bounded {
             })
             .collect();
         let near = match solve_anchors(&middles, prior) {
-            // A fit that does not settle tells of no mirror; the set is there all the same.
+            // A fit that does not converge shows no mirror; the set is there all the same.
             Err(FixError::NotConverged { .. }) => None,
             fit => Some(fit?),
         };

@@ -12,7 +12,7 @@ use world::{Point, Station};
 
 /// Largest error of the assumed sound speed that is believed, as a share.
 const MOST_SCALE: f64 = 0.3;
-/// Largest share of an error of scale that cannot be told from none.
+/// Largest share of a scale error that cannot be distinguished from zero.
 const LEAST_SCALE: f64 = 1e-6;
 /// Rounds of fitting the position together with what is common to the ranges of a cycle.
 const ROUNDS: usize = 6;
@@ -37,7 +37,7 @@ impl Default for Unknowns {
 }
 
 impl Unknowns {
-    /// Whether the speed of sound is sought; a scale of a millionth cannot be told from none.
+    /// Whether the speed of sound is sought; a scale error of a millionth cannot be distinguished from zero.
     fn has_scale(&self) -> bool {
         self.sound_sigma_ratio > LEAST_SCALE
     }
@@ -108,7 +108,7 @@ impl Calibration {
         (self.common().offset_m, self.offset_sigma_m)
     }
 
-    /// A calibration that begins anew where this one came to: cycles are linear about what is believed while they are taken, so
+    /// A calibration that starts again where this one came to: cycles are linear about what is believed while they are taken, so
     /// that taking a session again mends what the first ones were off.
     #[must_use]
     pub fn again(&self) -> Self {

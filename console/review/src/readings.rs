@@ -29,7 +29,7 @@ pub fn readings(
         if recorded.difference(&computed).context("writing an event as JSON")?.is_some() {
             return Err(bad_input(format!(
                 "this tankops computes another run from tick {} on, so that its readings are not those of the run; `tankops \
-                 verify` tells the difference: {}",
+                 verify` shows the difference: {}",
                 recorded.tick,
                 path.display()
             )));

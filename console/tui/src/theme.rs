@@ -285,8 +285,8 @@ mod tests {
     }
 
     #[test]
-    fn the_background_is_told_by_colorfgbg() {
-        for (told, theme) in [
+    fn the_background_is_read_from_colorfgbg() {
+        for (answer, theme) in [
             (None, ThemeName::Dark),
             (Some(""), ThemeName::Dark),
             (Some("15;0"), ThemeName::Dark),
@@ -295,7 +295,7 @@ mod tests {
             (Some("12;8"), ThemeName::Dark),
             (Some("none"), ThemeName::Dark),
         ] {
-            assert_eq!(ThemeName::for_background(told), theme, "{told:?}");
+            assert_eq!(ThemeName::for_background(answer), theme, "{answer:?}");
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The cuts stay, and an obstacle that none of them holds gets one of its own, laid where it crosses the rest of the path
 //! least. What can still be driven of that rest stays as it is, in sections: long ones far away, single lanes near what has
-//! changed. The sections are put in order anew, from the order in which they were to be flown, and the ways between them are
+//! changed. The sections are reordered, starting from the order in which they were to be flown, and the ways between them are
 //! polished as those of any path.
 
 mod current;

@@ -165,7 +165,7 @@ pub(crate) mod repair {
     /// How far a certified repair may exceed what is preferred of the tether, as multiples: of its length and of its wraps.
     pub(crate) const LONGER_CABLE: f64 = 1.1;
     pub(crate) const MORE_WRAP: f64 = 1.5;
-    /// Lanes within so many swaths of what has changed are put in order anew.
+    /// Lanes within so many swaths of what has changed are reordered.
     pub(crate) const NEAR: f64 = 5.0;
     /// Changes tried per lane of these.
     pub(crate) const KICKS: f64 = 30.0;
@@ -175,7 +175,7 @@ pub(crate) mod repair {
     pub(crate) const AHEAD_M: f64 = 1.0;
     pub(crate) const AS_BEFORE_M: f64 = 0.05;
     /// A repaired path that is longer than the rest of the old one by this share, and by so many metres, gives way
-    /// to a plan made anew.
+    /// to a new plan.
     pub(crate) const LONGER: f64 = 0.03;
     pub(crate) const LONGER_M: f64 = 12.0;
 }

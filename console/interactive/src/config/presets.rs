@@ -83,11 +83,11 @@ fn read_file(file: &Path, planners: &[PlannerInfo]) -> Result<PlannerChoice, Str
         return Err(format!("{name}: not a file of at most {LARGEST} bytes"));
     }
     let text = fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
-    let told = |fault: &Fault| {
+    let describe = |fault: &Fault| {
         let fault = Fault { instead: String::new(), ..fault.clone() };
         fault.text(Place { name: &name, text: &text })
     };
-    read(&text, planners).map_err(|faults| faults.iter().map(told).collect::<Vec<_>>().join("; "))
+    read(&text, planners).map_err(|faults| faults.iter().map(describe).collect::<Vec<_>>().join("; "))
 }
 
 /// Reads a preset. Unlike a configuration it is taken whole or not at all.

@@ -105,12 +105,12 @@ struct Loading {
 
 impl Loading {
     fn read(mut self, report: &impl Fn(tui::model::replay::Reel) -> bool) {
-        let mut told = Instant::now();
+        let mut reported = Instant::now();
         loop {
             match self.burst() {
-                Ok(true) if told.elapsed() < NEWS && self.kept_at.is_some() => {}
+                Ok(true) if reported.elapsed() < NEWS && self.kept_at.is_some() => {}
                 Ok(true) => {
-                    told = Instant::now();
+                    reported = Instant::now();
                     if !self.tell(report, false, None) {
                         return;
                     }

@@ -140,7 +140,7 @@ impl Mission {
     /// The inputs of a plan from the end of a return path, or from where the robot stands.
     ///
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
-    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are told
+    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are given
     /// of the first `n_flown` points of the path flown.
     pub(super) fn plan_ask(&self, reason: Reason, from_anchor: bool, n_flown: usize) -> (PendingKind, What) {
         let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();

@@ -16,7 +16,7 @@ impl Mission {
         let tether = self.tether.as_mut()?;
         let world = self.chart.world();
         if map_changed {
-            tether.lay_anew(world);
+            tether.lay_again(world);
         }
         // A lost position would wind the cable round whatever the estimate strays past.
         let error_m = (!self.locator.is_lost()).then(|| self.locator.error_95_m());

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_end_of_the_reel_a_little_cable_too_much_tells_as_well() {
+    fn at_the_end_of_the_reel_a_little_cable_too_much_shows_as_well() {
         assert!(is_snagged(0.8, 30.0) && !is_snagged(0.4, 30.0));
         assert!(is_snagged(0.4, 20.41) && !is_snagged(0.2, 20.21));
     }

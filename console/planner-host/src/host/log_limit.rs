@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planner_that_logs_too_much_is_told_once_and_heard_again() {
+    fn a_planner_that_logs_too_much_is_warned_once_and_heard_again() {
         let mut limit = LogLimit::default();
         let mut logs = vec![(LogLevel::Info, String::new()); 66];
         limit.take(&mut logs);

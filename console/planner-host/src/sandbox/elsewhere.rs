@@ -1,4 +1,4 @@
-//! Systems without Landlock and seccomp: nothing is closed off, and everybody is told so.
+//! Systems without Landlock and seccomp: nothing is closed off, and this is reported everywhere.
 
 use super::Sealed;
 use mission::Sandbox;

@@ -125,7 +125,7 @@ fn hash_of(path: &Path) -> Option<String> {
     Some(sha256_hex(absolute.as_os_str().as_encoded_bytes()))
 }
 
-/// What tells a file from others and from itself as it was, and how long ago it was changed.
+/// What distinguishes a file from others and from its earlier contents, and how long ago it was changed.
 fn identity_of(path: &Path) -> Option<(Identity, Duration)> {
     let about = fs::metadata(path).ok()?;
     let changed =

@@ -45,7 +45,7 @@ pub(super) fn confine() {
 /// Closes the process off, and reports to the console how far, before anything of a plugin runs.
 ///
 /// # Errors
-/// The console cannot be told; then nothing may be loaded.
+/// The console cannot be informed; then nothing may be loaded.
 pub(super) fn close_off(socket: &Socket, sequence: u32) -> io::Result<(Sandbox, bool)> {
     let Sealed { sandbox, listener, reads_libraries } = seal();
     let mut frame = Writer::default();

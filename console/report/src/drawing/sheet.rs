@@ -40,7 +40,7 @@ pub(crate) struct Sheet {
     rim_mm: f64,
     low: Point,
     high: Point,
-    /// What tells its patterns from those of other pictures on a page.
+    /// What distinguishes its patterns from those of other pictures on a page.
     id: &'static str,
     body: String,
 }

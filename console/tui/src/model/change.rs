@@ -19,7 +19,7 @@ pub enum Withdrawn {
 pub struct Change {
     /// Which questions it withdraws.
     pub withdrawn: Withdrawn,
-    /// What the operator shall be told.
+    /// The notice for the operator.
     pub notice: Option<(Severity, String)>,
     /// The order that it answers.
     pub answered: Option<Order>,

@@ -1,4 +1,4 @@
-//! The console itself: time, speeds, plugins, and what it tells the operator.
+//! The console itself: time, speeds, plugins, and its notices to the operator.
 
 use super::{Preset, Watches};
 use crate::actions::keymap::Keymap;

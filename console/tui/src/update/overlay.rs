@@ -155,7 +155,7 @@ pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
     if model.live.plans.ghost.take().is_some() {
         return vec![Effect::StopComparing];
     }
-    // The same planner anew is not asked for a plan.
+    // The same planner, restarted, is not asked for a plan.
     let choice = model.live.run.planning.choice.clone();
     choice.into_iter().map(|choice| Effect::Order(Order::ChoosePlanner(choice))).collect()
 }

@@ -21,7 +21,7 @@ pub(super) fn begin(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     send(model, Order::Shadow(driving.unwrap_or(choice)))
 }
 
-/// Tells the operator of a mission under way which planners were built anew.
+/// Informs the operator of a mission in progress which planners were rebuilt.
 pub(super) fn tell_rebuilt(model: &mut Model, found: &[PlannerInfo]) {
     let is_rebuilt = |now: &&PlannerInfo| {
         model.console.planners.iter().any(|before| before.id == now.id && before.sha256 != now.sha256)

@@ -134,7 +134,7 @@ fn the_events_pane_of_the_mission_opens_the_whole_event() {
 }
 
 #[test]
-fn every_event_with_a_line_is_told_field_by_field() {
+fn every_event_with_a_line_is_described_field_by_field() {
     let mut screen = Screen::tethered();
     let mission = &mut screen.mission;
     let mut events = mission.caught();

@@ -13,7 +13,7 @@ use crate::tuning::repair::{AHEAD_M, AS_BEFORE_M, LONGER, LONGER_CABLE, LONGER_M
 use planner_api::{LogLevel, Reason, Result};
 use world::{Point, polyline};
 
-/// The plan under way, changed only round what was found; `None` where it has to be made anew.
+/// The plan under way, changed only round what was found; `None` where a new plan is needed.
 pub(super) fn repaired<'a>(
     pipeline: &Pipeline<'a>,
     current: Option<&CurrentPlan>,

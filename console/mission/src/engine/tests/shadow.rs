@@ -89,7 +89,7 @@ fn a_shadow_that_takes_lanes_over_goes_on_where_the_robot_is() {
 }
 
 #[test]
-fn an_answer_two_ticks_late_is_a_miss_and_a_row_begins_anew() {
+fn an_answer_two_ticks_late_is_a_miss_and_a_row_starts_over() {
     let mut flight = Flight::new(rounds(1));
     flight.tick(&[Order::Start]);
     flight.tick(&[shadow("other")]);

@@ -119,7 +119,7 @@ fn an_obstacle_found_across_the_cable_is_passed_on_the_side_that_was_driven() {
         }
         // The taut line lies right over it; the way driven knows better.
         world.obstacles.push(column(0.05 * side));
-        tether.lay_anew(&world);
+        tether.lay_again(&world);
         let map = world::ObstacleMap::new(&world.boundary, &world.obstacles);
         let events = tether.update(&world, &map, 0.1);
         let EventKind::Tethered { contacts, return_length_m, .. } = &events[0] else { panic!("{events:?}") };

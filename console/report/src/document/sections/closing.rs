@@ -78,7 +78,7 @@ pub(super) fn limitations(document: &Document) -> Vec<Block> {
          of the speed of sound, and the offset of the tool on the robot are not in it."
             .to_owned(),
         "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
-        "The critical zone is judged by 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
+        "The critical zone is evaluated in 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
         "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
     ]);
     let code = Value::fact(document.inspection.code.as_ref(), "code");

@@ -259,7 +259,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
             ("Missed", "reachable, but not scanned; each area has a number, a place and a reason".into()),
             ("Unreachable", "beside obstacles, in no-go zones, or closed off".into()),
             ("Shell margin", "out of reach because the robot keeps its distance from the shell".into()),
-            ("Critical zone", format!("{zone_mm:.0} mm along the shell, judged by itself in layers of 5 mm")),
+            ("Critical zone", format!("{zone_mm:.0} mm along the shell, evaluated separately in layers of 5 mm")),
         ]),
     ]
 }

@@ -99,7 +99,7 @@ mod tests {
     }
 
     /// What refreshing step by step has to agree with.
-    fn anew(text: &str, log: &Log) -> Matches {
+    fn fresh(text: &str, log: &Log) -> Matches {
         let mut matches = Matches::default();
         matches.refresh(text, log);
         matches
@@ -110,18 +110,18 @@ mod tests {
         let mut log = Log::default();
         log.add(1.0, Severity::Crit, "ae", "position lost".into());
         log.add(2.0, Severity::Info, "plan", "planned".into());
-        assert_eq!(texts(&anew("sev>=warn column", &log), &log), ["position lost"]);
+        assert_eq!(texts(&fresh("sev>=warn column", &log), &log), ["position lost"]);
     }
 
     #[test]
-    fn step_by_step_is_the_same_as_anew() {
+    fn step_by_step_is_the_same_as_fresh() {
         let (mut log, mut matches) = (Log::default(), Matches::default());
         for (step, text) in ["", "a", "ab", "a", "-a", "t>5"].into_iter().cycle().take(60).enumerate() {
             for i in 0..step % 4 {
                 log.add(step as f64, Severity::Info, "plan", format!("{}{}", ["a", "ab", "c"][i], step / 7));
             }
             matches.refresh(text, &log);
-            assert_eq!(matches, anew(text, &log), "{text} in step {step}");
+            assert_eq!(matches, fresh(text, &log), "{text} in step {step}");
         }
         matches.refresh("t>5", &Log::default());
         assert!(matches.is_empty(), "another run has begun");
@@ -149,7 +149,7 @@ mod tests {
             let text = if i % 2 == 0 { "even" } else { "odd" };
             log.add(f64::from(i), Severity::Info, "plan", text.into());
         }
-        let even = anew("even", &log);
+        let even = fresh("even", &log);
         assert_eq!([even.newer_than(8), even.newer_than(7), even.newer_than(0)], [0, 1, 4]);
         assert_eq!([even.number(0), even.number(1), even.number(99)], [Some(8), Some(6), Some(0)]);
         assert!(matches!(log.get(0).map(|entry| &entry.what), Some(What::Console)));

@@ -109,7 +109,7 @@ fn a_column_that_is_found_changes_the_plan_only_round_itself() {
 }
 
 #[test]
-fn a_robot_that_is_blocked_where_nothing_was_found_gets_a_plan_made_anew() {
+fn a_robot_that_is_blocked_where_nothing_was_found_gets_a_new_plan() {
     let tank = Known::E1.tank(32);
     let near = tank.columns[0].0;
     let values = [("pattern", 1.0), ("kicks", 0.5)];
