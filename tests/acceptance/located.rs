@@ -81,7 +81,7 @@ fn bad_rows_are_refused_by_line_and_column() {
     assert_eq!(refused.code, Some(2));
     let wanted = [
         "r.csv, line 3, station: the scenario has no station `H`",
-        "r.csv, line 4, range_m: `abc` is no number",
+        "r.csv, line 4, range_m: `abc` is not a number",
     ];
     assert!(wanted.iter().all(|text| refused.err.contains(text)), "{refused:?}");
     assert!(bench.runs().is_empty());
@@ -109,6 +109,8 @@ fn a_run_becomes_messages_and_a_plan_becomes_files() {
     let legs =
         map["features"].as_array().unwrap().iter().filter(|f| f["properties"]["layer"] == "path").count();
     assert_eq!(read("p.dxf").matches("POLYLINE\n8\nPATH").count(), legs);
+    let again = bench.tankops(&["plan", cover, "-o", "p.csv"]);
+    assert!(again.code == Some(2) && again.err.contains("already exists"), "{again:?}");
     let refused = bench.tankops(&["plan", cover, "-o", "p.gcode"]);
     assert!(refused.code == Some(2) && refused.err.contains(".csv, .geojson or .dxf"), "{refused:?}");
 }

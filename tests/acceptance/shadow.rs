@@ -95,3 +95,14 @@ fn whatever_a_planner_does_in_shadow_the_robot_drives_as_without_it() {
         assert_eq!(verified.code, Some(0), "{fault}: {verified:?}");
     }
 }
+
+#[test]
+fn a_time_between_promotions_that_is_none_is_refused() {
+    let bench = Bench::new();
+    let demo = scenario("demo.toml");
+    for every in ["0", "-3", "nan", "soon"] {
+        let refused =
+            bench.tankops(&["run", demo.to_str().unwrap(), "--shadow", "apf", "--promote-every", every]);
+        assert!(refused.code == Some(2) && refused.err.contains("seconds, more than 0"), "{refused:?}");
+    }
+}

@@ -43,7 +43,7 @@ fn check_name(name: &str) -> Result<(), String> {
     if is_good && name.len() <= 32 {
         return Ok(());
     }
-    Err(format!("`{name}` is no name of a planner: write a letter, then up to 31 of a-z, 0-9, _ and -"))
+    Err(format!("`{name}` is not a valid planner name: write a letter, then up to 31 of a-z, 0-9, _ and -"))
 }
 
 /// How `Cargo.toml` names the crate that a planner in Rust needs.

@@ -23,6 +23,9 @@ use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let format = args.output.as_deref().map(format_of).transpose()?;
+    if let Some(output) = args.output.as_deref().filter(|output| output.exists()) {
+        return Err(bad_input(format!("{} already exists; choose another name", output.display())));
+    }
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);
     if args.json {

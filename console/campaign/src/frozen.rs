@@ -81,7 +81,7 @@ impl Campaign {
     /// It is none, or of another format.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
         let campaign: Self =
-            serde_json::from_slice(json).map_err(|error| format!("is no campaign: {error}"))?;
+            serde_json::from_slice(json).map_err(|error| format!("is not a campaign: {error}"))?;
         if campaign.format != FORMAT {
             return Err(format!("has format {}; this tankops knows format {FORMAT}", campaign.format));
         }

@@ -34,7 +34,7 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
     };
     let bad = |error: &csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
-        wrong(line, "", format!("no CSV: {error}"))
+        wrong(line, "", format!("not a CSV file: {error}"))
     };
     let header = reader.headers().map_err(|error| bad(&error))?.clone();
     let known = ["name", "x_m", "y_m", "radius_m", "diameter_m"];
@@ -58,7 +58,8 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
         let number = |field: usize| {
             let written = record.get(field).unwrap_or_default();
             let number = written.parse::<f64>().ok().filter(|v| v.is_finite());
-            number.ok_or_else(|| wrong(line, &header[field], format!("`{written}` is no number, in metres")))
+            number
+                .ok_or_else(|| wrong(line, &header[field], format!("`{written}` is not a number, in metres")))
         };
         let (center, radius_m) = (Point::new(number(x)?, number(y)?), number(size)? * per_size);
         if radius_m <= 0.0 {
@@ -119,13 +120,13 @@ mod tests {
         );
         assert_eq!(
             message(&format!("{header}1,2,0.3\n1,b,0.3\n")),
-            "c.csv, line 3, y_m: `b` is no number, in metres"
+            "c.csv, line 3, y_m: `b` is not a number, in metres"
         );
         assert_eq!(message(&format!("{header}1,2,0\n")), "c.csv, line 2, radius_m: 0 must be greater than 0");
         assert_eq!(
             message(&format!("{header}11,2,0.3\n")),
             "c.csv, line 2, x_m: (11, 2) lies outside the tank of 10 m"
         );
-        assert!(message(&format!("{header}1,2\n")).starts_with("c.csv, line 2: no CSV"));
+        assert!(message(&format!("{header}1,2\n")).starts_with("c.csv, line 2: not a CSV file"));
     }
 }

@@ -217,7 +217,7 @@ impl Columns {
             self.problem(line, STATION, what)
         })?;
         if self.kind() == Kind::Ranges && !(1e-3..=1e6).contains(&range_m) {
-            let what = format!("{range_m} m is no distance in a tank");
+            let what = format!("{range_m} m is not a possible distance in a tank");
             return Err(self.problem(line, measured.unwrap_or(RANGE), what));
         }
         let repetitions = match self.cell(cells, REPETITIONS) {
@@ -228,7 +228,7 @@ impl Columns {
                     self.problem(
                         line,
                         REPETITIONS,
-                        format!("`{text}` is no number from 1 to {REPETITIONS_MAX}"),
+                        format!("`{text}` is not a number from 1 to {REPETITIONS_MAX}"),
                     )
                 })?
             }
@@ -247,7 +247,7 @@ impl Columns {
         }
         let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
         let number = parsed.ok().filter(|number| number.is_finite());
-        let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is no number")))?;
+        let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;
         Ok(Some(number * factor))
     }
 

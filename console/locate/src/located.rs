@@ -115,7 +115,7 @@ impl Task<'_> {
         let mut lines: Vec<String> = problems.iter().map(|problem| format!("{file}, {problem}")).collect();
         let more = bad - problems.len() as u64;
         lines.extend((more > 0).then(|| format!("and {more} more")));
-        lines.push("mend the rows, or leave them out by --skip-bad-rows".into());
+        lines.push("correct the rows, or leave them out with --skip-bad-rows".into());
         lines.join("\n")
     }
 

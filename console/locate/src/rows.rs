@@ -41,7 +41,7 @@ impl Rows {
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
             .from_reader(text);
-        let header = reader.headers().map_err(|error| format!("no CSV: {error}"))?.clone();
+        let header = reader.headers().map_err(|error| format!("not a CSV file: {error}"))?.clone();
         if header.is_empty() {
             return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
         }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file could not be made.
-    #[error("cannot make the recording ({why}): {}", path.display())]
+    #[error("cannot create the file ({why}): {}", path.display())]
     Create {
         /// What the system says.
         why: String,

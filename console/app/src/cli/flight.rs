@@ -36,7 +36,7 @@ pub(crate) struct ShadowArgs {
     #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
     pub shadow_set: Vec<String>,
     /// Have the planner in shadow take over so often, in seconds of mission time; the one before it then flies in shadow.
-    #[arg(long, value_name = "SECONDS", requires = "shadow")]
+    #[arg(long, value_name = "SECONDS", requires = "shadow", value_parser = seconds, allow_negative_numbers = true)]
     pub promote_every: Option<f64>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct PlanArgs {
     /// Draw the tank, obstacles, preset path and planned path to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Write the plan to this file: .csv (points), .geojson or .dxf.
+    /// Write the plan to this file, which must not exist: .csv (points), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -72,4 +72,9 @@ pub(crate) struct AccuracyArgs {
     /// Find the best places on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite() && *seconds > 0.0);
+    seconds.ok_or_else(|| "write seconds, more than 0".into())
 }

@@ -10,30 +10,15 @@ fn the_command_line_is_consistent() {
 fn the_help_of_every_command_is_as_reviewed() {
     let mut command = Cli::command().term_width(100);
     let mut help = vec![command.render_long_help().to_string()];
-    for name in [
-        "console",
-        "run",
-        "plan",
-        "accuracy",
-        "map",
-        "import",
-        "locate",
-        "new-planner",
-        "planners",
-        "check",
-        "reproduce",
-        "tune",
-        "runs",
-        "verify",
-        "export",
-        "report",
-        "rescan",
-        "replay-worker",
-        "completions",
-        "man",
-    ] {
-        let sub = command.find_subcommand_mut(name).expect("a command of ours");
-        help.push(format!("===== {name}\n{}", sub.render_long_help()));
-    }
+    gather(&mut command, "", &mut help);
     insta::assert_snapshot!(help.join("\n"));
+}
+
+/// The help of every command below another one, in their order.
+fn gather(command: &mut clap::Command, above: &str, help: &mut Vec<String>) {
+    for sub in command.get_subcommands_mut().filter(|sub| !sub.is_hide_set()) {
+        let name = format!("{above}{}", sub.get_name());
+        help.push(format!("===== {name}\n{}", sub.render_long_help()));
+        gather(sub, &format!("{name} "), help);
+    }
 }

@@ -77,7 +77,7 @@ impl Messages {
         let damaged =
             |line: u64, error: &dyn std::fmt::Display| problem(line, format!("damaged MCAP: {error}"));
         while let Some(event) = reader.next_event() {
-            match event.map_err(|error| damaged(*count, &error))? {
+            match event.map_err(|error| damaged(*count + 1, &error))? {
                 LinearReadEvent::ReadRequest(length) => {
                     let read = file.read(reader.insert(length));
                     reader.notify_read(read.map_err(|error| problem(*count, error.to_string()))?);
