@@ -10,7 +10,7 @@ mod waiting;
 use super::{
     inbox::RunOutbox,
     line::{Current, EngineHandle, Request, line},
-    pace::{Reached, next_due, window},
+    pace::{Pace, Reached, window},
 };
 use crate::Drill;
 use flight::{
@@ -136,14 +136,18 @@ struct EngineThread {
 
 impl EngineThread {
     fn fly(mut self) -> Option<Closed> {
-        let mut due = Instant::now();
+        let mut pace = Pace::from(Instant::now());
         loop {
-            let (orders, close) = self.wait_until(due);
+            pace.rest(self.rests());
+            let (orders, close) = self.wait_for(&pace);
+            while pace.makes_up(Instant::now()) {
+                self.tick(Vec::new());
+            }
             if let Some(hurry) = close {
                 return self.close(orders, hurry);
             }
             if !orders.is_empty() || self.is_under_way() {
-                due = next_due(due, Instant::now(), self.flight.tick_length(), self.speed, self.waits());
+                pace.tick_flown(Instant::now(), self.flight.tick_length(), self.speed, self.waits());
                 self.tick(orders);
             }
         }
@@ -163,6 +167,11 @@ impl EngineThread {
         let is_silent =
             matches!(self.flight.phase(), Phase::Held(Hold { by: HoldReason::PlannerSilent { .. }, .. }));
         is_silent || self.is_held_for_good() || self.flight.mission().is_preparing()
+    }
+
+    /// Whether nothing but an order changes what the robot does, and no planner owes an answer.
+    fn rests(&self) -> bool {
+        self.is_held_for_good() && !self.flight.mission().is_preparing() && self.watch.current().is_none()
     }
 
     fn is_held_for_good(&self) -> bool {

@@ -7,17 +7,63 @@ use tui::Speed;
 /// A tick that is later than this is not made up for.
 const MOST_LATE: Duration = Duration::from_millis(50);
 
-/// When the tick after one that was due at `due` is due; time that was lost is not made up for by rushing.
-///
-/// While the mission waits (`waits`: for a planner, or for an order), its time passes no faster than the clock.
-pub(super) fn next_due(due: Instant, now: Instant, tick: Duration, speed: Speed, waits: bool) -> Instant {
-    let pace = match speed {
-        Speed::Times(factor) if waits => tick.div_f64(factor.min(1.0)),
-        Speed::Times(factor) => tick.div_f64(factor),
-        Speed::Max if waits => tick,
-        Speed::Max => return now,
-    };
-    if now.saturating_duration_since(due) < MOST_LATE { due + pace } else { now + pace }
+/// Ticks that are flown at one go while the mission rests: each wake-up costs three threads more than a tick does. What
+/// happens by itself then (a station that falls silent) shows this many ticks late at most.
+const TOGETHER: u32 = 4;
+
+/// When ticks are due.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// When the next tick is due.
+    due: Instant,
+    /// From each tick to the next; absent when the next is due at once.
+    period: Option<Duration>,
+    /// Whether ticks may be flown late, several at one go.
+    rests: bool,
+}
+
+impl Pace {
+    /// The first tick is due now.
+    pub(super) fn from(now: Instant) -> Self {
+        Self { due: now, period: None, rests: false }
+    }
+
+    /// Sets when the tick after this one is due; time that was lost is not made up for by rushing.
+    ///
+    /// While the mission waits (`waits`: for a planner, or for an order), its time passes no faster than the clock.
+    pub(super) fn tick_flown(&mut self, now: Instant, tick: Duration, speed: Speed, waits: bool) {
+        self.period = match speed {
+            Speed::Times(factor) if waits => Some(tick.div_f64(factor.min(1.0))),
+            Speed::Times(factor) => Some(tick.div_f64(factor)),
+            Speed::Max if waits => Some(tick),
+            Speed::Max => None,
+        };
+        let is_late = now.saturating_duration_since(self.due) >= MOST_LATE;
+        self.due = self.period.map_or(now, |period| if is_late { now } else { self.due } + period);
+    }
+
+    /// Sets whether ticks may be flown late, because only an order changes anything.
+    pub(super) fn rest(&mut self, rests: bool) {
+        self.rests = rests;
+    }
+
+    /// When the engine is to wake: with orders for the next tick, when that is due.
+    pub(super) fn wakes_at(&self, has_orders: bool) -> Instant {
+        match self.period {
+            Some(period) if self.rests && !has_orders => self.due + period * (TOGETHER - 1),
+            _ => self.due,
+        }
+    }
+
+    /// Whether a tick was left out while the mission rested: another is due by now. It counts as flown.
+    pub(super) fn makes_up(&mut self, now: Instant) -> bool {
+        let next = self.period.filter(|_| self.rests).map(|period| self.due + period);
+        let is_due = next.is_some_and(|next| next <= now);
+        if let Some(next) = next.filter(|_| is_due) {
+            self.due = next;
+        }
+        is_due
+    }
 }
 
 /// How long a tick waits for answers.
@@ -66,10 +112,16 @@ mod tests {
         Duration::from_millis(ms)
     }
 
+    fn next_due(due: Instant, late: Duration, speed: Speed, waits: bool) -> Duration {
+        let mut pace = Pace::from(due);
+        pace.tick_flown(due + late, TICK, speed, waits);
+        pace.wakes_at(false) - due
+    }
+
     #[test]
     fn ticks_follow_the_pace_and_lost_time_is_not_made_up_for() {
         let due = Instant::now();
-        let at = |late, speed| next_due(due, due + late, TICK, speed, false) - due;
+        let at = |late, speed| next_due(due, late, speed, false);
         assert_eq!(at(ms(0), Speed::Times(4.0)), ms(25));
         assert_eq!(at(ms(49), Speed::Times(4.0)), ms(25));
         assert_eq!(at(ms(50), Speed::Times(4.0)), ms(75));
@@ -80,9 +132,32 @@ mod tests {
     #[test]
     fn a_mission_that_waits_goes_no_faster_than_the_clock() {
         let due = Instant::now();
-        let at = |speed| next_due(due, due, TICK, speed, true) - due;
+        let at = |speed| next_due(due, ms(0), speed, true);
         assert_eq!((at(Speed::Times(4.0)), at(Speed::Max)), (TICK, TICK));
         assert_eq!(at(Speed::Times(0.5)), ms(200));
+    }
+
+    #[test]
+    fn a_mission_that_rests_flies_its_ticks_together_and_misses_none() {
+        let began = Instant::now();
+        let mut pace = Pace::from(began);
+        pace.tick_flown(began, TICK, Speed::Times(1.0), true);
+        pace.rest(true);
+        assert_eq!(pace.wakes_at(false) - began, TICK * 4);
+        assert_eq!(pace.wakes_at(true) - began, TICK, "an order does not wait for the others");
+        let now = began + TICK * 4 + ms(3);
+        let made_up = std::iter::from_fn(|| pace.makes_up(now).then_some(())).count();
+        assert_eq!(made_up, 3);
+        pace.tick_flown(now, TICK, Speed::Times(1.0), true);
+        assert_eq!(pace.wakes_at(true) - began, TICK * 5);
+    }
+
+    #[test]
+    fn a_mission_that_does_not_rest_makes_nothing_up() {
+        let began = Instant::now();
+        let mut pace = Pace::from(began);
+        pace.tick_flown(began, TICK, Speed::Times(1.0), false);
+        assert!(!pace.makes_up(began + TICK * 9));
     }
 
     #[test]

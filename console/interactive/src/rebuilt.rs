@@ -2,7 +2,7 @@
 
 use super::desk::{DeskHandle, Request};
 use anyhow::Context;
-use planner_host::PluginDirs;
+use planner_host::{PluginDirs, discovery::Stamps};
 use std::{thread, time::Duration};
 
 /// How often the files are looked at: a build is noticed within two of these.
@@ -14,10 +14,12 @@ const PERIOD: Duration = Duration::from_secs(1);
 /// The system gives no thread.
 pub(super) fn watch(desk: DeskHandle, plugins: PluginDirs) -> anyhow::Result<()> {
     let watching = thread::Builder::new().name("plugins".into()).spawn(move || {
-        let (mut known, mut before) = (plugins.stamps(), plugins.stamps());
+        let mut stamps = Stamps::of(&plugins);
+        let mut known = stamps.look();
+        let mut before = known.clone();
         loop {
             thread::sleep(PERIOD);
-            let now = plugins.stamps();
+            let now = stamps.look();
             if now == before && now != known {
                 desk.request(Request::Survey);
                 known.clone_from(&now);

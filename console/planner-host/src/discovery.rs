@@ -1,5 +1,9 @@
 //! Where plugins are looked for, and which files there are plugins.
 
+mod stamps;
+
+pub use stamps::{FileStamp, Stamps};
+
 use crate::stamp::{self, Abi};
 use crate::survey::Cache;
 use crate::user_folder::user_folder;
@@ -7,7 +11,6 @@ use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// Folders with plugins, and on which condition these are loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -60,24 +63,6 @@ impl PluginDirs {
         }
         found
     }
-
-    /// When each file that is named like a plugin was written last, and its length, without reading any: a build changes it.
-    pub fn stamps(&self) -> Vec<FileStamp> {
-        let paths = self.folders.iter().flat_map(|dir| named_like_plugins(dir));
-        let stamp = |path: PathBuf| {
-            let about = std::fs::metadata(&path).ok()?;
-            Some(FileStamp { written: about.modified().ok(), length: about.len(), path })
-        };
-        paths.filter_map(stamp).collect()
-    }
-}
-
-/// A file as it was written last.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FileStamp {
-    path: PathBuf,
-    written: Option<SystemTime>,
-    length: u64,
 }
 
 fn named_like_plugins(dir: &Path) -> Vec<PathBuf> {

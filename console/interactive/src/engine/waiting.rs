@@ -1,7 +1,7 @@
 //! What the engine's thread waits for between two ticks.
 
 use super::{EngineThread, keeping::HEALTH_PERIOD};
-use crate::line::Request;
+use crate::{line::Request, pace::Pace};
 use mission::Order;
 use runs::RunLog;
 use std::{
@@ -19,12 +19,13 @@ const LOOK_AFTER: Duration = Duration::from_millis(20);
 impl EngineThread {
     /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
     /// close, and then whether in a hurry.
-    pub(super) fn wait_until(&mut self, due: Instant) -> (Vec<Order>, Option<bool>) {
+    pub(super) fn wait_for(&mut self, pace: &Pace) -> (Vec<Order>, Option<bool>) {
         // A wake-up from here on belongs to a request that has not been taken yet.
         self.host.clear_wake_ups();
         let mut orders = Vec::new();
         loop {
             let is_ahead = self.is_ahead();
+            let due = pace.wakes_at(!orders.is_empty());
             let due = if is_ahead { due.max(Instant::now() + LOOK_AGAIN) } else { due };
             let wait = due.saturating_duration_since(Instant::now()).min(HEALTH_PERIOD);
             let request = if self.is_under_way() {

@@ -61,6 +61,9 @@ fn build(
         patch.log_serialized_batches(extra.path, false, extra.what)?;
     }
     messages.extend(store.take().into_iter().filter(|message| matches!(message, rr::LogMsg::ArrowMsg(..))));
+    // A stream into memory and its store hold each other: without this, the threads of both would outlive the run.
+    scratch.disconnect();
+    patch.disconnect();
     Ok((messages, rr::BlueprintActivationCommand { blueprint_id: id, make_active: true, make_default: true }))
 }
 

@@ -1,0 +1,116 @@
+//! Which plugin files there are and when they were written, looked at again and again for little.
+
+use super::{PluginDirs, named_like_plugins};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime},
+};
+
+/// Times of files are this coarse at most, on the file systems in use: a folder that changed later than this before it was
+/// listed may have changed after it too.
+const COARSEST: Duration = Duration::from_secs(2);
+
+/// The files of some folders that are named like plugins, as they were written last.
+///
+/// A look costs one call to the system for each folder and each file in it that is named like a plugin: a folder is listed
+/// again only when something was added to it or taken away (a build folder holds thousands of other files).
+#[derive(Debug)]
+pub struct Stamps {
+    folders: Vec<Folder>,
+}
+
+/// A file as it was written last.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileStamp {
+    path: PathBuf,
+    written: Option<SystemTime>,
+    length: u64,
+}
+
+#[derive(Debug)]
+struct Folder {
+    path: PathBuf,
+    /// When the folder had changed last as it was listed, if that listing can be relied on.
+    listed: Option<SystemTime>,
+    files: Vec<PathBuf>,
+}
+
+impl Stamps {
+    /// Of these folders; nothing is looked at yet.
+    pub fn of(plugins: &PluginDirs) -> Self {
+        let folder = |path: &PathBuf| Folder { path: path.clone(), listed: None, files: Vec::new() };
+        Self { folders: plugins.folders.iter().map(folder).collect() }
+    }
+
+    /// When each file was written last, and its length, without reading any: a build changes it.
+    pub fn look(&mut self) -> Vec<FileStamp> {
+        let now = SystemTime::now();
+        self.folders.iter_mut().flat_map(|folder| folder.look(now)).collect()
+    }
+}
+
+impl Folder {
+    fn look(&mut self, now: SystemTime) -> Vec<FileStamp> {
+        let changed = fs::metadata(&self.path).and_then(|about| about.modified()).ok();
+        if changed.is_none() || changed != self.listed {
+            self.files = named_like_plugins(&self.path);
+            let rests = |at: &SystemTime| now.duration_since(*at).is_ok_and(|since| since > COARSEST);
+            self.listed = changed.filter(rests);
+        }
+        self.files.iter().filter_map(|path| FileStamp::of(path)).collect()
+    }
+}
+
+impl FileStamp {
+    fn of(path: &Path) -> Option<Self> {
+        let about = fs::metadata(path).ok()?;
+        Some(Self { path: path.to_owned(), written: about.modified().ok(), length: about.len() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::File;
+
+    fn looked(stamps: &mut Stamps) -> Vec<(String, u64)> {
+        let name =
+            |stamp: FileStamp| (stamp.path.file_name().unwrap().to_str().unwrap().to_owned(), stamp.length);
+        stamps.look().into_iter().map(name).collect()
+    }
+
+    #[test]
+    fn files_that_come_change_and_go_are_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        let mut stamps = Stamps::of(&PluginDirs::of(vec![folder.path().to_owned(), file("none")]));
+        assert_eq!(looked(&mut stamps), []);
+        fs::write(file("libplanner_a.so"), "a").unwrap();
+        fs::write(file("other.txt"), "a").unwrap();
+        assert_eq!(looked(&mut stamps), [("libplanner_a.so".into(), 1)]);
+        fs::write(file("libplanner_a.so"), "ab").unwrap();
+        assert_eq!(looked(&mut stamps), [("libplanner_a.so".into(), 2)]);
+        fs::remove_file(file("libplanner_a.so")).unwrap();
+        assert_eq!(looked(&mut stamps), []);
+    }
+
+    #[test]
+    fn a_folder_that_rests_is_not_listed_again_and_its_files_are_still_looked_at() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("libplanner_a.so");
+        fs::write(&path, "a").unwrap();
+        let long_ago = SystemTime::now() - Duration::from_secs(60);
+        File::open(folder.path()).unwrap().set_modified(long_ago).unwrap();
+        let mut stamps = Stamps::of(&PluginDirs::of(vec![folder.path().to_owned()]));
+        let before = stamps.look();
+        assert_eq!(stamps.folders[0].listed, Some(long_ago));
+        // Written in its place: the folder itself does not change.
+        fs::write(&path, "ab").unwrap();
+        assert_eq!(fs::metadata(folder.path()).unwrap().modified().unwrap(), long_ago);
+        assert_ne!(stamps.look(), before);
+        // And a file that comes later is found.
+        fs::write(folder.path().join("libplanner_b.so"), "b").unwrap();
+        assert_eq!(stamps.look().len(), 2);
+    }
+}
