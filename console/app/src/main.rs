@@ -40,6 +40,7 @@ fn main() -> ExitCode {
     if matches!(cli.command, Some(Command::Worker)) {
         return planner_host::worker_main();
     }
+    keep_memory_small();
     close_memory();
     survive_file_size_limit();
     dispatch(cli).unwrap_or_else(|error| fail(&error))
@@ -55,6 +56,21 @@ fn fail(error: &anyhow::Error) -> ExitCode {
     }
     warn_line(&format!("error: {error:#}"));
     ExitCode::from(INTERNAL)
+}
+
+/// Has the allocator give large blocks back to the system at once, and all threads share one heap: with a heap for each
+/// thread and blocks kept for later, a console holds twice what it uses. No mission was measured to become slower.
+fn keep_memory_small() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    #[expect(unsafe_code, reason = "the C library has no other way to set this from within")]
+    // SAFETY: `mallopt` changes parameters of the allocator under its own lock; no other thread runs yet.
+    unsafe {
+        /// Blocks from this size on are mapped for themselves and unmapped when they are freed, bytes.
+        const MAPPED_FROM: libc::c_int = 128 << 10;
+        // A parameter that is refused keeps its default.
+        libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);
+        libc::mallopt(libc::M_ARENA_MAX, 1);
+    }
 }
 
 /// Keeps other processes of the same user, planners among them, from reading or changing this one; leaves no core dump.

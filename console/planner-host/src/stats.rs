@@ -24,21 +24,21 @@ pub struct HostStats {
     pub faults: u64,
 }
 
-/// Wall times of the calls of one kind.
+/// Wall times of the calls of one kind, microseconds: a million of them in four megabytes, each exact to a ten-millionth.
 #[derive(Debug, Default)]
-pub(crate) struct Durations(Vec<Duration>);
+pub(crate) struct Durations(Vec<f32>);
 
 impl Durations {
     pub(crate) fn note(&mut self, took: Duration) {
-        self.0.push(took);
+        self.0.push((took.as_secs_f64() * 1e6) as f32);
     }
 
     pub(crate) fn stats(&self) -> CallStats {
         let mut sorted = self.0.clone();
-        sorted.sort_unstable();
+        sorted.sort_unstable_by(f32::total_cmp);
         let quantile = |share: f64| {
             let rank = (share * sorted.len() as f64).ceil() as usize;
-            sorted.get(rank.saturating_sub(1)).map(|took| took.as_secs_f64() * 1e6)
+            sorted.get(rank.saturating_sub(1)).copied().map(f64::from)
         };
         CallStats { calls: sorted.len() as u64, p50_us: quantile(0.5), p99_us: quantile(0.99) }
     }

@@ -117,8 +117,12 @@ impl SafeSink {
         let backlog = Backlog::new(out, MOST_WAITING_BYTES);
         let guarded = Guarded { backlog, health: Arc::clone(&health) };
         let options = rr::EncodingOptions::PROTOBUF_COMPRESSED;
-        let encoder = rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, guarded);
-        Ok(Self { encoder: Mutex::new(encoder.map_err(|error| RecordingError::sdk(&error))?), health })
+        let mut encoder = rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, guarded)
+            .map_err(|error| RecordingError::sdk(&error))?;
+        // The table of contents would be kept in memory until the end: 80 MB for a run of seven hours. Readers do without
+        // it, as with a recording that was cut off; merging adds it where the file is small.
+        encoder.do_not_emit_footer();
+        Ok(Self { encoder: Mutex::new(encoder), health })
     }
 
     /// How the file is doing, also after the sink is gone.
