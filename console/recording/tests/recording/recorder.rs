@@ -94,7 +94,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
                 wrap_total_rad: 1.0,
                 pull_factor: 1.3,
                 return_length_m: bears.then_some(length_m),
-                line: vec![anchor, at],
+                bends: vec![],
             };
             let truth =
                 EventKind::TetherTruth { length_m, wrap_max_rad: 1.0, wrap_total_rad: 1.0, detour_m: 0.0 };
