@@ -96,6 +96,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
+    /// Print the events of a past run as JSON lines.
+    Events(EventsArgs),
     /// Write a past run as another file: its recording anew, or the readings of its sensors.
     Export(ExportArgs),
     /// Locate a robot by readings that a real system measured: fixes, track, recording and report.
@@ -235,6 +237,23 @@ fn core_hours(text: &str) -> Result<f64, String> {
 fn shard(text: &str) -> Result<(u64, u64), String> {
     let parts = text.split_once('/').and_then(|(at, of)| Some((at.parse().ok()?, of.parse().ok()?)));
     parts.filter(|(at, of)| at < of).ok_or_else(|| "write I/N, as 0/3, 1/3 and 2/3 for three shards".into())
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EventsArgs {
+    /// Run folder, or its name in the logs folder.
+    pub run: PathBuf,
+    /// Only events of this kind, by the word in their key `event`; repeatable.
+    #[arg(long, value_name = "KIND")]
+    pub kind: Vec<String>,
+    /// Only from this mission time on, seconds.
+    #[arg(long, value_name = "T_S")]
+    pub from: Option<f64>,
+    /// Only up to this mission time, seconds.
+    #[arg(long, value_name = "T_S")]
+    pub to: Option<f64>,
+    #[command(flatten)]
+    pub logs: LogsArg,
 }
 
 #[derive(Debug, Args)]

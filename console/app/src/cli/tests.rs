@@ -25,6 +25,7 @@ fn the_help_of_every_command_is_as_reviewed() {
         "tune",
         "runs",
         "verify",
+        "events",
         "export",
         "report",
         "rescan",

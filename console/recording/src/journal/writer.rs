@@ -20,7 +20,7 @@ const FLUSH_AFTER: Duration = Duration::from_millis(500);
 /// or when they take this many bytes.
 const FLUSH_BYTES: usize = 64 * 1024;
 /// Events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
-const MOST_WAITING_BYTES: usize = 64 << 20;
+const MOST_WAITING_BYTES: usize = 4 << 20;
 
 /// Writes a journal.
 ///
@@ -29,7 +29,7 @@ const MOST_WAITING_BYTES: usize = 64 << 20;
 /// lines of equal runs are equal, and where the compressed ones are divided depends on the clock.
 ///
 /// What cannot be written, because the disk is full, is kept and tried again every half second: the journal then is
-/// whole in the end. When more than 64 MB wait, the journal has ended; events after that are not written.
+/// whole in the end. When more than 4 MB wait, the journal has ended; events after that are not written.
 pub struct JournalWriter {
     backlog: Backlog,
     /// None if nothing is written.
