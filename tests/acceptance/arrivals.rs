@@ -30,7 +30,7 @@ impl Flying {
         // Before that, workers only list what plugins offer.
         flying.until("the journal", |flying| {
             let begun =
-                |run: &PathBuf| run.join("events.jsonl").metadata().is_ok_and(|file| file.len() > 100);
+                |run: &PathBuf| run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100);
             flying.bench.runs().iter().any(begun)
         });
         flying

@@ -1,6 +1,6 @@
 //! A planner's author, with nothing but `tankops` and a compiler.
 
-use crate::bench::{Bench, Ended, workspace};
+use crate::bench::{Bench, Ended, journal_text, workspace};
 use std::{
     path::{Path, PathBuf},
     process::Command,
@@ -127,7 +127,7 @@ fn what_a_planner_prints_and_its_crash_are_kept_and_the_crash_can_be_replayed() 
     let run = &bench.runs()[0];
     let printed = std::fs::read_to_string(run.join("planner.log")).unwrap();
     assert!(printed.starts_with("T+0.3 s  my-own: in step 3\n"), "{printed}");
-    assert!(!std::fs::read_to_string(run.join("events.jsonl")).unwrap().contains("in step 3"));
+    assert!(!journal_text(run).contains("in step 3"));
     let bundle = run.join("crash-1");
     let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
     assert!(replayed.code == Some(1) && replayed.out.contains("killed by SIGABRT"), "{replayed:?}");

@@ -1,7 +1,9 @@
 //! Starting `tankops` and reading what it leaves.
 
+use recording::{JOURNAL_FILE, PLAIN_JOURNAL_FILE};
 use serde_json::Value;
 use std::{
+    io::Read,
     path::{Path, PathBuf},
     process::{Command, Output},
 };
@@ -114,10 +116,25 @@ impl Ended {
     }
 }
 
+/// The lines of a journal as they are written.
+pub(crate) fn journal_text(run: &Path) -> String {
+    let file = std::fs::File::open(run.join(JOURNAL_FILE));
+    let Ok(file) = file else { return std::fs::read_to_string(run.join(PLAIN_JOURNAL_FILE)).unwrap() };
+    let mut bytes = Vec::new();
+    // The journal of a killed writer stops within a frame, which is an error after what can be read.
+    let _ = zstd::Decoder::new(file).unwrap().read_to_end(&mut bytes);
+    String::from_utf8(bytes).unwrap()
+}
+
+/// Puts another journal in the place of that of a run, without compressing it.
+pub(crate) fn change_journal(run: &Path, text: &str) {
+    let _ = std::fs::remove_file(run.join(JOURNAL_FILE));
+    std::fs::write(run.join(PLAIN_JOURNAL_FILE), text).unwrap();
+}
+
 /// The lines of a journal.
 pub(crate) fn journal(run: &Path) -> Vec<Value> {
-    let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap();
-    text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+    journal_text(run).lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }
 
 /// The events of one kind.

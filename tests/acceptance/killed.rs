@@ -36,9 +36,9 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
         let written = |name: &str| run.join(name).metadata().unwrap().modified().unwrap();
         let age = |name: &str| killed_at.duration_since(written(name)).unwrap_or_default();
         assert!(
-            age("events.jsonl") <= Duration::from_secs(1),
+            age("events.jsonl.zst") <= Duration::from_secs(1),
             "the journal is {:?} old",
-            age("events.jsonl")
+            age("events.jsonl.zst")
         );
         assert!(
             age("recording.rrd") <= Duration::from_secs(5),
@@ -68,7 +68,7 @@ fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
 
 fn wait_for_journal(bench: &Bench) {
     let until = Instant::now() + Duration::from_secs(20);
-    let begun = |run: &Path| run.join("events.jsonl").metadata().is_ok_and(|file| file.len() > 100);
+    let begun = |run: &Path| run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100);
     while !bench.runs().iter().any(|run| begun(run)) {
         assert!(Instant::now() < until, "the run never began");
         std::thread::sleep(Duration::from_millis(10));

@@ -1,20 +1,16 @@
 //! What `verify` proves, and what it refuses to call equal.
 
 use crate::{
-    bench::{Bench, journal, scenario, workspace},
+    bench::{Bench, change_journal, journal, journal_text, scenario, workspace},
     faults::compile,
 };
 use mission::event::JOURNAL_VERSION;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A short run that was flown to its end.
 fn flown(bench: &Bench) -> PathBuf {
     assert_eq!(bench.fly(&scenario("goto-single-obstacle.toml"), &[]).code, Some(0));
     bench.runs().remove(0)
-}
-
-fn text_of(run: &Path) -> String {
-    std::fs::read_to_string(run.join("events.jsonl")).unwrap()
 }
 
 /// The text with one line changed.
@@ -28,7 +24,7 @@ fn with_line(text: &str, number: usize, change: impl Fn(&str) -> String) -> Stri
 fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
     let bench = Bench::new();
     let run = flown(&bench);
-    let text = text_of(&run);
+    let text = journal_text(&run);
     let at = 150;
     let (tick, t_s) = (&journal(&run)[at]["tick"], &journal(&run)[at]["t_s"]);
     let (clock, longer) = (format!("\"t_s\":{t_s},"), format!("\"t_s\":{t_s}0,"));
@@ -58,7 +54,7 @@ fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
     std::fs::rename(run.join("report.json"), run.join("report.kept")).unwrap();
     for (what, line, changed) in changed {
         assert_ne!(changed, text, "{what}");
-        std::fs::write(run.join("events.jsonl"), changed).unwrap();
+        change_journal(&run, &changed);
         let tick = journal(&run)[line]["tick"].as_u64().unwrap();
         for more in [&[][..], &["--from-journal"]] {
             let verified = bench.verify(&run, more);
@@ -66,7 +62,7 @@ fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
             assert!(verified.code == Some(1) && is_reported, "{what}: {verified:?}");
         }
     }
-    std::fs::write(run.join("events.jsonl"), text).unwrap();
+    change_journal(&run, &text);
     std::fs::rename(run.join("report.kept"), run.join("report.json")).unwrap();
     bench.prove(&run);
 }
@@ -75,7 +71,7 @@ fn a_journal_in_which_a_line_is_written_otherwise_is_different() {
 fn a_truncated_journal_differs_from_its_report() {
     let bench = Bench::new();
     let run = flown(&bench);
-    let text = text_of(&run);
+    let text = journal_text(&run);
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines.len() > 600, "{}", lines.len());
     let report = std::fs::read_to_string(run.join("report.json")).unwrap();
@@ -84,7 +80,7 @@ fn a_truncated_journal_differs_from_its_report() {
     for (what, kept) in
         [("the last line", lines.len() - 1), ("500 lines", lines.len() - 500), ("all but one", 1)]
     {
-        std::fs::write(run.join("events.jsonl"), lines[..kept].join("\n") + "\n").unwrap();
+        change_journal(&run, &(lines[..kept].join("\n") + "\n"));
         // A report that does not name the journal's hash claims an end all the same.
         for report in [report.clone(), report.replacen("events_sha256", "events", 1)] {
             std::fs::write(run.join("report.json"), report).unwrap();
@@ -93,7 +89,7 @@ fn a_truncated_journal_differs_from_its_report() {
             assert!(verified.code == Some(1) && is_reported, "without {what}: {verified:?}");
         }
     }
-    std::fs::write(run.join("events.jsonl"), &text).unwrap();
+    change_journal(&run, &text);
     std::fs::write(run.join("report.json"), hash_of_another).unwrap();
     let verified = bench.verify(&run, &[]);
     assert!(verified.code == Some(1) && verified.out.contains("SHA-256"), "{verified:?}");
@@ -103,13 +99,13 @@ fn a_truncated_journal_differs_from_its_report() {
 fn a_journal_without_an_end_is_compared_as_far_as_it_goes() {
     let bench = Bench::new();
     let run = flown(&bench);
-    let text = text_of(&run);
+    let text = journal_text(&run);
     std::fs::remove_file(run.join("report.json")).unwrap();
     // As a process leaves it that was killed: somewhere in a line, at the end of one, or before a newline.
     let middle = text.len() / 2;
     let line_end = middle + text[middle..].find('\n').unwrap();
     for kept in [middle, line_end + 1, line_end] {
-        std::fs::write(run.join("events.jsonl"), &text[..kept]).unwrap();
+        change_journal(&run, &text[..kept]);
         for more in [&[][..], &["--from-journal"]] {
             let verified = bench.verify(&run, more);
             let is_equal =
@@ -123,14 +119,14 @@ fn a_journal_without_an_end_is_compared_as_far_as_it_goes() {
 fn nothing_may_follow_the_end_of_a_journal() {
     let bench = Bench::new();
     let run = flown(&bench);
-    let text = text_of(&run);
+    let text = journal_text(&run);
     std::fs::remove_file(run.join("report.json")).unwrap();
     let ending = text.lines().last().unwrap();
     let tick = journal(&run).last().unwrap()["tick"].as_u64().unwrap();
     let later = ending.replacen(&format!("\"tick\":{tick},"), &format!("\"tick\":{},", tick + 1), 1);
     assert_ne!(later, ending);
     for more in [ending, &later] {
-        std::fs::write(run.join("events.jsonl"), format!("{text}{more}\n")).unwrap();
+        change_journal(&run, &format!("{text}{more}\n"));
         let verified = bench.verify(&run, &[]);
         assert!(verified.code == Some(1) && verified.out.contains("different"), "{verified:?}");
     }
@@ -214,7 +210,7 @@ fn sizes_in_a_journal_that_was_changed_take_neither_memory_nor_time() {
     let bench = Bench::new();
     bench.fly(&scenario("cover-circle.toml"), &["--set", "mission.time_limit_s=20"]);
     let run = bench.runs().remove(0);
-    let text = text_of(&run);
+    let text = journal_text(&run);
     let path = ("\"path\":[", "],\"length_m\"");
     let changes = [
         ("no path", with_part(&text, path, "")),
@@ -224,7 +220,7 @@ fn sizes_in_a_journal_that_was_changed_take_neither_memory_nor_time() {
         ("a long run of cells", with_part(&text, ("\"runs\":[[\"outside\",", "]"), "4294967295")),
     ];
     for (what, changed) in changes {
-        std::fs::write(run.join("events.jsonl"), changed).unwrap();
+        change_journal(&run, &changed);
         let name = run.to_str().unwrap();
         for command in [&["verify", name][..], &["verify", name, "--from-journal"]] {
             let verified = bench.tankops(command);

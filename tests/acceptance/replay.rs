@@ -1,6 +1,6 @@
 //! Past runs: listed, verified, exported.
 
-use crate::bench::{Bench, journal, scenario};
+use crate::bench::{Bench, change_journal, journal, journal_text, scenario};
 
 #[test]
 fn a_run_is_listed_verified_and_exported() {
@@ -31,15 +31,14 @@ fn a_changed_journal_is_reported_from_its_first_difference_on() {
     let bench = Bench::new();
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let run = bench.runs().remove(0);
-    let path = run.join("events.jsonl");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let text = journal_text(&run);
     let tick = journal(&run)[200]["tick"].as_u64().unwrap();
     let changed: Vec<String> = text
         .lines()
         .enumerate()
         .map(|(i, line)| if i == 200 { line.replacen("\"t_s\":", "\"t_s\":9", 1) } else { line.into() })
         .collect();
-    std::fs::write(&path, changed.join("\n") + "\n").unwrap();
+    change_journal(&run, &(changed.join("\n") + "\n"));
     let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
     assert_eq!(verified.code, Some(1), "{verified:?}");
     assert!(verified.out.contains(&format!("different from tick {tick} on")), "{verified:?}");
@@ -58,11 +57,10 @@ fn an_export_that_fails_leaves_nothing_behind() {
     let bench = Bench::new();
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let run = bench.runs().remove(0);
-    let path = run.join("events.jsonl");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let text = journal_text(&run);
     let damaged: Vec<&str> =
         text.lines().enumerate().map(|(i, line)| if i == 300 { "{]" } else { line }).collect();
-    std::fs::write(&path, damaged.join("\n") + "\n").unwrap();
+    change_journal(&run, &(damaged.join("\n") + "\n"));
     let exported = bench.tankops(&["export", run.to_str().unwrap(), "--rrd", "again.rrd"]);
     assert_eq!(exported.code, Some(2), "{exported:?}");
     assert!(exported.err.contains("301"), "{exported:?}");

@@ -1,6 +1,6 @@
 //! A scan with gaps, a mission for the gaps, and the result of both.
 
-use crate::bench::{Bench, Ended, scenario};
+use crate::bench::{Bench, Ended, change_journal, journal_text, scenario};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -21,8 +21,7 @@ fn rescan(bench: &Bench, runs: &[&Path], output: &str) -> Ended {
     Ended::from(command.arg("rescan").args(runs).args(["-o", output]).output().unwrap())
 }
 
-fn digest(file: &Path) -> String {
-    let bytes = std::fs::read(file).unwrap();
+fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
@@ -54,9 +53,8 @@ fn what_a_mission_missed_is_planned_flown_and_reported_together_with_it() {
     let merged = bench.tankops(&["report", &a, &b, "--json"]).json();
     for (listed, run) in merged["runs"].as_array().unwrap().iter().zip([&first, &second]) {
         assert_eq!(listed["run"], run.file_name().unwrap().to_str().unwrap());
-        for (key, file) in [("journal_sha256", "events.jsonl"), ("recording_sha256", "recording.rrd")] {
-            assert_eq!(listed[key], digest(&run.join(file)), "{key}");
-        }
+        assert_eq!(listed["journal_sha256"], digest(journal_text(run).as_bytes()));
+        assert_eq!(listed["recording_sha256"], digest(&std::fs::read(run.join("recording.rrd")).unwrap()));
     }
     let share = |coverage: &Value| coverage["reachable"].as_f64().unwrap();
     let alone: Vec<f64> = (0..2).map(|k| share(&merged["runs"][k]["summary"]["coverage"])).collect();
@@ -72,7 +70,7 @@ fn what_a_mission_missed_is_planned_flown_and_reported_together_with_it() {
     let back = bench.tankops(&["report", &b, &a, "--json"]).json();
     assert!((share(&back["coverage"]) - both).abs() < 0.002, "in the other order: {}", back["coverage"]);
     let text = bench.tankops(&["report", &a, &b]).out;
-    let recording = format!("sha256 {}", digest(&second.join("recording.rrd")));
+    let recording = format!("sha256 {}", digest(&std::fs::read(second.join("recording.rrd")).unwrap()));
     assert!(text.contains(&recording) && text.contains("critical zone"), "{text}");
 }
 
@@ -100,10 +98,9 @@ fn a_journal_that_was_changed_is_reported_wherever_it_is_read() {
     let bench = Bench::new();
     let run = half_a_scan(&bench);
     let name = run.to_str().unwrap();
-    let journal = run.join("events.jsonl");
-    let text = std::fs::read_to_string(&journal).unwrap();
+    let text = journal_text(&run);
     assert!(!bench.tankops(&["report", name]).out.contains("not the one that the report was made from"));
-    std::fs::write(&journal, text.replacen("\"collided\":false", "\"collided\":true", 1)).unwrap();
+    change_journal(&run, &(text.replacen("\"collided\":false", "\"collided\":true", 1)));
     for command in [vec!["runs"], vec!["report", name], vec!["export", name, "--rrd", "regenerated.rrd"]] {
         let read = bench.tankops(&command);
         assert!(
@@ -117,10 +114,9 @@ fn a_journal_that_was_changed_is_reported_wherever_it_is_read() {
 fn the_figures_of_a_run_that_was_cut_off_are_held_to_no_bounds() {
     let bench = Bench::new();
     let run = half_a_scan(&bench);
-    let journal = run.join("events.jsonl");
-    let text = std::fs::read_to_string(&journal).unwrap();
+    let text = journal_text(&run);
     let kept: Vec<&str> = text.lines().take(text.lines().count() / 2).collect();
-    std::fs::write(&journal, kept.join("\n") + "\n").unwrap();
+    change_journal(&run, &(kept.join("\n") + "\n"));
     std::fs::remove_file(run.join("report.json")).unwrap();
     let report = bench.tankops(&["report", run.to_str().unwrap()]);
     assert!(report.out.contains("cut off") && !report.out.contains("not met"), "{report:?}");

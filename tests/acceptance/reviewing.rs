@@ -1,6 +1,6 @@
 //! Past runs in the console: played back, noted about, compared.
 
-use crate::bench::{Bench, scenario};
+use crate::bench::{Bench, change_journal, journal_text, scenario};
 use std::path::Path;
 
 /// Flies a short mission and gives its folder.
@@ -66,9 +66,8 @@ fn two_runs_are_compared_from_the_command_line() {
 fn a_journal_that_is_cut_off_plays_up_to_its_last_event_and_a_run_that_is_not_there_is_named() {
     let bench = Bench::new();
     let run = flown(&bench, "3");
-    let journal = run.join("events.jsonl");
-    let text = std::fs::read_to_string(&journal).unwrap();
-    std::fs::write(&journal, &text[..text.len() / 2]).unwrap();
+    let text = journal_text(&run);
+    change_journal(&run, &text[..text.len() / 2]);
     let script = "wait until text \"is cut off after\" within 30s\nkey $\nassert text REPLAY\n";
     let ended = replayed(&bench, &[name(&run)], script);
     assert_eq!(ended.code, Some(0), "{ended:?}");

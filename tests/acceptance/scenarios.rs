@@ -1,6 +1,6 @@
 //! Every shipped scenario meets its own `[expect]`, and repeats.
 
-use crate::bench::{Bench, scenario, workspace};
+use crate::bench::{Bench, journal_text, scenario, workspace};
 
 fn shipped() -> Vec<std::path::PathBuf> {
     let folders = ["scenarios", "scenarios/papers"].map(|folder| workspace().join(folder));
@@ -44,8 +44,7 @@ fn two_runs_of_one_seed_have_equal_journals() {
     let (first, second) = (bench.fly(&demo, &[]).json(), bench.fly(&demo, &[]).json());
     assert_eq!(first["events_sha256"], second["events_sha256"]);
     let runs = bench.runs();
-    let read = |run: &std::path::Path| std::fs::read(run.join("events.jsonl")).unwrap();
-    assert!(read(&runs[0]) == read(&runs[1]), "journals differ");
+    assert!(journal_text(&runs[0]) == journal_text(&runs[1]), "journals differ");
     let other = bench.fly(&demo, &["--seed", "77"]).json();
     assert_ne!(first["events_sha256"], other["events_sha256"]);
 }

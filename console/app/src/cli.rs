@@ -17,7 +17,7 @@ pub(crate) use console::{ConsoleArgs, ReplayArgs};
 pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
-pub(crate) use past::{ExportArgs, ReportArgs, RescanArgs};
+pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
 pub(crate) use research::{ReproduceArgs, TuneArgs};
 
 use clap::{Args, Parser, Subcommand};
@@ -113,6 +113,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
+    /// Print the events of a past run as JSON lines.
+    Events(EventsArgs),
     /// Write a past run as another file: its recording, regenerated, or the readings of its sensors.
     Export(ExportArgs),
     /// Locate a robot by readings that a real system measured: fixes, track, recording and report.

@@ -4,7 +4,7 @@ use crate::cli::ExportArgs;
 use ::locate::MeasuredWriter;
 use anyhow::Context;
 use flight::failure::{COMPLETE, bad_input};
-use recording::{JOURNAL_FILE, RecordingError, Ticks, sha256};
+use recording::{RecordingError, Ticks, events_sha256, journal_of};
 use report::print::say_line;
 use runs::{find, journal_doubt};
 use std::{
@@ -50,13 +50,13 @@ fn of_journal(
     make: fn(&Path, &Path) -> Result<Option<String>, RecordingError>,
     done: &str,
 ) -> anyhow::Result<()> {
-    let path = folder.join(JOURNAL_FILE);
+    let path = journal_of(folder);
     Ticks::open(&path)?.opened()?;
     let truncated = match make(&path, file) {
         Err(RecordingError::Journal(error)) => return Err(error.into()),
         made => made.with_context(|| format!("making {}", file.display()))?,
     };
-    let sha256 = sha256(&path).ok();
+    let sha256 = events_sha256(&path).ok();
     if let Some(doubt) = journal_doubt(folder, sha256.as_deref()) {
         say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
     }
@@ -67,7 +67,7 @@ fn of_journal(
 }
 
 fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
-    let path = folder.join(JOURNAL_FILE);
+    let path = journal_of(folder);
     let stations = Ticks::open(&path)?.opened()?.world.stations.clone();
     let refused = |error: &std::io::Error| {
         bad_input(format!("the readings cannot be written: {error}: {}", csv.display()))

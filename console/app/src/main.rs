@@ -3,6 +3,7 @@
 mod accuracy;
 mod campaign;
 mod cli;
+mod events;
 mod export;
 mod headless;
 mod import;
@@ -121,6 +122,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Verify { run, from_journal, logs }) => {
             past_runs::verify(&run, &logs, &plugins, from_journal)
         }
+        Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args),

@@ -114,7 +114,7 @@ impl Flight {
         self.inject_faults(&step.events);
         events.extend(step.events);
         self.tick += 1;
-        events
+        events.into_iter().map(Event::rounded).collect()
     }
 
     /// Faults of stations that the mission accepted begin with the next tick.

@@ -10,6 +10,8 @@ pub mod motion;
 pub mod polyline;
 pub mod pose;
 pub mod shape;
+#[cfg(feature = "serde")]
+pub mod symmetric;
 
 pub use boundary::Boundary;
 pub use follower::PathFollower;

@@ -3,7 +3,7 @@
 use super::inbox::RunOutbox;
 use anyhow::Context;
 use mission::{Event, EventKind, Severity};
-use recording::{JOURNAL_FILE, JournalReader};
+use recording::{JournalReader, journal_of};
 use runs::{Past, Standing, standing};
 use std::{
     path::{Path, PathBuf},
@@ -28,7 +28,7 @@ const MOST_BACKLOG: usize = 64;
 pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
     let folder = folder.to_owned();
     let writer = folder.clone();
-    let reader = JournalReader::follow(&folder.join(JOURNAL_FILE), move || {
+    let reader = JournalReader::follow(&journal_of(&folder), move || {
         thread::sleep(LOOK_AGAIN);
         standing(&writer) == Standing::Running
     })?;

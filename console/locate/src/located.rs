@@ -242,7 +242,7 @@ struct Track {
 
 impl Track {
     fn event(&self, kind: EventKind) -> Event {
-        Event { tick: self.tick, t_s: self.t_s, kind }
+        Event { tick: self.tick, t_s: self.t_s, kind }.rounded()
     }
 
     fn events(&mut self, moment: &Moment) -> Vec<Event> {

@@ -5,15 +5,17 @@
 
 mod log_line;
 mod recorded;
+mod rounding;
 mod severity;
 mod shadow;
 mod tether;
 
 pub use log_line::{LogLine, late_text};
 pub use recorded::RecordedAnswers;
+pub(crate) use rounding::rounded_command;
 pub use severity::Severity;
 pub use shadow::{READY_AFTER, ShadowTally};
-pub use tether::{TetherAlarm, TetherContact};
+pub use tether::{TetherAlarm, TetherContact, taut_line};
 
 use crate::{
     ask::AskId,
@@ -29,7 +31,7 @@ use world::tether::Certificate;
 use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
-pub const JOURNAL_VERSION: u32 = 4;
+pub const JOURNAL_VERSION: u32 = 5;
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,8 +93,9 @@ pub enum EventKind {
         pull_factor: f64,
         /// Length of the way back along the cable, metres; absent if the hull does not fit.
         return_length_m: Option<f64>,
-        /// The cable from the anchor to the robot.
-        line: Vec<Point>,
+        /// The points between the anchor and the robot at which the taut cable bends.
+        #[serde(alias = "line")]
+        bends: Vec<Point>,
     },
     /// The cable comes near to a limit, or has reached it.
     TetherAlarmRaised {

@@ -153,7 +153,7 @@ impl Tether {
             wrap_total_rad,
             pull_factor: capstan_factor(self.config.friction, wrap_total_rad),
             return_length_m,
-            line: self.cable.taut_line(),
+            bends: bends(&self.cable),
         }];
         for (alarm, share) in self.alarms_with_shares(world) {
             events.extend(self.alarms.check(alarm, share));
@@ -240,6 +240,12 @@ impl Tether {
         let names = on.first().map_or_else(String::new, |first| format!(", hooked around {first}"));
         (left_m > LEFT_M).then(|| format!("{left_m:.1} m of tether still out{names}"))
     }
+}
+
+/// The points of the taut cable between its ends.
+fn bends(cable: &Cable) -> Vec<Point> {
+    let line = cable.taut_line();
+    line[1..line.len() - 1].to_vec()
 }
 
 /// The way along a cable to its anchor with some room for the middle of the hull, metres.

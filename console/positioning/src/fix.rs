@@ -90,6 +90,7 @@ pub struct Fix {
     /// Most likely position, metres, tank frame.
     pub position: Point,
     /// Covariance of the position, square metres.
+    #[serde(with = "geometry::symmetric")]
     pub covariance: Matrix2<f64>,
     /// One per station used.
     pub residuals: Vec<Residual>,

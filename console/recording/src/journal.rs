@@ -1,27 +1,39 @@
-//! The journal of a run: every event, one JSON object a line, in the order in which they happened.
+//! The journal of a run: every event, one JSON object a line, in the order in which they happened; the lines are compressed.
 //!
-//! It carries no wall-clock time, so equal runs have equal journals, byte for byte. It is the record from which
+//! It carries no wall-clock time, so equal runs have equal lines, byte for byte. It is the record from which
 //! everything else (recording, report, replay) can be made again, and it does not change with the recording SDK.
 
 mod ending;
 mod fast;
 mod follow;
+mod frames;
+mod lines;
+mod packer;
 mod reader;
 mod ticks;
+mod unpacker;
 mod upgrade;
 mod writer;
 
-pub use ending::read_ending;
+pub use ending::{events_sha256, read_ending};
 pub use reader::{JournalLine, JournalPlace, JournalReader};
 pub use ticks::{Difference, RecordedTick, Ticks};
 pub use upgrade::with_todays_names;
 pub use writer::{JournalEnd, JournalWriter};
 
 use crate::file::FileChange;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Name of the journal in the folder of a run.
-pub const JOURNAL_FILE: &str = "events.jsonl";
+pub const JOURNAL_FILE: &str = "events.jsonl.zst";
+/// Its name up to version 4, when its lines were not compressed.
+pub const PLAIN_JOURNAL_FILE: &str = "events.jsonl";
+
+/// The journal in the folder of a run, of any version; where there is none, the path that it would have.
+pub fn journal_of(folder: &Path) -> PathBuf {
+    let (packed, plain) = (folder.join(JOURNAL_FILE), folder.join(PLAIN_JOURNAL_FILE));
+    if !packed.exists() && plain.exists() { plain } else { packed }
+}
 
 /// Why a journal cannot be written or read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Events to a rerun recording and to the journal, and back.
 //!
-//! The journal (`events.jsonl`) is ours: every event, one line each, versioned, the same bytes for the same run. The
+//! The journal (`events.jsonl.zst`) is ours: every event, one line each, versioned, the same lines for the same run. The
 //! recording (`recording.rrd`) is a view of it for the rerun viewer and can be regenerated from the journal at any
 //! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]). What cannot be written is kept in
 //! memory up to a limit; a disk error, or a file that is deleted or changed by others, shows in [`Health`] within a
@@ -31,7 +31,8 @@ pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
     Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalPlace, JournalReader,
-    JournalWriter, RecordedTick, Ticks, read_ending, with_todays_names,
+    JournalWriter, PLAIN_JOURNAL_FILE, RecordedTick, Ticks, events_sha256, journal_of, read_ending,
+    with_todays_names,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::{RECORDING_FILE, Recorder};

@@ -1,6 +1,7 @@
 //! The thread that writes journal and recording while the mission goes on.
 
 mod shared;
+mod sync;
 mod writer;
 
 use crate::{
@@ -14,6 +15,7 @@ use crate::{
 use mission::Event;
 use shared::Shared;
 use std::{
+    fs::File,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, PoisonError,
@@ -87,6 +89,8 @@ pub struct RunRecorder {
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
     recording: Option<PathBuf>,
+    /// The journal's file, until somebody puts it on disk regularly.
+    unsynced: Option<File>,
 }
 
 impl RunRecorder {
@@ -102,13 +106,14 @@ impl RunRecorder {
             Some(path) => JournalWriter::create(path, now)?,
             None => JournalWriter::unwritten(now),
         };
+        let unsynced = writer.file().and_then(|file| file.try_clone().ok());
         let identity = Identity::of_folder(folder);
         let recorder = recording.as_ref().map(|path| Recorder::create(path, &identity, now)).transpose()?;
         let marker = (options.journal || options.rrd).then(|| FailureMarker::reserve(folder)).transpose();
         let marker = marker
             .map_err(|error| RecordingError::Marker { why: error.to_string(), folder: folder.to_owned() })?;
         let mut started = Self::spawn_with(writer, recorder, marker)?;
-        (started.journal, started.recording) = (journal, recording);
+        (started.journal, started.recording, started.unsynced) = (journal, recording, unsynced);
         Ok(started)
     }
 
@@ -138,7 +143,18 @@ impl RunRecorder {
         });
         handle.map_err(|error| RecordingError::Thread { why: error.to_string() })?;
         let ended = Mutex::new(ended);
-        Ok(Self { sender: Some(sender), ended, shared, sink, journal: None, recording: None })
+        Ok(Self { sender: Some(sender), ended, shared, sink, journal: None, recording: None, unsynced: None })
+    }
+
+    /// From now on has the system put the journal on disk every second, so that a loss of power costs no more than that and what
+    /// the journal had not given to the system yet. A thread of its own waits for the disk, nobody else.
+    ///
+    /// # Errors
+    /// [`RecordingError::Thread`] if the system gives no thread.
+    pub fn sync(&mut self) -> Result<(), RecordingError> {
+        let Some(file) = self.unsynced.take() else { return Ok(()) };
+        let error = |error: std::io::Error| RecordingError::Thread { why: error.to_string() };
+        sync::begin(file, &self.shared).map_err(error)
     }
 
     /// Hands over the events of a tick; waits while the queue is full.

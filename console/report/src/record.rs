@@ -104,10 +104,11 @@ impl Record {
                 wrap_max_rad,
                 wrap_total_rad,
                 pull_factor,
-                line,
+                bends,
                 ..
             } => {
-                if let Some(tether) = &mut self.tether {
+                let robot = self.track.last().map(|at| Point::new(f64::from(at.x_m), f64::from(at.y_m)));
+                if let (Some(tether), Some(robot)) = (&mut self.tether, robot) {
                     let point = TetherPoint {
                         t_s: event.t_s as f32,
                         length_m: *length_m as f32,
@@ -115,7 +116,7 @@ impl Record {
                         wrap_total_rad: wrap_total_rad.abs() as f32,
                     };
                     let reel_off_m = paid_out_m.map(|out_m| (out_m - length_m).abs());
-                    tether.lie(point, reel_off_m, *pull_factor, line);
+                    tether.lie(point, reel_off_m, *pull_factor, (bends, robot));
                 }
             }
             EventKind::PlannerChosen { info, .. } if self.planners.last() != Some(info) => {

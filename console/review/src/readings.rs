@@ -4,7 +4,7 @@ use crate::verify::{planners::Replayed, prepared};
 use anyhow::Context;
 use flight::failure::bad_input;
 use mission::EventKind;
-use recording::{JOURNAL_FILE, Ticks};
+use recording::{Ticks, journal_of};
 use std::{io, path::Path};
 use world::{Pose, Readings};
 
@@ -17,7 +17,7 @@ pub fn readings(
     folder: &Path,
     mut take: impl FnMut(f64, &Readings, Pose) -> io::Result<()>,
 ) -> anyhow::Result<()> {
-    let path = folder.join(JOURNAL_FILE);
+    let path = journal_of(folder);
     let mut ticks = Ticks::open(&path)?;
     let (_, mut flight) = prepared(&path, &mut ticks)?;
     let mut replayed = Replayed::new(None);

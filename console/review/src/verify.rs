@@ -18,7 +18,7 @@ use mission::{
 };
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
-use recording::{Difference, JOURNAL_FILE, RECORDING_FILE, Ticks, sha256};
+use recording::{Difference, RECORDING_FILE, Ticks, events_sha256, journal_of};
 use runs::{end_is_missing, journal_doubt, recording_doubt};
 use scenario::Scenario;
 use std::{collections::BTreeMap, path::Path};
@@ -71,9 +71,9 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 }
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
-    let path = folder.join(JOURNAL_FILE);
+    let path = journal_of(folder);
     let mut findings = compare(&path, plugins)?;
-    let sha256 = sha256(&path).with_context(|| format!("reading {}", path.display()))?;
+    let sha256 = events_sha256(&path).with_context(|| format!("reading {}", path.display()))?;
     let recording = recording::sha256(&folder.join(RECORDING_FILE)).ok();
     findings.doubt = journal_doubt(folder, Some(&sha256))
         .or_else(|| recording.and_then(|sha256| recording_doubt(folder, Some(&sha256))))

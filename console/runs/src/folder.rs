@@ -6,7 +6,7 @@ use crate::{
     logs::{LogsError, make_logs},
     report_file::ReportFile,
 };
-use recording::{FAILURE_FILE, JOURNAL_FILE, RECORDING_FILE};
+use recording::{FAILURE_FILE, JOURNAL_FILE, PLAIN_JOURNAL_FILE, RECORDING_FILE, journal_of};
 use report::Summary;
 use std::{
     fs::{self, File, OpenOptions},
@@ -17,7 +17,7 @@ use std::{
 
 const REPORT_DRAFT: &str = "report.json.part";
 /// A folder with one of these files is that of a run.
-const SIGNS: [&str; 4] = [JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
+const SIGNS: [&str; 5] = [JOURNAL_FILE, PLAIN_JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
 /// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
 const REPORT_RESERVE: usize = 256 << 10;
 
@@ -112,7 +112,7 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
 /// [`RunError::NoRun`].
 pub fn find(run: &Path, logs: &Path) -> Result<PathBuf, RunError> {
     let candidates = [run.to_path_buf(), logs.join(run)];
-    let found = candidates.into_iter().find(|path| path.join(JOURNAL_FILE).exists());
+    let found = candidates.into_iter().find(|path| journal_of(path).exists());
     found.ok_or_else(|| RunError::NoRun { run: run.to_owned(), logs: logs.to_owned() })
 }
 

@@ -7,7 +7,7 @@ use crate::{
     report_file::recording_doubt,
     standing::{Standing, standing},
 };
-use recording::{JOURNAL_FILE, JournalReader};
+use recording::{JournalReader, journal_of};
 use report::{Fold, Summary, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -122,7 +122,7 @@ fn word(summary: &Summary) -> &'static str {
 
 /// A run of which only the journal says what happened.
 fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Listed {
-    let (summary, damage) = rebuild(&folder.join(JOURNAL_FILE));
+    let (summary, damage) = rebuild(&journal_of(folder));
     let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
     // Whatever became of the report: the journal has the run to its end.
     let ended = summary.outcome.filter(|_| damage.is_none());

@@ -41,6 +41,14 @@ impl RunLog {
         Ok(Self { folder: Some(folder), beside, recorder, fold: Fold::new(), began: Instant::now() })
     }
 
+    /// From now on has the system put the journal on disk every second.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn sync(&mut self) -> Result<(), RunError> {
+        Ok(self.recorder.sync()?)
+    }
+
     /// Writes nothing, but computes report and hash.
     ///
     /// # Errors

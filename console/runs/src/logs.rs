@@ -1,7 +1,7 @@
 //! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
 
 use crate::{error::RunError, log::CLOSE_TIMEOUT};
-use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, sha256};
+use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
 use std::{
     fs::{self, File},
     io::{self, Write},
@@ -73,7 +73,7 @@ fn record_and_read(folder: &Path) -> Result<u64, RunError> {
         return Err(RunError::Logs(error));
     }
     let (journal, recording) = (folder.join(JOURNAL_FILE), folder.join(RECORDING_FILE));
-    let hash = sha256(&journal).map_err(trying("reading"))?;
+    let hash = events_sha256(&journal).map_err(trying("reading"))?;
     if finished.events_sha256.as_ref() != Some(&hash) {
         return Err(RunError::Logs(format!(
             "what was read back is not what was written: {}",

@@ -1,6 +1,6 @@
 //! The notes of people, in a file of their own beside the journal: no file of the run changes.
 
-use recording::JOURNAL_FILE;
+use recording::journal_of;
 use report::notes::Notes;
 use std::{
     fs::{self, File},
@@ -43,7 +43,7 @@ pub fn read_notes(folder: &Path) -> Result<Notes, String> {
 /// What [`read_notes`] says of the file that is there; there is no run in the folder; the system refuses.
 pub fn write_notes(folder: &Path, notes: &Notes) -> Result<(), String> {
     read_notes(folder)?;
-    if !folder.join(JOURNAL_FILE).exists() {
+    if !journal_of(folder).exists() {
         return Err(format!("{}: there is no run any more", folder.display()));
     }
     let (path, draft) = (folder.join(NOTES_FILE), folder.join(format!("{NOTES_FILE}.part")));
@@ -61,6 +61,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
+    use recording::JOURNAL_FILE;
 
     #[test]
     fn notes_are_kept_beside_the_journal_and_damaged_ones_are_named_and_left_alone() {

@@ -5,7 +5,7 @@ use crate::{
     report_file::{journal_doubt, names_digests, recording_doubt},
 };
 use mission::{Event, EventKind, RunOpened};
-use recording::{JOURNAL_FILE, JournalError, JournalReader, RECORDING_FILE, sha256, sha256_of};
+use recording::{JournalError, JournalReader, RECORDING_FILE, events_sha256, journal_of, sha256, sha256_of};
 use report::{Fold, Logs, PastRun, Record, document::Files};
 use std::{fs, path::Path, sync::mpsc::sync_channel, thread};
 use world::{CellRun, Floor};
@@ -30,7 +30,7 @@ impl Past {
     /// # Errors
     /// Its journal cannot be read.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
-        let journal = folder.join(JOURNAL_FILE);
+        let journal = journal_of(folder);
         let mut reader = JournalReader::open(&journal)?;
         let (mut fold, mut record) = (Fold::new(), Record::new());
         let (mut opened, mut beyond_floor): (Option<Box<RunOpened>>, Option<u64>) = (None, None);
@@ -77,8 +77,8 @@ fn each_event(
 ) -> Result<[Option<String>; 2], JournalError> {
     let (send, receive) = sync_channel::<Vec<Event>>(4);
     thread::scope(|scope| {
-        let hashing =
-            scope.spawn(|| [JOURNAL_FILE, RECORDING_FILE].map(|file| sha256(&folder.join(file)).ok()));
+        let hashing = scope
+            .spawn(|| [events_sha256(&journal_of(folder)).ok(), sha256(&folder.join(RECORDING_FILE)).ok()]);
         let reading = scope.spawn(move || {
             loop {
                 let batch = reader.by_ref().take(BATCH).collect::<Result<Vec<Event>, JournalError>>()?;
@@ -101,7 +101,7 @@ fn files(
     opened: &RunOpened,
     [journal_sha256, recording_sha256]: [Option<String>; 2],
 ) -> Files {
-    let (journal, recording) = (folder.join(JOURNAL_FILE), folder.join(RECORDING_FILE));
+    let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
     let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
     let doubts = journal_doubt(folder, journal_sha256.as_deref());
     let doubts = doubts.into_iter().chain(recording_doubt(folder, recording_sha256.as_deref()));

@@ -2,7 +2,7 @@
 
 use crate::files::REPORT_FILE;
 use mission::{Event, EventKind};
-use recording::{JOURNAL_FILE, RECORDING_FILE, read_ending, sha256};
+use recording::{RECORDING_FILE, events_sha256, journal_of, read_ending, sha256};
 use report::Summary;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -43,16 +43,20 @@ pub(crate) fn read_report(folder: &Path, text: &str) -> Result<Box<Summary>, Str
     let source: Source = serde_json::from_str(text).map_err(damaged)?;
     // A report that says itself that the journal is not whole claims nothing about it.
     let Some(then) = &source.events_sha256 else { return Ok(Box::new(summary)) };
-    let path = folder.join(JOURNAL_FILE);
-    let no_journal = |error| format!("{JOURNAL_FILE} cannot be read: {error}");
+    let path = journal_of(folder);
+    let no_journal = |error: io::Error| format!("{} cannot be read: {error}", name_of(&path));
     let untouched = is_untouched(&path, source.journal_bytes, folder).map_err(no_journal)?;
-    if !untouched && sha256(&path).map_err(no_journal)? != *then {
+    if !untouched && events_sha256(&path).map_err(no_journal)? != *then {
         return Err(NOT_THE_ONE.to_owned());
     }
     match read_ending(&path).map_err(no_journal)? {
         Some(ending) if agrees(&summary, &ending) => Ok(Box::new(summary)),
         _ => Err(format!("{REPORT_FILE} was changed: it does not end as the journal does")),
     }
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// What is said of a journal that its report was not made from.

@@ -12,6 +12,7 @@ pub struct PoseEstimate {
     /// Heading, radians.
     pub heading_rad: f64,
     /// Covariance of x, y (square metres) and heading (square radians).
+    #[cfg_attr(feature = "serde", serde(with = "geometry::symmetric"))]
     pub covariance: Matrix3<f64>,
 }
 

@@ -5,6 +5,23 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+pub(crate) struct EventsArgs {
+    /// Run folder, or its name in the logs folder.
+    pub run: PathBuf,
+    /// Only events of this kind, by the word in their key `event`; repeatable.
+    #[arg(long, value_name = "KIND")]
+    pub kind: Vec<String>,
+    /// Only from this mission time on, seconds.
+    #[arg(long, value_name = "T_S")]
+    pub from: Option<f64>,
+    /// Only up to this mission time, seconds.
+    #[arg(long, value_name = "T_S")]
+    pub to: Option<f64>,
+    #[command(flatten)]
+    pub logs: LogsArg,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
     /// Run folder, or its name in the logs folder.
     pub run: PathBuf,

@@ -15,12 +15,13 @@ pub(super) const HEALTH_PERIOD: Duration = Duration::from_millis(400);
 
 impl EngineThread {
     pub(super) fn open_log(&mut self) -> anyhow::Result<()> {
-        let log = RunLog::create(
+        let mut log = RunLog::create(
             &self.logs,
             &self.scenario.name,
             self.flight.mission().planner_id(),
             self.scenario.seed,
         )?;
+        log.sync()?;
         self.log = Some(log);
         self.health_sent_at = Instant::now();
         self.reached = Reached::since(self.health_sent_at);

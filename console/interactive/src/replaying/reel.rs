@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use mission::Event;
-use recording::{JOURNAL_FILE, JournalError, JournalPlace, JournalReader};
+use recording::{JournalError, JournalPlace, JournalReader, journal_of};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
@@ -61,7 +61,7 @@ impl Reel {
         folder: &Path,
         report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
     ) -> anyhow::Result<Arc<Self>> {
-        let journal = folder.join(JOURNAL_FILE);
+        let journal = journal_of(folder);
         let reader = JournalReader::open(&journal)?;
         let bytes = std::fs::metadata(&journal).map_or(0, |file| file.len());
         let reel = Arc::new(Self { journal, content: Mutex::default() });

@@ -6,7 +6,7 @@ use super::deck::{Deck, Moved};
 use super::reel::{MOST_FRAMES, Reel};
 use flight::{Flight, scenarios};
 use mission::{Event, EventKind, Order, Severity};
-use recording::JOURNAL_FILE;
+use recording::PLAIN_JOURNAL_FILE;
 use scenario::Settings;
 use std::{path::Path, sync::mpsc::channel};
 use tui::model::{Run, replay::MarkKind};
@@ -36,7 +36,7 @@ fn events() -> Vec<Event> {
 fn written(folder: &Path, events: &[Event]) {
     let lines: Vec<String> =
         events.iter().map(|event| serde_json::to_string(event).unwrap() + "\n").collect();
-    std::fs::write(folder.join(JOURNAL_FILE), lines.concat()).unwrap();
+    std::fs::write(folder.join(PLAIN_JOURNAL_FILE), lines.concat()).unwrap();
 }
 
 /// The run up to a moment, folded from the beginning.
@@ -77,7 +77,7 @@ fn every_moment_is_the_one_that_playing_leads_to() {
 fn a_damaged_journal_is_read_up_to_its_last_sound_event() {
     let (folder, events) = (tempfile::tempdir().unwrap(), events());
     written(folder.path(), &events[..200]);
-    let journal = folder.path().join(JOURNAL_FILE);
+    let journal = folder.path().join(PLAIN_JOURNAL_FILE);
     let text = std::fs::read_to_string(&journal).unwrap() + "{\"tick\": nonsense}\n";
     std::fs::write(&journal, text).unwrap();
     let (send, heard) = channel();

@@ -24,7 +24,9 @@ impl Comparison {
                 return Self::NotComparable;
             }
             (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
-                .or_else(|| (own.said != recorded.said).then_some("logs or draws something else"))
+                .or_else(|| {
+                    (own.said.clone().rounded() != recorded.said).then_some("logs or draws something else")
+                })
                 .map(str::to_owned),
             (Err(own), Err(fault)) => (own != fault)
                 .then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message)),

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     ask::Said,
-    event::EventKind,
+    event::{EventKind, rounded_command},
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
     task::Task,
 };
@@ -39,13 +39,13 @@ impl Mission {
         sent.drive
     }
 
-    /// A command as the robot would be sent it now: within its limits and in its own way of moving. Doing this to a
+    /// A command as the robot would be sent it now: within its limits, in its own way of moving, and rounded as everything that is reported. Doing this to a
     /// command that was sent changes nothing, so that recorded commands can be fed in again.
     pub fn as_sent(&self, command: Command) -> Command {
         let turn_first_rad = self.config.task.turn_first_rad();
         let heading_rad = self.locator.pose().heading_rad;
         let drive = drive_for(command.drive, heading_rad, &self.config.limits, turn_first_rad);
-        Command { drive, status: command.status }
+        rounded_command(Command { drive, status: command.status })
     }
 
     /// Takes a command of the active planner, which was asked for in this tick or in an earlier one. The freshest one

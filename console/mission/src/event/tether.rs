@@ -15,6 +15,15 @@ pub struct TetherContact {
     pub at: Point,
 }
 
+/// The taut cable from its anchor over its bends to the robot.
+pub fn taut_line(anchor: Point, bends: &[Point], robot: Point) -> Vec<Point> {
+    let mut line = Vec::with_capacity(bends.len() + 2);
+    line.push(anchor);
+    line.extend_from_slice(bends);
+    line.push(robot);
+    line
+}
+
 /// What may be wrong with the cable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -100,7 +100,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("libplanner_a.so");
         fs::write(&path, "a").unwrap();
-        let long_ago = SystemTime::now() - Duration::from_secs(60);
+        let long_ago = SystemTime::now() - Duration::from_mins(1);
         File::open(folder.path()).unwrap().set_modified(long_ago).unwrap();
         let mut stamps = Stamps::of(&PluginDirs::of(vec![folder.path().to_owned()]));
         let before = stamps.look();

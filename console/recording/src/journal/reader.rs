@@ -1,11 +1,18 @@
 //! Reading a journal, also one whose writer was killed.
 
-use super::{JournalError, fast, follow::Follow, upgrade};
+use super::{
+    JournalError, fast,
+    follow::Follow,
+    frames,
+    lines::{Lines, is_packed},
+    unpacker::FrameStart,
+    upgrade,
+};
 use crate::file::open_regular;
 use mission::{Event, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    io::{self, BufRead, BufReader, Read, Seek, SeekFrom},
+    io::{self, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
 
@@ -21,18 +28,20 @@ pub struct JournalLine<'a> {
 /// Where the next event of a journal begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JournalPlace {
-    /// Bytes before it.
+    /// Bytes of lines before it.
     pub bytes: u64,
     /// Lines before it.
     lines: usize,
     version: Option<u32>,
+    /// From where on the file is read to get there.
+    frame: FrameStart,
 }
 
 /// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
 ///
 /// Ends after the first error.
 pub struct JournalReader {
-    lines: Box<dyn BufRead + Send>,
+    lines: Lines,
     path: PathBuf,
     text: Vec<u8>,
     /// Bytes of the lines that were read.
@@ -58,7 +67,7 @@ impl JournalReader {
     /// [`JournalError::Read`] if there is none.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
-        Ok(Self::of(file, path))
+        Self::of(file, path, FrameStart::default())
     }
 
     /// Opens a journal that somebody else may still be writing: at the end of the file `goes_on` is asked, which waits a
@@ -68,7 +77,7 @@ impl JournalReader {
     /// [`JournalError::Read`] if there is none.
     pub fn follow(path: &Path, goes_on: impl FnMut() -> bool + Send + 'static) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
-        Ok(Self::of(Follow::new(file, goes_on), path))
+        Self::of(Follow::new(file, goes_on), path, FrameStart::default())
     }
 
     /// Opens a journal at a place that was met while it was read before.
@@ -76,20 +85,53 @@ impl JournalReader {
     /// # Errors
     /// [`JournalError::Read`] if there is none any more.
     pub fn open_at(path: &Path, place: JournalPlace) -> Result<Self, JournalError> {
-        let mut file = open_regular(path).map_err(|error| read_error(path, &error))?;
-        file.seek(SeekFrom::Start(place.bytes)).map_err(|error| read_error(path, &error))?;
-        let JournalPlace { bytes, lines, version } = place;
-        Ok(Self { bytes, line: lines, version, ..Self::of(file, path) })
+        let JournalPlace { bytes, lines, version, frame } = place;
+        let failed = |error| read_error(path, &error);
+        let mut file = open_regular(path).map_err(failed)?;
+        file.seek(SeekFrom::Start(frame.file)).map_err(failed)?;
+        let mut reader = Self::of(file, path, frame)?;
+        io::copy(&mut reader.lines.text().take(bytes - frame.content), &mut io::sink()).map_err(failed)?;
+        Ok(Self { bytes, line: lines, version, ..reader })
+    }
+
+    /// Opens a journal at or somewhat before the first event of a mission time, seconds: of what is compressed before it hardly
+    /// anything is read. Lines are then counted from there.
+    ///
+    /// # Errors
+    /// As [`JournalReader::open`] and [`JournalReader::next_line`].
+    pub fn open_near(path: &Path, t_s: f64) -> Result<Self, JournalError> {
+        let mut reader = Self::open(path)?;
+        if t_s <= 0.0 || !is_packed(path) {
+            return Ok(reader);
+        }
+        reader.next_line()?;
+        let failed = |error| read_error(path, &error);
+        let starts = frames::starts(&open_regular(path).map_err(failed)?).map_err(failed)?;
+        let place = |file| JournalPlace {
+            frame: FrameStart { file, content: 0 },
+            bytes: 0,
+            lines: usize::from(file > 0),
+            version: reader.version,
+        };
+        let (mut first, mut after) = (0, starts.len());
+        while first + 1 < after {
+            let middle = usize::midpoint(first, after);
+            let begin = Self::open_at(path, place(starts[middle]))?.next_line()?.map(|line| line.event.t_s);
+            *(if begin.is_some_and(|begin_s| begin_s < t_s) { &mut first } else { &mut after }) = middle;
+        }
+        Self::open_at(path, place(starts.get(first).copied().unwrap_or_default()))
     }
 
     /// Where the next event begins.
     pub fn place(&self) -> JournalPlace {
-        JournalPlace { bytes: self.bytes, lines: self.line, version: self.version }
+        let frame = self.lines.frame_before(self.bytes);
+        JournalPlace { bytes: self.bytes, lines: self.line, version: self.version, frame }
     }
 
-    fn of(bytes: impl Read + Send + 'static, path: &Path) -> Self {
-        Self {
-            lines: Box::new(BufReader::with_capacity(1 << 18, bytes)),
+    fn of(bytes: impl Read + Send + 'static, path: &Path, at: FrameStart) -> Result<Self, JournalError> {
+        let lines = Lines::of(bytes, path, at).map_err(|error| read_error(path, &error))?;
+        Ok(Self {
+            lines,
             path: path.to_owned(),
             text: Vec::new(),
             bytes: 0,
@@ -98,7 +140,7 @@ impl JournalReader {
             ended: false,
             truncated: None,
             unended_bytes: 0,
-        }
+        })
     }
 
     /// The next event with the bytes of its line; `None` after the end.
@@ -140,9 +182,9 @@ impl JournalReader {
 
     fn read_event(&mut self) -> Result<Option<Event>, JournalError> {
         self.text.clear();
-        let length =
-            self.lines.read_until(b'\n', &mut self.text).map_err(|error| read_error(&self.path, &error))?;
         self.line += 1;
+        let length =
+            self.lines.text().read_until(b'\n', &mut self.text).map_err(|error| self.unreadable(&error))?;
         self.bytes += length as u64;
         if length == 0 {
             return Ok(self.end_of_file());
@@ -180,7 +222,19 @@ impl JournalReader {
         let is_old = self.version.is_some_and(|version| version < upgrade::RENAMED_IN);
         let general = || if is_old { upgrade::event(&self.text) } else { serde_json::from_slice(&self.text) };
         let event = fast::event(&self.text).filter(|_| !is_old).map_or_else(general, Ok);
-        event.map_err(|error| self.misunderstood(&error))
+        let mut event = event.map_err(|error| self.misunderstood(&error))?;
+        if self.version.is_some_and(|version| version < upgrade::LINES_WITHOUT_ENDS_SINCE) {
+            upgrade::cut_ends(&mut event);
+        }
+        Ok(event)
+    }
+
+    fn unreadable(&self, error: &io::Error) -> JournalError {
+        if error.kind() == io::ErrorKind::InvalidData {
+            let (line, why, path) = (self.line, error.to_string(), self.path.clone());
+            return JournalError::Damaged { line, column: 1, why, path };
+        }
+        read_error(&self.path, error)
     }
 
     fn misunderstood(&self, error: &serde_json::Error) -> JournalError {

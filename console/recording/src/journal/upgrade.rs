@@ -1,10 +1,21 @@
 //! Journals of older versions in today's words.
 
-use mission::Event;
+use mission::{Event, EventKind};
 use serde_json::Value;
 
 /// The first version with today's names.
 pub(super) const RENAMED_IN: u32 = 4;
+
+/// The first version that says of the tether only where it bends, and not where it begins and ends.
+pub(super) const LINES_WITHOUT_ENDS_SINCE: u32 = 5;
+
+/// Leaves of the whole line of the tether what is between its ends.
+pub(super) fn cut_ends(event: &mut Event) {
+    if let EventKind::Tethered { bends, .. } = &mut event.kind {
+        bends.pop();
+        bends.drain(..bends.len().min(1));
+    }
+}
 
 /// Keys of version 3 and before, and their names since version 4.
 const KEYS: &[(&str, &str)] = &[
@@ -80,6 +91,24 @@ fn todays(names: &[(&str, &str)], name: String) -> String {
 mod tests {
     use super::*;
     use serde_json::json;
+
+    #[test]
+    fn of_a_whole_line_the_bends_are_left() {
+        let line = |points: &str| {
+            format!(
+                r#"{{"tick":1,"t_s":0.1,"event":"tethered","length_m":1.0,"free_m":2.0,"contacts":[],"wrap_max_rad":0.0,
+                    "wrap_total_rad":0.0,"pull_factor":1.0,"return_length_m":null,"line":{points}}}"#
+            )
+        };
+        let bends = |points: &str| {
+            let mut event: Event = serde_json::from_str(&line(points)).expect("an event");
+            cut_ends(&mut event);
+            let EventKind::Tethered { bends, .. } = event.kind else { panic!("another event") };
+            bends.iter().map(|point| point.x).collect::<Vec<_>>()
+        };
+        assert_eq!(bends("[[0.0,0.0],[1.0,0.0],[2.0,0.0],[3.0,0.0]]"), [1.0, 2.0]);
+        assert_eq!((bends("[[0.0,0.0],[1.0,0.0]]"), bends("[]")), (vec![], vec![]));
+    }
 
     #[test]
     fn keys_and_words_are_renamed_and_texts_are_not() {

@@ -106,7 +106,11 @@ impl Opened {
         let (low, high) = run.world.boundary.bounds();
         let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
         let mut opened = Self {
-            tick: Tick::first(at, run.mission.start.position),
+            tick: Tick::first(
+                at,
+                run.mission.start.position,
+                run.mission.tether.as_ref().map(|tether| tether.anchor),
+            ),
             table: Table::open(stream, run)?,
             stations: run.world.stations.clone(),
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),

@@ -4,7 +4,7 @@ use super::{
     lane::{Flat, flat},
     stream::At,
 };
-use mission::EventKind;
+use mission::{EventKind, event::taut_line};
 use planner_api::{Drawing, Drive};
 use positioning::{Fix, Ranging, fix::ellipse_95};
 use world::{Point, Pose};
@@ -28,6 +28,8 @@ pub(crate) struct Tick {
     pub scalars: Vec<(String, f64, String)>,
     /// Where the robot was last believed to be.
     pub believed: Point,
+    /// Where the tether is made fast.
+    anchor: Option<Point>,
     /// Where it truly was in the last tick that has a truth.
     before: Option<(At, Point)>,
 }
@@ -58,15 +60,15 @@ pub(crate) struct Tether {
 }
 
 impl Tick {
-    /// The first tick of a run.
-    pub(crate) fn first(at: At, start: Point) -> Self {
-        Self { at, believed: start, ..Self::default() }
+    /// The first tick of a run; `anchor`: that of the tether.
+    pub(crate) fn first(at: At, start: Point, anchor: Option<Point>) -> Self {
+        Self { at, believed: start, anchor, ..Self::default() }
     }
 
     /// A tick after this one.
     pub(crate) fn next(&self, at: At) -> Self {
         let before = self.truth.map(|truth| (self.at, truth.pose.position)).or(self.before);
-        Self { before, ..Self::first(at, self.believed) }
+        Self { before, ..Self::first(at, self.believed, self.anchor) }
     }
 
     /// Takes in an event of the tick.
@@ -96,11 +98,13 @@ impl Tick {
                 wrap_max_rad,
                 wrap_total_rad,
                 return_length_m,
-                line,
+                bends,
                 ..
             } => {
                 self.tether = Some(Tether {
-                    line: line.iter().map(|point| flat(*point)).collect(),
+                    line: self.anchor.map_or_else(Vec::new, |anchor| {
+                        taut_line(anchor, bends, self.believed).into_iter().map(flat).collect()
+                    }),
                     contacts: contacts.iter().map(|contact| flat(contact.at)).collect(),
                     length_m: *length_m,
                     return_length_m: *return_length_m,

@@ -4,7 +4,7 @@ use crate::{events, synthetic};
 use mission::Event;
 use recording::{Identity, JournalError, JournalWriter, Recorder, RecordingError, RunRecorder};
 use std::{
-    io::{self, Write},
+    io::{self, Read, Write},
     sync::{
         Arc, Mutex,
         atomic::{AtomicUsize, Ordering},
@@ -91,6 +91,19 @@ fn append_slowly(journal: &mut JournalWriter, events: &[Event], begin: Instant) 
     events.iter().enumerate().filter_map(|(index, event)| journal.append(event, at(index)).err()).collect()
 }
 
+fn packed_to(out: Box<dyn Write + Send>, now: Instant) -> JournalWriter {
+    JournalWriter::writing_to(out, now).expect("memory for the compressor")
+}
+
+/// What can be read of the lines in a file.
+fn unpacked(bytes: &[u8]) -> Vec<u8> {
+    let mut lines = Vec::new();
+    let mut decoder = zstd::Decoder::new(bytes).expect("memory");
+    // A file that stops within a frame is an error after what can be read.
+    let _ = decoder.read_to_end(&mut lines);
+    lines
+}
+
 fn lines(events: &[Event]) -> Vec<u8> {
     let line = |event| serde_json::to_string(event).expect("an event is JSON") + "\n";
     events.iter().map(line).collect::<String>().into_bytes()
@@ -105,14 +118,17 @@ fn a_call_that_fails_once_costs_the_journal_nothing_whichever_it_is() {
         let file =
             FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
         let begin = Instant::now();
-        let mut journal = JournalWriter::writing_to(Box::new(file), begin);
+        let mut journal = packed_to(Box::new(file), begin);
         let reported = append_slowly(&mut journal, &events, begin);
         // A fault in the last call of all has nobody to try again.
         match journal.finish() {
-            Ok(end) => assert_eq!((disk.written(), end.bytes), (whole.clone(), whole.len() as u64)),
+            Ok(end) => {
+                assert_eq!(unpacked(&disk.written()), whole, "call {fails_at}");
+                assert_eq!(end.bytes, disk.written().len() as u64);
+            }
             Err(error) => assert!(matches!(error, JournalError::Write { .. }), "{error}"),
         }
-        assert!(whole.starts_with(&disk.written()), "call {fails_at}");
+        assert!(whole.starts_with(&unpacked(&disk.written())), "call {fails_at}");
         assert!(reported.len() <= 1, "call {fails_at}: {reported:?}");
         if was_reached.load(Ordering::Relaxed) == 0 {
             assert!(fails_at > 50, "so many calls are made");
@@ -146,20 +162,20 @@ fn a_call_that_fails_once_costs_the_recording_nothing() {
 #[test]
 fn a_full_disk_is_reported_once_and_the_journal_is_not_whole() {
     let now = Instant::now();
-    let mut journal = JournalWriter::writing_to(small_disk(200_000), now);
+    let mut journal = packed_to(small_disk(20_000), now);
     let events = events(3000);
     let errors: Vec<_> = events.iter().filter_map(|event| journal.append(event, now).err()).collect();
     assert_eq!(errors.len(), 1);
-    assert!(matches!(errors[0], JournalError::Stalled { bytes: 200_000, .. }), "{}", errors[0]);
+    assert!(matches!(errors[0], JournalError::Stalled { bytes: 20_000, .. }), "{}", errors[0]);
     let error = journal.finish().expect_err("it is not whole");
-    assert!(matches!(error, JournalError::Write { bytes: 200_000, .. }), "{error}");
+    assert!(matches!(error, JournalError::Write { bytes: 20_000, .. }), "{error}");
 }
 
 #[test]
 fn a_disk_that_has_space_again_gives_a_whole_journal() {
     let begin = Instant::now();
-    let disk = SmallDisk::new(20_000);
-    let mut journal = JournalWriter::writing_to(Box::new(disk.clone()), begin);
+    let disk = SmallDisk::new(2_000);
+    let mut journal = packed_to(Box::new(disk.clone()), begin);
     let events = events(100);
     let reported = append_slowly(&mut journal, &events[..events.len() / 2], begin);
     assert_eq!(reported.len(), 1);
@@ -170,21 +186,19 @@ fn a_disk_that_has_space_again_gives_a_whole_journal() {
     assert_eq!(journal.trouble(), None);
     assert!(append_slowly(&mut journal, &events[events.len() / 2..], later).is_empty());
     journal.finish().expect("it is whole");
-    assert_eq!(disk.written(), lines(&events));
+    assert_eq!(unpacked(&disk.written()), lines(&events));
 }
 
 #[test]
 fn a_disk_that_stays_full_ends_the_journal_when_too_much_waits() {
     let begin = Instant::now();
-    let mut journal = JournalWriter::writing_to(small_disk(1000), begin);
-    let events = events(20);
+    let mut journal = packed_to(small_disk(1000), begin);
+    let events = events(30_000);
     let mut errors = Vec::new();
-    // 64 MB are kept; one event a second is tried, thousands are kept in between.
-    for second in 0..40 {
-        let now = begin + Duration::from_secs(second);
-        for _ in 0..200 {
-            errors.extend(events.iter().filter_map(|event| journal.append(event, now).err()));
-        }
+    // 4 MB are kept; writing is tried once a second, thousands are kept in between.
+    for (second, events) in events.chunks(5000).enumerate() {
+        let now = begin + Duration::from_secs(second as u64);
+        errors.extend(events.iter().filter_map(|event| journal.append(event, now).err()));
     }
     assert!(matches!(errors[..], [JournalError::Stalled { .. }, JournalError::Write { bytes: 1000, .. }]));
     assert!(journal.finish().is_err());
@@ -194,7 +208,7 @@ fn a_disk_that_stays_full_ends_the_journal_when_too_much_waits() {
 #[test]
 fn the_journal_reports_the_message_of_the_system() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("linux has it");
-    let mut journal = JournalWriter::writing_to(Box::new(full), Instant::now());
+    let mut journal = packed_to(Box::new(full), Instant::now());
     let later = Instant::now() + Duration::from_secs(1);
     let error = journal.append(&events(1)[0], later).expect_err("there is no room");
     assert!(error.to_string().contains("No space left on device"), "{error}");
@@ -268,7 +282,7 @@ fn the_recording_goes_on_when_the_journal_fails() {
     let path = folder.path().join("recording.rrd");
     let now = Instant::now();
     let recorder = Recorder::create(&path, &Identity::of_run("test"), now).expect("a new file");
-    let journal = JournalWriter::writing_to(small_disk(1000), now);
+    let journal = packed_to(small_disk(1000), now);
     let run = RunRecorder::spawn(journal, Some(recorder)).expect("a thread");
     for events in synthetic::run(300) {
         run.send(events);
@@ -283,7 +297,7 @@ fn the_recording_goes_on_when_the_journal_fails() {
 fn when_both_files_fail_both_are_reported() {
     let now = Instant::now();
     let recorder = Recorder::writing_to(small_disk(1000), &Identity::of_run("test"), now).expect("opens");
-    let journal = JournalWriter::writing_to(small_disk(1000), now);
+    let journal = packed_to(small_disk(1000), now);
     let run = RunRecorder::spawn(journal, Some(recorder)).expect("a thread");
     for events in synthetic::run(300) {
         run.send(events);

@@ -2,7 +2,9 @@
 
 use crate::events;
 use mission::{Event, event::JOURNAL_VERSION};
-use recording::{JournalError, JournalReader, JournalWriter, read_ending};
+use recording::{
+    JOURNAL_FILE, JournalError, JournalReader, JournalWriter, PLAIN_JOURNAL_FILE, events_sha256, read_ending,
+};
 use std::{
     fs,
     io::Write,
@@ -11,13 +13,23 @@ use std::{
 };
 use tempfile::{TempDir, tempdir};
 
+/// A journal whose lines are not compressed, as up to version 4.
 fn written(ticks: u64) -> (TempDir, PathBuf) {
+    let (folder, packed) = packed(ticks);
+    let plain = folder.path().join(PLAIN_JOURNAL_FILE);
+    let bytes = fs::read(packed).expect("readable");
+    fs::write(&plain, zstd::decode_all(&bytes[..]).expect("whole frames")).expect("writable");
+    (folder, plain)
+}
+
+/// A journal as it is written now, a quarter of a second between the events.
+fn packed(ticks: u64) -> (TempDir, PathBuf) {
     let folder = tempdir().expect("a folder");
-    let path = folder.path().join("events.jsonl");
+    let path = folder.path().join(JOURNAL_FILE);
     let now = Instant::now();
     let mut journal = JournalWriter::create(&path, now).expect("a new file");
-    for event in events(ticks) {
-        journal.append(&event, now).expect("room on the disk");
+    for (index, event) in events(ticks).iter().enumerate() {
+        journal.append(event, now + Duration::from_millis(250 * index as u64)).expect("room on the disk");
     }
     journal.finish().expect("room on the disk");
     (folder, path)
@@ -44,16 +56,17 @@ fn change(path: &Path, change: impl FnOnce(String) -> String) {
 
 #[test]
 fn what_is_written_is_read_back() {
-    let (_folder, path) = written(200);
-    let journal = read_journal(&path).expect("a whole journal");
-    assert_eq!(journal.events, events(200));
-    assert_eq!(journal.truncated, None);
+    for (_folder, path) in [written(200), packed(200)] {
+        let journal = read_journal(&path).expect("a whole journal");
+        assert_eq!(journal.events, events(200));
+        assert_eq!(journal.truncated, None);
+    }
 }
 
 #[test]
-fn the_hash_is_that_of_the_file() {
+fn the_hash_is_that_of_the_lines() {
     let folder = tempdir().expect("a folder");
-    let path = folder.path().join("events.jsonl");
+    let path = folder.path().join(JOURNAL_FILE);
     let now = Instant::now();
     let mut journal = JournalWriter::create(&path, now).expect("a new file");
     let mut unwritten = JournalWriter::unwritten(now);
@@ -63,9 +76,9 @@ fn the_hash_is_that_of_the_file() {
     }
     let end = journal.finish().expect("room on the disk");
     let bytes = fs::read(&path).expect("readable");
-    let digest = format!("{:x?}", <sha2::Sha256 as sha2::Digest>::digest(&bytes).as_slice());
-    let of_the_file = digest.trim_matches(['[', ']']).split(", ").map(|byte| format!("{byte:0>2}"));
-    assert_eq!(end.events_sha256, of_the_file.collect::<Vec<_>>().concat());
+    let lines = zstd::decode_all(&bytes[..]).expect("whole frames");
+    assert_eq!(end.events_sha256, recording::sha256_of(&lines));
+    assert_eq!(end.events_sha256, events_sha256(&path).expect("readable"));
     assert_eq!(end.bytes, bytes.len() as u64);
     assert_eq!(unwritten.finish().expect("nothing to fail").events_sha256, end.events_sha256);
 }
@@ -83,19 +96,28 @@ fn a_line_that_was_cut_off_by_a_kill_is_left_out() {
 
 #[test]
 fn a_journal_cut_anywhere_gives_a_beginning_of_the_run() {
-    let (_folder, path) = written(3);
-    let whole = read_journal(&path).expect("a whole journal").events;
-    let bytes = fs::read(&path).expect("readable");
-    for length in (0..bytes.len()).step_by(97) {
-        fs::write(&path, &bytes[..length]).expect("writable");
-        let journal = read_journal(&path).expect("a torn journal can be read");
-        assert!(whole.starts_with(&journal.events), "cut at {length}");
+    for (_folder, path) in [written(3), packed(30)] {
+        let whole = read_journal(&path).expect("a whole journal").events;
+        let bytes = fs::read(&path).expect("readable");
+        let mut read = 0;
+        for length in (0..bytes.len()).step_by(97) {
+            fs::write(&path, &bytes[..length]).expect("writable");
+            let journal = read_journal(&path).expect("a torn journal can be read");
+            assert!(whole.starts_with(&journal.events), "cut at {length}");
+            assert!(read <= journal.events.len(), "more bytes say more");
+            read = journal.events.len();
+        }
+        assert!(read + 20 > whole.len(), "{read} of {}", whole.len());
     }
 }
 
 #[test]
 fn a_journal_is_followed_while_it_is_written_and_a_torn_line_is_waited_for() {
-    let (_folder, path) = written(3);
+    followed(written(3));
+    followed(packed(30));
+}
+
+fn followed((_folder, path): (TempDir, PathBuf)) {
     let whole = read_journal(&path).expect("a whole journal").events;
     let bytes = fs::read(&path).expect("readable");
     let mut at = 10;
@@ -149,7 +171,7 @@ fn a_file_that_is_no_journal_is_refused() {
 
 #[test]
 fn a_journal_is_never_written_over() {
-    let (_folder, path) = written(2);
+    let (_folder, path) = packed(2);
     let before = fs::read(&path).expect("readable");
     let error = JournalWriter::create(&path, Instant::now()).err().expect("it exists");
     assert!(matches!(error, JournalError::Create { .. }));
@@ -159,7 +181,7 @@ fn a_journal_is_never_written_over() {
 #[test]
 fn events_reach_the_system_after_half_a_second_also_when_nothing_happens() {
     let folder = tempdir().expect("a folder");
-    let path = folder.path().join("events.jsonl");
+    let path = folder.path().join(JOURNAL_FILE);
     let begin = Instant::now();
     let mut journal = JournalWriter::create(&path, begin).expect("a new file");
     let events = events(2);
@@ -243,9 +265,49 @@ fn a_journal_of_an_older_version_that_is_not_understood_is_not_called_damaged() 
 
 #[test]
 fn the_ending_is_read_from_the_end_alone() {
-    let (_folder, path) = written(500);
     let last = events(500).pop().expect("events");
+    let (_folder, path) = packed(500);
+    assert_eq!(read_ending(&path).expect("readable"), Some(last.clone()));
+    let (_folder, path) = written(500);
     assert_eq!(read_ending(&path).expect("readable"), Some(last));
     change(&path, |text| text[..text.len() - 10].to_owned());
     assert_eq!(read_ending(&path).expect("readable"), None);
+}
+
+#[test]
+fn damage_in_a_compressed_journal_is_reported_and_what_comes_before_is_read() {
+    let (_folder, path) = packed(3000);
+    let mut bytes = fs::read(&path).expect("readable");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x55;
+    fs::write(&path, &bytes).expect("writable");
+    let mut reader = JournalReader::open(&path).expect("readable");
+    let read: Vec<_> = reader.by_ref().map_while(Result::ok).collect();
+    assert!(events(3000).starts_with(&read) && read.len() > 1000, "{} events", read.len());
+    let error = read_journal(&path).expect_err("it is damaged").to_string();
+    assert!(error.contains("the journal is damaged at line"), "{error}");
+}
+
+#[test]
+fn a_journal_is_opened_near_any_time_and_at_any_place() {
+    let ticks = 4000;
+    let all = events(ticks);
+    let last_s = all.last().expect("events").t_s;
+    for (_folder, path) in [written(ticks), packed(ticks)] {
+        for from_s in [-1.0, 0.0, 0.1, 0.3 * last_s, last_s, 2.0 * last_s] {
+            let reader = JournalReader::open_near(&path, from_s).expect("readable");
+            let near: Vec<Event> = reader.collect::<Result<_, _>>().expect("nothing is damaged");
+            let wanted = all.iter().filter(|event| event.t_s >= from_s);
+            assert!(near.iter().filter(|event| event.t_s >= from_s).eq(wanted), "from {from_s}");
+            let is_late = path.ends_with(JOURNAL_FILE) && from_s >= last_s;
+            assert!(!is_late || near.len() < all.len() / 2, "{} of {} were read", near.len(), all.len());
+        }
+        let mut reader = JournalReader::open(&path).expect("readable");
+        let mut read = 0;
+        for skip in [0, 7, all.len() / 2, 1] {
+            read += reader.by_ref().take(skip).count();
+            let mut other = JournalReader::open_at(&path, reader.place()).expect("readable");
+            assert_eq!(other.next().expect("an event").expect("not damaged"), all[read]);
+        }
+    }
 }

@@ -94,7 +94,7 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
                 wrap_total_rad: 1.0,
                 pull_factor: 1.3,
                 return_length_m: bears.then_some(length_m),
-                line: vec![anchor, at],
+                bends: vec![],
             };
             let truth =
                 EventKind::TetherTruth { length_m, wrap_max_rad: 1.0, wrap_total_rad: 1.0, detour_m: 0.0 };
@@ -281,7 +281,7 @@ fn a_recording_regenerated_from_the_journal_is_the_same() {
     let finished = recorder.finish(Duration::from_secs(20));
     assert_eq!(finished.error, None);
     let regenerated = folder.path().join("regenerated.rrd");
-    assert_eq!(export(&folder.path().join("events.jsonl"), &regenerated).expect("a whole journal"), None);
+    assert_eq!(export(&folder.path().join("events.jsonl.zst"), &regenerated).expect("a whole journal"), None);
     let first = finished.recording.expect("a recording was asked for");
     assert_eq!(content(&first), content(&regenerated));
     assert_eq!(inspect(&first).expect("readable"), inspect(&regenerated).expect("readable"));

@@ -1,6 +1,6 @@
 //! How the tether lay over a run, by the estimated position.
 
-use mission::TetherConfig;
+use mission::{TetherConfig, event::taut_line};
 use world::{Point, tether::Limits};
 
 /// At most so many lines of the tether are kept for its picture; every second is dropped when there are more.
@@ -49,6 +49,7 @@ pub struct TetherRecord {
     pub pull_factor_max: f64,
     /// Largest difference between what the reel paid out and what the map explains, metres; absent without an encoder.
     pub reel_off_max_m: Option<f64>,
+    anchor: Point,
     every: usize,
 }
 
@@ -64,6 +65,7 @@ impl TetherRecord {
             wrap_max_rad: 0.0,
             pull_factor_max: 1.0,
             reel_off_max_m: None,
+            anchor: config.anchor,
             every: 1,
         }
     }
@@ -73,10 +75,11 @@ impl TetherRecord {
         point: TetherPoint,
         reel_off_m: Option<f64>,
         pull_factor: f64,
-        line: &[Point],
+        (bends, robot): (&[Point], Point),
     ) {
+        let line = || taut_line(self.anchor, bends, robot);
         if self.points.len().is_multiple_of(self.every) {
-            self.lines.push(line.to_vec());
+            self.lines.push(line());
             if self.lines.len() > MOST_LINES {
                 let mut index = 0;
                 self.lines.retain(|_| {
@@ -87,7 +90,7 @@ impl TetherRecord {
             }
         }
         self.points.push(point);
-        let lay = || Lay { point, line: line.to_vec() };
+        let lay = || Lay { point, line: line() };
         if point.length_m > self.longest.point.length_m {
             self.longest = lay();
         }

@@ -4,7 +4,7 @@ use crate::{
     standing::{Standing, standing},
 };
 use mission::{Event, EventKind, Outcome};
-use recording::{Finished, Options, RunRecorder, sha256};
+use recording::{Finished, Options, PLAIN_JOURNAL_FILE, RunRecorder, events_sha256};
 use report::{Fold, Logs};
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -102,12 +102,13 @@ fn a_changed_journal_is_noticed_whatever_its_length() {
     let logs = tempfile::tempdir().unwrap();
     for new in ["all scanneD", "everything scanned"] {
         let (folder, ..) = ended(logs.path());
-        change(&folder.join(JOURNAL_FILE), "all scanned", new);
+        let packed = fs::read(folder.join(JOURNAL_FILE)).unwrap();
+        let plain = folder.join(PLAIN_JOURNAL_FILE);
+        fs::write(&plain, zstd::decode_all(&packed[..]).unwrap()).unwrap();
+        fs::remove_file(folder.join(JOURNAL_FILE)).unwrap();
+        change(&plain, "all scanned", new);
         assert!(doubt(&folder).contains("not the one that the report was made from"), "{}", doubt(&folder));
-        assert_eq!(
-            journal_doubt(&folder, sha256(&folder.join(JOURNAL_FILE)).ok().as_deref()),
-            Some(doubt(&folder))
-        );
+        assert_eq!(journal_doubt(&folder, events_sha256(&plain).ok().as_deref()), Some(doubt(&folder)));
     }
 }
 
@@ -116,7 +117,7 @@ fn a_lost_journal_is_noticed_and_the_run_still_listed() {
     let logs = tempfile::tempdir().unwrap();
     let (folder, ..) = ended(logs.path());
     fs::remove_file(folder.join(JOURNAL_FILE)).unwrap();
-    assert!(doubt(&folder).contains("events.jsonl cannot be read"), "{}", doubt(&folder));
+    assert!(doubt(&folder).contains("events.jsonl.zst cannot be read"), "{}", doubt(&folder));
     assert_eq!(past_runs(logs.path()).unwrap(), [folder]);
 }
 

@@ -1,7 +1,10 @@
 //! The tether as the screen knows it.
 
 use super::History;
-use mission::{EventKind, event::TetherContact};
+use mission::{
+    EventKind,
+    event::{TetherContact, taut_line},
+};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -40,8 +43,8 @@ impl Tether {
         self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     }
 
-    /// Takes in how the cable lies now.
-    pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind) {
+    /// Takes in how the cable lies now between its anchor and the robot.
+    pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind, ends: Option<(Point, Point)>) {
         if let EventKind::Tethered {
             length_m,
             paid_out_m,
@@ -50,14 +53,15 @@ impl Tether {
             wrap_total_rad,
             pull_factor,
             return_length_m,
-            line,
+            bends,
             ..
         } = event
         {
             self.length_m = paid_out_m.unwrap_or(*length_m);
             (self.free_m, self.wrap_total_rad) = (*free_m, *wrap_total_rad);
             (self.pull_factor, self.return_length_m) = (*pull_factor, *return_length_m);
-            (self.contacts, self.line) = (contacts.clone(), line.clone());
+            self.contacts.clone_from(contacts);
+            self.line = ends.map_or_else(Vec::new, |(anchor, robot)| taut_line(anchor, bends, robot));
             self.t_s = Some(t_s);
             self.length_history_m.add(t_s, self.length_m);
             let wrap_rad = self.largest().map_or(0.0, |contact| contact.wrap_rad.abs());

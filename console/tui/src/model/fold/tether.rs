@@ -32,7 +32,12 @@ impl Run {
                     self.raise(event, Cause::Certificate, severity, text);
                 }
             }
-            other => self.tether.get_or_insert_default().lie(event.t_s, other),
+            other => {
+                let anchor = self.about.as_ref().and_then(|about| about.mission.tether.as_ref());
+                let ends =
+                    anchor.map(|tether| tether.anchor).zip(self.position.pose.map(|pose| pose.position));
+                self.tether.get_or_insert_default().lie(event.t_s, other, ends);
+            }
         }
     }
 }

@@ -1,0 +1,51 @@
+//! `tankops events`: the lines of a journal, for `grep` and `jq`.
+
+use crate::cli::EventsArgs;
+use flight::failure::COMPLETE;
+use recording::{JournalLine, JournalReader, journal_of};
+use runs::find;
+use serde::Deserialize;
+use std::{
+    io::{self, BufWriter, ErrorKind, Write},
+    process::ExitCode,
+};
+
+/// What of a line is looked at.
+#[derive(Deserialize)]
+struct Name<'a> {
+    event: &'a str,
+}
+
+/// Prints the events of a run as they stand in its journal, one JSON object a line.
+pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
+    let folder = find(&args.run, &args.logs.folder())?;
+    let from_s = args.from.unwrap_or(0.0);
+    let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    while let Some(line) = reader.next_line()? {
+        let t_s = line.event.t_s;
+        if args.to.is_some_and(|to_s| t_s > to_s) {
+            break;
+        }
+        if t_s < from_s || !is_wanted(&line, &args.kind) {
+            continue;
+        }
+        if let Err(error) = out.write_all(line.raw).and_then(|()| out.write_all(b"\n")) {
+            return ended(&error);
+        }
+    }
+    out.flush().map_or_else(|error| ended(&error), |()| Ok(ExitCode::from(COMPLETE)))
+}
+
+fn is_wanted(JournalLine { raw, .. }: &JournalLine, kinds: &[String]) -> bool {
+    let is_one = |name: Name| kinds.iter().any(|kind| kind == name.event);
+    kinds.is_empty() || serde_json::from_slice(raw).is_ok_and(is_one)
+}
+
+/// A reader that has gone away, as `head` does, is no fault.
+fn ended(error: &io::Error) -> anyhow::Result<ExitCode> {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Ok(ExitCode::from(COMPLETE)),
+        kind => Err(io::Error::new(kind, format!("writing to stdout: {error}")).into()),
+    }
+}

@@ -1,0 +1,59 @@
+//! How symmetric matrices are written: the upper triangle, row by row. Read is also a whole matrix, as journals up to version 4
+//! have it.
+
+use nalgebra::SMatrix;
+use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+/// Writes the upper triangle.
+///
+/// # Errors
+/// As the serializer.
+pub fn serialize<S: Serializer, const N: usize>(
+    matrix: &SMatrix<f64, N, N>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq((0..N).flat_map(|row| (row..N).map(move |column| matrix[(row, column)])))
+}
+
+/// Reads an upper triangle or a whole matrix.
+///
+/// # Errors
+/// There are fewer or more numbers.
+pub fn deserialize<'de, D: Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<SMatrix<f64, N, N>, D::Error> {
+    let numbers = Vec::<f64>::deserialize(deserializer)?;
+    let triangle = N * (N + 1) / 2;
+    let index = |row: usize, column: usize| {
+        let (row, column) = (row.min(column), row.max(column));
+        row * N + column - row * (row + 1) / 2
+    };
+    match numbers.len() {
+        n if n == triangle => Ok(SMatrix::from_fn(|row, column| numbers[index(row, column)])),
+        n if n == N * N => Ok(SMatrix::from_column_slice(&numbers)),
+        n => Err(D::Error::custom(format!(
+            "a symmetric matrix of {N} rows has {triangle} numbers, or {} in whole, not {n}",
+            N * N
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    #[derive(serde::Serialize, Deserialize)]
+    struct Known(#[serde(with = "super")] Matrix3<f64>);
+
+    #[test]
+    fn a_matrix_is_written_once_above_its_diagonal_and_read_in_both_forms() {
+        let matrix = Matrix3::new(1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 3.0, 5.0, 6.0);
+        let text = serde_json::to_string(&Known(matrix)).unwrap();
+        assert_eq!(text, "[1.0,2.0,3.0,4.0,5.0,6.0]");
+        let read = |text: &str| serde_json::from_str::<Known>(text).map(|known| known.0);
+        assert_eq!(read(&text).unwrap(), matrix);
+        assert_eq!(read("[1,2,3,2,4,5,3,5,6]").unwrap(), matrix);
+        assert!(read("[1,2]").unwrap_err().to_string().contains("6 numbers, or 9 in whole, not 2"));
+    }
+}

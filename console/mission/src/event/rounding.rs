@@ -1,0 +1,198 @@
+//! Numbers of events as everybody gets them: no finer than anything in a tank is known.
+//!
+//! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. This is done
+//! once, where an event leaves the flight: journal, recording, screen and report see the same numbers, and a tick takes a
+//! third of the bytes. What a planner answered is repeated from the journal, so plans stay as they are, and commands are
+//! rounded before they are sent (`Mission::as_sent`).
+
+use super::{Event, EventKind, TetherContact};
+use crate::ask::Said;
+use nalgebra::SMatrix;
+use planner_api::{Command, Drawing, Drive, PoseEstimate};
+use positioning::{Exclusion, Fix, Ranging};
+use world::{Point, Pose};
+
+/// Steps in a unit.
+const STEPS: f64 = 1e6;
+/// Larger numbers have no digits to lose, and are none of a tank.
+const MOST: f64 = 1e9;
+
+/// A number to the millionth; no `-0.0`.
+fn rounded(x: f64) -> f64 {
+    // What is added makes a zero of either sign a positive one.
+    if x.abs() < MOST { (x * STEPS).round() / STEPS + 0.0 } else { x }
+}
+
+/// A number to four significant digits; no `-0.0`.
+fn significant(x: f64) -> f64 {
+    format!("{x:.3e}").parse().map_or(x, |x: f64| x + 0.0)
+}
+
+impl Event {
+    /// The event with its numbers rounded; doing it again changes nothing.
+    #[must_use]
+    pub fn rounded(mut self) -> Self {
+        round(&mut self.t_s);
+        self.kind.round();
+        self
+    }
+}
+
+impl Said {
+    /// What was drawn and reported, with its numbers rounded as in events.
+    #[must_use]
+    pub(crate) fn rounded(mut self) -> Self {
+        self.drawings.iter_mut().for_each(round_drawing);
+        self.scalars.iter_mut().for_each(|(_, value, _)| round(value));
+        self
+    }
+}
+
+/// A number to the millionth, never further from zero: what is within a limit stays within it.
+fn toward_zero(x: f64) -> f64 {
+    let nearest = rounded(x);
+    if nearest.abs() > x.abs() { rounded(nearest - x.signum() / STEPS) } else { nearest }
+}
+
+/// A command that is sent to the robot, rounded.
+pub(crate) fn rounded_command(Command { drive, status }: Command) -> Command {
+    let drive = match drive {
+        Drive::Twist { v_m_per_s, w_rad_per_s } => {
+            Drive::Twist { v_m_per_s: toward_zero(v_m_per_s), w_rad_per_s: toward_zero(w_rad_per_s) }
+        }
+        Drive::Velocity(velocity) => Drive::Velocity(velocity.map(toward_zero)),
+    };
+    Command { drive, status }
+}
+
+impl EventKind {
+    fn round(&mut self) {
+        match self {
+            Self::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+                [length_m, wrap_max_rad, wrap_total_rad, detour_m].into_iter().for_each(round);
+            }
+            Self::Tethered {
+                length_m,
+                paid_out_m,
+                free_m,
+                contacts,
+                wrap_max_rad,
+                wrap_total_rad,
+                pull_factor,
+                return_length_m,
+                bends,
+            } => {
+                [length_m, free_m, wrap_max_rad, wrap_total_rad, pull_factor].into_iter().for_each(round);
+                [paid_out_m, return_length_m].into_iter().flatten().for_each(round);
+                bends.iter_mut().for_each(round_point);
+                for TetherContact { wrap_rad, at, .. } in contacts {
+                    round(wrap_rad);
+                    round_point(at);
+                }
+            }
+            Self::Truth { pose: Pose { position, heading_rad }, clearance_m, .. } => {
+                round_point(position);
+                [heading_rad, clearance_m].into_iter().for_each(round);
+            }
+            Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),
+            Self::Fixed { fix } => round_fix(fix),
+            Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
+                round_point(position);
+                round(heading_rad);
+                round_covariance(covariance);
+            }
+            Self::Drawn { drawings } => drawings.iter_mut().for_each(round_drawing),
+            Self::Scalars { scalars } => scalars.iter_mut().for_each(|(_, value, _)| round(value)),
+            Self::Progressed {
+                done,
+                along_m,
+                cross_track_m,
+                target,
+                covered_reachable,
+                covered_whole,
+                ..
+            } => {
+                [done, covered_reachable, covered_whole].into_iter().for_each(round);
+                [along_m, cross_track_m].into_iter().flatten().for_each(round);
+                round_point(target);
+            }
+            Self::Shadowed { of } => of.round(),
+            _ => {}
+        }
+    }
+}
+
+fn round(x: &mut f64) {
+    *x = rounded(*x);
+}
+
+fn round_point(point: &mut Point) {
+    point.iter_mut().for_each(round);
+}
+
+fn round_covariance<const N: usize>(covariance: &mut SMatrix<f64, N, N>) {
+    covariance.iter_mut().for_each(|x| *x = significant(*x));
+}
+
+fn round_ranging(Ranging { range_m, sigma_m, least_m, most_m, .. }: &mut Ranging) {
+    [range_m, sigma_m, least_m, most_m].into_iter().for_each(round);
+}
+
+fn round_fix(fix: &mut Fix) {
+    round_point(&mut fix.position);
+    round_covariance(&mut fix.covariance);
+    for residual in &mut fix.residuals {
+        [&mut residual.residual_m, &mut residual.sigma_m].into_iter().for_each(round);
+    }
+    for (_, why) in &mut fix.excluded {
+        if let Exclusion::Residual { residual_m, gate_m } = why {
+            [residual_m, gate_m].into_iter().for_each(round);
+        }
+    }
+    [&mut fix.chi2, &mut fix.gdop, &mut fix.conditioning].into_iter().for_each(round);
+    fix.mirror.iter_mut().for_each(round_point);
+    fix.protection_level_m.iter_mut().for_each(round);
+}
+
+fn round_drawing(drawing: &mut Drawing) {
+    match drawing {
+        Drawing::Arrow { at, vector, .. } => {
+            round_point(at);
+            vector.iter_mut().for_each(round);
+        }
+        Drawing::Circle { center, radius_m, .. } => {
+            round_point(center);
+            round(radius_m);
+        }
+        Drawing::Line { from, to, .. } => [from, to].into_iter().for_each(round_point),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn no_number_is_finer_than_a_millionth_and_no_zero_is_negative() {
+        let round = |x| rounded(x).to_string();
+        assert_eq!([round(419.700_000_000_000_05), round(-1.234_567_89)], ["419.7", "-1.234568"]);
+        assert_eq!([round(-0.0), round(-1e-9), round(f64::INFINITY)], ["0", "0", "inf"]);
+        let significant = |x| significant(x).to_string();
+        assert_eq!([significant(0.000_203_190_695), significant(-12_345.6)], ["0.0002032", "-12350"]);
+        assert_eq!([significant(-0.0), significant(f64::NAN)], ["0", "NaN"]);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_rounded_stays_as_it_is(x in -1e10..1e10_f64, exponent in -12..3_i32) {
+            let x = x * 10_f64.powi(exponent);
+            prop_assert_eq!(rounded(rounded(x)).to_bits(), rounded(x).to_bits());
+            prop_assert!((rounded(x) - x).abs() <= 0.500_001e-6 || x.abs() > 1e8);
+            let towards = toward_zero(x);
+            prop_assert_eq!(toward_zero(towards).to_bits(), towards.to_bits());
+            prop_assert!(towards.abs() <= x.abs());
+            prop_assert_eq!(significant(significant(x)).to_bits(), significant(x).to_bits());
+        }
+    }
+}

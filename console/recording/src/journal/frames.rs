@@ -1,0 +1,70 @@
+//! Where the frames of a compressed journal begin, without decompressing it.
+//!
+//! A frame of zstd (RFC 8878) says of each of its blocks how long it is; so a file of hours is walked through in milliseconds,
+//! also one whose writer was killed, and needs no index beside it.
+
+use std::{
+    fs::File,
+    io::{self, BufReader, Read, Seek},
+};
+
+const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+/// Magic, frame header descriptor and window descriptor: frames of unknown length and without a dictionary, as are written.
+const HEADER_BYTES: u64 = 6;
+const CHECKSUM_BYTES: i64 = 4;
+const BLOCK_HEADER_BYTES: u64 = 3;
+
+/// Where in the file each frame begins, bytes; of what else is in it only the frames before.
+pub(super) fn starts(file: &File) -> io::Result<Vec<u64>> {
+    let mut walk = Walk { file: BufReader::new(file), at: 0 };
+    walk.file.rewind()?;
+    let mut starts = Vec::new();
+    loop {
+        let start = walk.at;
+        match walk.frame() {
+            Ok(true) => starts.push(start),
+            Ok(false) => return Ok(starts),
+            // The last frame of a writer that was killed.
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                starts.extend((walk.at > start).then_some(start));
+                return Ok(starts);
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+struct Walk<'a> {
+    file: BufReader<&'a File>,
+    at: u64,
+}
+
+impl Walk<'_> {
+    /// Passes a frame; whether there was one as this program writes them.
+    fn frame(&mut self) -> io::Result<bool> {
+        let header: [u8; HEADER_BYTES as usize] = self.take()?;
+        // Descriptor: a checksum, no dictionary, no length of the content.
+        if header[..4] != MAGIC || header[4] != 0b100 {
+            return Ok(false);
+        }
+        self.at += HEADER_BYTES;
+        loop {
+            let [low, middle, high] = self.take()?;
+            let header = u32::from_le_bytes([low, middle, high, 0]);
+            let (is_last, kind, size) = (header & 1 == 1, header >> 1 & 3, i64::from(header >> 3));
+            // A run of one byte is one byte long.
+            let length = if kind == 1 { 1 } else { size } + if is_last { CHECKSUM_BYTES } else { 0 };
+            self.file.seek_relative(length)?;
+            self.at += BLOCK_HEADER_BYTES + length as u64;
+            if is_last {
+                return Ok(true);
+            }
+        }
+    }
+
+    fn take<const N: usize>(&mut self) -> io::Result<[u8; N]> {
+        let mut bytes = [0; N];
+        self.file.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+}

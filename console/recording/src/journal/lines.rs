@@ -1,0 +1,48 @@
+//! The lines of a journal, whether its file is compressed or not.
+
+use super::unpacker::{FrameStart, Unpacker};
+use std::{
+    io::{self, BufRead, BufReader, Read},
+    path::Path,
+};
+
+/// What is read ahead, bytes.
+const BUFFER_BYTES: usize = 1 << 18;
+
+/// The lines of a file.
+pub(super) enum Lines {
+    Plain(BufReader<Box<dyn Read + Send>>),
+    Packed(BufReader<Unpacker<Box<dyn Read + Send>>>),
+}
+
+impl Lines {
+    /// The lines in the bytes of the file of this name, from a place on.
+    pub(super) fn of(bytes: impl Read + Send + 'static, path: &Path, at: FrameStart) -> io::Result<Self> {
+        let bytes: Box<dyn Read + Send> = Box::new(bytes);
+        Ok(if is_packed(path) {
+            Self::Packed(BufReader::with_capacity(BUFFER_BYTES, Unpacker::new(bytes, at)?))
+        } else {
+            Self::Plain(BufReader::with_capacity(BUFFER_BYTES, bytes))
+        })
+    }
+
+    pub(super) fn text(&mut self) -> &mut dyn BufRead {
+        match self {
+            Self::Plain(lines) => lines,
+            Self::Packed(lines) => lines,
+        }
+    }
+
+    /// From where on the file has to be read to get to a place that so many bytes of lines come before.
+    pub(super) fn frame_before(&self, bytes: u64) -> FrameStart {
+        match self {
+            Self::Plain(_) => FrameStart { file: bytes, content: bytes },
+            Self::Packed(lines) => lines.get_ref().frame_before(bytes),
+        }
+    }
+}
+
+/// Whether a file is compressed, by its name.
+pub(super) fn is_packed(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "zst")
+}
