@@ -128,7 +128,7 @@ impl Session {
     /// Starts the mission and agrees to it.
     pub(crate) fn start(&mut self) {
         self.press("S");
-        self.see("Start mission?");
+        self.see("Enter: start, Esc: cancel.");
         self.press("\r");
     }
 

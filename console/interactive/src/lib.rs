@@ -201,7 +201,7 @@ enum Opening {
 impl Opening {
     fn of(Options { scenario, settings, logs, view, replay, .. }: &Options) -> anyhow::Result<Self> {
         if let Some(Replay { run, with }) = replay {
-            let name = |run: &PathBuf| anyhow::Ok(named(&past(run, logs)?, logs));
+            let name = |run: &PathBuf| anyhow::Ok(named(&runs::find(run, logs)?, logs));
             return Ok(Self::Replay { run: name(run)?, with: with.as_ref().map(name).transpose()? });
         }
         if let Some(run) = view {
@@ -215,15 +215,6 @@ impl Opening {
         let flight = Flight::prepare(&scenario, true);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
-}
-
-/// The folder of a past run; `latest` is the newest one.
-fn past(run: &Path, logs: &Path) -> anyhow::Result<PathBuf> {
-    if run == Path::new("latest") && !run.exists() {
-        let newest = runs::list(logs)?.pop().map(|listed| listed.folder);
-        return newest.ok_or_else(|| bad_input(format!("there are no runs in {}", logs.display())));
-    }
-    Ok(runs::find(run, logs)?)
 }
 
 /// What a run is called on the screen: its name in the folder of the runs, or its folder if it lies elsewhere.

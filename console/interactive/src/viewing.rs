@@ -52,7 +52,7 @@ impl Viewing {
             Err(error) => return self.fail(&error.into()),
         };
         if !has_ended {
-            self.say("the run was not closed: its console is gone; values are the last ones of its journal");
+            self.screen.send(RunMsg::WriterGone);
         }
         match self.result() {
             Ok(result) => drop(self.screen.send(RunMsg::Closed(Box::new(result)))),

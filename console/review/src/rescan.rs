@@ -34,7 +34,7 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
     if missed.boxes.is_empty() {
         let why = missed.why_nothing(min_area_m2);
         return Err(bad_input(format!(
-            "{why}; --min-area-m2 sets the limit\n{}",
+            "{why} (`tankops rescan --min-area-m2` sets the limit)\n{}",
             missed.human_out_of_reach().trim_end()
         )));
     }

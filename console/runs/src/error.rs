@@ -11,7 +11,7 @@ pub enum RunError {
     Logs(String),
     /// There is no such run.
     #[error(
-        "there is no run {}: neither a folder with {JOURNAL_FILE} nor a name in {}; `tankops runs` lists them",
+        "there is no run {}: neither a folder with {JOURNAL_FILE} nor the beginning of a name in {}, nor `latest`; `tankops runs` lists them",
         run.display(), logs.display()
     )]
     NoRun {
@@ -19,6 +19,16 @@ pub enum RunError {
         run: PathBuf,
         /// The folder of runs.
         logs: PathBuf,
+    },
+    /// Several runs have names that begin so.
+    #[error("the names of {count} runs begin with {begin}: {some}...; write more of the name")]
+    ManyRuns {
+        /// The beginning.
+        begin: String,
+        /// How many runs.
+        count: usize,
+        /// The first of them.
+        some: String,
     },
     /// Its journal cannot be read.
     #[error(transparent)]
@@ -47,7 +57,7 @@ pub enum RunError {
 impl RunError {
     /// Whether it is for the user to correct, and says how.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Logs(_) | Self::NoRun { .. } | Self::Journal(_))
+        matches!(self, Self::Logs(_) | Self::NoRun { .. } | Self::ManyRuns { .. } | Self::Journal(_))
     }
 
     /// What the system refuses while something is being done.

@@ -106,14 +106,32 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     Ok(folders)
 }
 
-/// The folder of a run that the user named by path or by name.
+/// The folder of a run that the user named by path, by name, by the beginning of its name, or as `latest`.
 ///
 /// # Errors
-/// [`RunError::NoRun`].
+/// [`RunError::NoRun`], [`RunError::ManyRuns`].
 pub fn find(run: &Path, logs: &Path) -> Result<PathBuf, RunError> {
     let candidates = [run.to_path_buf(), logs.join(run)];
-    let found = candidates.into_iter().find(|path| journal_of(path).exists());
-    found.ok_or_else(|| RunError::NoRun { run: run.to_owned(), logs: logs.to_owned() })
+    if let Some(found) = candidates.into_iter().find(|path| journal_of(path).exists()) {
+        return Ok(found);
+    }
+    let missing = || RunError::NoRun { run: run.to_owned(), logs: logs.to_owned() };
+    let begin = run.to_str().filter(|begin| !begin.is_empty()).ok_or_else(missing)?;
+    let mut fitting = past_runs(logs).unwrap_or_default();
+    if begin == "latest" {
+        return fitting.pop().ok_or_else(missing);
+    }
+    let name =
+        |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    fitting.retain(|path| name(path).starts_with(begin));
+    match &fitting[..] {
+        [] => Err(missing()),
+        [one] => Ok(one.clone()),
+        [first, second, ..] => {
+            let (count, some) = (fitting.len(), format!("{}, {}", name(first), name(second)));
+            Err(RunError::ManyRuns { begin: begin.to_owned(), count, some })
+        }
+    }
 }
 
 #[cfg(test)]

@@ -75,6 +75,9 @@ pub struct Model {
     pub review: Review,
     /// The run that is open, and what is between the operator and its mission.
     pub live: Live,
+    /// Speed of the simulation with which a mission begins.
+    #[serde(default)]
+    pub first_speed: Speed,
     /// The console itself.
     pub console: Console,
     /// What the operator looks at.
@@ -85,7 +88,7 @@ impl Model {
     /// A console that opens on the plan of a mission: home is one key away.
     pub fn opened(id: RunId, source: Source, speed: Speed) -> Self {
         let live = Live { id, source: Some(source), is_opening: true, speed, ..Live::default() };
-        let mut model = Self { live, ..Self::default() };
+        let mut model = Self { live, first_speed: speed, ..Self::default() };
         model.ui.go(Screen::Plan);
         model
     }
@@ -118,7 +121,8 @@ impl Model {
             replay: Some(Box::new(Replay::of(run))),
             ..Live::default()
         };
-        (self.ui.map, self.ui.cursor) = (ui::MapView::default(), None);
+        (self.ui.map, self.ui.cursor, self.ui.missed) = (ui::MapView::default(), None, 0);
+        self.console.notice = None;
         self.ui.go(Screen::Mission);
     }
 

@@ -98,6 +98,9 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     if typing::press(model, press.key) {
         return Vec::new();
     }
+    if press.key == Key::Esc && events::close(model) {
+        return Vec::new();
+    }
     let Some(action) = find::action_for(&model.console.keys, press.key, &contexts(model)) else {
         return unknown(model, press.key);
     };

@@ -5,12 +5,22 @@ use crate::actions::ActionId;
 
 pub(super) const RECORDING: Guide = Guide {
     cause: "Journal or recording cannot be written, or was deleted, replaced or truncated.",
-    effect: "The mission goes on. Up to 64 MB of the journal are kept in memory; what was deleted is lost.",
+    effect: "The mission goes on. About 40 minutes of the journal are kept in memory; what was deleted is lost.",
     remedies: &[
         wait("If the disk is full, free some space: what waits is written then."),
         wait("If the folder was moved, move it back."),
         run("HOLD the robot until it is recorded again.", ActionId::Hold),
         END,
+    ],
+};
+
+pub(super) const WRITER: Guide = Guide {
+    cause: "The console that flew this run ended without closing it: it was killed, or its machine stopped.",
+    effect: "Nothing is known of the robot after the last event.",
+    remedies: &[
+        wait("Look after the robot where it is."),
+        run("Show the last known place of the robot.", ActionId::GoMission),
+        run("Show what the journal says of the run.", ActionId::GoResult),
     ],
 };
 
@@ -40,8 +50,8 @@ pub(super) const RECORDER_LAG: Guide = Guide {
 };
 
 pub(super) const DISK: Guide = Guide {
-    cause: "Less than 200 MB are left where runs are kept; a mission takes about 100 MB an hour.",
-    effect: "When the disk is full, the last 64 MB of a journal are kept in memory only.",
+    cause: "Less than 200 MB are left where runs are kept; a mission takes about 40 MB an hour.",
+    effect: "When the disk is full, the last 40 minutes of a journal are kept in memory only.",
     remedies: &[
         wait("Free some space, or move old runs elsewhere."),
         run("HOLD the robot until there is space.", ActionId::Hold),

@@ -87,6 +87,9 @@ pub struct Live {
     pub preflight: Preflight,
     /// How it would go on from where it is held; `None` as long as nobody asked.
     pub what_if: Option<WhatIf>,
+    /// Whether the console that flies the run is gone: nothing more is known of it.
+    #[serde(default)]
+    pub is_cut_off: bool,
     /// How fast the mission shall go.
     pub speed: Speed,
     /// How its engine does.
@@ -130,10 +133,19 @@ impl Live {
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
     }
 
-    /// Reachable floor that the run missed, the largest area first.
-    pub fn missed(&self) -> &[Area<MissReason>] {
+    /// Reachable floor that the run was to scan and missed, the largest area first.
+    pub fn missed(&self) -> Vec<&Area<MissReason>> {
+        self.areas().filter(|area| area.reason != MissReason::NotAsked).collect()
+    }
+
+    /// Reachable floor that the run was not to scan and did not, square metres.
+    pub fn not_requested_m2(&self) -> f64 {
+        self.areas().filter(|area| area.reason == MissReason::NotAsked).map(|area| area.area_m2).sum()
+    }
+
+    fn areas(&self) -> impl Iterator<Item = &Area<MissReason>> {
         let floor = self.result.as_ref().and_then(|result| result.summary.floor.as_ref());
-        floor.map_or(&[], |floor| &floor.missed)
+        floor.into_iter().flat_map(|floor| &floor.missed)
     }
 
     /// Whether the mission waits for its start.

@@ -422,6 +422,10 @@ impl Ui {
             self.back.push(self.screen);
         }
         self.screen = screen;
+        if screen == Screen::Mission {
+            // Beside the map the newest events are shown, whatever was read elsewhere.
+            self.events.at = None;
+        }
     }
 
     /// Whether a pane can be seen.

@@ -24,6 +24,12 @@ pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
+/// Closes the whole event; whether one was open.
+pub(super) fn close(model: &mut Model) -> bool {
+    let is_shown = model.ui.overlay == Overlay::None && model.ui.screen == Screen::Events;
+    is_shown && std::mem::take(&mut model.ui.events.is_open)
+}
+
 /// Selects the next event of the same kind, or the one before.
 pub(super) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
     let events = &mut model.ui.events;

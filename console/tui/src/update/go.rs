@@ -69,15 +69,16 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
-    // The pace that the screen shows is the one that the operator has set, in this run as in the one before.
-    let speed = model.live.speed;
+    // A speed that was set for one mission is not meant for the next: that could be over before anybody looks.
+    let speed = model.first_speed;
     let before = std::mem::take(&mut model.live);
     // Of runs that are opened in haste, the last that was open is kept.
     let before =
         if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
     model.live =
         Live { id, source: Some(source.clone()), is_opening: true, before, speed, ..Live::default() };
-    (model.ui.map, model.ui.cursor) = (crate::model::ui::MapView::default(), None);
+    (model.ui.map, model.ui.cursor, model.ui.missed) = (crate::model::ui::MapView::default(), None, 0);
+    model.console.notice = None;
     model.ui.go(Screen::Plan);
     vec![Effect::Open { id, source, planner, speed }]
 }

@@ -55,6 +55,11 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
                 ghost.made = Some(made.map(|made| *made));
             }
         }
+        RunMsg::WriterGone => {
+            model.live.is_cut_off = true;
+            let text = "the run was not closed: its console is gone; values are the last ones of its journal";
+            news(model, &Cause::Writer, Severity::Crit, text.into());
+        }
         RunMsg::Health(health) => take_health(model, health),
         RunMsg::OrderFailed { order, why } => {
             model.live.answered(&order);

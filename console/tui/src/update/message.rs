@@ -127,6 +127,8 @@ pub enum RunMsg {
     OpenFailed(String),
     /// Events of the mission.
     Events(Vec<Event>),
+    /// The console that flies the run is gone without having closed it; only who looks on hears that.
+    WriterGone,
     /// How the engine does.
     Health(Health),
     /// An order did not reach the mission.

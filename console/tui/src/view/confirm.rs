@@ -102,7 +102,11 @@ pub(crate) fn question(model: &Model) -> Option<String> {
 fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
-        Overlay::Confirm(Ask::Start) => vec!["Start mission? Enter: start, Esc: cancel.".into(), moves()],
+        Overlay::Confirm(Ask::Start) => {
+            let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
+            let speed = text::speed(model.live.speed);
+            vec![format!("Start ({planner}, {speed})? Enter: start, Esc: cancel."), "Robot will move.".into()]
+        }
         Overlay::Confirm(Ask::Resume) => vec!["Resume? Enter: resume, Esc: stay held.".into(), moves()],
         Overlay::Confirm(Ask::FlyUncertified) => vec![
             "Run uncertified plan? Enter: run, Esc: stay held.".into(),

@@ -14,6 +14,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 /// Columns of the panes at the side, on a wide and on a narrow screen.
 const SIDE: (u16, u16) = (62, 42);
+/// Rows of the floor's shares with their frame, at least.
+const FLOOR: u16 = 6;
 /// Rows of the list of missed areas with its frame.
 const MISSED: u16 = 10;
 
@@ -34,14 +36,13 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let side = if wide { SIDE.0 } else { SIDE.1 };
     let side = if arrangement == Arrangement::Paged { area.width } else { side };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(above);
-    if left.width > 0 {
+    let rows = figures::rows(look, result, right.width.saturating_sub(2)) + 2;
+    let [achieved, floor] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
+    // Without room for both, what was scanned counts more than where: the map is one key away.
+    let floor = if left.width > 0 && floor.height < FLOOR { left } else { floor };
+    if left.width > 0 && floor != left {
         map::draw(look, frame, left);
     }
-    let [achieved, floor] = Layout::vertical([
-        Constraint::Length(figures::rows(look, result, right.width.saturating_sub(2)) + 2),
-        Constraint::Fill(1),
-    ])
-    .areas(right);
     let title = format!("Result  {}", ending(result));
     figures::draw(look, frame, achieved, &title, result);
     floor::draw(look, frame, floor, result);

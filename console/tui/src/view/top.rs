@@ -65,6 +65,7 @@ pub(super) fn state(model: &Model) -> Parts {
         Phase::Ended(Outcome::Complete) => ("OPER", Role::Good, "✓ DONE"),
         Phase::Ended(_) => ("OPER", Role::Warn, "■ ENDED"),
     };
+    let (role, word) = if model.live.is_cut_off { (Role::Crit, "■ CUT OFF") } else { (role, word) };
     let who = if model.live.is_look_only() { "VIEW" } else { who };
     vec![(Role::Title, format!("{who} ")), (role, word.into())]
 }

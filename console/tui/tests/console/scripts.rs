@@ -547,10 +547,11 @@ fn another_mission_is_opened_only_when_none_is_in_progress() {
     screen.type_text("k");
     let source = Source::File("one.toml".into());
     screen.model.live.speed = Speed::Times(4.0);
-    let opens = Effect::Open { id: RunId(2), source, planner: None, speed: Speed::Times(4.0) };
+    // What was set for one mission is not meant for the next.
+    let opens = Effect::Open { id: RunId(2), source, planner: None, speed: Speed::default() };
     assert_eq!(screen.press([Key::Enter]), [opens]);
     assert_eq!(screen.model.ui.screen, tui::model::Screen::Plan);
-    assert_eq!(screen.model.live.speed, Speed::Times(4.0));
+    assert_eq!(screen.model.live.speed, Speed::default());
     // What the run before still says is late.
     let late = screen.mission.drive(3);
     screen.hear(RunMsg::Events(late));

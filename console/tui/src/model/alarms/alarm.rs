@@ -121,13 +121,14 @@ impl Alarm {
 
     /// Takes what its cause says now. What the operator has not seen is never replaced by something less severe.
     pub(super) fn take(&mut self, severity: Severity, text: String, t_s: f64) {
-        let was_active = self.is_active();
-        self.count = self.count.saturating_add(u32::from(!was_active));
+        // Each obstacle that is found is news of its own.
+        let is_new = !self.is_active() || self.cause == Cause::Map;
+        self.count = self.count.saturating_add(u32::from(is_new));
         let next = match &self.state {
             State::Shelved(shelf) if severity < Severity::Crit => {
                 State::Shelved(Shelf { active: true, ..shelf.clone() })
             }
-            State::Acknowledged if severity <= self.severity => State::Acknowledged,
+            State::Acknowledged if !is_new && severity <= self.severity => State::Acknowledged,
             _ => State::Unacknowledged,
         };
         let is_lower = self.is_unacknowledged() && severity < self.severity;
@@ -136,7 +137,7 @@ impl Alarm {
             self.fallen = Some((severity, text));
             return;
         }
-        if !was_active || severity > self.severity {
+        if is_new || severity > self.severity {
             self.since_s = t_s;
         }
         (self.severity, self.text, self.fallen) = (severity, text, None);

@@ -28,6 +28,8 @@ pub enum Cause {
     Ended,
     /// The run is not being written down.
     Recording,
+    /// The console that flies the run that is looked on at is gone.
+    Writer,
     /// A part of the console failed.
     Console,
     /// The console answers keys slowly.
@@ -91,6 +93,7 @@ impl Cause {
             Self::Stuck,
             Self::Ended,
             Self::Recording,
+            Self::Writer,
             Self::Console,
             Self::Response,
             Self::Frames,
@@ -114,6 +117,7 @@ impl Cause {
                 | Self::Stuck
                 | Self::Ended
                 | Self::Recording
+                | Self::Writer
                 | Self::Console
                 | Self::Response
                 | Self::Frames

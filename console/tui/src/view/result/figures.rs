@@ -56,13 +56,12 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     let degrees =
         |value: Option<f64>| value.map_or_else(dash, |rad| format!("{}°", text::number(rad.to_degrees(), 0)));
     let clock = |value: Option<f64>| value.map_or_else(dash, text::clock);
-    let began_s = run.clock.started_s.unwrap_or(0.0);
     let mut figures = vec![
         row(
             "time",
             [
                 clock(promised.map(|p| p.time_s)),
-                clock(summary.mission_time_s.map(|time_s| time_s - began_s)),
+                clock(summary.mission_time_s),
                 clock(mission.map(|mission| mission.time_limit_s)),
             ],
         ),
@@ -75,7 +74,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
             [
                 metres(promised.and_then(|p| p.clearance_min).map(|worst| worst.value), 2),
                 metres(summary.clearance_min_m, 2),
-                metres(Some(0.0), 2),
+                metres(mission.map(|mission| mission.clearance_m), 2),
             ],
         ),
     ];
@@ -100,11 +99,11 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
         ));
     }
     figures.push(row(
-        "error p95",
+        "95 % error",
         [
             String::new(),
-            metres(summary.positioning.as_ref().map(|p| p.p95_m), 2),
-            metres(mission.map(|mission| mission.position_limit_m), 2),
+            metres(summary.accuracy.as_ref().map(|accuracy| accuracy.p95_m), 2),
+            metres(summary.accuracy.as_ref().map(|accuracy| accuracy.limit_m), 2),
         ],
     ));
     figures

@@ -13,7 +13,7 @@ use report::account::Shares;
 const MISSED_PERCENT: f64 = 1.0;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
-    let block = look.block(Role::Border, "Coverage", "% by the estimated position");
+    let block = look.block(Role::Border, "Coverage", "% by the estimate");
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let mut rows: Vec<Parts> = Vec::new();
     match &result.summary.floor {
@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
             rows.push(vec![(Role::Text, shares("reachable floor", &account.reachable, columns))]);
         }
     }
-    rows.extend(notes(result, columns).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
+    rows.extend(notes(look, result, columns).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
     let lines: Vec<Line> = rows.into_iter().map(|parts| look.line(parts)).collect();
     fill(frame, area, block, lines);
 }
@@ -60,7 +60,7 @@ fn shares(label: &str, shares: &Shares, columns: usize) -> String {
 }
 
 /// What the table does not say.
-fn notes(result: &RunResult, columns: usize) -> Vec<String> {
+fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
     let again =
@@ -83,6 +83,8 @@ fn notes(result: &RunResult, columns: usize) -> Vec<String> {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
         format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
     });
-    let notes = zone.into_iter().chain(plates).chain(again).chain(truth).chain(broken);
+    let is_part = look.model.live.not_requested_m2() > 0.0;
+    let joined = is_part.then(|| "This run alone; `tankops report FIRST SECOND` joins runs.".to_owned());
+    let notes = joined.into_iter().chain(zone).chain(plates).chain(again).chain(truth).chain(broken);
     notes.flat_map(|note| text::wrap(&note, columns)).collect()
 }
