@@ -41,7 +41,9 @@ fn main() -> ExitCode {
     if matches!(cli.command, Some(Command::Worker)) {
         return planner_host::worker_main();
     }
-    keep_memory_small();
+    if matches!(cli.command, None | Some(Command::Console(_) | Command::Replay(_))) {
+        keep_memory_small();
+    }
     close_memory();
     survive_file_size_limit();
     dispatch(cli).unwrap_or_else(|error| fail(&error))
@@ -60,7 +62,7 @@ fn fail(error: &anyhow::Error) -> ExitCode {
 }
 
 /// Has the allocator give large blocks back to the system at once, and all threads share one heap: with a heap for each
-/// thread and blocks kept for later, a console holds twice what it uses. No mission was measured to become slower.
+/// thread and blocks kept for later, a console holds twice what it uses. Headless runs do without: at full speed their threads would wait for each other.
 fn keep_memory_small() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[expect(unsafe_code, reason = "the C library has no other way to set this from within")]

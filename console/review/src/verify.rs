@@ -18,10 +18,19 @@ use mission::{
 };
 use planner_host::PluginDirs;
 use planners::{Asked, Replayed};
-use recording::{Difference, RECORDING_FILE, Ticks, events_sha256, journal_of};
+use recording::{Difference, JournalError, RECORDING_FILE, RecordedTick, Ticks, events_sha256, journal_of};
 use runs::{end_is_missing, journal_doubt, recording_doubt};
 use scenario::Scenario;
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::mpsc::{SyncSender, sync_channel},
+    thread,
+};
+
+/// Ticks that are read together, and how many such batches are read ahead.
+const BATCH: usize = 64;
+const BATCHES: usize = 8;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -164,23 +173,55 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
 
 fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     let mut ticks = Ticks::open(path)?;
-    let (scenario, mut flight) = prepared(path, &mut ticks)?;
+    let (scenario, flight) = prepared(path, &mut ticks)?;
     let mut replayed = Replayed::new(plugins.map(|plugins| host(&scenario, plugins)));
+    let (sender, read) = sync_channel(BATCHES);
+    let (mut findings, no_end) = thread::scope(|scope| {
+        let reading = scope.spawn(move || read_ahead(ticks, &sender));
+        let findings = recompute(flight, &mut replayed, read.into_iter().flatten());
+        let no_end = reading.join().map_err(|_| anyhow::anyhow!("reading the journal panicked"))?;
+        anyhow::Ok((findings?, no_end))
+    })?;
+    findings.no_end = no_end;
+    findings.planners = replayed.into_asked();
+    Ok(findings)
+}
+
+/// Reads a journal ahead of who compares it, up to its end, an error, or the first difference; why it has no end.
+fn read_ahead(
+    mut ticks: Ticks,
+    sender: &SyncSender<Vec<Result<RecordedTick, JournalError>>>,
+) -> Option<String> {
+    loop {
+        let batch: Vec<_> = std::iter::from_fn(|| ticks.next_tick().transpose()).take(BATCH).collect();
+        let is_last = batch.len() < BATCH || batch.iter().any(Result::is_err);
+        if sender.send(batch).is_err() || is_last {
+            return ticks.no_end();
+        }
+    }
+}
+
+/// Flies the mission again beside its journal, up to the first difference.
+fn recompute(
+    mut flight: Flight,
+    replayed: &mut Replayed,
+    read: impl Iterator<Item = Result<RecordedTick, JournalError>>,
+) -> anyhow::Result<Findings> {
     let mut findings = Findings::default();
     let mut head = vec![flight.opened()];
-    while findings.difference.is_none()
-        && let Some(recorded) = ticks.next_tick()?
-    {
+    for recorded in read {
+        let recorded = recorded?;
         replayed.begin_tick(&recorded);
         findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
         let mut computed = std::mem::take(&mut head);
-        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
+        computed.extend(flight.tick(&recorded.orders(), replayed));
         findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
         findings.events += recorded.n_compared();
         findings.last_tick = recorded.tick;
+        if findings.difference.is_some() {
+            break;
+        }
     }
-    findings.no_end = ticks.no_end();
-    findings.planners = replayed.into_asked();
     Ok(findings)
 }
 

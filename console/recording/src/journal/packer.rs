@@ -11,6 +11,10 @@ use zstd::stream::raw::{CParameter, Encoder, InBuffer, Operation, OutBuffer};
 const LEVEL: i32 = 9;
 /// Bytes of lines in a frame, at least: a reader decompresses as much to get to a place.
 const FRAME_BYTES: usize = 1 << 20;
+/// Nothing in a frame lies further back than this power of two, bytes. The level's own choice takes 15 MB more memory.
+const WINDOW_LOG: u32 = FRAME_BYTES.ilog2() + 1;
+/// Entries of the table of matches, a power of two: enough for a frame.
+const HASH_LOG: u32 = 19;
 /// Bytes that the compressor is offered for its output at a time.
 const STEP_BYTES: usize = 16 << 10;
 
@@ -27,6 +31,8 @@ impl Packer {
     pub(super) fn new() -> io::Result<Self> {
         let mut encoder = Encoder::new(LEVEL)?;
         encoder.set_parameter(CParameter::ChecksumFlag(true))?;
+        encoder.set_parameter(CParameter::WindowLog(WINDOW_LOG))?;
+        encoder.set_parameter(CParameter::HashLog(HASH_LOG))?;
         Ok(Self { encoder, in_frame: 0, holds_back: false })
     }
 
