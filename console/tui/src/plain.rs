@@ -1,7 +1,13 @@
 //! The same console in sentences, one a line: for screen readers and logs.
 
-use crate::model::{Entry, Model, Screen};
+use crate::model::{
+    Entry, Model, Screen,
+    log::clock,
+    what_if::{Candidate, Forecast},
+};
 use crate::view::{question, standing};
+use mission::Outcome;
+use world::coverage::percent;
 
 /// What was said last.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,6 +19,8 @@ pub struct Said {
     question: Option<String>,
     standing: String,
     tenths: u8,
+    /// How many forecasts of the open what-if were said.
+    forecasts: usize,
 }
 
 impl Said {
@@ -35,7 +43,16 @@ impl Said {
             self.standing = standing;
         }
         lines.extend(self.coverage(model));
+        lines.extend(self.forecasts(model));
         lines
+    }
+
+    /// The forecasts that were made since, in the order of the table.
+    fn forecasts(&mut self, model: &Model) -> Vec<String> {
+        let candidates = model.live.what_if.as_ref().map_or(&[][..], |what_if| &what_if.candidates);
+        let made: Vec<String> = candidates.iter().map_while(forecast).collect();
+        let known = std::mem::replace(&mut self.forecasts, made.len());
+        made.into_iter().skip(known).collect()
     }
 
     /// What was logged since, the oldest first.
@@ -60,6 +77,25 @@ impl Said {
         self.tenths = tenths;
         is_more.then(|| format!("{} % of reachable floor scanned.", 10 * u32::from(tenths)))
     }
+}
+
+/// How the mission would go on with a planner, if that is known.
+fn forecast(candidate: &Candidate) -> Option<String> {
+    let planner = &candidate.choice.id;
+    Some(match candidate.made.as_ref()? {
+        Err(why) => format!("What-if {planner}: {why}."),
+        Ok(Forecast { outlook, .. }) => {
+            let end = outlook.outcome.map_or("held", Outcome::word);
+            format!(
+                "What-if {planner}: {end} after {}, {:.1} m, {:.1} % of reachable floor, clearance {:.2} m: {}.",
+                clock(outlook.after_s),
+                outlook.length_m,
+                percent(outlook.reachable),
+                outlook.clearance_min_m,
+                outlook.reason
+            )
+        }
+    })
 }
 
 /// Takes in what is to be said; what is new.

@@ -143,8 +143,12 @@ fn seek(t_s: f64) -> Vec<Effect> {
 }
 
 /// Goes to a moment that was typed; one behind the end is the end.
-pub(super) fn seek_to(model: &Model, t_s: f64) -> Vec<Effect> {
+pub(super) fn seek_to(model: &mut Model, t_s: f64) -> Vec<Effect> {
     let until_s = model.live.replay.as_ref().map_or(0.0, |replay| replay.reel.until_s);
+    if t_s > until_s {
+        let (asked, end) = (clock(t_s), clock(until_s));
+        model.say(Severity::Info, format!("{asked} is after the last event, {end}: that is shown"));
+    }
     seek(t_s.clamp(0.0, until_s))
 }
 

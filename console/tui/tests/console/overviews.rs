@@ -185,6 +185,22 @@ fn forecast() -> Screen {
 }
 
 #[test]
+fn forecasts_are_also_said_in_sentences() {
+    let mut said = tui::plain::Said::default();
+    said.next(&Screen::held().model);
+    let lines = said.next(&forecast().model);
+    let of_it: Vec<_> = lines.iter().filter(|line| line.starts_with("What-if")).collect();
+    assert_eq!(
+        of_it,
+        [
+            "What-if rpf: complete after 00:25:20, 303.9 m, 97.1 % of reachable floor, clearance 0.12 m: end of the preset \
+          path reached."
+        ]
+    );
+    assert!(said.next(&forecast().model).is_empty(), "once");
+}
+
+#[test]
 fn what_if() {
     let mut screen = forecast();
     screen.type_text("+");
