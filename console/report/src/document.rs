@@ -2,6 +2,7 @@
 
 mod charts;
 pub mod csv;
+mod decisions;
 pub mod dxf;
 mod facts;
 mod gate;

@@ -138,7 +138,7 @@ impl RunPart {
             positioning: summary.positioning,
             tether: tether(past, &summary),
             stations: record.stations(),
-            incidents: record.incidents().to_vec(),
+            incidents: record.incidents(),
             files: past.files.clone(),
         })
     }

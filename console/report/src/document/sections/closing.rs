@@ -110,9 +110,10 @@ pub(super) fn signatures(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     if !open.is_empty() {
         blocks.push(Block::Barred(format!(
-            "{} of {} items are open ({}). A signed report is a revision of its own and is never changed.",
+            "{} of {} items {} open ({}). A signed report is a revision of its own and is never changed.",
             open.len(),
             document.gate.len(),
+            if open.len() == 1 { "is" } else { "are" },
             open.join(", ")
         )));
     }

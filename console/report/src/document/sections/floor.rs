@@ -48,7 +48,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     );
     table.is_cards = true;
     for (no, area) in numbered().filter(|(no, area)| is_main(*no, area)) {
-        let class = if document.pictures.badges.contains(&no) { "no" } else { "no h" };
+        let class = if document.pictures.badges.contains(&no) { "badge" } else { "badge h" };
         let badge = Cell { svg: format!(r#"<span class="{class}">{no}</span>"#), ..Cell::default() };
         let extent = area.high - area.low;
         let row = table.row(vec![

@@ -2,14 +2,13 @@
 
 use super::{
     super::{
-        RunPart,
-        charts::clock,
-        is_marked,
+        RunPart, is_marked,
         page::{Block, Table, Value},
         run_part::TetherPart,
     },
     Document, counted, number, picture,
 };
+use crate::clock;
 use mission::Severity;
 
 /// Incidents that are listed for a run; plans and orders are left out first.
@@ -22,7 +21,7 @@ pub(super) fn runs(document: &Document) -> Vec<Block> {
         if document.runs.len() > 1 {
             blocks.push(Block::Heading(format!("Run {}", run.run)));
         }
-        let way = run.path_length_m.map(|m| format!(", {m:.1} m of way")).unwrap_or_default();
+        let way = run.path_length_m.map(|m| format!(", path {m:.1} m")).unwrap_or_default();
         let collisions = run.collisions.map(|n| format!(", {}", counted(n, "collision"))).unwrap_or_default();
         blocks.push(Block::Text(format!("{}{way}{collisions}.", clock(run.mission_time_s))));
         let [track, tether, over_time] = figures;
