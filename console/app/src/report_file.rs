@@ -40,6 +40,9 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
     let indications = args.indications.as_deref().map(read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());
     let past: Vec<PastRun> = past.into_iter().map(|past| past.run).collect();
+    if let Some(by) = &args.sign {
+        refuse_other_signer(by, inspection.inspector.as_deref())?;
+    }
     let signature = args.sign.clone().map(|by| Signature { by, at: now() });
     let context = Context {
         inspection,
@@ -108,6 +111,17 @@ fn read(file: &Path) -> anyhow::Result<String> {
     fs::read_to_string(file).map_err(|error| bad_input(format!("{} cannot be read: {error}", file.display())))
 }
 
+/// Refuses a signature under the certificate of somebody else. That no inspector is named is an open item.
+fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::Result<()> {
+    match inspector {
+        Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
+            "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the report states; let \
+             {inspector} sign, or give inspector and inspector_certificate of {by} in a file for --inspection"
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// What keeps a report from being signed.
 fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     let open: Vec<String> = document
@@ -117,9 +131,9 @@ fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     if open.is_empty() {
         return Ok(());
     }
-    let count = open.len();
+    let (count, are) = (open.len(), if open.len() == 1 { "is" } else { "are" });
     Err(bad_input(format!(
-        "not signed: {count} of {} items are open (keys of [inspection] go into a file for --inspection):\n{}",
+        "not signed: {count} of {} items {are} open (keys of [inspection] go into a file for --inspection):\n{}",
         document.gate.len(),
         open.join("\n")
     )))
