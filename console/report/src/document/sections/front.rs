@@ -235,7 +235,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
             number(cell_cm, 1),
             floor.position_limit_m
         )),
-        Block::Heading("Words".into()),
+        Block::Heading("Definitions".into()),
         Block::Words(vec![
             ("Whole floor", "all floor within the shell, without what obstacles stand on".into()),
             ("Reachable floor", "floor that the tool can cover from where the robot may stand, with hull and clearance".into()),
