@@ -35,6 +35,9 @@ station_check = "2026-11-22 02:50, pulse test 2 cm, M. Voss"
 sound_speed = "1180 m/s, gas oil, 14 deg"
 events_reviewed_by = "L. Kern"
 remarks = "none"
+partial_scope_accepted = "rest is scanned by hand"
+critical_zone_accepted = "zone is scanned by hand"
+missed_accepted = "inspected by hand"
 "#;
 
 #[test]

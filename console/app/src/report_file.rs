@@ -29,9 +29,13 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
     if args.sign.is_some() && format != "html" {
         return Err(bad_input(format!("--sign signs an .html file, not {}", output.display())));
     }
-    let folder = find(args.runs.last().map_or(Path::new(""), PathBuf::as_path), &args.logs.folder())?;
-    let (revisions, doubts) = signed_reports(&folder)?;
+    let folders: Vec<PathBuf> =
+        args.runs.iter().map(|run| find(run, &args.logs.folder())).collect::<Result<_, _>>()?;
+    let (revisions, doubts) = signed_before(&folders)?;
     for doubt in &doubts {
+        if args.sign.is_some() {
+            return Err(bad_input(format!("not signed: {doubt}; put the signed file back where it was")));
+        }
         say_line(&format!("WARNING: {doubt}"))?;
     }
     may_write(output, args.force, &revisions)?;
@@ -40,6 +44,9 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
     let indications = args.indications.as_deref().map(read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());
     let past: Vec<PastRun> = past.into_iter().map(|past| past.run).collect();
+    if let Some(by) = &args.sign {
+        refuse_other_signer(by, inspection.inspector.as_deref())?;
+    }
     let signature = args.sign.clone().map(|by| Signature { by, at: now() });
     let context = Context {
         inspection,
@@ -59,11 +66,27 @@ pub(crate) fn write(args: &ReportArgs, output: &Path) -> anyhow::Result<ExitCode
             let (revision, sha256) = (document.revision.clone(), sha256_of(text.as_bytes()));
             let path = fs::canonicalize(&file).unwrap_or_else(|_| file.clone()).display().to_string();
             say_line(&format!("signed as revision {revision} by {}, sha256 {sha256}", signature.by))?;
-            add_signed(&folder, Revision { revision, signature: signature.clone(), file: path, sha256 })?;
+            let (number, signature) = (document.number.clone(), signature.clone());
+            let signed = Revision { number, revision, signature, file: path, sha256 };
+            for folder in &folders {
+                add_signed(folder, signed.clone())?;
+            }
             seal(&file)?;
         }
     }
     Ok(ExitCode::from(COMPLETE))
+}
+
+/// The signed reports of some runs, each once, the earliest first, and what speaks against them.
+fn signed_before(folders: &[PathBuf]) -> anyhow::Result<(Vec<Revision>, Vec<String>)> {
+    let (mut revisions, mut doubts): (Vec<Revision>, Vec<String>) = Default::default();
+    for folder in folders {
+        let (signed, against) = signed_reports(folder)?;
+        revisions.extend(signed.into_iter().filter(|one| !revisions.contains(one)).collect::<Vec<_>>());
+        doubts.extend(against.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
+    }
+    revisions.sort_by(|a, b| a.signature.at.cmp(&b.signature.at));
+    Ok((revisions, doubts))
 }
 
 fn format_of(output: &Path) -> anyhow::Result<&'static str> {
@@ -108,6 +131,17 @@ fn read(file: &Path) -> anyhow::Result<String> {
     fs::read_to_string(file).map_err(|error| bad_input(format!("{} cannot be read: {error}", file.display())))
 }
 
+/// Refuses a signature under the certificate of somebody else. That no inspector is named is an open item.
+fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::Result<()> {
+    match inspector {
+        Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
+            "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the report states; let \
+             {inspector} sign, or give inspector and inspector_certificate of {by} in a file for --inspection"
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// What keeps a report from being signed.
 fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     let open: Vec<String> = document
@@ -117,9 +151,9 @@ fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     if open.is_empty() {
         return Ok(());
     }
-    let count = open.len();
+    let (count, are) = (open.len(), if open.len() == 1 { "is" } else { "are" });
     Err(bad_input(format!(
-        "not signed: {count} of {} items are open (keys of [inspection] go into a file for --inspection):\n{}",
+        "not signed: {count} of {} items {are} open (keys of [inspection] go into a file for --inspection):\n{}",
         document.gate.len(),
         open.join("\n")
     )))

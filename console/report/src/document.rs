@@ -2,6 +2,7 @@
 
 mod charts;
 pub mod csv;
+mod decisions;
 pub mod dxf;
 mod facts;
 mod gate;
@@ -48,6 +49,9 @@ pub struct Context<'a> {
 /// A report that was signed before; it is never changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Revision {
+    /// Number of the document.
+    #[serde(default)]
+    pub number: String,
     /// Its letter.
     pub revision: String,
     /// Who signed, and when.
@@ -127,14 +131,16 @@ impl Document {
         let floor = account(run, scanned, evidence);
         let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
         let layers = Layers::new(run, scanned, evidence, &places);
-        let last = past.last().ok_or("no run to report")?;
+        let records: Vec<(&str, &Record)> =
+            past.iter().map(|past| (past.name.as_str(), &past.record)).collect();
+        let thickness_mm = context.inspection.nominal_thickness_mm;
         let place = |(name, csv)| {
-            let placed = indications::indications(csv, &last.record, |at| layers.plate_at(at));
+            let placed = indications::indications(csv, &records, thickness_mm, |at| layers.plate_at(at));
             placed.map_err(|error| format!("{name}: {error}"))
         };
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
-        let (coverage, badges) = maps::coverage(&layers);
+        let (coverage, badges) = maps::coverage(&layers, &indications);
         let pictures = Pictures {
             coverage,
             badges,

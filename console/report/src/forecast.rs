@@ -102,7 +102,7 @@ impl<'a> ForecastReport<'a> {
         let _ = writeln!(text, "no fix    {:.1} % of the floor", percent(self.blind_share));
         let _ = writeln!(
             text,
-            "beyond    {:.1} % of the floor, {:.1} m2, above the limit of {:.2} m or without a fix",
+            "beyond    {:.1} % of the floor, {:.1} m², above the limit of {:.2} m or without a fix",
             percent(self.beyond_limit_share),
             self.beyond_limit_area_m2,
             self.limit_m

@@ -37,6 +37,9 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     let (last, before) = runs.split_last().ok_or("no run to report")?;
     let mut all = alone(last)?;
     let drawn = all.run.world.obstacles.iter().filter(|obstacle| obstacle.known).map(|obstacle| obstacle.id);
+    if !before.is_empty() {
+        all.evidence.to_mut().name_found(|name| found_name(name, before.len(), runs.len()));
+    }
     let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| id).chain(drawn).collect();
     for (index, past) in before.iter().enumerate() {
         if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
@@ -45,7 +48,9 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
         let other = alone(past)?;
         fit_together((&past.name, &other), (&last.name, &all))?;
         all.scanned.to_mut().join(&other.scanned);
-        all.evidence.to_mut().join(&other.evidence);
+        let mut evidence = other.evidence.into_owned();
+        evidence.name_found(|name| found_name(name, index, runs.len()));
+        all.evidence.to_mut().join(&evidence);
     }
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
         // What only the other runs found is no floor either.
@@ -54,6 +59,11 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
         all.scanned.to_mut().change(&changes);
     }
     Ok(all)
+}
+
+/// Name of an obstacle that was found in one of so many runs, which each begin to count anew.
+pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
+    if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }
 
 /// What one run scanned.

@@ -38,7 +38,7 @@ pub use document::{Document, Inspection};
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;
-pub use human::human;
+pub use human::{human, text::clock};
 pub use joined::PastRun;
 pub use merged::{Merged, MergedRun, merged};
 pub use overlap::Overlap;

@@ -127,8 +127,8 @@ impl Record {
         }
     }
 
-    /// What happened, in order; alarms and holds with their ends.
-    pub fn incidents(&self) -> &[Incident] {
+    /// What happened, in order; alarms and holds with their ends. That a run was cut off is the last of it.
+    pub fn incidents(&self) -> Vec<Incident> {
         self.incidents.all()
     }
 

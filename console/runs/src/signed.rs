@@ -11,8 +11,8 @@ use std::{
 /// The list of signed reports in the folder of a run.
 pub const SIGNED_FILE: &str = "signed.json";
 
-/// The signed reports of the run in a folder, in their order, and what speaks against them: a file that is still where it was
-/// written and has another digest.
+/// The signed reports of the run in a folder, in their order, and what speaks against them: a file that has another digest than
+/// when it was signed, or is not where it was written any more.
 ///
 /// # Errors
 /// The list cannot be read.
@@ -26,10 +26,16 @@ pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), Run
     };
     let revisions: Vec<Revision> = serde_json::from_str(&text).map_err(io::Error::from).map_err(reading())?;
     let doubt = |revision: &Revision| {
-        let now = sha256(&PathBuf::from(&revision.file)).ok()?;
-        let (letter, file) = (&revision.revision, &revision.file);
-        (now != revision.sha256)
-            .then(|| format!("signed revision {letter} was changed after it was signed: {file}"))
+        let Revision { revision: letter, file, sha256: then, .. } = revision;
+        match sha256(&PathBuf::from(file)) {
+            Ok(now) if now == *then => None,
+            Ok(now) => Some(format!(
+                "signed revision {letter} was changed after it was signed: {file}: expected SHA-256 {then}, found {now}"
+            )),
+            Err(error) => Some(format!(
+                "signed revision {letter} cannot be read: {file}: {error}; expected a file with SHA-256 {then}"
+            )),
+        }
     };
     let doubts = revisions.iter().filter_map(doubt).collect();
     Ok((revisions, doubts))
@@ -63,11 +69,19 @@ mod tests {
         assert_eq!(signed_reports(folder.path()).unwrap(), (vec![], vec![]));
         let signature = Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() };
         let (name, digest) = (file.display().to_string(), sha256(&file).unwrap());
-        let revision = Revision { revision: "A".into(), signature, file: name, sha256: digest };
+        let revision =
+            Revision { number: "1-1".into(), revision: "A".into(), signature, file: name, sha256: digest };
         add_signed(folder.path(), revision.clone()).unwrap();
         assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision], vec![]));
         fs::write(&file, "forged").unwrap();
         let (_, doubts) = signed_reports(folder.path()).unwrap();
         assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A was changed"), "{doubts:?}");
+        assert!(doubts[0].contains("expected SHA-256"), "{doubts:?}");
+        fs::remove_file(&file).unwrap();
+        let (_, doubts) = signed_reports(folder.path()).unwrap();
+        assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A cannot be read"), "{doubts:?}");
+        fs::write(folder.path().join(SIGNED_FILE), "[{").unwrap();
+        let error = signed_reports(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("reading the list of signed reports"), "{error}");
     }
 }

@@ -175,6 +175,13 @@ impl Evidence {
         self.shell.join(&other.shell);
     }
 
+    /// Gives what was found other names.
+    pub(crate) fn name_found(&mut self, name: impl Fn(&str) -> String) {
+        for (_, solid) in &mut self.found {
+            solid.name = name(&solid.name);
+        }
+    }
+
     /// What was found on the way.
     pub fn found(&self) -> impl Iterator<Item = (ObstacleId, &Solid)> {
         self.found.iter().map(|(id, solid)| (*id, solid))
@@ -214,12 +221,10 @@ impl Evidence {
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
     }
 
-    /// Name and distance of the found obstacle that is nearest to one of some places, metres; `None` without any.
-    pub(super) fn nearest_found(&self, places: impl Iterator<Item = Point>) -> Option<(&str, f64)> {
-        let from = |place: Point| {
-            self.found.iter().map(move |(_, solid)| (solid.name.as_str(), solid.shape.distance_m(place)))
-        };
-        places.flat_map(from).min_by(|a, b| a.1.total_cmp(&b.1))
+    /// Name and distance of the found obstacle that is nearest to a place, metres; `None` without any.
+    pub(super) fn nearest_found(&self, place: Point) -> Option<(&str, f64)> {
+        let all = self.found.iter().map(|(_, solid)| (solid.name.as_str(), solid.shape.distance_m(place)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Whether a found obstacle is to blame for what was missed at a place.

@@ -10,6 +10,9 @@ use world::Floor;
 pub struct Measure {
     /// The distance or error that the reason is about, metres.
     pub value_m: f64,
+    /// The largest such distance, where it is a range, metres.
+    #[serde(default)]
+    pub to_m: Option<f64>,
     /// What it is held against, metres; absent where it stands for itself.
     pub limit_m: Option<f64>,
     /// The nearest solid thing, where it is to blame.
@@ -19,12 +22,28 @@ pub struct Measure {
 impl Measure {
     /// A number that stands for itself.
     pub(crate) fn of(value_m: f64) -> Self {
-        Self { value_m, limit_m: None, near: None }
+        Self { value_m, to_m: None, limit_m: None, near: None }
     }
 
     /// The same against a limit.
     pub(crate) fn against(self, limit_m: f64) -> Self {
         Self { limit_m: Some(limit_m), ..self }
+    }
+
+    /// How far some cells are from solid things, of which the nearest is named.
+    pub(crate) fn off<'a>(distances: impl Iterator<Item = (&'a str, f64)> + Clone) -> Option<Self> {
+        let (name, least_m) = distances.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let most_m = distances.map(|(_, m)| m.max(0.0)).fold(0.0, f64::max);
+        Some(Self { to_m: Some(most_m), ..Self::of(least_m.max(0.0)).beside(name) })
+    }
+
+    /// The distance, or from where to where it goes, metres.
+    pub(super) fn range(&self) -> String {
+        let to_m = self.to_m.filter(|to_m| format!("{to_m:.2}") != format!("{:.2}", self.value_m));
+        to_m.map_or_else(
+            || format!("{:.2} m", self.value_m),
+            |to_m| format!("{:.2} to {to_m:.2} m", self.value_m),
+        )
     }
 
     /// The same beside a thing.

@@ -59,19 +59,20 @@ impl OutOfReach {
 
 impl Explained for MissReason {
     fn sentence(self, measure: Option<&Measure>) -> String {
-        let Some(Measure { value_m, limit_m, near }) = measure else { return self.plainly().to_owned() };
+        let Some(measure) = measure else { return self.plainly().to_owned() };
+        let Measure { value_m, limit_m, near, .. } = measure;
         let (limit_m, near) = (limit_m.unwrap_or(0.0), near.as_deref().unwrap_or("something solid"));
         match self {
             Self::PositionUncertain => {
                 format!("passed with position error {value_m:.2} m, limit {limit_m:.2} m")
             }
-            Self::FoundObstacle => format!("{value_m:.2} m from {near}, found during the run"),
+            Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
             Self::NotAsked => self.plainly().to_owned(),
             Self::Narrow => {
                 format!("{value_m:.2} m beyond lanes of {limit_m:.2} m, the swath less the overlap")
             }
             Self::Clearance => {
-                format!("not planned: {value_m:.2} m from {near}, hull and clearance {limit_m:.2} m")
+                format!("not planned: {} from {near}, hull and clearance {limit_m:.2} m", measure.range())
             }
             Self::Wrap => format!("not planned: {value_m:.2} m from a line that keeps the tether unwound"),
             Self::NotPlanned => format!("not planned: {value_m:.2} m beside lanes of {limit_m:.2} m"),
@@ -135,9 +136,10 @@ impl OutOfReach {
 impl Explained for OutOfReach {
     fn sentence(self, measure: Option<&Measure>) -> String {
         match (self, measure) {
-            (Self::ShellMargin | Self::BesideObstacle, Some(Measure { value_m, limit_m, near })) => {
-                let (near, limit_m) = (near.as_deref().unwrap_or("something solid"), limit_m.unwrap_or(0.0));
-                format!("{value_m:.2} m from {near}, hull and clearance {limit_m:.2} m")
+            (Self::ShellMargin | Self::BesideObstacle, Some(measure)) => {
+                let near = measure.near.as_deref().unwrap_or("something solid");
+                let limit_m = measure.limit_m.unwrap_or(0.0);
+                format!("{} from {near}, hull and clearance {limit_m:.2} m", measure.range())
             }
             _ => self.plainly().to_owned(),
         }

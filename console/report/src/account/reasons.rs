@@ -75,16 +75,13 @@ impl Reasons<'_> {
                 most(&|cell| evidence.uncertain_m(cell)).map(|m| Measure::of(m).against(self.limit_m))
             }
             MissReason::FoundObstacle => {
-                let (name, distance_m) =
-                    evidence.nearest_found(cells.iter().map(|cell| floor.center(*cell)))?;
-                Some(Measure::of(distance_m.max(0.0)).beside(name))
+                Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
             MissReason::NotAsked => None,
             MissReason::Narrow => most(&|cell| Some(self.room_m - solid(cell).1 - self.lane_m / 2.0))
                 .map(|m| Measure::of(m).against(self.lane_m)),
             MissReason::Clearance => {
-                let nearest = cells.iter().map(|cell| solid(*cell)).min_by(|a, b| a.1.total_cmp(&b.1))?;
-                Some(Measure::of(nearest.1.max(0.0)).against(self.room_m).beside(nearest.0))
+                Measure::off(cells.iter().map(|cell| solid(*cell))).map(|m| m.against(self.room_m))
             }
             MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),
             MissReason::NotPlanned => depth(&|cell| evidence.is_passed(cell) || evidence.is_ahead(cell))
@@ -108,13 +105,10 @@ impl Reasons<'_> {
         reason: OutOfReach,
         cells: &[usize],
     ) -> Option<Measure> {
-        let farthest = || {
-            let solid = |cell: &usize| self.evidence.nearest_solid(grid.floor().center(*cell));
-            cells.iter().map(solid).max_by(|a, b| a.1.total_cmp(&b.1))
-        };
+        let solid = |cell: &usize| self.evidence.nearest_solid(grid.floor().center(*cell));
         match reason {
             OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
-                farthest().map(|(name, m)| Measure::of(m.max(0.0)).against(self.room_m).beside(name))
+                Measure::off(cells.iter().map(solid)).map(|m| m.against(self.room_m))
             }
             OutOfReach::NoGo | OutOfReach::ClosedOff => None,
         }

@@ -3,6 +3,7 @@
 use super::maps::{Figure, chart};
 use crate::{
     account::Account,
+    clock,
     drawing::{sheet::colour, trace::thinned},
     record::{Incident, Record, Span},
 };
@@ -39,12 +40,6 @@ struct Limit<'a> {
 
 /// A curve: time and value.
 type Curve<'a> = (&'a [(f64, f64)], &'a str, f64);
-
-/// A time as hours, minutes and seconds.
-pub(super) fn clock(t_s: f64) -> String {
-    let t = t_s.round().max(0.0) as u64;
-    format!("{}:{:02}:{:02}", t / 3600, t / 60 % 60, t % 60)
-}
 
 impl Chart {
     fn x(&self, t_s: f64) -> f64 {
@@ -178,8 +173,8 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
     let [scanning, driving] = &record.scanning;
     chart.lane("Scanning", scanning, colour::TRACK);
     chart.lane("Driving", driving, "#9FB4C0");
-    chart.lane("Alarm", &spans(record.incidents(), "alarm", end_s), colour::WARNING);
-    chart.lane("Hold", &spans(record.incidents(), "hold", end_s), colour::MISSED);
+    chart.lane("Alarm", &spans(&record.incidents(), "alarm", end_s), colour::WARNING);
+    chart.lane("Hold", &spans(&record.incidents(), "hold", end_s), colour::MISSED);
     draw_marks(&mut chart, marks);
     let scanned: Vec<(f64, f64)> = record.progress.iter().map(|(t_s, share)| (*t_s, 100.0 * share)).collect();
     let top = Limit { value: 100.0, text: "100".into(), colour: colour::SOFT, dash: "" };

@@ -1,15 +1,19 @@
 //! The report as tables for spreadsheets.
 
 use super::Document;
-use crate::{account::Shares, joined::PastRun};
+use crate::{
+    account::{Shares, ZoneArc},
+    joined::PastRun,
+};
 use csv::Writer;
 
 /// The tables, each with what its file's name has behind that of the first: plates with the whole and the reachable floor,
-/// missed areas, obstacles found, indications, and the track of every run with its 95 % error.
+/// missed areas, arcs of the critical zone that are not done, obstacles found, indications, and the track of every run with its 95 % error.
 pub fn tables(document: &Document, past: &[PastRun]) -> Vec<(&'static str, String)> {
     vec![
         ("", plates(document)),
         ("-missed", missed(document)),
+        ("-zone", zone(document)),
         ("-obstacles", obstacles(past)),
         ("-indications", indications(document)),
         ("-track", track(past)),
@@ -70,6 +74,26 @@ fn missed(document: &Document) -> String {
     table(&head, rows)
 }
 
+fn zone(document: &Document) -> String {
+    let row = |arc: &ZoneArc| {
+        let values = [arc.from.x, arc.from.y, arc.to.x, arc.to.y, arc.from_m, arc.to_m];
+        let gaps = [arc.not_done_m, arc.gap_m, arc.gap_max_m];
+        values.iter().chain(&gaps).map(|m| format!("{m:.3}")).collect()
+    };
+    let head = [
+        "from_x_m",
+        "from_y_m",
+        "to_x_m",
+        "to_y_m",
+        "from_m",
+        "to_m",
+        "not_done_m",
+        "gap_median_m",
+        "gap_max_m",
+    ];
+    table(&head, document.floor.critical_zone.arcs.iter().map(row))
+}
+
 fn obstacles(past: &[PastRun]) -> String {
     let rows = past.iter().flat_map(|past| {
         past.fold.found().map(|solid| {
@@ -89,6 +113,7 @@ fn indications(document: &Document) -> String {
     let rows = document.indications.iter().map(|found| {
         vec![
             found.number.to_string(),
+            found.run.clone(),
             format!("{:.1}", found.t_s),
             format!("{:.3}", found.at.x),
             format!("{:.3}", found.at.y),
@@ -100,7 +125,8 @@ fn indications(document: &Document) -> String {
             found.note.clone(),
         ]
     });
-    let head = ["number", "t_s", "x_m", "y_m", "error_95_m", "plate", "kind", "size_mm", "depth_mm", "note"];
+    let head =
+        ["number", "run", "t_s", "x_m", "y_m", "error_95_m", "plate", "kind", "size_mm", "depth_mm", "note"];
     table(&head, rows)
 }
 

@@ -48,6 +48,12 @@ pub struct Inspection {
     pub events_reviewed_by: Option<String>,
     /// Why coverage is not stated plate by plate, if the layout of the plates is not known.
     pub plates_waiver: Option<String>,
+    /// Why the record of a mission that did not end complete is accepted.
+    pub partial_scope_accepted: Option<String>,
+    /// Why a critical zone that is not wholly scanned is accepted.
+    pub critical_zone_accepted: Option<String>,
+    /// Why missed areas are accepted: left, scanned again, or inspected by hand.
+    pub missed_accepted: Option<String>,
     /// Remarks of the inspector.
     pub remarks: Option<String>,
     /// Name of the coordinate system of [`Inspection::datum_m`], such as `EPSG:25832`.
@@ -84,6 +90,9 @@ impl Inspection {
             indications: later.indications.or(self.indications),
             events_reviewed_by: later.events_reviewed_by.or(self.events_reviewed_by),
             plates_waiver: later.plates_waiver.or(self.plates_waiver),
+            partial_scope_accepted: later.partial_scope_accepted.or(self.partial_scope_accepted),
+            critical_zone_accepted: later.critical_zone_accepted.or(self.critical_zone_accepted),
+            missed_accepted: later.missed_accepted.or(self.missed_accepted),
             remarks: later.remarks.or(self.remarks),
             datum_crs: later.datum_crs.or(self.datum_crs),
             datum_m: later.datum_m.or(self.datum_m),

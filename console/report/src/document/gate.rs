@@ -1,7 +1,10 @@
 //! What must be answered before a report can be signed.
 
-use super::{Document, RunPart};
-use crate::record::Incident;
+use super::{
+    Document, RunPart,
+    decisions::{MISSED, SCOPE, decisions, is_complete},
+};
+use crate::{clock, human::text::counted, record::Incident};
 use mission::{RunOpened, TaskConfig};
 use serde::Serialize;
 use world::Boundary;
@@ -37,7 +40,7 @@ pub(super) fn gate(document: &Document, run: &RunOpened) -> Vec<GateItem> {
         ("Position accuracy", accuracy(document)),
         ("Indications", indications(document)),
         ("Tether record", tether(document)),
-        ("Alarms, faults and holds: who reviewed them", incidents(document)),
+        ("Alarms, faults, holds and early ends: who reviewed them", incidents(document)),
         ("Remarks of the inspector", remarks(document)),
         ("Journal and recording bound to this report", hashes(document)),
     ];
@@ -56,6 +59,17 @@ pub(super) fn gate(document: &Document, run: &RunOpened) -> Vec<GateItem> {
 fn missing(facts: &[(&str, bool)]) -> Vec<String> {
     let absent = facts.iter().filter(|(_, is_there)| !is_there);
     absent.map(|(key, _)| format!("inspection.{key}")).collect()
+}
+
+/// Adds the decisions of an item to its answer, and those not made to what it lacks.
+fn decided(document: &Document, item: usize, (mut answer, mut lacks): Answered) -> Answered {
+    for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
+        match decision.answer {
+            Some(why) => answer += &format!("; {}: {why}", decision.key.replace('_', " ")),
+            None => lacks.push(format!("inspection.{}", decision.key)),
+        }
+    }
+    (answer, lacks)
 }
 
 /// How large a tank is.
@@ -95,8 +109,10 @@ fn scope(document: &Document, run: &RunOpened) -> Answered {
         ("procedure", facts.procedure.is_some()),
         ("code", facts.code.is_some()),
     ]);
+    let early = if is_complete(document) { "" } else { ", ended early" };
     let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
-    (format!("{what}, and the critical zone, {zone_mm:.0} mm along the shell"), lacks)
+    let answer = format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell");
+    decided(document, SCOPE, (answer, lacks))
 }
 
 fn equipment(document: &Document) -> Answered {
@@ -143,20 +159,22 @@ fn missed(document: &Document) -> Answered {
     let lacks =
         without.map(|area| format!("reason of the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
     let text = format!(
-        "{} areas with a reason, {} smaller ones in total {:.2} m²",
-        floor.missed.len(),
+        "{} with a reason, {} smaller ones in total {:.2} m²",
+        counted(floor.missed.len() as u64, "area"),
         floor.slivers.count,
         floor.slivers.area_m2
     );
-    (text, lacks)
+    decided(document, MISSED, (text, lacks))
 }
 
 fn unreachable(document: &Document) -> Answered {
     let (floor, slivers) = (&document.floor, document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(
-        "{listed} areas with a reason, {} smaller ones in total {:.2} m²",
-        slivers.count, slivers.area_m2
+        "{} with a reason, {} smaller ones in total {:.2} m²",
+        counted(listed as u64, "area"),
+        slivers.count,
+        slivers.area_m2
     );
     (text, Vec::new())
 }
@@ -201,7 +219,10 @@ fn incidents(document: &Document) -> Answered {
     let by = &document.inspection.events_reviewed_by;
     let lacks = if count == 0 { Vec::new() } else { missing(&[("events_reviewed_by", by.is_some())]) };
     let reviewed = by.as_ref().map(|name| format!(", reviewed by {name}")).unwrap_or_default();
-    (format!("{count} alarms, faults and holds{reviewed}"), lacks)
+    let early = |incident: &&Incident| incident.kind == "end" && incident.needs_review();
+    let ends = document.runs.iter().flat_map(|run| &run.incidents).filter(early);
+    let ends: String = ends.map(|end| format!("; {}, at {}", end.text, clock(end.t_s))).collect();
+    (format!("alarms, faults, holds and early ends: {count}{reviewed}{ends}"), lacks)
 }
 
 fn remarks(document: &Document) -> Answered {

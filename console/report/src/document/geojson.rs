@@ -2,9 +2,10 @@
 
 use super::Document;
 use crate::{
+    account::Solid,
     drawing::trace::thinned,
     geojson::{Datum, corners, feature, outline},
-    joined::PastRun,
+    joined::{PastRun, found_name},
 };
 use serde_json::json;
 use world::{Point, Shape};
@@ -30,11 +31,14 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     if let Some(run) = past.last().and_then(|past| past.fold.run.as_ref()) {
         features.push(feature(polygon(&outline(&run.world.boundary)), json!({ "layer": "shell" })));
         let drawn = run.world.obstacles.iter().filter(|obstacle| obstacle.known);
-        let drawn = drawn.map(|obstacle| (&obstacle.name, &obstacle.shape, "drawing"));
-        let found = past.iter().flat_map(|past| past.fold.found());
-        let found = found.map(|solid| (&solid.name, &solid.shape, "found"));
+        let drawn = drawn.map(|obstacle| (obstacle.name.clone(), obstacle.shape.clone(), "drawing"));
+        let of_run = |(index, run): (usize, &'_ PastRun)| -> Vec<_> {
+            let name = |solid: &Solid| found_name(&solid.name, index, past.len());
+            run.fold.found().map(|solid| (name(solid), solid.shape.clone(), "found")).collect()
+        };
+        let found = past.iter().enumerate().flat_map(of_run);
         for (name, shape, source) in drawn.chain(found) {
-            let geometry = match shape {
+            let geometry = match &shape {
                 Shape::Polyline { points, .. } => line(points),
                 shape => polygon(&corners(shape)),
             };

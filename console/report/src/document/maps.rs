@@ -1,6 +1,6 @@
 //! The maps of a report.
 
-use super::layers::Layers;
+use super::{Indication, layers::Layers};
 use crate::{
     drawing::{
         badges::{self, Numbered},
@@ -60,7 +60,7 @@ fn legend(swatch: String, text: &str, value: String) -> Legend {
 }
 
 /// What was scanned, and what was not, with numbered areas; also the numbers that have a badge.
-pub(super) fn coverage(layers: &Layers<'_>) -> (Figure, Vec<usize>) {
+pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figure, Vec<usize>) {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "c", FULL_MM, 8.0);
     let (missed, margin, out) = (sheet.pattern("missed"), sheet.pattern("margin"), sheet.pattern("out"));
@@ -94,6 +94,10 @@ pub(super) fn coverage(layers: &Layers<'_>) -> (Figure, Vec<usize>) {
     let shown = badges::draw(&mut sheet, (floor, &fixtures), most, &names, (2.05, 2.35, "hide-phone"));
     let few = &numbered[..numbered.len().min(MOST_ON_PHONE)];
     badges::draw(&mut sheet, (floor, &fixtures), few, &[], (4.0, 4.6, "phone"));
+    let mark = format!(r##"fill="#fff" stroke="{}" stroke-width=".5""##, colour::TETHER);
+    for found in indications {
+        sheet.circle(found.at, 1.0, &mark);
+    }
     let m2 = |cells: usize| format!("{:.2} m²", cells as f64 * floor.cell_m2());
     let count = |is: &dyn Fn(usize) -> bool| (0..floor.len()).filter(|cell| is(*cell)).count();
     let again = count(&|cell| layers.is_twice(cell));
@@ -120,6 +124,9 @@ pub(super) fn coverage(layers: &Layers<'_>) -> (Figure, Vec<usize>) {
     if !layers.run.world.zones.is_empty() {
         let zone = dot(&format!(r#"fill="none" stroke="{solid}" stroke-width=".3" stroke-dasharray="1 .7""#));
         entries.push(legend(zone, "zone", String::new()));
+    }
+    if !indications.is_empty() {
+        entries.push(legend(dot(&mark), "indication of the instrument", indications.len().to_string()));
     }
     let hidden = numbered.len() - shown.len();
     let note = if hidden > 0 {

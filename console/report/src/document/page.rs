@@ -67,6 +67,8 @@ pub(super) struct Share {
 /// Something to be decided.
 pub(super) struct Todo {
     pub(super) text: String,
+    /// What was decided, or the key under which it is missing.
+    pub(super) value: Value,
     pub(super) section: usize,
 }
 

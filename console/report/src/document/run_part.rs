@@ -90,6 +90,10 @@ pub struct RunPart {
     pub mission_time_s: f64,
     /// Way by the true position, metres.
     pub path_length_m: Option<f64>,
+    /// Least distance of the hull to anything solid, metres; absent outside simulation.
+    pub clearance_min_m: Option<f64>,
+    /// The clearance to be kept, metres.
+    pub clearance_m: f64,
     /// Collisions; absent outside simulation.
     pub collisions: Option<u64>,
     /// Parameters of the planner that drove first.
@@ -131,6 +135,8 @@ impl RunPart {
             reason: summary.reason.clone(),
             mission_time_s: summary.mission_time_s.unwrap_or(0.0),
             path_length_m: summary.path_length_m,
+            clearance_min_m: summary.clearance_min_m,
+            clearance_m: run.mission.clearance_m,
             collisions: summary.collisions,
             parameters: parameters.map(|(key, value)| format!("{key} {}", plainly(value))).collect(),
             drivers: record.planners.iter().map(driver).collect(),
@@ -138,7 +144,7 @@ impl RunPart {
             positioning: summary.positioning,
             tether: tether(past, &summary),
             stations: record.stations(),
-            incidents: record.incidents().to_vec(),
+            incidents: record.incidents(),
             files: past.files.clone(),
         })
     }

@@ -48,7 +48,8 @@ fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
 #[test]
 fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
     let run = round_tank(0.1);
-    let mut document = document(Inspection::default());
+    let missed_accepted = Some("seen by eye".to_owned());
+    let mut document = document(Inspection { missed_accepted, ..Inspection::default() });
     // Nothing was passed by an estimated position, so no plate has an accuracy.
     assert!(open(&document).contains(&5) && !open(&document).contains(&6), "{:?}", document.gate);
     document.floor.plates.iter_mut().for_each(|plate| plate.error_p95_m = Some(0.05));
@@ -116,4 +117,28 @@ fn seams_end_at_the_ring() {
             assert!(place.coords.norm() < 5.0 + 1e-6, "{seam:?} of {} plates", map.plates.len());
         }
     }
+}
+
+#[test]
+fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() {
+    let undecided = document(Inspection::default());
+    assert!(undecided.gate[1].answer.starts_with("whole floor, ended early, "), "{:?}", undecided.gate[1]);
+    let lacks =
+        |item: usize, key: &str| undecided.gate[item - 1].missing.contains(&format!("inspection.{key}"));
+    assert!(lacks(2, "partial_scope_accepted") && lacks(6, "missed_accepted"), "{:?}", undecided.gate);
+    // Nobody scanned the shell, and that the recording stops is an incident.
+    assert!(lacks(2, "critical_zone_accepted") != undecided.floor.critical_zone.done);
+    assert!(lacks(11, "events_reviewed_by"), "{:?}", undecided.gate[10]);
+    let page = html(&undecided);
+    assert!(page.contains("Not complete: the recording stops before the end of the mission."), "verdict");
+    let facts = Inspection {
+        partial_scope_accepted: Some("the rest by hand".into()),
+        missed_accepted: Some("welds, seen by eye".into()),
+        ..Inspection::default()
+    };
+    let decided = document(facts);
+    let keys = ["inspection.partial_scope_accepted", "inspection.missed_accepted"].map(str::to_owned);
+    assert!(decided.gate.iter().all(|item| !keys.iter().any(|key| item.missing.contains(key))));
+    assert!(decided.gate[5].answer.ends_with("missed accepted: welds, seen by eye"), "{:?}", decided.gate[5]);
+    assert!(html(&decided).contains("the rest by hand"), "printed");
 }

@@ -23,6 +23,7 @@ impl Incident {
     /// Whether somebody must have looked at it.
     pub fn needs_review(&self) -> bool {
         matches!(self.kind, "alarm" | "hold" | "fault")
+            || self.kind == "end" && self.severity > Severity::Watch
     }
 }
 
@@ -31,16 +32,31 @@ impl Incident {
 pub(super) struct Incidents {
     stations: Vec<Station>,
     all: Vec<Incident>,
+    /// When the last event was, seconds.
+    last_s: f64,
     /// What is still open: what ends it, and its index.
     open: Vec<(String, usize)>,
 }
 
 impl Incidents {
-    pub(super) fn all(&self) -> &[Incident] {
-        &self.all
+    /// All of it; that the end is missing is the last of it.
+    pub(super) fn all(&self) -> Vec<Incident> {
+        let mut all = self.all.clone();
+        if all.last().is_none_or(|last| last.kind != "end") {
+            let text = "cut off: the recording stops before the end of the mission".to_owned();
+            all.push(Incident {
+                t_s: self.last_s,
+                until_s: None,
+                kind: "end",
+                severity: Severity::Crit,
+                text,
+            });
+        }
+        all
     }
 
     pub(super) fn apply(&mut self, event: &Event) {
+        self.last_s = event.t_s;
         if let EventKind::RunOpened(run) = &event.kind {
             self.stations.clone_from(&run.world.stations);
             return;

@@ -27,7 +27,7 @@ pub(super) fn equipment(document: &Document) -> Vec<Block> {
     for run in document.runs.iter().filter(|run| !run.stations.is_empty()) {
         let of = if document.runs.len() > 1 { format!(" ({})", run.run) } else { String::new() };
         let mut table = Table::new(
-            format!("Stations, with what the run says of them{of}"),
+            format!("Stations and their use in the run{of}"),
             &[
                 ("Station", "", ""),
                 ("x", "m", "r nw"),
@@ -110,9 +110,10 @@ pub(super) fn signatures(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     if !open.is_empty() {
         blocks.push(Block::Barred(format!(
-            "{} of {} items are open ({}). A signed report is a revision of its own and is never changed.",
+            "{} of {} items {} open ({}). A signed report is a revision of its own and is never changed.",
             open.len(),
             document.gate.len(),
+            if open.len() == 1 { "is" } else { "are" },
             open.join(", ")
         )));
     }
@@ -158,7 +159,8 @@ pub(super) fn signatures(document: &Document) -> Vec<Block> {
         ],
     );
     for revision in &document.revisions {
-        let what = format!("signed by {}, {}", revision.signature.by, revision.file);
+        let what =
+            format!("document {}, signed by {}, {}", revision.number, revision.signature.by, revision.file);
         table.row(vec![
             revision.revision.clone().into(),
             revision.signature.at.clone().into(),

@@ -48,7 +48,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     );
     table.is_cards = true;
     for (no, area) in numbered().filter(|(no, area)| is_main(*no, area)) {
-        let class = if document.pictures.badges.contains(&no) { "no" } else { "no h" };
+        let class = if document.pictures.badges.contains(&no) { "badge" } else { "badge h" };
         let badge = Cell { svg: format!(r#"<span class="{class}">{no}</span>"#), ..Cell::default() };
         let extent = area.high - area.low;
         let row = table.row(vec![
@@ -82,7 +82,23 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     }
     blocks.push(Block::Note(total));
     blocks.push(Block::Table(unreachable(document)));
+    blocks.push(Block::Note(balance(document)));
     blocks
+}
+
+/// Why the whole floor is not the sum of the reachable floor and what is out of reach.
+fn balance(document: &Document) -> String {
+    let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
+    let m2 = |share: f64| share * whole.area_m2;
+    format!(
+        "Whole less reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² that were scanned although no \
+         plan may count on them: the robot came nearer to shell or obstacles than hull and clearance, or they were in reach before \
+         an obstacle was found.",
+        whole.area_m2 - reachable.area_m2,
+        m2(whole.unreachable),
+        m2(whole.margin),
+        m2(whole.scanned) - reachable.scanned * reachable.area_m2
+    )
 }
 
 fn plates_of(area: &Area<MissReason>) -> String {
@@ -266,7 +282,7 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             ("Mean", "cm", "r"),
             ("p95", "cm", "r"),
             ("Worst", "cm", "r"),
-            ("How", "", ""),
+            ("Method", "", ""),
         ],
     );
     for run in &document.runs {
@@ -307,7 +323,7 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     let truth = document.coverage.by_truth.and_then(|truth| truth.scanned_truly.zip(truth.guaranteed_truly));
     let truth = truth.map(|(scanned, sure)| {
         Block::Text(format!(
-            "Of the floor claimed as scanned {} % truly was, of the floor claimed as guaranteed {} % (simulation only).",
+            "{} % of the floor reported as scanned was actually scanned, {} % of the floor reported as guaranteed (simulation only).",
             per_cent(scanned),
             per_cent(sure)
         ))

@@ -1,7 +1,10 @@
 //! The first sheet: title block, verdict, large figures, what is to be decided, scope and words.
 
 use super::{
-    super::page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
+    super::{
+        decisions::{Decision, decisions, is_complete},
+        page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
+    },
     Document, counted, escaped, number,
 };
 use crate::account::Shares;
@@ -77,7 +80,7 @@ fn fields(document: &Document) -> Vec<Field> {
             "Date of the run (UTC)",
             began.map_or_else(|| Value { text: None, missing: Some("date".into()) }, Value::from),
         ),
-        field("", "Mission time", super::super::charts::clock(time_s).into()),
+        field("", "Mission time", crate::clock(time_s).into()),
         field("", "Revision", document.revision.clone().into()),
         field("", "Language", "en".into()),
         field("w2 e f", "Made by", document.made_by.clone().into()),
@@ -101,12 +104,11 @@ fn fields(document: &Document) -> Vec<Field> {
 fn verdict(document: &Document) -> Verdict {
     let floor = &document.floor;
     let last = document.runs.last();
-    let is_complete = last.is_some_and(|run| run.outcome == Some(Outcome::Complete));
     let (scanned, sure) =
         (floor.reachable.percent.scanned, floor.reachable.percent.guaranteed.unwrap_or(0.0));
     let zone = if floor.critical_zone.done { "complete" } else { "not complete" };
     let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
-    if is_complete {
+    if is_complete(document) {
         let is_all = floor.reachable.missed < 0.005 && floor.critical_zone.done;
         return Verdict {
             class: if is_all { "" } else { "part" },
@@ -117,12 +119,16 @@ fn verdict(document: &Document) -> Verdict {
             cause: String::new(),
         };
     }
-    let outcome = last.and_then(|run| run.outcome).map_or("cut off", Outcome::word);
+    let end = match last.and_then(|run| run.outcome) {
+        None => "the recording stops before the end of the mission".to_owned(),
+        Some(Outcome::Aborted) => "the mission was ended early".to_owned(),
+        Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
+    };
     let reason = last.and_then(|run| run.reason.clone());
     Verdict {
         class: "bad",
         lead: format!(
-            "Not complete: the mission ended as {outcome}. {scanned:.1} % of the reachable floor was scanned, {missed_m2:.1} m² \
+            "Not complete: {end}. {scanned:.1} % of the reachable floor was scanned, {missed_m2:.1} m² \
              were not."
         ),
         cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
@@ -198,36 +204,15 @@ fn bases(document: &Document) -> Table {
 }
 
 fn todo(document: &Document) -> Vec<Todo> {
-    let (floor, zone) = (&document.floor, &document.floor.critical_zone);
-    let mut todo = Vec::new();
-    let mut decide = |text: String, section| todo.push(Todo { text, section });
-    if !zone.done {
-        let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
-        decide(
-            format!(
-                "Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the whole {width_mm:.0} mm."
-            ),
-            4,
-        );
-    }
-    if let Some(largest) = floor.missed.first() {
-        let (count, area_m2) = (counted(floor.missed.len() as u64, "missed area"), largest.area_m2);
-        decide(
-            format!(
-                "{count} of 0.01 m² and more, the largest {area_m2:.2} m²: accept, scan again, or inspect by hand."
-            ),
-            3,
-        );
-    }
-    if document.runs.last().is_none_or(|run| run.outcome != Some(Outcome::Complete)) {
-        decide(
-            "Mission incomplete: decide whether another run joins this report (tankops rescan).".into(),
-            7,
-        );
-    }
+    let decision = |decision: Decision| {
+        let value = Value::fact(decision.answer.as_ref(), decision.key);
+        Todo { text: decision.what, value, section: decision.section }
+    };
+    let mut todo: Vec<Todo> = decisions(document).into_iter().map(decision).collect();
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     if !open.is_empty() {
-        decide(format!("Items of the gate that are open: {}.", open.join(", ")), 10);
+        let text = format!("Items of the gate that are open: {}.", open.join(", "));
+        todo.push(Todo { text, value: Value::default(), section: 10 });
     }
     todo
 }
@@ -250,7 +235,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
             number(cell_cm, 1),
             floor.position_limit_m
         )),
-        Block::Heading("Words".into()),
+        Block::Heading("Definitions".into()),
         Block::Words(vec![
             ("Whole floor", "all floor within the shell, without what obstacles stand on".into()),
             ("Reachable floor", "floor that the tool can cover from where the robot may stand, with hull and clearance".into()),

@@ -2,14 +2,13 @@
 
 use super::{
     super::{
-        RunPart,
-        charts::clock,
-        is_marked,
+        RunPart, is_marked,
         page::{Block, Table, Value},
         run_part::TetherPart,
     },
     Document, counted, number, picture,
 };
+use crate::clock;
 use mission::Severity;
 
 /// Incidents that are listed for a run; plans and orders are left out first.
@@ -22,9 +21,13 @@ pub(super) fn runs(document: &Document) -> Vec<Block> {
         if document.runs.len() > 1 {
             blocks.push(Block::Heading(format!("Run {}", run.run)));
         }
-        let way = run.path_length_m.map(|m| format!(", {m:.1} m of way")).unwrap_or_default();
+        let way = run.path_length_m.map(|m| format!(", path {m:.1} m")).unwrap_or_default();
         let collisions = run.collisions.map(|n| format!(", {}", counted(n, "collision"))).unwrap_or_default();
-        blocks.push(Block::Text(format!("{}{way}{collisions}.", clock(run.mission_time_s))));
+        blocks.push(Block::Text(format!(
+            "{}{way}{}{collisions}.",
+            clock(run.mission_time_s),
+            clearance(run)
+        )));
         let [track, tether, over_time] = figures;
         blocks.push(Block::Pair(track.iter().chain(tether).map(picture).collect()));
         blocks.extend(run.tether.as_ref().map(|tether| Block::Table(tether_table(tether))));
@@ -33,6 +36,13 @@ pub(super) fn runs(document: &Document) -> Vec<Block> {
     }
     blocks.extend(indications(document));
     blocks
+}
+
+/// The least clearance, flagged if it is below what was to be kept.
+fn clearance(run: &RunPart) -> String {
+    let (Some(least_m), limit_m) = (run.clearance_min_m, run.clearance_m) else { return String::new() };
+    let flag = if least_m < limit_m { "BELOW the" } else { "the" };
+    format!(", minimum clearance {least_m:.3} m ({flag} {limit_m:.3} m to be kept)")
 }
 
 fn tether_table(tether: &TetherPart) -> Table {

@@ -45,9 +45,3 @@ pub fn severity_word(severity: Severity) -> &'static str {
         Severity::Crit => "CRIT",
     }
 }
-
-/// A span of time as hours, minutes and seconds.
-pub fn clock(seconds: f64) -> String {
-    let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
-    format!("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
-}
