@@ -62,14 +62,15 @@ fn missing(facts: &[(&str, bool)]) -> Vec<String> {
 }
 
 /// Adds the decisions of an item to its answer, and those not made to what it lacks.
-fn decided(document: &Document, item: usize, (mut answer, mut lacks): Answered) -> Answered {
+fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> Answered {
+    let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
         match decision.answer {
-            Some(why) => answer += &format!("; {}: {why}", decision.key.replace('_', " ")),
+            Some(why) => answers.push(format!("{}: {why}", decision.key.replace('_', " "))),
             None => lacks.push(format!("inspection.{}", decision.key)),
         }
     }
-    (answer, lacks)
+    (answers.join("; "), lacks)
 }
 
 /// How large a tank is.
@@ -221,8 +222,9 @@ fn incidents(document: &Document) -> Answered {
     let reviewed = by.as_ref().map(|name| format!(", reviewed by {name}")).unwrap_or_default();
     let early = |incident: &&Incident| incident.kind == "end" && incident.needs_review();
     let ends = document.runs.iter().flat_map(|run| &run.incidents).filter(early);
-    let ends: String = ends.map(|end| format!("; {}, at {}", end.text, clock(end.t_s))).collect();
-    (format!("alarms, faults, holds and early ends: {count}{reviewed}{ends}"), lacks)
+    let ends = ends.map(|end| format!("{}, at {}", end.text, clock(end.t_s)));
+    let counted = format!("alarms, faults, holds and early ends: {count}{reviewed}");
+    (std::iter::once(counted).chain(ends).collect::<Vec<_>>().join("; "), lacks)
 }
 
 fn remarks(document: &Document) -> Answered {

@@ -2,6 +2,7 @@
 
 use super::occurrence::What;
 use mission::Severity;
+use report::clock;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
