@@ -161,7 +161,7 @@ fn a_run_whose_planner_is_not_installed_is_proven_from_its_journal() {
 
 #[test]
 fn runs_of_earlier_versions_are_listed_reported_exported_and_rescanned_but_not_recomputed() {
-    for (version, end, ticks) in [(2, "complete", 45), (3, "time_limit", 60)] {
+    for (version, end, ticks) in [(2, "complete", 45), (3, "time_limit", 60), (4, "time_limit", 60)] {
         let bench = Bench::new();
         let logs = workspace().join(format!("tests/acceptance/fixtures/v{version}"));
         let at = ["--logs", logs.to_str().unwrap()];
