@@ -70,3 +70,25 @@ fn an_export_that_fails_leaves_nothing_behind() {
     }
     assert!(!bench.path().join("again.rrd").exists());
 }
+
+#[test]
+fn events_says_when_the_journal_has_no_end_or_nothing_at_all() {
+    let bench = Bench::new();
+    assert_eq!(bench.fly(&scenario("goto-single-obstacle.toml"), &[]).code, Some(0));
+    let run = bench.runs().remove(0);
+    let (name, path) = (run.to_str().unwrap(), run.join("events.jsonl.zst"));
+    let part = bench.tankops(&["events", name, "--from", "1", "--to", "1.5", "--kind", "truth"]);
+    assert_eq!((part.code, part.out.lines().count(), part.err.as_str()), (Some(0), 6, ""), "{part:?}");
+    let refused = bench.tankops(&["events", name, "--from", "-5"]);
+    assert!(refused.code == Some(2) && refused.err.contains("seconds, as 0 or 125.5"), "{refused:?}");
+
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &whole[..whole.len() - 30]).unwrap();
+    let cut = bench.tankops(&["events", name]);
+    assert!(cut.code == Some(0) && cut.out.lines().count() > 10, "{cut:?}");
+    assert!(cut.err.starts_with("note: the journal has no end"), "{cut:?}");
+
+    std::fs::write(&path, "").unwrap();
+    let empty = bench.tankops(&["events", name]);
+    assert!(empty.code == Some(2) && empty.err.contains("events.jsonl.zst"), "{empty:?}");
+}

@@ -3,6 +3,7 @@
 use crate::cli::EventsArgs;
 use flight::failure::COMPLETE;
 use recording::{JournalLine, JournalReader, journal_of};
+use report::print::warn_line;
 use runs::find;
 use serde::Deserialize;
 use std::{
@@ -22,7 +23,9 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     let from_s = args.from.unwrap_or(0.0);
     let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
     let mut out = BufWriter::new(io::stdout().lock());
+    let mut is_opened = false;
     while let Some(line) = reader.next_line()? {
+        is_opened = true;
         let t_s = line.event.t_s;
         if args.to.is_some_and(|to_s| t_s > to_s) {
             break;
@@ -34,7 +37,16 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
             return ended(&error);
         }
     }
-    out.flush().map_or_else(|error| ended(&error), |()| Ok(ExitCode::from(COMPLETE)))
+    if let Err(error) = out.flush() {
+        return ended(&error);
+    }
+    if !is_opened {
+        return Err(reader.not_opened().into());
+    }
+    if let Some(why) = reader.truncated() {
+        warn_line(&format!("note: the journal has no end: {why}"));
+    }
+    Ok(ExitCode::from(COMPLETE))
 }
 
 fn is_wanted(JournalLine { raw, .. }: &JournalLine, kinds: &[String]) -> bool {

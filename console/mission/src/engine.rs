@@ -33,6 +33,7 @@ use crate::{
     task::Task,
     tether::Tether,
 };
+pub use driving::Sending;
 use floor::ScannedFloor;
 pub use fork::Fork;
 use planner_api::{Drive, Reason};

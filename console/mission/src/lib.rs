@@ -25,7 +25,7 @@ pub mod tether;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
 pub use config::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
-pub use engine::{Fork, Input, Mission, Step};
+pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};

@@ -6,6 +6,7 @@ mod synthetic;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use mission::Event;
 use recording::{Identity, JournalWriter, Options, Recorder, RunRecorder};
+use report::Fold;
 use std::{
     io,
     sync::Arc,
@@ -47,11 +48,13 @@ fn recording(criterion: &mut Criterion) {
         bencher.iter(|| {
             let now = Instant::now();
             let identity = Identity::of_run("bench");
+            let mut account = Fold::new();
             let mut recorder = Recorder::writing_to(Box::new(io::sink()), &identity, now).expect("opens");
             for event in batches.iter().flat_map(|events| events.iter()) {
-                recorder.push(event, now).expect("nothing to fail");
+                recorder.push(event, &account, now).expect("nothing to fail");
+                account.apply(event);
             }
-            recorder.finish().expect("nothing to fail");
+            recorder.finish(&account.summary()).expect("nothing to fail");
         });
     });
     group.finish();

@@ -1,6 +1,7 @@
 //! Regenerates the recording from the journal.
 
 use crate::{error::RecordingError, identity::Identity, journal::JournalReader, recorder::Recorder};
+use report::Fold;
 use std::{path::Path, time::Instant};
 
 /// Regenerates the recording of a run from its journal, equal in content to the one that was made while it ran.
@@ -14,9 +15,12 @@ pub fn export(journal: &Path, recording: &Path) -> Result<Option<String>, Record
     let now = Instant::now();
     let mut reader = JournalReader::open(journal)?;
     let mut recorder = Recorder::create(recording, &Identity::of_file(journal), now)?;
+    let mut account = Fold::new();
     for event in reader.by_ref() {
-        recorder.push(&event?, now)?;
+        let event = event?;
+        recorder.push(&event, &account, now)?;
+        account.apply(&event);
     }
-    recorder.finish()?;
+    recorder.finish(&account.summary())?;
     Ok(reader.truncated().map(str::to_owned))
 }

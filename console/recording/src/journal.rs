@@ -84,8 +84,11 @@ pub enum JournalError {
         path: PathBuf,
     },
     /// It holds nothing, not even how the run was opened.
-    #[error("the journal does not begin with the opening of a run, so it cannot be computed again")]
-    NotOpened,
+    #[error("the journal is empty or cut off before the opening of the run was written: {}", path.display())]
+    NotOpened {
+        /// Which file.
+        path: PathBuf,
+    },
     /// It was written by a newer tankops.
     #[error(
         "the journal has version {theirs} and this tankops reads up to {ours}; use the tankops that wrote it \

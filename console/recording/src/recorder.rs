@@ -29,6 +29,7 @@ use crate::{
 };
 use fold::Fold;
 use mission::{Event, EventKind};
+use report::Summary;
 use std::{
     io::Write,
     path::Path,
@@ -109,13 +110,18 @@ impl Recorder {
         self.watch.as_ref().map_or(Ok(()), |watch| watch.check(self.health.bytes()))
     }
 
-    /// Takes in the next event; does nothing after an error.
+    /// Takes in the next event; does nothing after an error. `account` is that of the events before it.
     ///
     /// # Errors
     /// The first error with which data is lost, once.
-    pub fn push(&mut self, event: &Event, now: Instant) -> Result<(), RecordingError> {
+    pub fn push(
+        &mut self,
+        event: &Event,
+        account: &report::Fold,
+        now: Instant,
+    ) -> Result<(), RecordingError> {
         let Some(stream) = &self.stream else { return Ok(()) };
-        match self.fold.apply(event, stream) {
+        match self.fold.apply(event, account, stream) {
             Ok(ticks_closed) => self.ticks_waiting += ticks_closed,
             Err(error) => return self.stop(error),
         }
@@ -132,14 +138,14 @@ impl Recorder {
         if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
     }
 
-    /// Writes everything and closes the recording.
+    /// Writes everything and closes the recording of a run, of which the summary is given.
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
     /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
-    pub fn finish(mut self) -> Result<(), RecordingError> {
+    pub fn finish(mut self, summary: &Summary) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
-            self.fold.finish(stream)?;
+            self.fold.finish(summary, stream)?;
             self.fold.send(stream)?;
         }
         // Dropping the last handle writes the footer of the format.

@@ -13,6 +13,7 @@ use crate::{
     sink::SinkHealth,
 };
 use mission::Event;
+use report::Summary;
 use shared::Shared;
 use std::{
     fs::File,
@@ -61,8 +62,10 @@ pub struct Health {
 }
 
 /// What a recorder leaves behind.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Finished {
+    /// What the run came to, from its events; absent if the recorder was not done in time.
+    pub summary: Option<Box<Summary>>,
     /// SHA-256 of what was written to the journal, hexadecimal; absent if the journal is not whole, or its path does
     /// not show the file that was written, at its length. The file is not read again: `verify` does that.
     pub events_sha256: Option<String>,
@@ -84,7 +87,7 @@ pub struct Finished {
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
     /// Behind a lock so that screens may ask for the health from other threads; only `close` takes it.
-    ended: Mutex<Receiver<Option<JournalEnd>>>,
+    ended: Mutex<Receiver<(Option<JournalEnd>, Summary)>>,
     shared: Arc<Shared>,
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
@@ -191,20 +194,21 @@ impl RunRecorder {
     ///
     /// After `timeout` the files are left to the thread, and the error says so.
     pub fn finish(mut self, timeout: Duration) -> Finished {
-        let end = self.close(timeout);
+        let (end, summary) = self.close(timeout).unzip();
         Finished {
-            events_sha256: end.map(|end| end.events_sha256),
+            summary: summary.map(Box::new),
+            events_sha256: end.flatten().map(|end| end.events_sha256),
             journal: self.journal.take(),
             recording: self.recording.take(),
             error: self.shared.error(),
         }
     }
 
-    fn close(&mut self, timeout: Duration) -> Option<JournalEnd> {
+    fn close(&mut self, timeout: Duration) -> Option<(Option<JournalEnd>, Summary)> {
         drop(self.sender.take()?);
         let ended = self.ended.get_mut().unwrap_or_else(PoisonError::into_inner);
         match ended.recv_timeout(timeout) {
-            Ok(end) => end,
+            Ok(ended) => Some(ended),
             Err(RecvTimeoutError::Timeout) => {
                 let waited = timeout.as_secs_f64();
                 self.shared

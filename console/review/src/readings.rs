@@ -20,7 +20,7 @@ pub fn readings(
     let path = journal_of(folder);
     let mut ticks = Ticks::open(&path)?;
     let (_, mut flight) = prepared(&path, &mut ticks)?;
-    let mut replayed = Replayed::new(None);
+    let mut replayed = Replayed::from_journal();
     let mut head = vec![flight.opened()];
     while let Some(recorded) = ticks.next_tick()? {
         replayed.begin_tick(&recorded);

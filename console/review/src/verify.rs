@@ -17,7 +17,7 @@ use mission::{
     event::{JOURNAL_VERSION, Measured},
 };
 use planner_host::PluginDirs;
-use planners::{Asked, Replayed};
+use planners::{Asked, BEHIND, Replayed};
 use recording::{Difference, JournalError, RECORDING_FILE, RecordedTick, Ticks, events_sha256, journal_of};
 use runs::{end_is_missing, journal_doubt, recording_doubt};
 use scenario::Scenario;
@@ -25,7 +25,7 @@ use std::{
     collections::BTreeMap,
     path::Path,
     sync::mpsc::{SyncSender, sync_channel},
-    thread,
+    thread::{self, ScopedJoinHandle},
 };
 
 /// Ticks that are read together, and how many such batches are read ahead.
@@ -174,17 +174,21 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
 fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     let mut ticks = Ticks::open(path)?;
     let (scenario, flight) = prepared(path, &mut ticks)?;
-    let mut replayed = Replayed::new(plugins.map(|plugins| host(&scenario, plugins)));
     let (sender, read) = sync_channel(BATCHES);
-    let (mut findings, no_end) = thread::scope(|scope| {
+    thread::scope(|scope| {
         let reading = scope.spawn(move || read_ahead(ticks, &sender));
-        let findings = recompute(flight, &mut replayed, read.into_iter().flatten());
+        let (again, asking) = plugins
+            .map(|plugins| {
+                let ((again, told), scenario) = (sync_channel(BEHIND), &scenario);
+                (again, scope.spawn(move || Asked::of(host(scenario, plugins), &told)))
+            })
+            .unzip();
+        let findings = recompute(flight, Replayed::told_to(again), read.into_iter().flatten());
         let no_end = reading.join().map_err(|_| anyhow::anyhow!("reading the journal panicked"))?;
-        anyhow::Ok((findings?, no_end))
-    })?;
-    findings.no_end = no_end;
-    findings.planners = replayed.into_asked();
-    Ok(findings)
+        let asked = asking.map(ScopedJoinHandle::join).transpose();
+        let planners = asked.map_err(|_| anyhow::anyhow!("asking the planners panicked"))?;
+        Ok(Findings { no_end, planners, ..findings? })
+    })
 }
 
 /// Reads a journal ahead of who compares it, up to its end, an error, or the first difference; why it has no end.
@@ -204,7 +208,7 @@ fn read_ahead(
 /// Flies the mission again beside its journal, up to the first difference.
 fn recompute(
     mut flight: Flight,
-    replayed: &mut Replayed,
+    mut replayed: Replayed,
     read: impl Iterator<Item = Result<RecordedTick, JournalError>>,
 ) -> anyhow::Result<Findings> {
     let mut findings = Findings::default();
@@ -214,7 +218,7 @@ fn recompute(
         replayed.begin_tick(&recorded);
         findings.builds.extend(recorded.opened_planners().map(|info| (info.id.clone(), info.clone())));
         let mut computed = std::mem::take(&mut head);
-        computed.extend(flight.tick(&recorded.orders(), replayed));
+        computed.extend(flight.tick(&recorded.orders(), &mut replayed));
         findings.difference = recorded.difference(&computed).context("writing an event as JSON")?;
         findings.events += recorded.n_compared();
         findings.last_tick = recorded.tick;

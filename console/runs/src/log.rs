@@ -1,9 +1,9 @@
 //! What is written about a run while it is flown: journal, recording and, at its end, the report.
 
 use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
-use mission::Event;
+use mission::{Event, EventKind};
 use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
-use report::{Expect, Fold, Logs, PlannerCalls, Stops, Summary};
+use report::{Expect, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
     time::{Duration, Instant},
@@ -17,7 +17,8 @@ pub struct RunLog {
     folder: Option<RunFolder>,
     beside: Option<Beside>,
     recorder: RunRecorder,
-    fold: Fold,
+    /// What is said of a run whose recorder is not done in time.
+    least: Summary,
     began: Instant,
 }
 
@@ -38,7 +39,7 @@ impl RunLog {
         let folder = RunFolder::create(logs, scenario, planner, seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
         let beside = Some(Beside::new(folder.path()));
-        Ok(Self { folder: Some(folder), beside, recorder, fold: Fold::new(), began: Instant::now() })
+        Ok(Self { folder: Some(folder), beside, recorder, least: Summary::default(), began: Instant::now() })
     }
 
     /// From now on has the system put the journal on disk every second.
@@ -56,13 +57,18 @@ impl RunLog {
     pub fn unwritten() -> Result<Self, RunError> {
         let began = Instant::now();
         let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
-        Ok(Self { folder: None, beside: None, recorder, fold: Fold::new(), began })
+        Ok(Self { folder: None, beside: None, recorder, least: Summary::default(), began })
     }
 
     /// Takes the events of a tick; waits while the recorder's queue is full.
     pub fn keep(&mut self, events: &[Event]) {
+        if let Some(event) = events.last() {
+            (self.least.ticks, self.least.mission_time_s) = (Some(event.tick), Some(event.t_s));
+        }
         for event in events {
-            self.fold.apply(event);
+            if let EventKind::Ended { outcome, reason } = &event.kind {
+                (self.least.outcome, self.least.reason) = (Some(*outcome), Some(reason.clone()));
+            }
         }
         self.recorder.send(events);
     }
@@ -100,8 +106,8 @@ impl RunLog {
         stops: Option<Stops>,
         expect: &Expect,
     ) -> Closed {
-        let Self { folder, recorder, fold, began, .. } = self;
-        let finished = recorder.finish(within);
+        let Self { folder, recorder, least, began, .. } = self;
+        let mut finished = recorder.finish(within);
         let logs = folder.is_some().then(|| Logs {
             journal: finished.journal.as_ref().map(|path| path.display().to_string()),
             recording: finished.recording.as_ref().map(|path| path.display().to_string()),
@@ -114,7 +120,7 @@ impl RunLog {
             planner_calls: Some(calls),
             stops,
             logs,
-            ..fold.summary()
+            ..finished.summary.take().map_or(least, |summary| *summary)
         };
         let summary = expect.evaluated(summary);
         let kept = folder.map(|folder| {
@@ -122,5 +128,23 @@ impl RunLog {
             Kept::new(&folder, &finished, &report)
         });
         Closed { summary, kept }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::Outcome;
+
+    #[test]
+    fn a_run_whose_recorder_is_not_done_in_time_still_says_how_it_ended() {
+        let mut log = RunLog::unwritten().unwrap();
+        let kind = EventKind::Ended { outcome: Outcome::Aborted, reason: "the operator ended it".into() };
+        log.keep(&[Event { tick: 7, t_s: 0.7, kind }]);
+        let calls = PlannerCalls { plan: 0, step: 0, p50_us: None, p99_us: None, faults: 0 };
+        let closed = log.close(Duration::ZERO, calls, None, &Expect::default());
+        let Summary { ticks, outcome, reason, .. } = closed.summary;
+        assert_eq!((ticks, outcome), (Some(7), Some(Outcome::Aborted)));
+        assert_eq!(reason.as_deref(), Some("the operator ended it"));
     }
 }

@@ -47,7 +47,7 @@ impl Past {
                 _ => {}
             }
         })?;
-        let opened = opened.ok_or(JournalError::NotOpened)?;
+        let opened = opened.ok_or_else(|| reader.not_opened())?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
         let files = files(folder, &opened, digests);
         let doubts = files.doubts.first().cloned();

@@ -12,10 +12,10 @@ pub(crate) struct EventsArgs {
     #[arg(long, value_name = "KIND")]
     pub kind: Vec<String>,
     /// Only from this mission time on, seconds.
-    #[arg(long, value_name = "T_S")]
+    #[arg(long, value_name = "T_S", value_parser = mission_time, allow_negative_numbers = true)]
     pub from: Option<f64>,
     /// Only up to this mission time, seconds.
-    #[arg(long, value_name = "T_S")]
+    #[arg(long, value_name = "T_S", value_parser = mission_time, allow_negative_numbers = true)]
     pub to: Option<f64>,
     #[command(flatten)]
     pub logs: LogsArg,
@@ -87,4 +87,9 @@ pub(crate) struct ReportArgs {
     pub force: bool,
     #[command(flatten)]
     pub logs: LogsArg,
+}
+
+fn mission_time(text: &str) -> Result<f64, String> {
+    let t_s = text.parse().ok().filter(|t_s: &f64| *t_s >= 0.0 && t_s.is_finite());
+    t_s.ok_or_else(|| "write a time since the start of the mission in seconds, as 0 or 125.5".into())
 }

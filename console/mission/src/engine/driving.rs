@@ -12,12 +12,29 @@ use crate::{
     task::Task,
 };
 use geometry::motion::drive_for;
-use planner_api::{Command, Drive};
+use planner_api::{Command, Drive, Limits};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
 pub(super) const AHEAD_M: f64 = 4.0;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
+
+/// What a command becomes on its way to the robot, at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sending {
+    heading_rad: f64,
+    limits: Limits,
+    turn_first_rad: f64,
+}
+
+impl Sending {
+    /// A command as the robot is sent it: within its limits, in its own way of moving, and rounded as everything that is
+    /// reported. Doing this to a command that was sent changes nothing, so that recorded commands can be fed in again.
+    pub fn as_sent(&self, command: Command) -> Command {
+        let drive = drive_for(command.drive, self.heading_rad, &self.limits, self.turn_first_rad);
+        rounded_command(Command { drive, status: command.status })
+    }
+}
 
 impl Mission {
     /// Sends the robot the command of this tick; without one it stands still.
@@ -31,7 +48,7 @@ impl Mission {
         if let Some(Verdict::Replan(reason)) = verdict {
             self.active.want_plan(reason);
         }
-        let sent = self.as_sent(command);
+        let sent = self.sending().as_sent(command);
         self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent });
         if gait == Gait::OneTick {
             self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
@@ -39,13 +56,13 @@ impl Mission {
         sent.drive
     }
 
-    /// A command as the robot would be sent it now: within its limits, in its own way of moving, and rounded as everything that is reported. Doing this to a
-    /// command that was sent changes nothing, so that recorded commands can be fed in again.
-    pub fn as_sent(&self, command: Command) -> Command {
-        let turn_first_rad = self.config.task.turn_first_rad();
-        let heading_rad = self.locator.pose().heading_rad;
-        let drive = drive_for(command.drive, heading_rad, &self.config.limits, turn_first_rad);
-        rounded_command(Command { drive, status: command.status })
+    /// What a command would become now on its way to the robot.
+    pub fn sending(&self) -> Sending {
+        Sending {
+            heading_rad: self.locator.pose().heading_rad,
+            limits: self.config.limits,
+            turn_first_rad: self.config.task.turn_first_rad(),
+        }
     }
 
     /// Takes a command of the active planner, which was asked for in this tick or in an earlier one. The freshest one

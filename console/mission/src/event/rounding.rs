@@ -3,7 +3,7 @@
 //! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. This is done
 //! once, where an event leaves the flight: journal, recording, screen and report see the same numbers, and a tick takes a
 //! third of the bytes. What a planner answered is repeated from the journal, so plans stay as they are, and commands are
-//! rounded before they are sent (`Mission::as_sent`).
+//! rounded before they are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
 use crate::ask::Said;

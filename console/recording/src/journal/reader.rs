@@ -173,6 +173,11 @@ impl JournalReader {
         self.truncated.as_deref()
     }
 
+    /// The error of who needs the opening of the run from a journal that ends before it.
+    pub fn not_opened(&self) -> JournalError {
+        JournalError::NotOpened { path: self.path.clone() }
+    }
+
     /// After the end: how many bytes follow the last newline; 0 in a whole journal.
     ///
     /// They may be a whole event (only its newline is missing), which is then read like any other.

@@ -126,7 +126,7 @@ impl Ticks {
     pub fn opened(&self) -> Result<&RunOpened, JournalError> {
         match self.ahead.as_ref().map(|(_, event)| &event.kind) {
             Some(EventKind::RunOpened(opened)) => Ok(opened),
-            _ => Err(JournalError::NotOpened),
+            _ => Err(self.reader.not_opened()),
         }
     }
 

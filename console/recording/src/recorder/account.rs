@@ -7,9 +7,9 @@ use super::{
     style,
 };
 use crate::{error::RecordingError, rr};
-use mission::{Event, event::RunOpened};
+use mission::event::RunOpened;
 use report::{
-    Fold, Summary,
+    Summary,
     account::{Area, MissReason, Shares},
 };
 use std::sync::Arc;
@@ -25,9 +25,8 @@ const LEAST_PERIOD_S: f64 = 60.0;
 /// Missed areas with a label.
 const LABELLED: usize = 12;
 
-/// The account so far, and when it was written last.
+/// When the account was written last, and how often it is.
 pub(crate) struct Accounting {
-    fold: Fold,
     period_ticks: i64,
     written: i64,
 }
@@ -37,34 +36,20 @@ impl Accounting {
     pub(crate) fn open(run: &RunOpened, at: At) -> Self {
         let least = (LEAST_PERIOD_S / run.mission.tick_s).round() as i64;
         let period_ticks = least.max((run.floor.len() / CELLS_PER_TICK) as i64);
-        Self { fold: Fold::new(), period_ticks, written: at.tick }
+        Self { period_ticks, written: at.tick }
     }
 
-    /// Takes in the next event.
-    pub(crate) fn apply(&mut self, event: &Event) {
-        self.fold.apply(event);
+    /// Whether the last one is so old that the next is due: a run that is killed has one, too.
+    pub(crate) fn is_due(&self, at: At) -> bool {
+        at.tick - self.written >= self.period_ticks
     }
 
-    /// Writes the account if the last one is old enough, so that a run that is killed has one; returns it.
-    pub(crate) fn write_if_due(
-        &mut self,
-        stream: &Stream,
-        at: At,
-    ) -> Result<Option<Summary>, RecordingError> {
-        let is_due = at.tick - self.written >= self.period_ticks;
-        is_due.then(|| self.write(stream, at)).transpose()
-    }
-
-    /// Writes the account and returns it.
-    pub(crate) fn write(&mut self, stream: &Stream, at: At) -> Result<Summary, RecordingError> {
+    /// Writes the account.
+    pub(crate) fn write(&mut self, summary: &Summary, stream: &Stream, at: At) -> Done {
         self.written = at.tick;
-        let summary = self.fold.summary();
-        stream.property(FIGURES, &properties(&summary))?;
-        if let Some(floor) = &summary.floor {
-            let is_over = summary.outcome.is_some();
-            draw(stream, at, &missed(&floor.missed, is_over))?;
-        }
-        Ok(summary)
+        stream.property(FIGURES, &properties(summary))?;
+        let Some(floor) = &summary.floor else { return Ok(()) };
+        draw(stream, at, &missed(&floor.missed, summary.outcome.is_some()))
     }
 }
 

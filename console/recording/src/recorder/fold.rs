@@ -45,12 +45,17 @@ struct Opened {
 }
 
 impl Fold {
-    /// Takes in an event and returns how many ticks it closed: none or one.
-    pub(crate) fn apply(&mut self, event: &Event, stream: &Stream) -> Result<u32, RecordingError> {
+    /// Takes in an event and returns how many ticks it closed: none or one. `account` is that of the events before it.
+    pub(crate) fn apply(
+        &mut self,
+        event: &Event,
+        account: &report::Fold,
+        stream: &Stream,
+    ) -> Result<u32, RecordingError> {
         let at = At::of(event);
         match (&mut self.opened, &event.kind) {
             (None, EventKind::RunOpened(run)) => {
-                self.opened = Some(Box::new(Opened::new(event, run, at, stream)?));
+                self.opened = Some(Box::new(Opened::new(run, at, stream)?));
                 log(stream, event, &[], at)?;
                 Ok(0)
             }
@@ -58,7 +63,7 @@ impl Fold {
             (Some(opened), _) => {
                 let closes = at.tick != opened.tick.at.tick;
                 if closes {
-                    opened.close_tick(stream, at)?;
+                    opened.close_tick(account, stream, at)?;
                 }
                 log(stream, event, &opened.stations, at)?;
                 opened.apply(event, at, stream)?;
@@ -67,13 +72,12 @@ impl Fold {
         }
     }
 
-    /// Closes what is open at the end of the run.
-    pub(crate) fn finish(&mut self, stream: &Stream) -> Done {
+    /// Closes what is open at the end of the run, of which the summary is given.
+    pub(crate) fn finish(&mut self, summary: &Summary, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         let at = opened.tick.at;
-        opened.close_tick(stream, at)?;
+        opened.show_tick(stream, at)?;
         opened.table.finish();
-        let summary = opened.accounting.write(stream, at)?;
         if let Some(raster) = &mut opened.raster {
             if summary.outcome.is_some() && summary.floor.is_some() {
                 raster.end();
@@ -93,7 +97,7 @@ impl Fold {
 }
 
 impl Opened {
-    fn new(event: &Event, run: &RunOpened, at: At, stream: &Stream) -> Result<Self, RecordingError> {
+    fn new(run: &RunOpened, at: At, stream: &Stream) -> Result<Self, RecordingError> {
         stream.layout(layout::messages(run)?);
         scene::draw(stream, run)?;
         let document = Document::new(run.clone());
@@ -105,7 +109,7 @@ impl Opened {
         )?;
         let (low, high) = run.world.boundary.bounds();
         let scans = !matches!(run.mission.task, TaskConfig::Goto { .. });
-        let mut opened = Self {
+        let opened = Self {
             tick: Tick::first(
                 at,
                 run.mission.start.position,
@@ -122,13 +126,11 @@ impl Opened {
             target: None,
             has_cuts: false,
         };
-        opened.accounting.apply(event);
         opened.write_document(stream, at)?;
         Ok(opened)
     }
 
     fn apply(&mut self, event: &Event, at: At, stream: &Stream) -> Done {
-        self.accounting.apply(event);
         self.states.apply(stream, &event.kind, at)?;
         match &event.kind {
             EventKind::Covered { runs } => self.raster.iter_mut().for_each(|raster| raster.mark(runs)),
@@ -177,23 +179,26 @@ impl Opened {
         Ok(())
     }
 
-    fn close_tick(&mut self, stream: &Stream, next: At) -> Done {
+    fn close_tick(&mut self, account: &report::Fold, stream: &Stream, next: At) -> Done {
+        let at = self.tick.at;
+        self.show_tick(stream, next)?;
+        if self.accounting.is_due(at) { self.account(&account.summary(), stream, at) } else { Ok(()) }
+    }
+
+    fn show_tick(&mut self, stream: &Stream, next: At) -> Done {
         let next = self.tick.next(next);
         let tick = std::mem::replace(&mut self.tick, next);
         self.drawings.show(stream, tick.at, &tick.drawings)?;
         self.raster.iter_mut().try_for_each(|raster| raster.picture_if_due(stream, tick.at))?;
         ranging::draw(stream, &self.stations, &tick)?;
         self.residuals.push(&tick);
-        self.table.push(stream, &tick)?;
-        match self.accounting.write_if_due(stream, tick.at)? {
-            Some(summary) => self.account(summary, stream, tick.at),
-            None => Ok(()),
-        }
+        self.table.push(stream, &tick)
     }
 
-    /// Shows an account in the text beside the map.
-    fn account(&mut self, summary: Summary, stream: &Stream, at: At) -> Done {
-        self.document.accounted(summary.floor);
+    /// Writes an account, and shows it in the text beside the map.
+    fn account(&mut self, summary: &Summary, stream: &Stream, at: At) -> Done {
+        self.accounting.write(summary, stream, at)?;
+        self.document.accounted(summary.floor.clone());
         self.write_document(stream, at)
     }
 

@@ -9,6 +9,7 @@ use crate::{
     recorder::Recorder,
 };
 use mission::Event;
+use report::{Fold, Summary};
 use std::{
     sync::{
         Arc,
@@ -26,6 +27,7 @@ const WATCH_PERIOD: Duration = Duration::from_millis(300);
 
 /// What the thread owns.
 pub(super) struct Writer {
+    account: Fold,
     journal: Option<JournalWriter>,
     recorder: Option<Recorder>,
     marker: Option<FailureMarker>,
@@ -42,12 +44,12 @@ impl Writer {
         marker: Option<FailureMarker>,
         shared: Arc<Shared>,
     ) -> Self {
-        let journal = Some(journal);
-        Self { journal, recorder, marker, shared, watched: Instant::now(), changed: None }
+        let (account, journal) = (Fold::new(), Some(journal));
+        Self { account, journal, recorder, marker, shared, watched: Instant::now(), changed: None }
     }
 
-    /// Writes until nobody sends any more.
-    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Option<JournalEnd> {
+    /// Writes until nobody sends any more; returns how the journal ended, if it is whole, and what the run came to.
+    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> (Option<JournalEnd>, Summary) {
         loop {
             match batches.recv_timeout(IDLE) {
                 Ok(events) => self.write(&events),
@@ -62,9 +64,13 @@ impl Writer {
         for event in events {
             // What the journal reports is asked for below.
             let _ = self.journal.as_mut().map(|journal| journal.append(event, now));
-            if let Some(Err(error)) = self.recorder.as_mut().map(|recorder| recorder.push(event, now)) {
+            let account = &self.account;
+            if let Some(Err(error)) =
+                self.recorder.as_mut().map(|recorder| recorder.push(event, account, now))
+            {
                 self.shared.lose(&error);
             }
+            self.account.apply(event);
         }
         self.shared.done.fetch_add(1, Ordering::Relaxed);
         self.look(now);
@@ -112,9 +118,10 @@ impl Writer {
         }
     }
 
-    fn close(&mut self) -> Option<JournalEnd> {
+    fn close(&mut self) -> (Option<JournalEnd>, Summary) {
         let journal = self.journal.take().map(JournalWriter::finish).transpose();
-        let recording = self.recorder.take().map_or(Ok(()), Recorder::finish);
+        let summary = self.account.summary();
+        let recording = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish(&summary));
         let end = journal.unwrap_or_else(|error| {
             self.shared.lose(&error);
             None
@@ -128,6 +135,6 @@ impl Writer {
         // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
         self.shared.set_trouble(None);
         self.mark();
-        end
+        (end, summary)
     }
 }

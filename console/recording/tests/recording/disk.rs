@@ -3,6 +3,7 @@
 use crate::{events, synthetic};
 use mission::Event;
 use recording::{Identity, JournalError, JournalWriter, Recorder, RecordingError, RunRecorder};
+use report::{Fold, Summary};
 use std::{
     io::{self, Read, Write},
     sync::{
@@ -149,9 +150,9 @@ fn a_call_that_fails_once_costs_the_recording_nothing() {
         let mut recorder =
             Recorder::writing_to(Box::new(file), &Identity::of_run("test"), begin).expect("opens");
         for event in &events {
-            recorder.push(event, begin).expect("nothing is lost");
+            recorder.push(event, &Fold::new(), begin).expect("nothing is lost");
         }
-        recorder.finish().expect("it is whole in the end");
+        recorder.finish(&Summary::default()).expect("it is whole in the end");
         let path = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(path.path(), disk.written()).expect("writable");
         assert!(recording::inspect(path.path()).expect("readable").is_complete(), "call {fails_at}");
@@ -221,7 +222,9 @@ fn a_full_disk_is_reported_and_the_recording_is_not_whole() {
         Recorder::writing_to(small_disk(300_000), &Identity::of_run("test"), begin).expect("opens");
     let health = recorder.health();
     for (index, event) in events(3000).iter().enumerate() {
-        recorder.push(event, begin + Duration::from_millis(index as u64)).expect("it is kept in memory");
+        recorder
+            .push(event, &Fold::new(), begin + Duration::from_millis(index as u64))
+            .expect("it is kept in memory");
     }
     let until = Instant::now() + Duration::from_secs(20);
     while health.error().is_none() && Instant::now() < until {
@@ -229,7 +232,7 @@ fn a_full_disk_is_reported_and_the_recording_is_not_whole() {
     }
     assert!(matches!(recorder.trouble(), Some(RecordingError::Stalled { .. })));
     assert!(health.bytes() <= 300_000);
-    assert!(recorder.finish().is_err(), "it is not whole");
+    assert!(recorder.finish(&Summary::default()).is_err(), "it is not whole");
     assert!(begin.elapsed() < Duration::from_secs(30));
 }
 
@@ -240,10 +243,10 @@ fn a_disk_that_has_space_again_gives_a_whole_recording() {
     let mut recorder =
         Recorder::writing_to(Box::new(disk.clone()), &Identity::of_run("test"), begin).expect("opens");
     for event in events(1200) {
-        recorder.push(&event, begin).expect("it is kept in memory");
+        recorder.push(&event, &Fold::new(), begin).expect("it is kept in memory");
     }
     disk.grow(100_000_000);
-    recorder.finish().expect("it is whole");
+    recorder.finish(&Summary::default()).expect("it is whole");
     let path = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(path.path(), disk.written()).expect("writable");
     assert!(recording::inspect(path.path()).expect("readable").is_complete());
@@ -255,7 +258,7 @@ fn a_recorder_is_dropped_soon_after_an_error() {
     let mut recorder = Recorder::writing_to(small_disk(100), &Identity::of_run("test"), now).expect("opens");
     for event in events(700) {
         // Whichever event it hits: the drop is what counts here.
-        let _ = recorder.push(&event, now);
+        let _ = recorder.push(&event, &Fold::new(), now);
     }
     let begin = Instant::now();
     drop(recorder);

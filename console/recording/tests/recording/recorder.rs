@@ -6,6 +6,7 @@ use crate::{
 };
 use mission::{Event, EventKind};
 use recording::{Identity, Recorder, RecordingError, export, inspect};
+use report::{Fold, Summary};
 use std::{
     path::Path,
     time::{Duration, Instant},
@@ -17,11 +18,13 @@ const TICKS: u64 = 600;
 fn record(path: &Path, events: &[Event], step: Duration) {
     let mut now = Instant::now();
     let mut recorder = Recorder::create(path, &Identity::of_run("test"), now).expect("a new file");
+    let mut account = Fold::new();
     for event in events {
-        recorder.push(event, now).expect("room on the disk");
+        recorder.push(event, &account, now).expect("room on the disk");
+        account.apply(event);
         now += step;
     }
-    recorder.finish().expect("room on the disk");
+    recorder.finish(&account.summary()).expect("room on the disk");
 }
 
 fn recorded(events: &[Event]) -> Content {
@@ -196,9 +199,9 @@ fn a_run_with_a_date_in_its_name_has_a_calendar() {
     let identity = Identity::of_run("20261122T040132Z-demo-rpf-1");
     let mut recorder = Recorder::create(&path, &identity, now).expect("a new file");
     for event in &events(20) {
-        recorder.push(event, now).expect("room on the disk");
+        recorder.push(event, &Fold::new(), now).expect("room on the disk");
     }
-    recorder.finish().expect("room on the disk");
+    recorder.finish(&Summary::default()).expect("room on the disk");
     let content = content(&path);
     let began_ns = 1_795_320_092_000_000_000_i64;
     let (times, _) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
@@ -242,8 +245,10 @@ fn a_recording_whose_writer_is_killed_says_the_same_up_to_there() {
     let events = events(2 * TICKS);
     let mut now = Instant::now();
     let mut recorder = Recorder::create(&path, &Identity::of_run("test"), now).expect("a new file");
+    let mut account = Fold::new();
     for event in &events {
-        recorder.push(event, now).expect("room on the disk");
+        recorder.push(event, &account, now).expect("room on the disk");
+        account.apply(event);
         now += Duration::from_millis(700);
     }
     recorder.idle(now + Duration::from_secs(6)).expect("room on the disk");
@@ -325,9 +330,10 @@ fn a_recording_without_a_world_is_refused() {
     let mut recorder =
         Recorder::writing_to(Box::new(std::io::sink()), &Identity::of_run("test"), Instant::now())
             .expect("opens");
-    let error = recorder.push(&events[1], Instant::now()).expect_err("the first event is missing");
+    let error =
+        recorder.push(&events[1], &Fold::new(), Instant::now()).expect_err("the first event is missing");
     assert!(matches!(&error, RecordingError::NotOpened { got } if got == "planner_chosen"), "{error}");
-    recorder.push(&events[2], Instant::now()).expect("an error is reported once");
+    recorder.push(&events[2], &Fold::new(), Instant::now()).expect("an error is reported once");
 }
 
 #[test]

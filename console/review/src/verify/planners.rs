@@ -1,20 +1,85 @@
 //! Recorded answers, and the planners asked the same again.
+//!
+//! The mission lives on the recorded answers alone, so planners are asked in a thread of their own and may be some ticks behind.
 
 use flight::answers::Answers;
-use mission::{Answer, Ask, AskId, Mission, What, ask::Comparison, event::RecordedAnswers};
+use mission::{Answer, Ask, AskId, Mission, Sending, What, ask::Comparison, event::RecordedAnswers};
 use planner_host::Host;
 use recording::RecordedTick;
-use std::collections::BTreeMap;
+use std::{
+    collections::BTreeMap,
+    sync::mpsc::{Receiver, SyncSender},
+};
 
-/// Answers asks from the journal, and has planners answer them, too.
+/// How many asks and answers the planners may be behind.
+pub(super) const BEHIND: usize = 512;
+
+/// Answers asks from the journal, and tells of both who has planners answer them, too.
 pub(crate) struct Replayed {
     recorded: RecordedAnswers,
-    /// `None` when planners are not asked, or no longer, since one answered otherwise.
-    host: Option<Host>,
-    /// Answers that came before they were looked for.
-    early: Vec<Answer>,
-    asked: Option<Asked>,
+    /// `None` when planners are not asked.
+    again: Option<SyncSender<Told>>,
     tick: u64,
+}
+
+/// What happened in the journal.
+pub(super) enum Told {
+    /// A planner was asked.
+    Ask(Ask),
+    /// An answer was recorded.
+    Answered(Box<Recorded>),
+}
+
+/// A recorded answer.
+pub(super) struct Recorded {
+    answer: Answer,
+    /// In which tick it came.
+    tick: u64,
+    /// Whether the mission made use of it.
+    is_used: bool,
+    /// What a command became on its way to the robot then.
+    sending: Sending,
+}
+
+impl Replayed {
+    /// Only the journal answers.
+    pub(crate) fn from_journal() -> Self {
+        Self { recorded: RecordedAnswers::default(), again: None, tick: 0 }
+    }
+
+    /// Tells [`Asking`] of everything.
+    pub(super) fn told_to(again: Option<SyncSender<Told>>) -> Self {
+        Self { again, ..Self::from_journal() }
+    }
+
+    /// Takes the recorded events of the tick that begins.
+    pub(crate) fn begin_tick(&mut self, recorded: &RecordedTick) {
+        self.tick = recorded.tick;
+        self.recorded.begin_tick(recorded.events());
+    }
+
+    fn tell(&self, told: impl FnOnce() -> Told) {
+        if let Some(again) = &self.again {
+            // Who does not listen any more has panicked, and whoever waits for its findings sees that.
+            let _ = again.send(told());
+        }
+    }
+}
+
+impl Answers for Replayed {
+    fn submit(&mut self, ask: Ask) {
+        self.recorded.submit(&ask);
+        self.tell(|| Told::Ask(ask));
+    }
+
+    fn next(&mut self, mission: &Mission) -> Option<Answer> {
+        let (answer, is_used) = self.recorded.next_answer()?;
+        self.tell(|| {
+            let (answer, sending) = (answer.clone(), mission.sending());
+            Told::Answered(Box::new(Recorded { answer, tick: self.tick, is_used, sending }))
+        });
+        Some(answer)
+    }
 }
 
 /// What came of asking the planners again.
@@ -30,22 +95,39 @@ pub(crate) struct Asked {
     pub difference: Option<String>,
 }
 
-impl Replayed {
-    /// With a host, planners are asked, too.
-    pub(crate) fn new(host: Option<Host>) -> Self {
-        let asked = host.is_some().then(Asked::default);
-        Self { recorded: RecordedAnswers::default(), host, early: Vec::new(), asked, tick: 0 }
+impl Asked {
+    /// Asks the planners of a host all that is told, until nobody tells anything any more or one answers otherwise: from
+    /// there on it would know other things than it did then.
+    pub(super) fn of(host: Host, told: &Receiver<Told>) -> Self {
+        let mut asking = Asking { host, early: Vec::new(), asked: Self::default() };
+        let is_same = told.iter().all(|told| {
+            match told {
+                Told::Ask(ask) => asking.ask(ask),
+                Told::Answered(recorded) => asking.compare(&recorded),
+            }
+            asking.asked.difference.is_none()
+        });
+        if !is_same {
+            told.iter().for_each(drop);
+        }
+        asking.asked
     }
+}
 
-    /// Takes the recorded events of the tick that begins.
-    pub(crate) fn begin_tick(&mut self, recorded: &RecordedTick) {
-        self.tick = recorded.tick;
-        self.recorded.begin_tick(recorded.events());
-    }
+/// Asks planners.
+struct Asking {
+    host: Host,
+    /// Answers that came before they were looked for.
+    early: Vec<Answer>,
+    asked: Asked,
+}
 
-    /// What the planners did.
-    pub(super) fn into_asked(self) -> Option<Asked> {
-        self.asked
+impl Asking {
+    fn ask(&mut self, ask: Ask) {
+        if ask.what == What::Close {
+            self.early.retain(|early| early.ask.worker != ask.id.worker);
+        }
+        self.host.submit(ask);
     }
 
     /// The planner's own answer to an ask.
@@ -54,58 +136,33 @@ impl Replayed {
             if let Some(at) = self.early.iter().position(|answer| answer.ask == ask) {
                 return Some(self.early.swap_remove(at));
             }
-            let answer = self.host.as_mut()?.next(None)?;
+            let answer = self.host.next(None)?;
             self.early.push(answer);
         }
     }
 
-    fn compare(&mut self, recorded: &Answer, mission: &Mission, is_used: bool) {
-        if self.host.is_none() {
-            return;
-        }
-        if let Err(fault) = &recorded.result
+    fn compare(&mut self, recorded: &Recorded) {
+        let Recorded { answer, tick, is_used, sending } = recorded;
+        if let Err(fault) = &answer.result
             && fault.cause.is_external()
         {
             // The mission closes the worker; nobody waits for it to fail in the same way.
-            let counts = self.asked.get_or_insert_default();
-            *counts.external.entry(fault.planner.clone()).or_default() += 1;
+            *self.asked.external.entry(fault.planner.clone()).or_default() += 1;
             return;
         }
-        let own = self.own_answer(recorded.ask);
-        let Some(asked) = &mut self.asked else { return };
-        let comparison = match own {
+        let comparison = match self.own_answer(answer.ask) {
             None => Comparison::Different("gave no answer".to_owned()),
             Some(_) if !is_used => Comparison::NotComparable,
-            Some(own) => Comparison::of(&own, recorded, |command| mission.as_sent(command)),
+            Some(own) => Comparison::of(&own, answer, |command| sending.as_sent(command)),
         };
         match comparison {
-            Comparison::Same => asked.same += 1,
-            Comparison::NotComparable => asked.not_comparable += 1,
+            Comparison::Same => self.asked.same += 1,
+            Comparison::NotComparable => self.asked.not_comparable += 1,
             Comparison::Different(why) => {
-                let (ask, tick) = (recorded.ask, self.tick);
-                asked.difference =
+                let ask = answer.ask;
+                self.asked.difference =
                     Some(format!("a planner answers ask {ask} in tick {tick} otherwise: it {why}"));
-                // From here on it knows other things than it did then.
-                self.host = None;
             }
         }
-    }
-}
-
-impl Answers for Replayed {
-    fn submit(&mut self, ask: Ask) {
-        if ask.what == What::Close {
-            self.early.retain(|early| early.ask.worker != ask.id.worker);
-        }
-        self.recorded.submit(&ask);
-        if let Some(host) = &mut self.host {
-            host.submit(ask);
-        }
-    }
-
-    fn next(&mut self, mission: &Mission) -> Option<Answer> {
-        let (answer, is_used) = self.recorded.next_answer()?;
-        self.compare(&answer, mission, is_used);
-        Some(answer)
     }
 }
