@@ -53,16 +53,6 @@ impl<T: Row> Lane<T> {
     }
 }
 
-/// A position.
-pub(crate) struct Spot(pub Flat);
-
-impl Row for Spot {
-    fn columns(rows: &[Self]) -> Result<Vec<rr::SerializedComponentColumn>, rr::SerializationError> {
-        let positions = rows.iter().map(|row| row.0);
-        Ok(rr::Points2D::update_fields().with_positions(positions).columns_of_unit_batches()?.collect())
-    }
-}
-
 /// Where a rigid body stands; what is drawn below its entity moves with it.
 pub(crate) struct Placed {
     pub at: Flat,
@@ -152,6 +142,7 @@ impl Row for Lines {
 }
 
 /// Points, any number of them.
+#[derive(Clone, PartialEq)]
 pub(crate) struct Spots(pub Vec<Flat>);
 
 impl Row for Spots {

@@ -1,7 +1,7 @@
 //! How the viewer opens a recording: map on the left, figures, states and log on the right.
 //!
 //! The layout is embedded in the recording. The SDK's builders lack some view properties (bounds, background, axes,
-//! trails); they are appended to the same blueprint store by the paths that the viewer reads them from.
+//! ways); they are appended to the same blueprint store by the paths that the viewer reads them from.
 
 use super::{
     paths,
@@ -15,8 +15,6 @@ use crate::{
 use mission::{TaskConfig, event::RunOpened};
 use rr::AsComponents;
 
-/// How far back the trails of the robot reach, seconds of mission time.
-const TRAIL_S: f64 = 60.0;
 /// Margin around the tank as a share of its size.
 const MARGIN: f64 = 0.06;
 
@@ -94,15 +92,9 @@ impl Sketch {
         self.add(&path, "VisualBounds2D", &bounds(run));
         let background = view::Background::new(view_part::BackgroundKind::SolidColor);
         self.add(&path, "Background", &background.with_color(style::color(style::FLOOR)));
-        let trail = trail(TRAIL_S, run.mission.tick_s);
         let way = since_the_start();
-        for (entity, ranges) in [
-            (paths::TRUE, &trail),
-            (paths::ESTIMATE, &trail),
-            (paths::WAY_TRUE, &way),
-            (paths::WAY_ESTIMATE, &way),
-        ] {
-            self.add(&path, &format!("ViewContents/overrides/{entity}/visualizers"), ranges);
+        for entity in [paths::WAY_TRUE, paths::WAY_ESTIMATE] {
+            self.add(&path, &format!("ViewContents/overrides/{entity}/visualizers"), &way);
         }
         map
     }
@@ -229,14 +221,6 @@ fn bounds(run: &RunOpened) -> view::VisualBounds2D {
         x_range: [low.x - margin, high.x + margin].into(),
         y_range: [-high.y - margin, -low.y + margin].into(),
     }))
-}
-
-fn trail(seconds: f64, tick_s: f64) -> view::VisibleTimeRanges {
-    let back = |by: f64| datatypes::TimeRangeBoundary::CursorRelative(datatypes::TimeInt(-by.round() as i64));
-    view::VisibleTimeRanges::new([
-        until_now(TICK, back(seconds / tick_s)),
-        until_now(SIM_TIME, back(seconds * 1e9)),
-    ])
 }
 
 fn since_the_start() -> view::VisibleTimeRanges {

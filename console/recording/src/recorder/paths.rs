@@ -30,15 +30,14 @@ pub(crate) const CUTS: &str = "map/world/path/cuts";
 pub(crate) const TARGET: &str = "map/world/path/target";
 pub(crate) const WAY_TRUE: &str = "map/world/way/true";
 pub(crate) const WAY_ESTIMATE: &str = "map/world/way/est";
+/// The true pose; what is below it moves with it.
 pub(crate) const TRUE: &str = "map/world/robot/true";
-pub(crate) const ESTIMATE: &str = "map/world/robot/est";
-/// Moves with the true pose.
-pub(crate) const BODY: &str = "map/world/robot/body";
-pub(crate) const HEADING: &str = "map/world/robot/body/heading";
-pub(crate) const HULL: &str = "map/world/robot/body/hull";
+pub(crate) const HEADING: &str = "map/world/robot/true/heading";
+pub(crate) const HULL: &str = "map/world/robot/true/hull";
 /// What the tool scans.
-pub(crate) const SWATH: &str = "map/world/robot/body/swath";
-pub(crate) const COVARIANCE: &str = "map/world/robot/cov";
+pub(crate) const SWATH: &str = "map/world/robot/true/swath";
+/// The estimated position, turned as its 95 % ellipse is.
+pub(crate) const ESTIMATE: &str = "map/world/robot/est";
 /// Arrows of planners, one entity a layer below it.
 pub(crate) const FORCES: &str = "map/world/forces";
 /// Circles and lines of planners, one entity a layer and kind below it.

@@ -195,12 +195,13 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
             .with_colors([style::color(color)])
             .with_radii([style::on_screen(radius)])
     };
-    stream.always(paths::TRUE, &dots(style::TRUE, 2.0))?;
-    stream.always(paths::ESTIMATE, &dots(style::ESTIMATE, 1.5))?;
+    let center = |color, radius| dots(color, radius).with_positions([[0.0, 0.0]]);
+    stream.always(paths::TRUE, &center(style::TRUE, 2.0))?;
+    stream.always(paths::ESTIMATE, &center(style::ESTIMATE, 1.5))?;
     stream.always(paths::TARGET, &dots(style::PLAN, 4.0))?;
     stream.always(paths::FIX, &dots(style::STATION, 2.5))?;
     let covariance = rr::Ellipses2D::update_fields().with_colors([style::color(style::ESTIMATE)]);
-    stream.always(paths::COVARIANCE, &covariance.with_line_radii([style::on_screen(1.2)]))?;
+    stream.always(paths::ESTIMATE, &covariance.with_line_radii([style::on_screen(1.2)]))?;
     stream.always(paths::PLANNED, &line_style(style::PLAN, 1.0))?;
     if matches!(run.mission.task, TaskConfig::Cover { .. }) {
         stream.always(paths::CUTS, &line_style(style::WARNING, 1.2))?;

@@ -9,7 +9,7 @@ use crate::error::RecordingError;
 use world::Point;
 
 /// Points of a piece of the way that is sent as one line.
-const WAY_POINTS: usize = 32;
+const WAY_POINTS: usize = 12;
 
 /// One entity, filled tick by tick.
 pub(crate) trait Series: Send {
@@ -38,6 +38,48 @@ impl<T: Row + Send> Series for Rows<T> {
     fn push(&mut self, tick: &Tick) {
         if let Some(row) = (self.of)(tick) {
             self.lane.push(tick.at, row);
+        }
+    }
+
+    fn send(&mut self, stream: &Stream) -> Result<(), RecordingError> {
+        self.lane.send(stream)
+    }
+}
+
+/// The first and the last of equal rows that follow each other: the curve is the same.
+struct Changes<T> {
+    lane: Lane<T>,
+    of: fn(&Tick) -> Option<T>,
+    last: Option<T>,
+    /// When the last row was met again.
+    again: Option<At>,
+}
+
+/// A series of what each tick shows, if it shows it, without the ticks between equal ones.
+pub(crate) fn changes<T>(path: &str, of: fn(&Tick) -> Option<T>) -> Box<dyn Series>
+where
+    T: Row + Clone + PartialEq + Send + 'static,
+{
+    Box::new(Changes { lane: Lane::new(path), of, last: None, again: None })
+}
+
+impl<T: Row + Clone + PartialEq + Send> Series for Changes<T> {
+    fn push(&mut self, tick: &Tick) {
+        let row = (self.of)(tick);
+        if row == self.last {
+            self.again = row.map(|_| tick.at);
+            return;
+        }
+        self.finish();
+        self.last.clone_from(&row);
+        if let Some(row) = row {
+            self.lane.push(tick.at, row);
+        }
+    }
+
+    fn finish(&mut self) {
+        if let Some((at, row)) = self.again.take().zip(self.last.clone()) {
+            self.lane.push(at, row);
         }
     }
 

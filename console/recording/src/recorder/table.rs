@@ -1,9 +1,9 @@
 //! Everything that is recorded of a tick in rows: one table, each series with its place and with what it shows of a tick.
 
 use super::{
-    lane::{Ellipse, Lane, Placed, Spot, Spots, Strip, flat},
+    lane::{Ellipse, Lane, Placed, Spots, Strip, flat},
     paths,
-    series::{Series, Way, rows},
+    series::{Series, Way, changes, rows},
     stream::{At, Stream},
     style,
     tick::Tick,
@@ -40,13 +40,11 @@ const TETHER_FIGURES: [Figure; 5] = [
 fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
     let spacing_m = run.mission.cell_m;
     vec![
-        rows(paths::TRUE, |tick| Some(Spot(flat(tick.truth?.pose.position)))),
-        rows(paths::BODY, |tick| {
+        rows(paths::TRUE, |tick| {
             let pose = tick.truth?.pose;
             Some(Placed { at: flat(pose.position), angle_rad: pose.heading_rad as f32 })
         }),
-        rows(paths::ESTIMATE, |tick| Some(Spot(flat(tick.estimate?.position)))),
-        rows(paths::COVARIANCE, |tick| {
+        rows(paths::ESTIMATE, |tick| {
             let (long_m, short_m, angle_rad) = tick.estimate?.ellipse_95;
             let placed = Placed { at: flat(tick.estimate?.position), angle_rad: angle_rad as f32 };
             Some(Ellipse { placed, half_axes_m: (long_m as f32, short_m as f32) })
@@ -60,7 +58,7 @@ fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
 fn tether() -> Vec<Box<dyn Series>> {
     vec![
         rows(paths::TETHER, |tick| Some(Strip(tick.tether.as_ref()?.line.clone()))),
-        rows(paths::TETHER_CONTACTS, |tick| Some(Spots(tick.tether.as_ref()?.contacts.clone()))),
+        changes(paths::TETHER_CONTACTS, |tick| Some(Spots(tick.tether.as_ref()?.contacts.clone()))),
     ]
 }
 
@@ -82,7 +80,7 @@ impl Table {
         }
         for (path, name, color, value) in figures {
             stream.always(path, &curve(name, color))?;
-            series.push(rows(path, value));
+            series.push(changes(path, value));
         }
         Ok(Self { series, reported: BTreeMap::new() })
     }

@@ -49,17 +49,9 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
     let content = recorded(&events);
     let commands = count(&events, |kind| matches!(kind, EventKind::Commanded { .. }));
     for (entity, component, wanted) in [
-        ("map/world/robot/true", "Points2D:positions", TICKS as usize),
-        ("map/world/robot/body", "Transform3D:translation", TICKS as usize),
-        ("map/world/robot/est", "Points2D:positions", TICKS as usize),
-        ("map/world/robot/cov", "Ellipses2D:half_sizes", TICKS as usize),
-        ("scalars/position_error", "Scalars:scalars", TICKS as usize),
-        ("scalars/position_error_95", "Scalars:scalars", TICKS as usize),
-        ("scalars/clearance", "Scalars:scalars", TICKS as usize),
-        ("scalars/speed", "Scalars:scalars", TICKS as usize - 1),
-        ("scalars/speed_commanded", "Scalars:scalars", commands),
-        ("scalars/coverage_reachable", "Scalars:scalars", commands),
-        ("scalars/cross_track", "Scalars:scalars", commands),
+        ("map/world/robot/true", "Transform3D:translation", TICKS as usize),
+        ("map/world/robot/est", "Transform3D:translation", TICKS as usize),
+        ("map/world/robot/est", "Ellipses2D:half_sizes", TICKS as usize),
         ("scalars/planner/potential", "Scalars:scalars", commands),
         ("map/world/ae/ranges", "LineStrips2D:strips", TICKS as usize / 10),
         ("map/world/ae/fix", "Points2D:positions", TICKS as usize / 10),
@@ -68,8 +60,60 @@ fn every_tick_has_its_row_of_truth_estimate_and_figures() {
     }
 }
 
+/// The value of a figure in every tick, also in those that have no row since nothing changed.
+fn by_tick(content: &Content, figure: &str) -> Vec<Option<String>> {
+    let mut rows = rows(content, figure, "Scalars:scalars").iter().peekable();
+    let mut last = None;
+    let of_tick = |tick| {
+        let is_due = |(times, _): &&(Vec<(String, i64)>, String)| {
+            times.iter().any(|(name, t)| name == "tick" && *t <= tick)
+        };
+        while let Some((_, value)) = rows.next_if(is_due) {
+            last = Some(value.clone());
+        }
+        last.clone()
+    };
+    (0..TICKS as i64).map(of_tick).collect()
+}
+
 #[test]
-fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
+fn a_figure_is_known_in_every_tick_and_equal_values_have_a_first_and_a_last_row() {
+    let events = events(TICKS);
+    let content = recorded(&events);
+    let wanted = |of: fn(&EventKind) -> Option<f64>| {
+        let mut last = None;
+        let mut by_tick = vec![None; TICKS as usize];
+        let mut events = events.iter().peekable();
+        for (tick, value) in by_tick.iter_mut().enumerate() {
+            while let Some(event) = events.next_if(|event| event.tick <= tick as u64) {
+                last = of(&event.kind).map(|value| value.to_string()).or(last);
+            }
+            value.clone_from(&last);
+        }
+        by_tick
+    };
+    let clearance = wanted(|kind| match kind {
+        EventKind::Truth { clearance_m, .. } => Some(*clearance_m),
+        _ => None,
+    });
+    let cross_track = wanted(|kind| match kind {
+        EventKind::Progressed { cross_track_m, .. } => *cross_track_m,
+        _ => None,
+    });
+    for (figure, wanted) in [("scalars/clearance", clearance), ("scalars/cross_track", cross_track)] {
+        assert_eq!(by_tick(&content, figure), wanted, "{figure}");
+    }
+    for figure in ["scalars/clearance", "scalars/cross_track"] {
+        let rows = rows(&content, figure, "Scalars:scalars");
+        assert!(
+            rows.windows(3).all(|three| three[0].1 != three[1].1 || three[1].1 != three[2].1),
+            "{figure}"
+        );
+    }
+}
+
+#[test]
+fn a_tethered_run_has_the_cable_in_every_tick_and_its_figures() {
     let mut events = events(20);
     let limits = world::tether::Limits { reel_length_m: 30.0, wrap_max_rad: 3.0, wrap_total_max_rad: 6.0 };
     let anchor = world::Point::origin();
@@ -110,10 +154,9 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
     for (entity, component, wanted) in [
         ("map/world/tether", "LineStrips2D:strips", 20),
         ("map/world/tether/contacts", "Points2D:positions", 20),
-        ("scalars/tether/out", "Scalars:scalars", 20),
-        ("scalars/tether/out_true", "Scalars:scalars", 20),
         ("scalars/tether/return_path", "Scalars:scalars", 10),
-        ("scalars/tether_wrap/largest", "Scalars:scalars", 20),
+        // It does not change: its first and its last row.
+        ("scalars/tether_wrap/largest", "Scalars:scalars", 2),
     ] {
         assert_eq!(rows(&content, entity, component).len(), wanted, "{entity}");
     }
@@ -123,7 +166,8 @@ fn a_tethered_run_has_the_cable_and_its_figures_in_every_tick() {
 fn the_last_row_is_the_last_tick_on_both_timelines() {
     let events = events(TICKS);
     let content = recorded(&events);
-    let (times, value) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
+    let (times, value) =
+        rows(&content, "map/world/robot/true", "Transform3D:translation").last().expect("rows");
     let last = TICKS as i64 - 1;
     assert_eq!(times, &[("sim_time".to_owned(), last * 100_000_000), ("tick".to_owned(), last)]);
     let truth = events.iter().rev().find_map(|event| match &event.kind {
@@ -131,7 +175,7 @@ fn the_last_row_is_the_last_tick_on_both_timelines() {
         _ => None,
     });
     let truth = truth.expect("the run has a truth");
-    assert_eq!(value, &format!("[{:?}, {:?}]", truth.x as f32, truth.y as f32));
+    assert_eq!(value, &format!("[{:?}, {:?}, 0.0]", truth.x as f32, truth.y as f32));
 }
 
 #[test]
@@ -204,7 +248,7 @@ fn a_run_with_a_date_in_its_name_has_a_calendar() {
     recorder.finish(&Summary::default()).expect("room on the disk");
     let content = content(&path);
     let began_ns = 1_795_320_092_000_000_000_i64;
-    let (times, _) = rows(&content, "map/world/robot/true", "Points2D:positions").last().expect("rows");
+    let (times, _) = rows(&content, "map/world/robot/true", "Transform3D:translation").last().expect("rows");
     assert_eq!(times.last(), Some(&("utc".to_owned(), began_ns + 1_900_000_000)));
     let (_, start) = rows(&content, "__properties", "RecordingInfo:start_time").last().expect("a property");
     assert_eq!(start, &began_ns.to_string());
