@@ -182,7 +182,7 @@ fn certified(certificate: &Certificate) -> String {
         certificate;
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap {:.0} deg around one obstacle, {:.0} deg in total\n{}",
+        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap {:.0}° around one obstacle, {:.0}° in total\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
         wrap_max_rad.to_degrees(),
         wrap_total_max_rad.to_degrees(),

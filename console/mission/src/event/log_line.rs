@@ -213,7 +213,7 @@ fn of_tether(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Info, "tether", format!("{} back within limit", alarm.word()))
         }
         EventKind::Certified { planner, refused, certificate } => line(
-            severity::of_certificate(*refused, certificate),
+            severity::of_certificate(certificate),
             "tether",
             certificate_text(planner, *refused, certificate),
         ),

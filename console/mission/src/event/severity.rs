@@ -46,11 +46,8 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
     }
 }
 
-/// How much the certificate of a plan asks of the operator; `refused`: the plan is not flown.
-pub(super) fn of_certificate(refused: bool, certificate: &Certificate) -> Severity {
-    match (refused, certificate.certified) {
-        (true, _) => Severity::Crit,
-        (false, true) => Severity::Info,
-        (false, false) => Severity::Warn,
-    }
+/// How much the certificate of a plan asks of the operator. One that is refused is not flown, and what follows has an event of
+/// its own: a plan from the anchor, a hold, or nothing, if another planner drives.
+pub(super) fn of_certificate(certificate: &Certificate) -> Severity {
+    if certificate.certified { Severity::Info } else { Severity::Warn }
 }

@@ -38,7 +38,9 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     let run = look.run;
     let is_stale = look.is_pose_stale();
     let pose = |value: String| marked(is_stale, (Role::Text, value));
-    let mut rows = vec![(2, "planner", planner(look))];
+    // Its name is in the top line as well: how another one differs is worth more.
+    let of_name = if run.shadow.is_some() { 3 } else { 2 };
+    let mut rows = vec![(of_name, "planner", planner(look))];
     if let Some(fault) = &run.planning.fault {
         let words = text::wrap(&fault.message, room + 1).into_iter().take(FAULT_ROWS).zip([2_u8, 7]);
         rows.extend(

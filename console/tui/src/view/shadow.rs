@@ -19,7 +19,7 @@ pub(super) fn rows(run: &Run, room: usize) -> Vec<(u8, &'static str, (Role, Stri
             format!("{clearance} m, here {here} m"),
             format!("{clearance} m"),
         ];
-        rows.push((3, "differs", (Role::Text, text::wording(commands, room))));
+        rows.push((2, "differs", (Role::Text, text::wording(commands, room))));
         rows.push((3, "clear", (Role::Text, text::wording(clear, room))));
     }
     rows
@@ -38,7 +38,8 @@ fn state(shadow: &Shadow) -> [String; 4] {
         None => "opening".to_owned(),
         Some(_) if shadow.is_promoted => "taking over".to_owned(),
         Some(_) if tally.is_ready() => "ready".to_owned(),
-        Some(_) if tally.answered == 0 => "planning".to_owned(),
+        Some(_) if shadow.path.is_empty() => "planning".to_owned(),
+        Some(_) if tally.answered == 0 => "planned".to_owned(),
         Some(_) => format!("{} of {READY_AFTER} steps", tally.in_row),
     };
     let version = shadow.info.as_ref().map_or_else(String::new, |info| format!(" {}", info.version));

@@ -49,13 +49,13 @@ impl Reasons<'_> {
             let (wrap_rad, on) = self.replay.max_wrap;
             let (wrap, limit, on) =
                 (wrap_rad.to_degrees(), limits.wrap_max_rad.to_degrees(), self.name_of(on));
-            reasons.push(format!("tether wraps {wrap:.0} deg around {on}, limit {limit:.0} deg"));
+            reasons.push(format!("tether wraps {wrap:.0}° around {on}, limit {limit:.0}°"));
         }
         if certificate.wrap_total_max_rad > limits.wrap_total_max_rad {
             let (total_rad, at) = self.replay.max_sum;
             let (total, limit, place) =
                 (total_rad.to_degrees(), limits.wrap_total_max_rad.to_degrees(), place(at));
-            reasons.push(format!("total tether wrap {total:.0} deg at {place}, limit {limit:.0} deg"));
+            reasons.push(format!("total tether wrap {total:.0}° at {place}, limit {limit:.0}°"));
         }
         reasons.extend(self.left_out(certificate));
         if certificate.cut_crossings > 0 {
