@@ -23,7 +23,7 @@ use crate::{
 use flight::{Flight, planners::check_choices, scenarios};
 use mission::{PlannerChoice, PlannerInfo, Severity};
 use planner_host::PluginDirs;
-use review::rescan_of;
+use review::{combined, rescan_of};
 use runs::Closed;
 use scenario::{Scenario, Settings};
 use std::{
@@ -60,6 +60,8 @@ pub(super) enum Request {
     SavePreset { name: String, choice: PlannerChoice },
     /// Keep a command line for later sessions.
     Remember(String),
+    /// Take together what the run that is open and those before it have scanned.
+    Combine(Vec<String>),
     /// Look at the plugins again.
     Survey,
     /// Look at the disk again.
@@ -199,6 +201,7 @@ impl Desk {
                 Request::Remember(line) => history::append(&line),
                 Request::Survey => self.survey(),
                 Request::Look => self.look(),
+                Request::Combine(runs) => self.combine(runs),
                 Request::Do(job) => jobs::begin(job, &self.tools),
                 Request::Leave { hurry } => {
                     self.close(hurry)?;
@@ -280,6 +283,20 @@ impl Desk {
         match Comparing::begin(Arc::clone(scenario), choice, &self.tools.plugins, screen) {
             Ok(comparing) => self.comparing = Some(comparing),
             Err(error) => jobs::report(&self.tools.outbox, &format!("cannot compare: {error}")),
+        }
+    }
+
+    /// Reading the journals of long runs takes seconds: the desk does not wait for it.
+    fn combine(&self, runs: Vec<String>) {
+        let Some((run, _)) = &self.opened else { return };
+        let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
+        let logs = self.tools.logs.clone();
+        let began = thread::Builder::new().name("combine".into()).spawn(move || {
+            let floor = combined(&runs, &logs).map_err(|error| format!("{error:#}"));
+            let _ = screen.send(RunMsg::Combined(floor.map(Box::new)));
+        });
+        if let Err(error) = began {
+            jobs::report(&self.tools.outbox, &format!("cannot combine the runs: {error}"));
         }
     }
 

@@ -79,6 +79,7 @@ impl Session {
             Effect::StopForecasting => self.desk.request(Request::StopForecasting),
             Effect::StopComparing => self.desk.request(Request::StopComparing),
             Effect::SavePreset { name, choice } => self.desk.request(Request::SavePreset { name, choice }),
+            Effect::Combine(runs) => self.desk.request(Request::Combine(runs)),
             Effect::Survey => self.desk.request(Request::Survey),
             Effect::Look => self.desk.request(Request::Look),
             Effect::Do(job) => self.desk.request(Request::Do(job)),

@@ -1,7 +1,7 @@
 //! Past runs as their journals tell them.
 
 use flight::failure::bad_input;
-use report::{Expect, Summary, human};
+use report::{Expect, PastRun, Summary, account::Account, human, merged};
 use runs::{Past, find};
 use scenario::{Scenario, with_todays_keys};
 use std::path::{Path, PathBuf};
@@ -12,6 +12,16 @@ use std::path::{Path, PathBuf};
 /// One is not there, or its journal cannot be read.
 pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
     runs.iter().map(|run| Ok(Past::read(&find(run, logs)?)?)).collect()
+}
+
+/// What runs on one floor have scanned together.
+///
+/// # Errors
+/// One is not there, its journal cannot be read, or they are not of one floor.
+pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
+    let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
+    let past: Vec<PastRun> = read_all(&runs, logs)?.into_iter().map(|past| past.run).collect();
+    Ok(merged(&past).map_err(bad_input)?.floor)
 }
 
 /// The report of the run in a folder, for people.

@@ -4,7 +4,7 @@ use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
 use mission::{Order, Phase};
 use report::{
     Estimate, Summary,
-    account::{Area, MissReason},
+    account::{Account, Area, MissReason},
 };
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +104,9 @@ pub struct Live {
     pub heard_mono_s: f64,
     /// What the run leaves, when it has ended and its files are closed.
     pub result: Option<RunResult>,
+    /// What it and the runs before it have scanned together, if it is a re-scan and that is known; or why it is not.
+    #[serde(default)]
+    pub combined: Option<Result<Box<Account>, String>>,
     /// How the run is played back, if it is.
     #[serde(default)]
     pub replay: Option<Box<Replay>>,
@@ -143,9 +146,21 @@ impl Live {
         self.areas().filter(|area| area.reason == MissReason::NotAsked).map(|area| area.area_m2).sum()
     }
 
+    /// The account of the floor: over all runs if this one is a re-scan, as soon as that is known.
+    pub fn floor(&self) -> Option<&Account> {
+        let combined = self.combined.iter().flatten().map(|floor| &**floor).next();
+        combined.or_else(|| self.result.as_ref()?.summary.floor.as_ref())
+    }
+
+    /// This run, after those of which it re-scans what they missed; `None` if another run is named or it is no re-scan.
+    pub fn with_earlier(&self, run: &str) -> Option<Vec<String>> {
+        let is_open = self.result.as_ref().is_none_or(|result| result.name.as_deref() == Some(run));
+        let Some(Source::Rescan(earlier)) = self.source.as_ref().filter(|_| is_open) else { return None };
+        Some(earlier.iter().cloned().chain([run.to_owned()]).collect())
+    }
+
     fn areas(&self) -> impl Iterator<Item = &Area<MissReason>> {
-        let floor = self.result.as_ref().and_then(|result| result.summary.floor.as_ref());
-        floor.into_iter().flat_map(|floor| &floor.missed)
+        self.floor().into_iter().flat_map(|floor| &floor.missed)
     }
 
     /// Whether the mission waits for its start.

@@ -145,7 +145,10 @@ pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
 /// Begins work on a past run.
 pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effect> {
     let (job, news) = match id {
-        ActionId::Rescan => return open(model, Source::Rescan(vec![run]), None),
+        ActionId::Rescan => {
+            let runs = model.live.with_earlier(&run).unwrap_or_else(|| vec![run]);
+            return open(model, Source::Rescan(runs), None);
+        }
         ActionId::Replay => return replay::open(model, run),
         ActionId::CompareRun => return replay::compare(model, run),
         ActionId::Verify => (Job::Verify(run), "verifying"),

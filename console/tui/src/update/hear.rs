@@ -80,6 +80,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             what_if::made(model, &choice, forecast.map(|forecast| *forecast));
         }
         RunMsg::Closed(result) => return closed(model, *result),
+        RunMsg::Combined(combined) => model.live.combined = Some(combined),
         RunMsg::Replay(msg) => replay::hear(model, msg),
     }
     Vec::new()
@@ -132,9 +133,11 @@ fn take_health(model: &mut Model, health: Health) {
 
 /// The run is over: who watched it sees what it has achieved.
 fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
+    let combine =
+        result.name.as_ref().filter(|_| result.is_kept).and_then(|name| model.live.with_earlier(name));
     model.live.result = Some(result);
     if model.ui.screen == Screen::Mission && model.ui.overlay == Overlay::None {
         model.ui.go(Screen::Result);
     }
-    vec![Effect::Look]
+    combine.map(Effect::Combine).into_iter().chain([Effect::Look]).collect()
 }

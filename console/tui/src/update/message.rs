@@ -8,7 +8,7 @@ use crate::model::{
     replay::{Align, Reel, Side},
 };
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
-use report::{Estimate, Summary, notes::Notes};
+use report::{Estimate, Summary, account::Account, notes::Notes};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -162,6 +162,8 @@ pub enum RunMsg {
     Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
+    /// What a re-scan and the runs before it scanned together, or why that is not known, as a sentence.
+    Combined(Result<Box<Account>, String>),
     /// News of a past run that is played back.
     Replay(ReplayMsg),
 }
@@ -271,6 +273,8 @@ pub enum Effect {
         /// The planner with the value of every parameter.
         choice: PlannerChoice,
     },
+    /// Take together what runs on one floor have scanned: the last one is a re-scan of what the others missed.
+    Combine(Vec<String>),
     /// Look at the plugins again.
     Survey,
     /// Look at scenarios, past runs and the disk again.

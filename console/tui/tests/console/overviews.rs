@@ -1,6 +1,7 @@
 //! The screens around a mission: what there is to open, what a plan promises, what was achieved.
 
 use crate::fixture::{RICH, Screen, choice};
+use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
 use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
 use report::{Estimate, Fold, Summary, estimate::Worst};
@@ -141,6 +142,36 @@ fn preflight() {
 
 #[test]
 fn result() {
+    store("result", &mut ended().0);
+}
+
+#[test]
+fn result_of_a_rescan() {
+    let (mut screen, closed) = ended();
+    let closed = RunResult { summary: Box::new(missed_summary()), ..closed };
+    screen.model.live.source = Some(Source::Rescan(vec!["20261122T030000Z-tank-07-rpf-42".into()]));
+    let runs = vec!["20261122T030000Z-tank-07-rpf-42".into(), closed.name.clone().unwrap()];
+    let floor = closed.summary.floor.clone().unwrap();
+    assert_eq!(
+        screen.hear(RunMsg::Closed(Box::new(closed))),
+        [Effect::Combine(runs.clone()), Effect::Look],
+        "the runs are combined"
+    );
+    let mut all = floor;
+    (all.reachable.percent.scanned, all.reachable.percent.missed) = (99.1, 0.9);
+    all.missed.truncate(0);
+    screen.hear(RunMsg::Combined(Ok(Box::new(all))));
+    screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
+    store("result_rescan", &mut screen);
+    let effects = screen.type_text("r");
+    assert!(
+        matches!(&effects[..], [Effect::Open { source: Source::Rescan(again), .. }] if *again == runs),
+        "the next re-scan is of what all runs missed: {effects:?}"
+    );
+}
+
+/// A run that has ended, and what it leaves.
+fn ended() -> (Screen, RunResult) {
     let mut screen = Screen::running();
     let ended = screen.mission.ended(Outcome::Complete, "end of the preset path reached");
     let mut fold = Fold::new();
@@ -155,8 +186,8 @@ fn result() {
         kept: "run kept in logs/20261122T040049Z-tank-07-rpf-42".into(),
         is_kept: true,
     };
-    screen.hear(RunMsg::Closed(Box::new(result)));
-    store("result", &mut screen);
+    screen.hear(RunMsg::Closed(Box::new(result.clone())));
+    (screen, result)
 }
 
 /// A mission that is held, with the forecast of its own planner.

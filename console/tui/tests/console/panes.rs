@@ -69,7 +69,7 @@ fn result() -> Screen {
 }
 
 /// The summary of a run that missed an area.
-fn missed_summary() -> Summary {
+pub(crate) fn missed_summary() -> Summary {
     let area = serde_json::json!({
         "at": [1.0, 2.0], "low": [0.5, 1.5], "high": [1.5, 2.5], "area_m2": 0.75, "plate": "R-03-05", "reason": "beyond_reel",
         "causes": [

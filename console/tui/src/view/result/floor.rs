@@ -1,6 +1,6 @@
 //! How the floor divides, on every base, and the zone along the shell.
 
-use crate::model::RunResult;
+use crate::model::{RunResult, Source};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
@@ -22,6 +22,10 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
             rows.push(vec![(Role::Dim, head(columns))]);
             rows.push(vec![(Role::Text, shares("whole floor", &account.whole, columns))]);
             rows.push(vec![(Role::Text, shares("reachable floor", &account.reachable, columns))]);
+            if let Some(Ok(all)) = &look.model.live.combined {
+                rows.push(vec![(Role::Text, shares("whole, all runs", &all.whole, columns))]);
+                rows.push(vec![(Role::Text, shares("reach., all runs", &all.reachable, columns))]);
+            }
         }
     }
     rows.extend(notes(look, result, columns).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
@@ -59,6 +63,32 @@ fn shares(label: &str, shares: &Shares, columns: usize) -> String {
     }
 }
 
+/// Which runs are taken together, or why none are.
+fn of_all_runs(look: &Look) -> Option<String> {
+    let live = &look.model.live;
+    let earlier = match &live.source {
+        Some(Source::Rescan(earlier)) => earlier.as_slice(),
+        _ => &[],
+    };
+    match &live.combined {
+        Some(Ok(_)) => {
+            let runs = if earlier.len() == 1 { "run" } else { "runs" };
+            Some(format!(
+                "All runs: this one and the {} {runs} before it; zone, plates and missed areas are of all runs.",
+                earlier.len()
+            ))
+        }
+        Some(Err(why)) => Some(format!("This run alone; the runs cannot be combined: {why}.")),
+        None if !earlier.is_empty() => {
+            Some("This run alone; combining it with the runs before it...".to_owned())
+        }
+        None if live.not_requested_m2() > 0.0 => {
+            Some("This run alone; `tankops report FIRST SECOND` combines runs.".to_owned())
+        }
+        None => None,
+    }
+}
+
 /// What the table does not say.
 fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
     let summary = &result.summary;
@@ -68,7 +98,7 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
     let truth = summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
         format!("By the true position: {} % of reachable floor.", text::percent(truth.reachable))
     });
-    let zone = summary.floor.as_ref().map(|floor| {
+    let zone = look.model.live.floor().map(|floor| {
         let zone = &floor.critical_zone;
         let width_mm = text::number(1000.0 * zone.width_m, 0);
         if zone.done {
@@ -79,12 +109,11 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
         }
     });
     let broken = summary.violations.iter().flatten().map(|violation| format!("Not met: {violation}."));
-    let plates = summary.floor.as_ref().filter(|floor| !floor.plates.is_empty()).map(|floor| {
+    let plates = look.model.live.floor().filter(|floor| !floor.plates.is_empty()).map(|floor| {
         let all = floor.plates.iter().filter(|plate| plate.shares.percent.missed <= MISSED_PERCENT).count();
         format!("Plates: {all} of {} with at most {MISSED_PERCENT} % missed.", floor.plates.len())
     });
-    let is_part = look.model.live.not_requested_m2() > 0.0;
-    let joined = is_part.then(|| "This run alone; `tankops report FIRST SECOND` joins runs.".to_owned());
-    let notes = joined.into_iter().chain(zone).chain(plates).chain(again).chain(truth).chain(broken);
+    let notes =
+        of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth).chain(broken);
     notes.flat_map(|note| text::wrap(&note, columns)).collect()
 }

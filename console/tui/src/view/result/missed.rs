@@ -12,11 +12,8 @@ use report::account::{Area, MissReason};
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let listed = &look.model.live.missed()[..];
-    let block = look.block(
-        Role::Focus,
-        &title(look, listed, result),
-        if listed.is_empty() { "" } else { "n N walk" },
-    );
+    let block =
+        look.block(Role::Focus, &title(look, listed), if listed.is_empty() { "" } else { "n N walk" });
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
     let why = listed.get(look.model.ui.missed).map_or_else(Vec::new, |area| {
@@ -33,7 +30,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     fill(frame, area, block, lines);
 }
 
-fn title(look: &Look, listed: &[&Area<MissReason>], result: &RunResult) -> String {
+fn title(look: &Look, listed: &[&Area<MissReason>]) -> String {
     let others_m2 = look.model.live.not_requested_m2();
     let others = if others_m2 > 0.0 {
         format!("; {} m² not requested", text::number(others_m2, 2))
@@ -44,7 +41,7 @@ fn title(look: &Look, listed: &[&Area<MissReason>], result: &RunResult) -> Strin
         return format!("Missed  no area{others}");
     }
     let total_m2: f64 = listed.iter().map(|area| area.area_m2).sum();
-    let slivers = result.summary.floor.as_ref().map(|floor| floor.slivers);
+    let slivers = look.model.live.floor().map(|floor| floor.slivers);
     let small = slivers.filter(|slivers| slivers.count > 0).map_or_else(String::new, |slivers| {
         format!(", {} smaller, {} m²", slivers.count, text::number(slivers.area_m2, 2))
     });
