@@ -18,8 +18,8 @@ use mission::{
 };
 use planner_host::PluginDirs;
 use planners::{Asked, BEHIND, Replayed};
-use recording::{Difference, JournalError, RECORDING_FILE, RecordedTick, Ticks, events_sha256, journal_of};
-use runs::{end_is_missing, journal_doubt, recording_doubt};
+use recording::{Difference, JournalError, RecordedTick, Ticks, journal_of};
+use runs::{Past, end_is_missing};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
@@ -82,12 +82,14 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     let path = journal_of(folder);
     let mut findings = compare(&path, plugins)?;
-    let sha256 = events_sha256(&path).with_context(|| format!("reading {}", path.display()))?;
-    let recording = recording::sha256(&folder.join(RECORDING_FILE)).ok();
-    findings.doubt = journal_doubt(folder, Some(&sha256))
-        .or_else(|| recording.and_then(|sha256| recording_doubt(folder, Some(&sha256))))
-        .or_else(|| findings.no_end.as_ref().and_then(|_| end_is_missing(folder)));
+    let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
+    findings.doubt = files_doubt(folder)?.or_else(missing_end);
     Ok(findings)
+}
+
+/// What speaks against the files of a run: digests of journal or recording, or figures in its report that the journal does not give.
+fn files_doubt(folder: &Path) -> anyhow::Result<Option<String>> {
+    Ok(Past::read(folder)?.run.files.doubts.into_iter().next())
 }
 
 impl Findings {

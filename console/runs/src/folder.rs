@@ -59,8 +59,8 @@ impl RunFolder {
         let (journal_bytes, recording_bytes) = (bytes(JOURNAL_FILE), bytes(RECORDING_FILE));
         let (draft, final_name) = (self.path.join(REPORT_DRAFT), self.path.join(REPORT_FILE));
         let writing = |file: &Path| RunError::during(format!("writing {}", file.display()));
-        let text = serde_json::to_string_pretty(&ReportFile { summary, journal_bytes, recording_bytes });
-        let text = text.map_err(io::Error::from).map_err(writing(&draft))? + "\n";
+        let text = ReportFile::text(summary, journal_bytes, recording_bytes);
+        let text = text.map_err(io::Error::from).map_err(writing(&draft))?;
         replace_bytes(&draft, text.as_bytes()).map_err(writing(&draft))?;
         fs::rename(&draft, &final_name).map_err(writing(&final_name))
     }

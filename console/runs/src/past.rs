@@ -2,9 +2,9 @@
 
 use crate::{
     error::RunError,
-    report_file::{journal_doubt, names_digests, recording_doubt},
+    report_file::{figures_doubt, journal_doubt, names_digests, recording_doubt},
 };
-use mission::{Event, EventKind, RunOpened};
+use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
 use recording::{JournalError, JournalReader, RECORDING_FILE, events_sha256, journal_of, sha256, sha256_of};
 use report::{Fold, Logs, PastRun, Record, document::Files};
 use std::{fs, path::Path, sync::mpsc::sync_channel, thread};
@@ -49,7 +49,9 @@ impl Past {
         })?;
         let opened = opened.ok_or_else(|| reader.not_opened())?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
-        let files = files(folder, &opened, digests);
+        let is_todays = opened.journal_version == JOURNAL_VERSION;
+        let figures = figures_doubt(folder, is_todays.then(|| fold.summary()));
+        let files = files(folder, &opened, digests, figures);
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
@@ -100,12 +102,13 @@ fn files(
     folder: &Path,
     opened: &RunOpened,
     [journal_sha256, recording_sha256]: [Option<String>; 2],
+    figures_doubt: Option<String>,
 ) -> Files {
     let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
     let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
     let doubts = journal_doubt(folder, journal_sha256.as_deref());
     let doubts = doubts.into_iter().chain(recording_doubt(folder, recording_sha256.as_deref()));
-    let doubts: Vec<String> = doubts.collect();
+    let doubts: Vec<String> = doubts.chain(figures_doubt).collect();
     Files {
         journal_bytes: bytes(&journal),
         recording_bytes: bytes(&recording),

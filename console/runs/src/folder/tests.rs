@@ -1,10 +1,10 @@
 use super::*;
 use crate::{
-    report_file::journal_doubt,
+    report_file::{ReportFile, figures_doubt, journal_doubt},
     standing::{Standing, standing},
 };
 use mission::{Event, EventKind, Outcome};
-use recording::{Finished, Options, PLAIN_JOURNAL_FILE, RunRecorder, events_sha256};
+use recording::{Finished, Options, PLAIN_JOURNAL_FILE, RunRecorder, events_sha256, sha256_of};
 use report::{Fold, Logs};
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -147,4 +147,33 @@ fn the_report_takes_the_space_that_was_reserved_for_it() {
     assert!(!draft.exists());
     let text = fs::read_to_string(folder.path().join(REPORT_FILE)).unwrap();
     assert_eq!(serde_json::from_str::<Summary>(&text).unwrap(), Summary::default());
+}
+
+#[test]
+fn a_changed_figure_is_noticed_with_the_journal_and_without() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, _, summary) = ended(logs.path());
+    let figures = |summary: &Summary| figures_doubt(&folder, Some(summary.clone()));
+    assert_eq!((figures(&summary), figures_doubt(&folder, None)), (None, None));
+    change(&folder.join(REPORT_FILE), "\"holds\": 0", "\"holds\": 1");
+    assert!(doubt(&folder).starts_with("report.json was changed after the run ended"), "{}", doubt(&folder));
+    assert_eq!(
+        figures(&summary).as_deref(),
+        Some("report.json was changed: holds is 1, the journal gives 0")
+    );
+    // Whoever changes a figure may change the digest, too.
+    let other = Summary { holds: 1, ..summary.clone() };
+    let text = ReportFile::text(&other, None, None).unwrap();
+    fs::write(folder.join(REPORT_FILE), text).unwrap();
+    assert!(
+        figures(&summary).is_some() && figures(&other).is_none() && figures_doubt(&folder, None).is_none()
+    );
+}
+
+#[test]
+fn the_digest_of_a_report_is_that_of_its_other_lines() {
+    let text = ReportFile::text(&Summary::default(), None, None).unwrap();
+    let (others, own): (Vec<&str>, Vec<&str>) =
+        text.split_inclusive('\n').partition(|line| !line.contains("\"report_sha256\""));
+    assert_eq!(own, [format!("  \"report_sha256\": \"{}\"\n", sha256_of(others.concat().as_bytes()))]);
 }
