@@ -80,11 +80,13 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 }
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
-    let path = journal_of(folder);
-    let mut findings = compare(&path, plugins)?;
-    let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
-    findings.doubt = files_doubt(folder)?.or_else(missing_end);
-    Ok(findings)
+    thread::scope(|scope| {
+        let files = scope.spawn(|| files_doubt(folder));
+        let findings = compare(&journal_of(folder), plugins)?;
+        let doubt = files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
+        let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
+        Ok(Findings { doubt: doubt.or_else(missing_end), ..findings })
+    })
 }
 
 /// What speaks against the files of a run: digests of journal or recording, or figures in its report that the journal does not give.
