@@ -128,7 +128,8 @@ impl Document {
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
         let all = joined(past)?;
         let Joined { run, scanned, evidence } = &all;
-        let floor = account(run, scanned, evidence);
+        let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
+        let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
         let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
         let layers = Layers::new(run, scanned, evidence, &places);
         let records: Vec<(&str, &Record)> =

@@ -87,7 +87,7 @@ fn look_at(folder: &Path) -> Listed {
             listed(folder, word(&summary), Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {
-            let note = format!("ended as {}, but not kept: {why}", word(&summary));
+            let note = format!("outcome {}, but not kept: {why}", word(&summary));
             listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
         }
         Standing::Running => listed(folder, "RUNNING", None, None),

@@ -169,7 +169,7 @@ fn missed(document: &Document) -> Answered {
 }
 
 fn unreachable(document: &Document) -> Answered {
-    let (floor, slivers) = (&document.floor, document.floor.unreachable_slivers);
+    let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(
         "{} with a reason, {} smaller ones in total {:.2} m²",

@@ -181,7 +181,7 @@ fn indications(document: &Document) -> Vec<Block> {
     let optional = |value: Option<f64>| value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, 1));
     for found in &document.indications {
         table.row(vec![
-            found.number.to_string().into(),
+            format!("I{}", found.number).into(),
             clock(found.t_s).into(),
             number(found.at.x, 2).into(),
             number(found.at.y, 2).into(),
