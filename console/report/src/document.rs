@@ -105,6 +105,8 @@ pub struct Document {
     pub scenario: String,
     /// Form and size of the tank.
     pub size: String,
+    /// Whether the runs together were to scan the whole floor.
+    pub is_whole_floor: bool,
 }
 
 /// The pictures of a report.
@@ -166,8 +168,9 @@ impl Document {
             pictures,
             scenario: run.scenario.clone(),
             size: gate::size(run),
+            is_whole_floor: evidence.asks_for_everything(),
         };
-        document.gate = gate::gate(&document, run);
+        document.gate = gate::gate(&document);
         Ok(document)
     }
 

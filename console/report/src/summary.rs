@@ -117,7 +117,7 @@ impl Stops {
 pub struct Coverage {
     /// Share of the reachable floor, as the mission believes.
     pub reachable: f64,
-    /// Share of the whole floor (without what obstacles stand on), as the mission believes.
+    /// Share of the whole floor (excluding the footprint of obstacles), as the mission believes.
     pub whole: f64,
     /// Share of the scanned floor that was scanned more than once, by the estimated path: the tool came back to it after
     /// more than two swaths of way. Absent if nothing was scanned.

@@ -187,6 +187,11 @@ impl Evidence {
         self.found.iter().map(|(id, solid)| (*id, solid))
     }
 
+    /// Whether all of the floor was to be scanned.
+    pub(crate) fn asks_for_everything(&self) -> bool {
+        self.asked.is_none()
+    }
+
     /// Whether a cell was to be scanned at all.
     pub fn is_asked(&self, index: usize) -> bool {
         self.asked.as_ref().is_none_or(|asked| asked[index])

@@ -311,7 +311,7 @@ pub(super) fn tether(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     {
         mark_lay(&mut sheet, letter, lay, dash);
     }
-    let caption = "Where the tether lay; L: most of it out, W: its wraps were largest".into();
+    let caption = "Where the tether lay; L: greatest length paid out, W: largest total wrap".into();
     Some(Figure { caption, svg: sheet.svg("Tether on the floor", "half"), legend: Vec::new() })
 }
 

@@ -49,14 +49,13 @@ fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
 
 #[test]
 fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
-    let run = round_tank(0.1);
     let missed_accepted = Some("seen by eye".to_owned());
     let mut document = document(Inspection { missed_accepted, ..Inspection::default() });
     // Nothing was passed by an estimated position, so no plate has an accuracy.
     assert!(open(&document).contains(&5) && !open(&document).contains(&6), "{:?}", document.gate);
     document.floor.plates.iter_mut().for_each(|plate| plate.error_p95_m = Some(0.05));
     document.floor.missed[0].causes[0].text.clear();
-    document.gate = gate::gate(&document, &run);
+    document.gate = gate::gate(&document);
     assert!(!open(&document).contains(&5) && open(&document).contains(&6), "{:?}", document.gate);
     let lacks = &document.gate[5].missing;
     assert!(lacks.len() == 1 && lacks[0].starts_with("reason of the gap at 1."), "{lacks:?}");
@@ -147,10 +146,11 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
 
 /// Two runs, each of which found an obstacle and has a track.
 fn two_runs() -> [PastRun; 2] {
-    [("20261122T040132Z-a", 1.0), ("20261122T050132Z-b", -1.0)].map(|(name, y)| {
+    // The second one stands beside what both missed.
+    [("20261122T040132Z-a", 2.0), ("20261122T050132Z-b", -1.0)].map(|(name, y)| {
         let mut run = past();
         run.name = name.into();
-        let shape = Shape::Disc { center: Point::new(2.0, 2.0 * y), radius_m: 0.2 };
+        let shape = Shape::Disc { center: Point::new(1.7, y), radius_m: 0.2 };
         let found = Obstacle { id: ObstacleId(7), name: "found 1".into(), shape, known: false };
         run.fold.apply(&Event { tick: 1, t_s: 0.1, kind: EventKind::ObstacleFound { obstacle: found } });
         let point = |k: u16| TrackPoint {
@@ -200,7 +200,7 @@ fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
     );
     assert!(map.contains(r#""number":2,"plate""#) && map.contains(r#""run":"20261122T050132Z-b""#), "{map}");
     let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
-    assert!(reasons.contains("found 1 of run"), "{reasons}");
+    assert!(reasons.contains("from found 1 of run 2, found during the run"), "{reasons}");
     // A run of its own needs no number.
     let [run, _] = two_runs();
     let alone = Document::new(std::slice::from_ref(&run), Context::default()).unwrap();

@@ -80,7 +80,7 @@ fn arcs(account: &Account) -> Option<String> {
     });
     let listed = listed.collect::<Vec<_>>().join("; ");
     let more = arcs.len().saturating_sub(MOST_ARCS);
-    let more = if more > 0 { format!("; {} more", counted(more as u64, "arc")) } else { String::new() };
+    let more = if more > 0 { format!("; {}", counted(more as u64, "more arc")) } else { String::new() };
     (!arcs.is_empty()).then(|| format!("critical zone not done: {listed}{more}"))
 }
 

@@ -22,8 +22,8 @@ pub(super) fn map(document: &Document) -> Vec<Block> {
 pub(super) fn missed(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut blocks = vec![Block::Text(
-        "Cells that touch make one area, whatever plates they lie on. Every reason carries the number behind it; an area with \
-         several causes names each with its part."
+        "Cells that touch make one area, whatever plates they lie on. Every reason states its value; where an area has \
+         several causes, each is listed with its part of the area."
             .into(),
     )];
     let mut table = Table::new(
@@ -79,9 +79,9 @@ fn balance(document: &Document) -> String {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
     let m2 = |share: f64| share * whole.area_m2;
     format!(
-        "Whole less reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² that were scanned although no \
-         plan may count on them: the robot came nearer to shell or obstacles than hull and clearance, or they were in reach before \
-         an obstacle was found.",
+        "Whole floor minus reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² scanned although not \
+         counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, or the floor was \
+         reachable before an obstacle was found.",
         whole.area_m2 - reachable.area_m2,
         m2(whole.unreachable),
         m2(whole.margin),
@@ -136,8 +136,8 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     let scanned = zone.scanned.map_or_else(|| "none".to_owned(), |share| format!("{} %", per_cent(share)));
     let mut blocks = vec![
         Block::Text(format!(
-            "{state}: the whole {:.0} mm were scanned on {:.1} of {:.1} m of shell; {scanned} of the zone's area. It counts as done \
-             from 99.5 % of the shell.",
+            "{state}: the full width of {:.0} mm was scanned along {:.1} of {:.1} m of shell, {scanned} of the area of the zone. The zone is \
+             done when its full width is scanned along 99.5 % of the shell.",
             1000.0 * zone.width_m,
             zone.done_m,
             zone.length_m
@@ -151,7 +151,7 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     let which =
         if all > MOST_ARCS { format!("The {MOST_ARCS} longest of {all}") } else { format!("All {all}") };
     let mut table = Table::new(
-        format!("{which} arcs of 0.1 m and more that are not done (arcs less than 0.1 m apart are one)"),
+        format!("{which} arcs of 0.1 m and more that are not done (arcs less than 0.1 m apart count as one)"),
         &[
             ("From x, y", "m", "r nw"),
             ("To x, y", "m", "r nw"),
@@ -262,8 +262,8 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
         Block::Text(
             "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations). A cell is \
              guaranteed if it was scanned and lay, in one pass, under the tool narrowed on each side by 2.45 standard deviations across \
-             the heading: then it was under the tool wherever the robot stood within the ellipse. Neighbouring passes do not help one \
-             another."
+             the heading: then it was under the tool wherever the robot stood within the ellipse. Neighbouring passes are not added \
+             together."
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
