@@ -196,3 +196,53 @@ fn now() -> String {
     let digits = |range: std::ops::Range<usize>| utc.get(range).unwrap_or_default().to_owned();
     format!("{}-{}-{} {}:{}", digits(0..4), digits(4..6), digits(6..8), digits(9..11), digits(11..13))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn only_the_inspector_whose_certificate_is_stated_signs() {
+        assert!(refuse_other_signer("L. Kern", Some(" L. Kern ")).is_ok());
+        // That no inspector is named is an open item of the gate.
+        assert!(refuse_other_signer("L. Kern", None).is_ok());
+        let refused = refuse_other_signer("A. Other", Some("L. Kern")).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("not signed: --sign names A. Other, but inspection.inspector is L. Kern")
+        );
+    }
+
+    fn signed(folder: &Path, revision: &str, at: &str) -> Revision {
+        let file = folder.join(format!("{revision}.html"));
+        fs::write(&file, revision).unwrap();
+        let signature = Signature { by: "L. Kern".into(), at: at.into() };
+        let (number, revision) = ("1-1".to_owned(), revision.to_owned());
+        let file = file.display().to_string();
+        Revision { number, sha256: sha256_of(revision.as_bytes()), revision, signature, file }
+    }
+
+    #[test]
+    fn the_chain_of_several_runs_has_each_signed_report_once_and_a_changed_one_is_a_doubt_of_all() {
+        let [one, other] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let both = signed(one.path(), "B", "2026-11-22 05:00");
+        let first = signed(one.path(), "A", "2026-11-22 04:00");
+        let of_other = signed(other.path(), "C", "2026-11-22 04:30");
+        add_signed(one.path(), first.clone()).unwrap();
+        add_signed(other.path(), of_other.clone()).unwrap();
+        for folder in [&one, &other] {
+            add_signed(folder.path(), both.clone()).unwrap();
+        }
+        let folders = [one.path().to_owned(), other.path().to_owned()];
+        assert_eq!(signed_before(&folders).unwrap(), (vec![first, of_other, both.clone()], vec![]));
+        fs::write(&both.file, "forged").unwrap();
+        for folders in [&folders[..], &folders[..1], &folders[1..]] {
+            let (_, doubts) = signed_before(folders).unwrap();
+            assert!(
+                doubts.len() == 1 && doubts[0].starts_with("signed revision B was changed"),
+                "{doubts:?}"
+            );
+        }
+    }
+}

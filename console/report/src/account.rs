@@ -44,12 +44,12 @@ pub struct Account {
     /// Reachable floor that was not scanned, the largest area first.
     pub missed: Vec<Area<MissReason>>,
     /// Missed areas that are too small to be listed.
-    pub slivers: Slivers,
+    pub slivers: Slivers<MissReason>,
     /// Floor that the tool cannot reach, the largest area first.
     pub unreachable: Vec<Area<OutOfReach>>,
     /// Areas out of reach that are too small to be listed.
     #[serde(default)]
-    pub unreachable_slivers: Slivers,
+    pub unreachable_slivers: Slivers<OutOfReach>,
 }
 
 /// How a floor divides. The shares are of its area and sum to 1.

@@ -105,6 +105,8 @@ pub struct Document {
     pub scenario: String,
     /// Form and size of the tank.
     pub size: String,
+    /// Whether the runs together were to scan the whole floor.
+    pub is_whole_floor: bool,
 }
 
 /// The pictures of a report.
@@ -128,7 +130,8 @@ impl Document {
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
         let all = joined(past)?;
         let Joined { run, scanned, evidence } = &all;
-        let floor = account(run, scanned, evidence);
+        let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
+        let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
         let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
         let layers = Layers::new(run, scanned, evidence, &places);
         let records: Vec<(&str, &Record)> =
@@ -165,8 +168,9 @@ impl Document {
             pictures,
             scenario: run.scenario.clone(),
             size: gate::size(run),
+            is_whole_floor: evidence.asks_for_everything(),
         };
-        document.gate = gate::gate(&document, run);
+        document.gate = gate::gate(&document);
         Ok(document)
     }
 

@@ -141,12 +141,8 @@ impl Fold {
 
     /// The figures so far. Those that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
-        Summary { floor: self.account(), ..self.figures() }
-    }
-
-    /// The figures so far without the account of the floor, which costs a look at every cell.
-    pub(crate) fn figures(&self) -> Summary {
         Summary {
+            floor: self.account(),
             coverage: self.scanned.as_ref().map(|scanned| scanned.coverage(self.is_to_scan())),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),
             rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),

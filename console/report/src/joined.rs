@@ -1,7 +1,12 @@
 //! Several runs on one floor as if they were one.
 
 use crate::{
-    account::Evidence, document::Files, fold::Fold, record::Record, scanned::Scanned, summary::Logs,
+    account::Evidence,
+    document::Files,
+    fold::Fold,
+    record::Record,
+    scanned::Scanned,
+    summary::{Logs, Summary},
 };
 use mission::event::RunOpened;
 use std::{borrow::Cow, collections::BTreeSet};
@@ -18,8 +23,10 @@ pub struct PastRun {
     pub began: Option<String>,
     /// Digests and lengths of its files.
     pub files: Files,
-    /// Its events, folded into figures.
+    /// Its events, folded.
     pub fold: Fold,
+    /// The figures of its events, with the account of the floor.
+    pub summary: Summary,
     /// What it did over time and place.
     pub record: Record,
 }
@@ -61,7 +68,7 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     Ok(all)
 }
 
-/// Name of an obstacle that was found in one of so many runs, which each begin to count anew.
+/// Name of what was found in one of so many runs, which each begin to count anew.
 pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
     if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }

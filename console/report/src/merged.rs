@@ -55,7 +55,7 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
             recording_sha256: past.files.recording_sha256.clone(),
             swath_m: mission.swath_m,
             position_limit_m: mission.scan_limit_m(),
-            summary: Summary { floor: None, logs: Some(past.logs.clone()), ..past.fold.figures() },
+            summary: Summary { floor: None, logs: Some(past.logs.clone()), ..past.summary.clone() },
         })
     });
     let listed: Vec<MergedRun> = listed.collect();
@@ -83,7 +83,10 @@ impl Merged {
             }),
         );
         let overlap = self.coverage.overlap;
-        text.some("overlap", overlap.map(|share| format!("{} of scanned floor", percent(share))));
+        text.some(
+            "overlap",
+            overlap.map(|share| format!("{} of scanned floor (scanned more than once)", percent(share))),
+        );
         text.lines(floor::lines(&self.floor));
         text.0
     }
@@ -133,6 +136,7 @@ mod tests {
             logs: Logs { journal: None, recording, error: None },
             began: None,
             files: Files { recording_sha256: Some(format!("5a{name}")), ..Files::default() },
+            summary: fold.summary(),
             fold,
             record: Record::new(),
         }

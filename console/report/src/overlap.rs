@@ -16,8 +16,6 @@ pub struct Overlap {
     /// Way gone when each cell was last under the tool, in steps, from 1; 0 before the first time.
     last: Tiles<u16>,
     again: Tiles<u8>,
-    /// Sum of `again` without its bound.
-    n_again: u64,
 }
 
 impl Overlap {
@@ -29,11 +27,6 @@ impl Overlap {
     /// How often a cell was scanned again.
     pub fn again(&self, index: usize) -> u8 {
         self.again.at(index)
-    }
-
-    /// How often cells were scanned again, all together.
-    pub fn n_again(&self) -> u64 {
-        self.n_again
     }
 
     /// The tool has moved on by some way over some cells; which of them it came back to, with whether for the first time.
@@ -56,7 +49,6 @@ impl Overlap {
                 let again = self.again.at_mut(*cell);
                 returned.push((*cell, *again == 0));
                 *again = again.saturating_add(1);
-                self.n_again += 1;
             }
         }
         returned
@@ -68,9 +60,7 @@ impl Overlap {
             let twice = u8::from(is_in_both(cell));
             let own = self.again.at_mut(cell);
             *own = own.saturating_add(others).saturating_add(twice);
-            self.n_again += u64::from(twice);
         }
-        self.n_again += other.n_again;
     }
 }
 
@@ -88,6 +78,6 @@ mod tests {
         assert_eq!(pass(0.1, &[0, 1, 2]), [(0, true), (1, true)], "cell 2 never counted as scanned");
         assert_eq!(pass(3.0, &[]), []);
         assert_eq!(pass(0.1, &[1]), [(1, false)]);
-        assert_eq!((overlap.again(0), overlap.again(1), overlap.n_again()), (1, 2, 3));
+        assert_eq!([0, 1, 2].map(|cell| overlap.again(cell)), [1, 2, 0]);
     }
 }

@@ -188,7 +188,8 @@ mod tests {
             fold.apply(&Event { tick: 0, t_s: 0.0, kind });
         }
         let logs = Logs { journal: None, recording: None, error: None };
-        PastRun { name: "a".into(), logs, began: None, files: Files::default(), fold, record: Record::new() }
+        let (files, record, summary) = (Files::default(), Record::new(), fold.summary());
+        PastRun { name: "a".into(), logs, began: None, files, fold, summary, record }
     }
 
     fn holds(rescan: &Rescan, x: f64, y: f64) -> bool {

@@ -73,6 +73,13 @@ impl Scanned {
         }
     }
 
+    /// Whether a cell is floor that was scanned more than once.
+    pub(crate) fn is_again(&self, cell: usize) -> bool {
+        self.passes.overlap().again(cell) > 0
+            && self.believed.is_covered(cell)
+            && self.believed.floor().is_floor(cell)
+    }
+
     /// Whether a cell counts as scanned and is guaranteed to be.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
         self.believed.is_covered(cell) && self.passes.is_guaranteed(cell)
@@ -81,7 +88,7 @@ impl Scanned {
     /// The figures so far; what was missed only if the floor was `to_scan`.
     pub(crate) fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
-        let again = self.passes.overlap().n_again() as f64;
+        let again = (0..self.truth.len()).filter(|cell| self.is_again(*cell)).count() as f64;
         let missed = (counts.reachable - counts.covered_reachable) as f64 * self.believed.floor().cell_m2();
         Coverage {
             reachable: self.believed.fraction_reachable(),

@@ -117,10 +117,10 @@ impl Stops {
 pub struct Coverage {
     /// Share of the reachable floor, as the mission believes.
     pub reachable: f64,
-    /// Share of the whole floor (without what obstacles stand on), as the mission believes.
+    /// Share of the whole floor (excluding the footprint of obstacles), as the mission believes.
     pub whole: f64,
-    /// Floor scanned again as a share of the floor scanned, by the estimated path: the tool came back to it after at
-    /// least two swaths of way. One means that all of it was scanned twice on average. Absent if nothing was scanned.
+    /// Share of the scanned floor that was scanned more than once, by the estimated path: the tool came back to it after
+    /// more than two swaths of way. Absent if nothing was scanned.
     pub overlap: Option<f64>,
     /// Reachable floor that was not scanned, as the mission believes, square metres; absent for missions that were not to
     /// scan it.

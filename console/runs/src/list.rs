@@ -87,7 +87,7 @@ fn look_at(folder: &Path) -> Listed {
             listed(folder, word(&summary), Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {
-            let note = format!("ended as {}, but not kept: {why}", word(&summary));
+            let note = format!("outcome {}, but not kept: {why}", word(&summary));
             listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
         }
         Standing::Running => listed(folder, "RUNNING", None, None),
@@ -128,7 +128,7 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Li
     let ended = summary.outcome.filter(|_| damage.is_none());
     match (ended, failure, damage) {
         (Some(outcome), ..) => {
-            let source = doubt.map_or("without a report", |_| "shown as the journal has it");
+            let source = doubt.map_or("without a report", |_| "figures from the journal");
             listed(folder, outcome.word(), Some(&summary), with(source))
         }
         (None, _, Some(damage)) => listed(folder, "UNREADABLE", Some(&summary), with(&damage)),
@@ -144,7 +144,7 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Li
 /// Up to when a journal that stops early goes.
 fn held(summary: &Summary) -> String {
     summary.mission_time_s.map_or_else(
-        || "the journal holds nothing".into(),
+        || "the journal is empty".into(),
         |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
     )
 }

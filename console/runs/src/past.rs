@@ -50,7 +50,8 @@ impl Past {
         let opened = opened.ok_or_else(|| reader.not_opened())?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
         let is_todays = opened.journal_version == JOURNAL_VERSION;
-        let figures = figures_doubt(folder, is_todays.then(|| fold.summary()));
+        let summary = fold.summary();
+        let figures = figures_doubt(folder, is_todays.then_some(&summary));
         let files = files(folder, &opened, digests, figures);
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -64,6 +65,7 @@ impl Past {
             },
             files,
             fold,
+            summary,
             record,
         };
         Ok(Self { opened, run, beyond_floor })

@@ -114,7 +114,7 @@ fn seal_doubt(text: &str, source: &Source) -> Option<String> {
 
 /// What speaks against the figures in the report of a run: the journal gives others, or the file was changed. `figures`: those
 /// that the journal gives; `None` for a journal of another version, whose figures may be defined otherwise.
-pub(crate) fn figures_doubt(folder: &Path, figures: Option<Summary>) -> Option<String> {
+pub(crate) fn figures_doubt(folder: &Path, figures: Option<&Summary>) -> Option<String> {
     let text = fs::read_to_string(folder.join(REPORT_FILE)).ok()?;
     let source: Source = serde_json::from_str(&text).ok()?;
     // Older reports have no digest, and some of their figures are defined otherwise; those of a journal that is not whole are few.
@@ -128,7 +128,7 @@ pub(crate) fn figures_doubt(folder: &Path, figures: Option<Summary>) -> Option<S
 }
 
 /// The first figure of a report that the journal gives otherwise, with both values. What is no event is not compared.
-fn other_figure(reported: Summary, computed: Summary) -> Option<(String, String, String)> {
+fn other_figure(reported: Summary, computed: &Summary) -> Option<(String, String, String)> {
     let computed = Summary {
         wall_time_s: reported.wall_time_s,
         violations: reported.violations.clone(),
@@ -137,7 +137,7 @@ fn other_figure(reported: Summary, computed: Summary) -> Option<(String, String,
         events_sha256: reported.events_sha256.clone(),
         recording_sha256: reported.recording_sha256.clone(),
         logs: reported.logs.clone(),
-        ..computed
+        ..computed.clone()
     };
     // Through text, as the report went.
     let text = serde_json::to_string(&computed).ok()?;

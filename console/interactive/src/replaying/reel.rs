@@ -2,10 +2,13 @@
 
 use anyhow::Context;
 use mission::Event;
-use recording::{JournalError, JournalPlace, JournalReader, journal_of};
+use recording::{JournalPlace, JournalReader, journal_of};
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError, Weak,
+        mpsc::{Receiver, SyncSender, sync_channel},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -22,8 +25,9 @@ const LEAST_SPACING: u64 = 1 << 18;
 const MOST_MARKS: usize = 100_000;
 /// How often the screen hears how far the journal is read.
 const NEWS: Duration = Duration::from_millis(100);
-/// Events between two looks at the clock.
-const BURST: usize = 512;
+/// Events that are read at a time, and how many such batches are read ahead.
+const BATCH: usize = 512;
+const BATCHES: usize = 4;
 
 /// The run as its events tell it up to a moment.
 pub(super) struct Frame {
@@ -63,12 +67,12 @@ impl Reel {
     ) -> anyhow::Result<Arc<Self>> {
         let journal = journal_of(folder);
         let reader = JournalReader::open(&journal)?;
+        let place = reader.place();
         let bytes = std::fs::metadata(&journal).map_or(0, |file| file.len());
         let reel = Arc::new(Self { journal, content: Mutex::default() });
         let loading = Loading {
             reel: Arc::downgrade(&reel),
-            place: reader.place(),
-            reader,
+            place,
             bytes,
             spacing: (bytes / (MOST_FRAMES - 1)).max(LEAST_SPACING),
             run: Run::default(),
@@ -77,8 +81,16 @@ impl Reel {
             n_marks: 0,
             kept_at: None,
         };
-        let began = thread::Builder::new().name("replay loader".into()).spawn(move || loading.read(&report));
-        began.map(|_| reel).context("starting the thread that reads the journal")
+        let (sender, batches) = sync_channel(BATCHES);
+        thread::Builder::new()
+            .name("replay reader".into())
+            .spawn(move || read_ahead(reader, &sender))
+            .and_then(|_| {
+                let name = "replay loader".to_owned();
+                thread::Builder::new().name(name).spawn(move || loading.take_all(&batches, &report))
+            })
+            .context("starting the threads that read the journal")?;
+        Ok(reel)
     }
 
     pub(super) fn content(&self) -> MutexGuard<'_, Content> {
@@ -86,9 +98,40 @@ impl Reel {
     }
 }
 
+/// Events of a journal, each with the place where it begins.
+struct Batch {
+    events: Vec<(JournalPlace, Event)>,
+    /// Where the next event begins.
+    next: JournalPlace,
+    end: Option<End>,
+}
+
+/// The journal ends, or cannot be read any further for some reason.
+struct End(Option<String>);
+
+/// Reads a journal until its end, or until nobody wants the events any more.
+fn read_ahead(mut reader: JournalReader, batches: &SyncSender<Batch>) {
+    loop {
+        let mut batch = Batch { events: Vec::with_capacity(BATCH), next: reader.place(), end: None };
+        while batch.end.is_none() && batch.events.len() < BATCH {
+            match reader.next() {
+                Some(Ok(event)) => {
+                    batch.events.push((batch.next, event));
+                    batch.next = reader.place();
+                }
+                Some(Err(error)) => batch.end = Some(End(Some(error.to_string()))),
+                None => batch.end = Some(End(reader.truncated().map(str::to_owned))),
+            }
+        }
+        let is_last = batch.end.is_some();
+        if batches.send(batch).is_err() || is_last {
+            return;
+        }
+    }
+}
+
 struct Loading {
     reel: Weak<Reel>,
-    reader: JournalReader,
     /// Where the next event begins.
     place: JournalPlace,
     bytes: u64,
@@ -104,39 +147,26 @@ struct Loading {
 }
 
 impl Loading {
-    fn read(mut self, report: &impl Fn(tui::model::replay::Reel) -> bool) {
-        let mut reported = Instant::now();
-        loop {
-            match self.burst() {
-                Ok(true) if reported.elapsed() < NEWS && self.kept_at.is_some() => {}
-                Ok(true) => {
-                    reported = Instant::now();
-                    if !self.tell(report, false, None) {
-                        return;
-                    }
-                }
-                Ok(false) => {
-                    let cut = self.reader.truncated().map(str::to_owned);
-                    self.tell(report, true, cut);
-                    return;
-                }
-                Err(error) => {
-                    self.tell(report, true, Some(error.to_string()));
+    fn take_all(mut self, batches: &Receiver<Batch>, report: &impl Fn(tui::model::replay::Reel) -> bool) {
+        let mut reported: Option<Instant> = None;
+        for batch in batches {
+            let Some(reel) = self.reel.upgrade() else { return };
+            for (place, event) in batch.events {
+                self.place = place;
+                self.take(&reel, &event);
+            }
+            self.place = batch.next;
+            if let Some(End(problem)) = batch.end {
+                self.tell(report, true, problem);
+                return;
+            }
+            if reported.is_none_or(|reported| reported.elapsed() >= NEWS) {
+                reported = Some(Instant::now());
+                if !self.tell(report, false, None) {
                     return;
                 }
             }
         }
-    }
-
-    /// Reads on for a while; `false` at the end, or when nobody wants the run any more.
-    fn burst(&mut self) -> Result<bool, JournalError> {
-        let Some(reel) = self.reel.upgrade() else { return Ok(false) };
-        for _ in 0..BURST {
-            self.place = self.reader.place();
-            let Some(event) = self.reader.next().transpose()? else { return Ok(false) };
-            self.take(&reel, &event);
-        }
-        Ok(true)
     }
 
     fn take(&mut self, reel: &Reel, event: &Event) {

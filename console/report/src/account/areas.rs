@@ -48,12 +48,38 @@ pub struct Cause<R> {
 }
 
 /// What is too small to be listed.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Slivers {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Slivers<R> {
     /// How many.
     pub count: usize,
     /// Their area together, square metres.
     pub area_m2: f64,
+    /// Why, cause by cause, the one for most of it first.
+    #[serde(default = "Vec::new")]
+    pub causes: Vec<Cause<R>>,
+}
+
+impl<R> Default for Slivers<R> {
+    fn default() -> Self {
+        Self { count: 0, area_m2: 0.0, causes: Vec::new() }
+    }
+}
+
+impl<R> Slivers<R> {
+    /// Why, as one sentence; several causes carry their areas.
+    pub fn why(&self) -> String {
+        why(&self.causes)
+    }
+}
+
+fn why<R>(causes: &[Cause<R>]) -> String {
+    match causes {
+        [only] => only.text.clone(),
+        several => {
+            let part = |cause: &Cause<R>| format!("{} ({:.3} m²)", cause.text, cause.area_m2);
+            several.iter().map(part).collect::<Vec<_>>().join("; ")
+        }
+    }
 }
 
 /// A reason that can be said with a number.
@@ -65,13 +91,7 @@ pub trait Explained: Copy + Ord {
 impl<R> Area<R> {
     /// Why, as one sentence; parts of areas with several causes carry their areas.
     pub fn why(&self) -> String {
-        match &self.causes[..] {
-            [only] => only.text.clone(),
-            several => {
-                let part = |cause: &Cause<R>| format!("{} ({:.3} m²)", cause.text, cause.area_m2);
-                several.iter().map(part).collect::<Vec<_>>().join("; ")
-            }
-        }
+        why(&self.causes)
     }
 }
 
@@ -92,21 +112,23 @@ pub(crate) fn areas<R: Explained>(
     plates: Option<&PlateMap>,
     reason_of: impl Fn(usize) -> Option<R>,
     measure: impl Fn(R, &[usize]) -> Option<Measure>,
-) -> (Vec<Area<R>>, Slivers) {
+) -> (Vec<Area<R>>, Slivers<R>) {
     let reasons: BTreeMap<usize, R> =
         (0..floor.len()).filter_map(|index| Some((index, reason_of(index)?))).collect();
-    let (mut listed, mut slivers) = (Vec::new(), Slivers::default());
+    let (mut listed, mut slivers, mut specks) = (Vec::new(), Slivers::default(), Vec::new());
     for cells in together(floor, reasons.keys().copied().collect()) {
         let area_m2 = cells.len() as f64 * floor.cell_m2();
         if area_m2 < LEAST_M2 {
             slivers.count += 1;
             slivers.area_m2 += area_m2;
+            specks.extend(cells);
         } else {
             listed.push(area_of(floor, plates, &cells, |cell| reasons[&cell], &measure));
         }
     }
     // Equal areas stay in the order of their first cell.
     listed.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    slivers.causes = causes(floor, &specks, |cell| reasons[&cell], &measure);
     (listed, slivers)
 }
 
@@ -148,12 +170,7 @@ pub(crate) fn area_of<R: Explained>(
     let middle = Point::from(centers().map(|p| p.coords).sum::<Vector>() / cells.len() as f64);
     let off_m = |index: usize| (floor.center(index) - middle).norm();
     let nearest = cells.iter().copied().min_by(|a, b| off_m(*a).total_cmp(&off_m(*b)));
-    let causes = by_size(cells, reason_of).into_iter().map(|(reason, cells)| {
-        let measure = measure(reason, &cells);
-        let text = reason.sentence(measure.as_ref());
-        Cause { reason, area_m2: cells.len() as f64 * floor.cell_m2(), measure, text }
-    });
-    let causes: Vec<Cause<R>> = causes.collect();
+    let causes = causes(floor, cells, reason_of, measure);
     let on = plates.map_or_else(Vec::new, |map| {
         let by_plate = by_size(cells, |cell| map.plate_of(cell));
         by_plate.into_iter().filter_map(|(plate, _)| Some(map.plates[plate?].name.clone())).collect()
@@ -168,6 +185,21 @@ pub(crate) fn area_of<R: Explained>(
         reason: causes[0].reason,
         causes,
     }
+}
+
+/// Why some cells were not scanned, cause by cause.
+fn causes<R: Explained>(
+    floor: &Floor,
+    cells: &[usize],
+    reason_of: impl Fn(usize) -> R,
+    measure: impl Fn(R, &[usize]) -> Option<Measure>,
+) -> Vec<Cause<R>> {
+    let cause = |(reason, cells): (R, Vec<usize>)| {
+        let measure = measure(reason, &cells);
+        let text = reason.sentence(measure.as_ref());
+        Cause { reason, area_m2: cells.len() as f64 * floor.cell_m2(), measure, text }
+    };
+    by_size(cells, reason_of).into_iter().map(cause).collect()
 }
 
 /// Cells by some key, the key of most cells first; of equal ones the first in their order.

@@ -155,8 +155,8 @@ impl Evidence {
         let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
         for (index, due_m) in self.plan.due_m.iter_mut().enumerate() {
             self.passed[index] |= other.is_passed(index);
-            if due_m.is_nan() && other.is_ahead(index) {
-                *due_m = f32::INFINITY;
+            if let Some(ahead_m) = other.ahead_m(index).filter(|_| due_m.is_nan()) {
+                *due_m = (self.plan.along_m + ahead_m) as f32;
             }
         }
         self.plan.is_whole &= other.plan.is_whole;
@@ -185,6 +185,11 @@ impl Evidence {
     /// What was found on the way.
     pub fn found(&self) -> impl Iterator<Item = (ObstacleId, &Solid)> {
         self.found.iter().map(|(id, solid)| (*id, solid))
+    }
+
+    /// Whether all of the floor was to be scanned.
+    pub(crate) fn asks_for_everything(&self) -> bool {
+        self.asked.is_none()
     }
 
     /// Whether a cell was to be scanned at all.

@@ -141,6 +141,9 @@ impl Explained for OutOfReach {
                 let limit_m = measure.limit_m.unwrap_or(0.0);
                 format!("{} from {near}, hull and clearance {limit_m:.2} m", measure.range())
             }
+            (Self::ClosedOff, Some(Measure { value_m, .. })) => {
+                format!("no passage as wide as hull and clearance, {value_m:.2} m")
+            }
             _ => self.plainly().to_owned(),
         }
     }

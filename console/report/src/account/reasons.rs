@@ -91,9 +91,7 @@ impl Reasons<'_> {
                 most(&|cell| reach.beyond_m(floor.center(cell)))
                     .map(|m| Measure::of(m).against(reach.within_m()))
             }
-            MissReason::NotReached => {
-                most(&|cell| evidence.ahead_m(cell)).filter(|m| m.is_finite()).map(Measure::of)
-            }
+            MissReason::NotReached => most(&|cell| evidence.ahead_m(cell)).map(Measure::of),
             MissReason::PassedBeside => depth(&|cell| grid.is_covered(cell)).map(Measure::of),
         }
     }
@@ -110,7 +108,8 @@ impl Reasons<'_> {
             OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
                 Measure::off(cells.iter().map(solid)).map(|m| m.against(self.room_m))
             }
-            OutOfReach::NoGo | OutOfReach::ClosedOff => None,
+            OutOfReach::ClosedOff => Some(Measure::of(2.0 * self.room_m)),
+            OutOfReach::NoGo => None,
         }
     }
 

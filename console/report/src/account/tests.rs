@@ -333,3 +333,17 @@ fn a_plan_without_a_path_or_with_one_that_cannot_be_leads_to_no_floor() {
         assert!((account.reachable.missed - 1.0).abs() < 1e-12, "{path:?}");
     }
 }
+
+#[test]
+fn what_another_run_did_not_get_to_keeps_its_number() {
+    let run = round_tank(0.1);
+    let (_, early) = scanned(&run, 3);
+    let ahead: Vec<(usize, f64)> =
+        (0..run.floor.len()).filter_map(|cell| Some((cell, early.ahead_m(cell)?))).collect();
+    assert!(!ahead.is_empty());
+    let mut all = Evidence::new(&run);
+    all.join(&early);
+    for (cell, ahead_m) in ahead {
+        assert!((all.ahead_m(cell).unwrap() - ahead_m).abs() < 1e-3, "cell {cell}");
+    }
+}

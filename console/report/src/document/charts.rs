@@ -221,8 +221,8 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
     let (y, soft) = (chart.y, colour::SOFT);
     chart.draw(format_args!(r#"<text x="{:.2}" y="{y:.2}" fill="{soft}">h:m:s</text>"#, AXIS_MM.1 + 10.0));
     Some(Figure {
-        caption: "Record over mission time. Numbers are incidents of the table below. Position: dark the 95 % error, light the \
-                  true error (simulation only). Wraps: dark the largest one, light all together."
+        caption: "Record over mission time. Numbers refer to the incidents in the table below. Position: dark line, 95 % error; light \
+                  line, true error (simulation only). Wraps: dark line, largest wrap; light line, total."
             .into(),
         svg: self::chart(WIDTH_MM, chart.y + 1.5, &chart.body, "Record over time"),
         legend: Vec::new(),

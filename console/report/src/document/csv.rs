@@ -69,6 +69,13 @@ fn missed(document: &Document) -> String {
         row.extend([format!("{:.4}", area.area_m2), area.plates.join(" "), area.why()]);
         row
     });
+    let small = Some(&document.floor.slivers).filter(|slivers| slivers.count > 0).map(|slivers| {
+        let mut row = vec![format!("{} smaller", slivers.count)];
+        row.extend(std::iter::repeat_n(String::new(), 6));
+        row.extend([format!("{:.4}", slivers.area_m2), String::new(), slivers.why()]);
+        row
+    });
+    let rows = rows.chain(small);
     let head =
         ["number", "x_m", "y_m", "west_m", "south_m", "east_m", "north_m", "area_m2", "plates", "reason"];
     table(&head, rows)

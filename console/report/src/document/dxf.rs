@@ -1,7 +1,11 @@
 //! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, MISSED, TRACK and INDICATIONS.
 
 use super::Document;
-use crate::{drawing::trace::thinned, dxf::Drawing, joined::PastRun};
+use crate::{
+    drawing::trace::thinned,
+    dxf::Drawing,
+    joined::{PastRun, found_name},
+};
 use world::{Point, Shape};
 
 /// The layers and their colours by the numbers of the format.
@@ -20,8 +24,11 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
         for obstacle in run.world.obstacles.iter().filter(|obstacle| obstacle.known) {
             drawing.shape("OBSTACLES", &obstacle.shape);
         }
-        for solid in past.iter().flat_map(|past| past.fold.found()) {
-            drawing.shape("OBSTACLES", &solid.shape);
+        for (index, of_run) in past.iter().enumerate() {
+            for solid in of_run.fold.found() {
+                drawing.shape("OBSTACLES", &solid.shape);
+                drawing.text("OBSTACLES", solid.shape.center(), &found_name(&solid.name, index, past.len()));
+            }
         }
     }
     for (number, area) in (1..).zip(&document.floor.missed) {
@@ -36,7 +43,9 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     }
     for found in &document.indications {
         drawing.shape("INDICATIONS", &Shape::Disc { center: found.at, radius_m: found.error_m });
-        drawing.text("INDICATIONS", found.at, &format!("{} {}", found.number, found.kind));
+        let run = past.iter().position(|past| past.name == found.run).unwrap_or(0);
+        let name = format!("I{} {}", found.number, found.kind);
+        drawing.text("INDICATIONS", found.at, &found_name(&name, run, past.len()));
     }
     drawing.finish()
 }

@@ -5,7 +5,7 @@ use super::{
     decisions::{MISSED, SCOPE, decisions, is_complete},
 };
 use crate::{clock, human::text::counted, record::Incident};
-use mission::{RunOpened, TaskConfig};
+use mission::RunOpened;
 use serde::Serialize;
 use world::Boundary;
 
@@ -28,10 +28,10 @@ pub struct GateItem {
 type Answered = (String, Vec<String>);
 
 /// The thirteen items of a document.
-pub(super) fn gate(document: &Document, run: &RunOpened) -> Vec<GateItem> {
+pub(super) fn gate(document: &Document) -> Vec<GateItem> {
     let items: [(&'static str, Answered); 13] = [
         ("Tank: number, size, plates, nominal thickness, drawing", tank(document)),
-        ("Scope of the inspection", scope(document, run)),
+        ("Scope of the inspection", scope(document)),
         ("Equipment, planner, versions, seed, parameters", equipment(document)),
         ("Calibration before and after", calibration(document)),
         ("Coverage of every plate", plates(document)),
@@ -42,7 +42,7 @@ pub(super) fn gate(document: &Document, run: &RunOpened) -> Vec<GateItem> {
         ("Tether record", tether(document)),
         ("Alarms, faults, holds and early ends: who reviewed them", incidents(document)),
         ("Remarks of the inspector", remarks(document)),
-        ("Journal and recording bound to this report", hashes(document)),
+        ("Journal, recording and report.json bound to this report", hashes(document)),
     ];
     let numbered = items.into_iter().zip(1..);
     let item = |((what, (answer, missing)), number): ((&'static str, Answered), usize)| GateItem {
@@ -99,11 +99,8 @@ fn tank(document: &Document) -> Answered {
     (format!("{}, {plates}", document.size), lacks)
 }
 
-fn scope(document: &Document, run: &RunOpened) -> Answered {
-    let what = match &run.mission.task {
-        TaskConfig::Cover { regions, .. } if !regions.is_empty() => "part of the floor",
-        _ => "whole floor",
-    };
+fn scope(document: &Document) -> Answered {
+    let what = if document.is_whole_floor { "whole floor" } else { "part of the floor" };
     let facts = &document.inspection;
     let lacks = missing(&[
         ("order", facts.order.is_some()),
@@ -169,7 +166,7 @@ fn missed(document: &Document) -> Answered {
 }
 
 fn unreachable(document: &Document) -> Answered {
-    let (floor, slivers) = (&document.floor, document.floor.unreachable_slivers);
+    let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(
         "{} with a reason, {} smaller ones in total {:.2} m²",
@@ -208,7 +205,9 @@ fn tether(document: &Document) -> Answered {
     let text = |run: &RunPart| {
         run.tether.as_ref().map_or_else(
             || "no tether".to_owned(),
-            |tether| format!("at most {:.1} m of {:.1} m out", tether.length_max_m, tether.reel_length_m),
+            |tether| {
+                format!("at most {:.1} m of {:.1} m paid out", tether.length_max_m, tether.reel_length_m)
+            },
         )
     };
     (document.runs.iter().map(text).collect::<Vec<_>>().join("; "), Vec::new())
@@ -250,7 +249,7 @@ fn hashes(document: &Document) -> Answered {
         }
     }
     let text = if lacks.is_empty() {
-        "SHA-256 of journal and recording are those of the end of the run"
+        "SHA-256 of journal and recording as at the end of the run; report.json agrees with the journal"
     } else {
         ""
     };

@@ -54,7 +54,7 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     }
     for found in &document.indications {
         let properties = json!({
-            "layer": "indications", "number": found.number, "error_95_m": found.error_m, "kind": found.kind,
+            "layer": "indications", "number": found.number, "run": found.run, "t_s": found.t_s, "error_95_m": found.error_m, "kind": found.kind,
             "size_mm": found.size_mm, "depth_mm": found.depth_mm, "plate": found.plate, "note": found.note,
         });
         features.push(feature(json!({ "type": "Point", "coordinates": at(found.at) }), properties));

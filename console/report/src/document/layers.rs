@@ -23,6 +23,8 @@ pub(crate) struct Layers<'a> {
     /// Missed areas that are listed, the largest first: a place in each, and its cells.
     pub(crate) gaps: Vec<(Point, Vec<usize>)>,
     plate_map: Option<PlateMap>,
+    /// Cells that were scanned more than once.
+    twice: Vec<bool>,
 }
 
 impl<'a> Layers<'a> {
@@ -39,7 +41,8 @@ impl<'a> Layers<'a> {
             .plates
             .zip(map.as_ref())
             .map(|(layout, map)| PlateLines::new(&layout, &run.world.boundary, floor, map));
-        let mut layers = Self { run, scanned, evidence, plates, gaps: Vec::new(), plate_map: map };
+        let twice = (0..floor.len()).map(|cell| scanned.is_again(cell)).collect();
+        let mut layers = Self { run, scanned, evidence, plates, gaps: Vec::new(), plate_map: map, twice };
         layers.gaps = layers.gaps_at(places);
         layers
     }
@@ -117,19 +120,24 @@ impl<'a> Layers<'a> {
             && !self.is_scanned(cell)
     }
 
-    /// Whether a cell was scanned again.
+    /// Whether a cell was scanned more than once.
     pub(crate) fn is_twice(&self, cell: usize) -> bool {
-        self.is_scanned(cell) && self.scanned.passes().overlap().again(cell) > 0
+        self.twice[cell]
     }
 
-    /// Where most cells around were scanned again: for the eye only.
+    /// Where most cells around were scanned more than once: for the eye only.
     pub(crate) fn smoothed_twice(&self) -> Vec<bool> {
-        let floor = self.floor();
-        let most = |cell: usize| {
-            let around = crate::account::areas::around(floor, cell);
-            self.is_scanned(cell) && around.filter(|near| self.is_twice(*near)).count() >= 5
+        let width = self.floor().width;
+        let at = |cell: Option<usize>| {
+            cell.and_then(|cell| self.twice.get(cell)).map_or(0, |twice| u8::from(*twice))
         };
-        (0..floor.len()).map(most).collect()
+        // Sums of three along the rows first; nothing is scanned along the edges of the grid.
+        let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));
+        let rows: Vec<u8> = (0..self.twice.len()).map(across).collect();
+        let row = |cell: Option<usize>| cell.and_then(|cell| rows.get(cell)).copied().unwrap_or(0);
+        let most =
+            |cell: usize| row(cell.checked_sub(width)) + row(Some(cell)) + row(Some(cell + width)) >= 5;
+        (0..rows.len()).map(|cell| self.is_scanned(cell) && most(cell)).collect()
     }
 
     /// Four errors that divide the scanned floor into five classes, metres, and the class of each cell, smoothed for the eye;

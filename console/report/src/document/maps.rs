@@ -18,8 +18,6 @@ const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
 /// Badges at most.
 const MOST_BADGES: usize = 60;
-/// Badges at most on a phone.
-const MOST_ON_PHONE: usize = 14;
 
 /// A picture with its legend.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -83,7 +81,8 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     sheet.cells(floor, |cell| layers.is_missed(cell), 0.0, &style);
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
-    let names = sheet.plate_names(layers.plates.as_ref(), 2.1);
+    let mut names = sheet.plate_names(layers.plates.as_ref(), 2.1);
+    names.extend(mark_indications(&mut sheet, indications));
     let numbered: Vec<Numbered<'_>> = layers
         .gaps
         .iter()
@@ -91,13 +90,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         .map(|(index, (at, cells))| Numbered { number: index + 1, at: *at, cells })
         .collect();
     let most = &numbered[..numbered.len().min(MOST_BADGES)];
-    let shown = badges::draw(&mut sheet, (floor, &fixtures), most, &names, (2.05, 2.35, "hide-phone"));
-    let few = &numbered[..numbered.len().min(MOST_ON_PHONE)];
-    badges::draw(&mut sheet, (floor, &fixtures), few, &[], (4.0, 4.6, "phone"));
-    let mark = format!(r##"fill="#fff" stroke="{}" stroke-width=".5""##, colour::TETHER);
-    for found in indications {
-        sheet.circle(found.at, 1.0, &mark);
-    }
+    let shown = badges::draw(&mut sheet, (floor, &fixtures), most, &names);
     let m2 = |cells: usize| format!("{:.2} m²", cells as f64 * floor.cell_m2());
     let count = |is: &dyn Fn(usize) -> bool| (0..floor.len()).filter(|cell| is(*cell)).count();
     let again = count(&|cell| layers.is_twice(cell));
@@ -112,7 +105,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     let found = format!(r#"fill="url(#cfound)" stroke="{solid}" stroke-width=".3""#);
     let mut entries = vec![
         legend(filled(colour::ONCE), "scanned once", m2(once)),
-        legend(filled(colour::TWICE), "scanned twice or more", m2(again)),
+        legend(filled(colour::TWICE), "scanned more than once", m2(again)),
         legend(filled("url(#cmissedL)"), "missed", m2(count(&|cell| layers.is_missed(cell)))),
         legend(filled("url(#cmarginL)"), "shell margin", m2(count(&|cell| layers.is_margin(cell)))),
         legend(filled("url(#coutL)"), "unreachable", m2(count(&|cell| layers.is_unreachable(cell)))),
@@ -126,7 +119,8 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         entries.push(legend(zone, "zone", String::new()));
     }
     if !indications.is_empty() {
-        entries.push(legend(dot(&mark), "indication of the instrument", indications.len().to_string()));
+        let mark = dot(&format!("{INDICATION} stroke=\"{}\"", colour::TETHER));
+        entries.push(legend(mark, "indication, I and its number", indications.len().to_string()));
     }
     let hidden = numbered.len() - shown.len();
     let note = if hidden > 0 {
@@ -134,10 +128,46 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     } else {
         String::new()
     };
+    let overlap = 100.0 * again as f64 / (once + again).max(1) as f64;
     let caption = format!(
-        "What was scanned, by the estimated position. Missed cells have an outline of 0.25 mm so that they stay visible.{note}"
+        "What was scanned, by the estimated position; {overlap:.1} % of the scanned floor more than once. Missed cells have an outline of 0.25 mm so that they stay visible.{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
+}
+
+/// How the mark of an indication is filled and drawn.
+const INDICATION: &str = r##"fill="#fff" stroke-width=".5""##;
+
+/// Marks indications with their numbers; returns the boxes of the numbers.
+fn mark_indications(sheet: &mut Sheet, indications: &[Indication]) -> Vec<[Point; 2]> {
+    let purple = colour::TETHER;
+    let mut boxes: Vec<[Point; 2]> = Vec::new();
+    for found in indications {
+        let (at, name) = (sheet.at(found.at), format!("I{}", found.number));
+        let half = world::Vector::new(0.75 * name.len() as f64, 1.2);
+        let beside = [(1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]
+            .map(|(x, y)| at + world::Vector::new(x * (1.4 + half.x), y * (1.4 + half.y)));
+        let is_free = |place: &&Point| {
+            let covers = |[low, high]: &[Point; 2]| {
+                place.x - half.x < high.x
+                    && low.x < place.x + half.x
+                    && place.y - half.y < high.y
+                    && low.y < place.y + half.y
+            };
+            !boxes.iter().any(covers)
+        };
+        let place = *beside.iter().find(is_free).unwrap_or(&beside[0]);
+        boxes.extend([
+            [at - world::Vector::new(1.2, 1.2), at + world::Vector::new(1.2, 1.2)],
+            [place - half, place + half],
+        ]);
+        sheet.circle(found.at, 1.0, &format!("{INDICATION} stroke=\"{purple}\""));
+        sheet.draw(format_args!(
+            r#"<text class="st" x="{:.2}" y="{:.2}" dy=".35em" text-anchor="middle" font-size="2.3" font-weight="700" fill="{purple}">{name}</text>"#,
+            place.x, place.y
+        ));
+    }
+    boxes
 }
 
 /// How well the position was known where the floor was scanned.
@@ -281,7 +311,7 @@ pub(super) fn tether(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     {
         mark_lay(&mut sheet, letter, lay, dash);
     }
-    let caption = "Where the tether lay; L: most of it out, W: its wraps were largest".into();
+    let caption = "Where the tether lay; L: greatest length paid out, W: largest total wrap".into();
     Some(Figure { caption, svg: sheet.svg("Tether on the floor", "half"), legend: Vec::new() })
 }
 

@@ -153,7 +153,6 @@ pub(super) enum Block {
     Words(Vec<(&'static str, String)>),
     List(Vec<String>),
     Table(Table),
-    Figure(Picture),
     Wide(Picture),
     Pair(Vec<Picture>),
     Legend(Vec<Legend>),
@@ -210,7 +209,7 @@ fn number(page: &mut Page) {
     for block in page.sections.iter_mut().flat_map(|section| &mut section.blocks) {
         match block {
             Block::Table(table) if !table.caption.is_empty() => table.number = next(&mut tables),
-            Block::Figure(picture) | Block::Wide(picture) => picture.number = next(&mut figures),
+            Block::Wide(picture) => picture.number = next(&mut figures),
             Block::Pair(pictures) => {
                 for picture in pictures {
                     picture.number = next(&mut figures);

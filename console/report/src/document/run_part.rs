@@ -117,7 +117,7 @@ pub struct RunPart {
 impl RunPart {
     pub(super) fn of(past: &PastRun) -> Option<Self> {
         let run = past.fold.run.as_deref()?;
-        let summary = past.fold.figures();
+        let summary = &past.summary;
         let record = &past.record;
         let driver = |info: &mission::PlannerInfo| Driver {
             name: format!("{} {}, plugin {}, interface {}", info.name, info.version, info.plugin, info.abi),
@@ -142,7 +142,7 @@ impl RunPart {
             drivers: record.planners.iter().map(driver).collect(),
             accuracy: summary.accuracy,
             positioning: summary.positioning,
-            tether: tether(past, &summary),
+            tether: tether(past, summary),
             stations: record.stations(),
             incidents: record.incidents(),
             files: past.files.clone(),

@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
+use crate::record::TrackPoint;
 use crate::{
     fold::{Fold, tests::round_tank},
     summary::Logs,
 };
 use mission::{Event, EventKind};
-use world::{CellRun, Floor};
+use world::{CellRun, Floor, Obstacle, ObstacleId, Shape};
 
 /// A run that scanned everything but two cells out of the middle.
 fn past() -> PastRun {
@@ -23,7 +24,8 @@ fn past() -> PastRun {
         record.apply(&event);
     }
     let logs = Logs { journal: None, recording: None, error: None };
-    PastRun { name: "20261122T040132Z-tiny".into(), logs, began: None, files: Files::default(), fold, record }
+    let (name, files, summary) = ("20261122T040132Z-tiny".to_owned(), Files::default(), fold.summary());
+    PastRun { name, logs, began: None, files, fold, summary, record }
 }
 
 fn document(inspection: Inspection) -> Document {
@@ -47,14 +49,13 @@ fn what_is_missing_is_printed_with_its_key_and_what_is_given_is_escaped() {
 
 #[test]
 fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
-    let run = round_tank(0.1);
     let missed_accepted = Some("seen by eye".to_owned());
     let mut document = document(Inspection { missed_accepted, ..Inspection::default() });
     // Nothing was passed by an estimated position, so no plate has an accuracy.
     assert!(open(&document).contains(&5) && !open(&document).contains(&6), "{:?}", document.gate);
     document.floor.plates.iter_mut().for_each(|plate| plate.error_p95_m = Some(0.05));
     document.floor.missed[0].causes[0].text.clear();
-    document.gate = gate::gate(&document, &run);
+    document.gate = gate::gate(&document);
     assert!(!open(&document).contains(&5) && open(&document).contains(&6), "{:?}", document.gate);
     let lacks = &document.gate[5].missing;
     assert!(lacks.len() == 1 && lacks[0].starts_with("reason of the gap at 1."), "{lacks:?}");
@@ -141,4 +142,67 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
     assert!(decided.gate.iter().all(|item| !keys.iter().any(|key| item.missing.contains(key))));
     assert!(decided.gate[5].answer.ends_with("missed accepted: welds, seen by eye"), "{:?}", decided.gate[5]);
     assert!(html(&decided).contains("the rest by hand"), "printed");
+}
+
+/// Two runs, each of which found an obstacle and has a track.
+fn two_runs() -> [PastRun; 2] {
+    // The second one stands beside what both missed.
+    [("20261122T040132Z-a", 2.0), ("20261122T050132Z-b", -1.0)].map(|(name, y)| {
+        let mut run = past();
+        run.name = name.into();
+        let shape = Shape::Disc { center: Point::new(1.7, y), radius_m: 0.2 };
+        let found = Obstacle { id: ObstacleId(7), name: "found 1".into(), shape, known: false };
+        run.fold.apply(&Event { tick: 1, t_s: 0.1, kind: EventKind::ObstacleFound { obstacle: found } });
+        let point = |k: u16| TrackPoint {
+            t_s: f32::from(k),
+            x_m: 0.1 * f32::from(k),
+            y_m: y as f32,
+            heading_rad: 0.0,
+            error_m: 0.05,
+            true_error_m: f32::NAN,
+        };
+        run.record.track = (0..10).map(point).collect();
+        run
+    })
+}
+
+const INDICATIONS: &str = "run,t_s,kind\n20261122T040132Z-a,3,pit\n20261122T050132Z-b,4,corrosion\n";
+
+#[test]
+fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
+    let csv = "t_s,kind\n3,pit\n3,pit\n3.4,pit\n";
+    let [run, _] = two_runs();
+    let context = Context { indications_csv: Some(("found.csv", csv)), ..Context::default() };
+    let map = Document::new(&[run], context).unwrap().pictures.coverage;
+    let place_of = |name: &str| {
+        let (before, _) = map.svg.split_once(&format!(">{name}</text>")).unwrap();
+        let text = &before[before.rfind("<text").unwrap()..];
+        ["x", "y"]
+            .map(|key| text.split_once(&format!("{key}=\"")).unwrap().1.split('"').next().unwrap().to_owned())
+    };
+    let places = ["I1", "I2", "I3"].map(place_of);
+    assert!(places[0] != places[1] && places[1] != places[2] && places[0] != places[2], "{places:?}");
+    assert!(map.legend.iter().any(|entry| entry.text.starts_with("indication") && entry.value == "3"));
+}
+
+#[test]
+fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
+    let runs = two_runs();
+    let context = Context { indications_csv: Some(("found.csv", INDICATIONS)), ..Context::default() };
+    let document = Document::new(&runs, context).unwrap();
+    let (map, drawing) = (geojson::geojson(&document, &runs), dxf::dxf(&document, &runs));
+    for name in ["found 1 of run 1", "found 1 of run 2"] {
+        assert!(map.contains(name) && drawing.contains(name), "{name}");
+    }
+    assert!(
+        drawing.contains("I1 pit of run 1\n") && drawing.contains("I2 corrosion of run 2\n"),
+        "{drawing}"
+    );
+    assert!(map.contains(r#""number":2,"plate""#) && map.contains(r#""run":"20261122T050132Z-b""#), "{map}");
+    let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
+    assert!(reasons.contains("from found 1 of run 2, found during the run"), "{reasons}");
+    // A run of its own needs no number.
+    let [run, _] = two_runs();
+    let alone = Document::new(std::slice::from_ref(&run), Context::default()).unwrap();
+    assert!(!dxf::dxf(&alone, &[run]).contains("of run"));
 }

@@ -13,6 +13,9 @@ use world::{
     polyline::{nearest_on_segment, segments_cross},
 };
 
+/// Radius of a badge, and its letters, millimetres.
+const RADIUS_MM: f64 = 2.05;
+const LETTERS_MM: f64 = 2.35;
 /// Distances from the area that are tried, millimetres beyond the badge's radius.
 const DISTANCES_MM: [f64; 7] = [1.6, 2.8, 4.5, 7.0, 10.0, 14.0, 19.0];
 /// Directions that are tried.
@@ -44,15 +47,14 @@ struct Crowd {
     names: Vec<[Point; 2]>,
 }
 
-/// Draws badges for areas; returns the numbers that found a place. `radius_mm` and `letters_mm`: of a badge; `names`: boxes
-/// of names to keep clear of; `class`: of the group, for the page's style sheet.
+/// Draws badges for areas; returns the numbers that found a place. `names`: boxes of names to keep clear of.
 pub(crate) fn draw(
     sheet: &mut Sheet,
     (floor, fixtures): (&Floor, &Fixtures<'_>),
     areas: &[Numbered<'_>],
     names: &[[Point; 2]],
-    (radius_mm, letters_mm, class): (f64, f64, &str),
 ) -> Vec<usize> {
+    let radius_mm = RADIUS_MM;
     let mut crowd = Crowd {
         badges: Vec::new(),
         leaders: Vec::new(),
@@ -82,7 +84,7 @@ pub(crate) fn draw(
     let leaders: String = crowd.leaders.iter().map(leader).collect();
     let (line, missed, ink) = (colour::MISSED_LINE, colour::MISSED, colour::INK);
     sheet.draw(format_args!(
-        r##"<g class="{class}"><path d="{leaders}" fill="none" stroke="#fff" stroke-width=".7"/><path d="{leaders}" fill="none" stroke="{line}" stroke-width=".25"/><g font-size="{letters_mm}" font-weight="700" text-anchor="middle" fill="{ink}">"##
+        r##"<g><path d="{leaders}" fill="none" stroke="#fff" stroke-width=".7"/><path d="{leaders}" fill="none" stroke="{line}" stroke-width=".25"/><g font-size="{LETTERS_MM}" font-weight="700" text-anchor="middle" fill="{ink}">"##
     ));
     for (number, at) in &placed {
         sheet.draw(format_args!(

@@ -3,7 +3,7 @@
 use super::text::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 
-/// Areas that are listed; the report as JSON has all of them.
+/// Areas out of reach that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
 /// Arcs of the critical zone that are listed.
 const MOST_ARCS: usize = 3;
@@ -19,10 +19,10 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     ];
     lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));
     lines.push(("floor", basis(account)));
-    lines.extend(areas(&account.missed).into_iter().map(|line| ("missed", line)));
-    lines.extend(slivers(account.slivers).into_iter().map(|line| ("missed", line)));
+    lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));
+    lines.extend(slivers(&account.slivers).into_iter().map(|line| ("missed", line)));
     lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
-    lines.extend(slivers(account.unreachable_slivers).into_iter().map(|line| ("unreachable", line)));
+    lines.extend(slivers(&account.unreachable_slivers).into_iter().map(|line| ("unreachable", line)));
     lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
     lines
 }
@@ -80,7 +80,7 @@ fn arcs(account: &Account) -> Option<String> {
     });
     let listed = listed.collect::<Vec<_>>().join("; ");
     let more = arcs.len().saturating_sub(MOST_ARCS);
-    let more = if more > 0 { format!("; {} more", counted(more as u64, "arc")) } else { String::new() };
+    let more = if more > 0 { format!("; {}", counted(more as u64, "more arc")) } else { String::new() };
     (!arcs.is_empty()).then(|| format!("critical zone not done: {listed}{more}"))
 }
 
@@ -91,9 +91,10 @@ fn basis(account: &Account) -> String {
     )
 }
 
-fn slivers(slivers: Slivers) -> Option<String> {
-    let Slivers { count, area_m2 } = slivers;
-    (count > 0).then(|| format!("{area_m2:.2} m² in {} too small to list", counted(count as u64, "area")))
+fn slivers<R>(slivers: &Slivers<R>) -> Option<String> {
+    let Slivers { count, area_m2, .. } = slivers;
+    let areas = || counted(*count as u64, "area");
+    (*count > 0).then(|| format!("{area_m2:.2} m² in {} under 0.01 m² each: {}", areas(), slivers.why()))
 }
 
 fn areas<R>(areas: &[Area<R>]) -> Vec<String> {
@@ -108,7 +109,7 @@ fn areas<R>(areas: &[Area<R>]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::account::MissReason;
+    use crate::account::{Cause, MissReason};
     use world::PlateKind;
 
     #[test]
@@ -126,8 +127,11 @@ mod tests {
         let rest = |count: usize| areas(&(0..count).map(|_| area()).collect::<Vec<_>>()).pop();
         assert_eq!(rest(11).as_deref(), Some("0.02 m² in 1 more area"));
         assert_eq!(rest(12).as_deref(), Some("0.04 m² in 2 more areas"));
-        let sliver = slivers(Slivers { count: 1, area_m2: 0.001 });
-        assert_eq!(sliver.as_deref(), Some("0.00 m² in 1 area too small to list"));
+        let text = "planned, but the robot passed 0.02 m to one side".to_owned();
+        let cause = Cause { reason: MissReason::PassedBeside, area_m2: 0.001, measure: None, text };
+        let sliver = slivers(&Slivers { count: 1, area_m2: 0.001, causes: vec![cause] });
+        let said = "0.00 m² in 1 area under 0.01 m² each: planned, but the robot passed 0.02 m to one side";
+        assert_eq!(sliver.as_deref(), Some(said));
     }
 
     #[test]

@@ -153,7 +153,7 @@ fn the_report_takes_the_space_that_was_reserved_for_it() {
 fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     let logs = tempfile::tempdir().unwrap();
     let (folder, _, summary) = ended(logs.path());
-    let figures = |summary: &Summary| figures_doubt(&folder, Some(summary.clone()));
+    let figures = |summary: &Summary| figures_doubt(&folder, Some(summary));
     assert_eq!((figures(&summary), figures_doubt(&folder, None)), (None, None));
     change(&folder.join(REPORT_FILE), "\"holds\": 0", "\"holds\": 1");
     assert!(doubt(&folder).starts_with("report.json was changed after the run ended"), "{}", doubt(&folder));

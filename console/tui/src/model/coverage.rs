@@ -111,10 +111,12 @@ impl Raster {
         }
     }
 
-    /// Floor scanned again as a share of the floor scanned, by the estimated track; `None` before anything is scanned.
+    /// Share of the scanned floor that was scanned more than once, by the estimated track, as the report counts it; `None`
+    /// before anything is scanned.
     pub fn overlap(&self) -> Option<f64> {
-        let scanned = self.counts().covered;
-        (scanned > 0).then(|| self.overlap.n_again() as f64 / scanned as f64)
+        // The last level is one block.
+        let Tally { scanned, again, .. } = self.levels.last()?.tallies.at(0);
+        (scanned > 0).then(|| f64::from(again) / f64::from(scanned))
     }
 
     /// Whether a cell has been scanned.

@@ -131,7 +131,7 @@ pub(super) fn signatures(document: &Document) -> Vec<Block> {
         ),
         block(
             "Inspector",
-            "answers for completeness",
+            "is responsible for completeness",
             match &document.signature {
                 Some(signature) => signature.by.clone().into(),
                 None => Value::fact(facts.inspector.as_ref(), "inspector"),

@@ -10,30 +10,22 @@ use super::{
 use crate::account::{Area, MissReason};
 use std::collections::BTreeMap;
 
-/// With more missed areas than this, small ones and those beyond go to a short list.
-const MOST_LISTED: usize = 40;
-/// What counts as small then, square metres.
-const SMALL_M2: f64 = 0.05;
 /// Arcs of the critical zone that are listed.
 const MOST_ARCS: usize = 8;
 
 /// The coverage map.
 pub(super) fn map(document: &Document) -> Vec<Block> {
-    vec![Block::Figure(picture(&document.pictures.coverage))]
+    vec![Block::Wide(picture(&document.pictures.coverage))]
 }
 
 /// Missed areas, and what is out of reach.
 pub(super) fn missed(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut blocks = vec![Block::Text(
-        "Cells that touch make one area, whatever plates they lie on. Every reason carries the number behind it; an area with \
-         several causes names each with its part."
+        "Cells that touch make one area, whatever plates they lie on. Every reason states its value; where an area has \
+         several causes, each is listed with its part of the area."
             .into(),
     )];
-    let is_many = floor.missed.len() > MOST_LISTED;
-    let numbered = || (1..).zip(&floor.missed);
-    let is_main =
-        |no: usize, area: &Area<MissReason>| !is_many || no <= MOST_LISTED && area.area_m2 >= SMALL_M2;
     let mut table = Table::new(
         "Missed areas, the largest first",
         &[
@@ -47,7 +39,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
         ],
     );
     table.is_cards = true;
-    for (no, area) in numbered().filter(|(no, area)| is_main(*no, area)) {
+    for (no, area) in (1..).zip(&floor.missed) {
         let class = if document.pictures.badges.contains(&no) { "badge" } else { "badge h" };
         let badge = Cell { svg: format!(r#"<span class="{class}">{no}</span>"#), ..Cell::default() };
         let extent = area.high - area.low;
@@ -68,18 +60,14 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
     let listed_m2: f64 = floor.missed.iter().map(|area| area.area_m2).sum();
     let total = format!(
-        "All missed floor: {missed_m2:.2} m²; {}: {listed_m2:.2} m²; {} under 0.01 m² each: {:.2} m².",
+        "All missed floor: {missed_m2:.2} m²; {}: {listed_m2:.2} m²; {} under 0.01 m² each: {:.2} m²{}.",
         counted(floor.missed.len() as u64, "area"),
         floor.slivers.count,
-        floor.slivers.area_m2
+        floor.slivers.area_m2,
+        if floor.slivers.count > 0 { format!(", {}", floor.slivers.why()) } else { String::new() }
     );
     let is_some = !table.rows.is_empty();
     blocks.extend(is_some.then_some(Block::Table(table)));
-    let small: Vec<(usize, &Area<MissReason>)> =
-        numbered().filter(|(no, area)| !is_main(*no, area)).collect();
-    if !small.is_empty() {
-        blocks.extend(short_list(&small));
-    }
     blocks.push(Block::Note(total));
     blocks.push(Block::Table(unreachable(document)));
     blocks.push(Block::Note(balance(document)));
@@ -91,9 +79,9 @@ fn balance(document: &Document) -> String {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
     let m2 = |share: f64| share * whole.area_m2;
     format!(
-        "Whole less reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² that were scanned although no \
-         plan may count on them: the robot came nearer to shell or obstacles than hull and clearance, or they were in reach before \
-         an obstacle was found.",
+        "Whole floor minus reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² scanned although not \
+         counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, or the floor was \
+         reachable before an obstacle was found.",
         whole.area_m2 - reachable.area_m2,
         m2(whole.unreachable),
         m2(whole.margin),
@@ -105,64 +93,6 @@ fn plates_of(area: &Area<MissReason>) -> String {
     let more = area.plates.len().saturating_sub(2);
     let names = area.plates.iter().take(2).cloned().collect::<Vec<_>>().join(", ");
     if more > 0 { format!("{names} +{more}") } else { names }
-}
-
-/// Small areas in three columns, with letters for reasons.
-fn short_list(small: &[(usize, &Area<MissReason>)]) -> Vec<Block> {
-    let head = [("No.", "", "r"), ("x", "m", "r"), ("y", "m", "r"), ("Area", "m²", "r"), ("R.", "", "c")];
-    let mut table = Table::new("Smaller missed areas", &[head, head, head].concat());
-    let rows = small.len().div_ceil(3);
-    for at in 0..rows {
-        let mut values = Vec::new();
-        for column in 0..3 {
-            let Some((no, area)) = small.get(column * rows + at) else { continue };
-            let letters: String = area.causes.iter().map(|cause| letter(cause.reason)).collect();
-            values.extend([
-                Value::from(no.to_string()),
-                number(area.at.x, 2).into(),
-                number(area.at.y, 2).into(),
-                format!("{:.2}", area.area_m2).into(),
-                letters.into(),
-            ]);
-        }
-        table.row(values);
-    }
-    let all = [
-        MissReason::PositionUncertain,
-        MissReason::FoundObstacle,
-        MissReason::NotAsked,
-        MissReason::Narrow,
-        MissReason::Clearance,
-        MissReason::Wrap,
-        MissReason::NotPlanned,
-        MissReason::BeyondReel,
-        MissReason::NotReached,
-        MissReason::PassedBeside,
-    ];
-    let meanings: Vec<String> =
-        all.iter().map(|reason| format!("{} {}", letter(*reason), reason.plainly())).collect();
-    vec![
-        Block::Table(table),
-        Block::Note(format!(
-            "Reasons: {}. The numbers behind them are in the JSON report.",
-            meanings.join("; ")
-        )),
-    ]
-}
-
-fn letter(reason: MissReason) -> char {
-    match reason {
-        MissReason::PositionUncertain => 'P',
-        MissReason::FoundObstacle => 'O',
-        MissReason::NotAsked => 'A',
-        MissReason::Narrow => 'N',
-        MissReason::Clearance => 'C',
-        MissReason::Wrap => 'W',
-        MissReason::NotPlanned => 'L',
-        MissReason::BeyondReel => 'R',
-        MissReason::NotReached => 'E',
-        MissReason::PassedBeside => 'B',
-    }
 }
 
 fn unreachable(document: &Document) -> Table {
@@ -189,12 +119,12 @@ fn unreachable(document: &Document) -> Table {
             format!("{}, {}: {}", number(largest.at.x, 2), number(largest.at.y, 2), largest.why()).into(),
         ]);
     }
-    let slivers = floor.unreachable_slivers;
+    let slivers = &floor.unreachable_slivers;
     table.row(vec![
         "each smaller than 0.01 m²".into(),
         slivers.count.to_string().into(),
         format!("{:.2}", slivers.area_m2).into(),
-        "not listed".into(),
+        slivers.why().into(),
     ]);
     table
 }
@@ -206,8 +136,8 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     let scanned = zone.scanned.map_or_else(|| "none".to_owned(), |share| format!("{} %", per_cent(share)));
     let mut blocks = vec![
         Block::Text(format!(
-            "{state}: the whole {:.0} mm were scanned on {:.1} of {:.1} m of shell; {scanned} of the zone's area. It counts as done \
-             from 99.5 % of the shell.",
+            "{state}: the full width of {:.0} mm was scanned along {:.1} of {:.1} m of shell, {scanned} of the area of the zone. The zone is \
+             done when its full width is scanned along 99.5 % of the shell.",
             1000.0 * zone.width_m,
             zone.done_m,
             zone.length_m
@@ -221,7 +151,7 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     let which =
         if all > MOST_ARCS { format!("The {MOST_ARCS} longest of {all}") } else { format!("All {all}") };
     let mut table = Table::new(
-        format!("{which} arcs of 0.1 m and more that are not done (arcs less than 0.1 m apart are one)"),
+        format!("{which} arcs of 0.1 m and more that are not done (arcs less than 0.1 m apart count as one)"),
         &[
             ("From x, y", "m", "r nw"),
             ("To x, y", "m", "r nw"),
@@ -332,8 +262,8 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
         Block::Text(
             "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations). A cell is \
              guaranteed if it was scanned and lay, in one pass, under the tool narrowed on each side by 2.45 standard deviations across \
-             the heading: then it was under the tool wherever the robot stood within the ellipse. Neighbouring passes do not help one \
-             another."
+             the heading: then it was under the tool wherever the robot stood within the ellipse. Neighbouring passes are not added \
+             together."
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),

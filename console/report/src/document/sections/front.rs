@@ -144,7 +144,7 @@ fn shares(document: &Document) -> Vec<Share> {
             percent: format!("{:.1}", whole.percent.scanned),
             of: "of the whole floor",
             about: format!(
-                "{} of {:.1} m² of floor within the shell, without what obstacles stand on",
+                "{} of {:.1} m² of floor within the shell, excluding the footprint of obstacles",
                 m2(whole.scanned, whole),
                 whole.area_m2
             ),
@@ -153,7 +153,7 @@ fn shares(document: &Document) -> Vec<Share> {
             percent: format!("{:.1}", reachable.percent.scanned),
             of: "of the reachable floor",
             about: format!(
-                "{} of {:.1} m² that the tool can reach with hull and clearance",
+                "{} of {:.1} m² that the tool can reach while hull and clearance are kept",
                 m2(reachable.scanned, reachable),
                 reachable.area_m2
             ),
@@ -181,7 +181,7 @@ fn bases(document: &Document) -> Table {
             ("Unreachable", "%", "r"),
             ("Shell margin", "%", "r"),
             ("Sum", "%", "r"),
-            ("of which guaranteed", "%", "r"),
+            ("Guaranteed part", "%", "r"),
         ],
     );
     for (name, shares) in
@@ -211,7 +211,7 @@ fn todo(document: &Document) -> Vec<Todo> {
     let mut todo: Vec<Todo> = decisions(document).into_iter().map(decision).collect();
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     if !open.is_empty() {
-        let text = format!("Items of the gate that are open: {}.", open.join(", "));
+        let text = format!("Open items of the gate: {}.", open.join(", "));
         todo.push(Todo { text, value: Value::default(), section: 10 });
     }
     todo
@@ -226,7 +226,7 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
     let asked = &document.gate[1].answer;
     vec![
         Block::Text(format!(
-            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned if its middle came under \
+            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned if its centre came under \
              the tool while the 95 % position error was at most {} m. Every percentage names its base.",
             document.scenario,
             counted(runs.len() as u64, "run"),
@@ -237,10 +237,10 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
         )),
         Block::Heading("Definitions".into()),
         Block::Words(vec![
-            ("Whole floor", "all floor within the shell, without what obstacles stand on".into()),
+            ("Whole floor", "all floor within the shell, excluding the footprint of obstacles".into()),
             ("Reachable floor", "floor that the tool can cover from where the robot may stand, with hull and clearance".into()),
-            ("Scanned", "the middle of the cell came under the tool while the 95 % position error was within the limit".into()),
-            ("Guaranteed", "scanned, and it would have been for every position within the 95 % error".into()),
+            ("Scanned", "the centre of the cell came under the tool while the 95 % position error was within the limit".into()),
+            ("Guaranteed", "scanned wherever the robot was within its 95 % position error".into()),
             ("Missed", "reachable, but not scanned; each area has a number, a place and a reason".into()),
             ("Unreachable", "beside obstacles, in no-go zones, or closed off".into()),
             ("Shell margin", "out of reach because the robot keeps its distance from the shell".into()),

@@ -41,8 +41,8 @@ pub(super) fn runs(document: &Document) -> Vec<Block> {
 /// The least clearance, flagged if it is below what was to be kept.
 fn clearance(run: &RunPart) -> String {
     let (Some(least_m), limit_m) = (run.clearance_min_m, run.clearance_m) else { return String::new() };
-    let flag = if least_m < limit_m { "BELOW the" } else { "the" };
-    format!(", minimum clearance {least_m:.3} m ({flag} {limit_m:.3} m to be kept)")
+    let flag = if least_m < limit_m { "BELOW the required" } else { "required:" };
+    format!(", minimum clearance {least_m:.3} m ({flag} {limit_m:.3} m)")
 }
 
 fn tether_table(tether: &TetherPart) -> Table {
@@ -76,7 +76,7 @@ fn tether_table(tether: &TetherPart) -> Table {
         };
     let degrees = f64::to_degrees;
     row(
-        "Most out",
+        "Greatest length out",
         tether.length_max_m,
         Some(tether.length_max_at_s),
         Some(tether.reel_length_m),
@@ -92,16 +92,23 @@ fn tether_table(tether: &TetherPart) -> Table {
         truth.map(|truth| degrees(truth.wrap_max_rad)),
     );
     row(
-        "All wraps together",
+        "Total wrap",
         degrees(tether.wrap_total_max_rad),
         Some(tether.wrap_total_max_at_s),
         Some(degrees(tether.wrap_total_limit_rad)),
         "°",
         truth.map(|truth| degrees(truth.wrap_total_max_rad)),
     );
-    row("Out at the end", tether.end_length_m, None, None, " m", truth.map(|truth| truth.end_length_m));
+    row(
+        "Length out at the end",
+        tether.end_length_m,
+        None,
+        None,
+        " m",
+        truth.map(|truth| truth.end_length_m),
+    );
     if let Some(off_m) = tether.reel_off_max_m {
-        row("Reel against map, largest difference", off_m, None, None, " m", None);
+        row("Largest difference between reel and map", off_m, None, None, " m", None);
     }
     let pull = format!("×{:.2}", tether.pull_factor_max);
     let name = format!("Largest capstan factor (friction {})", tether.friction);
@@ -152,7 +159,7 @@ fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
         ]);
     }
     if left_out > 0 {
-        let caption = format!("{}; {left_out} without consequence are left out", table.caption);
+        let caption = format!("{}; {left_out} of no consequence omitted", table.caption);
         table.caption = caption;
     }
     (!table.rows.is_empty()).then_some(Block::Table(table))
@@ -181,7 +188,7 @@ fn indications(document: &Document) -> Vec<Block> {
     let optional = |value: Option<f64>| value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, 1));
     for found in &document.indications {
         table.row(vec![
-            found.number.to_string().into(),
+            format!("I{}", found.number).into(),
             clock(found.t_s).into(),
             number(found.at.x, 2).into(),
             number(found.at.y, 2).into(),

@@ -93,8 +93,9 @@ fn of_all_runs(look: &Look) -> Option<String> {
 fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
-    let again =
-        overlap.map(|share| format!("Scanned again: {} % of the scanned floor.", text::percent(share)));
+    let again = overlap.map(|share| {
+        format!("Overlap: {} % of the scanned floor, scanned more than once.", text::percent(share))
+    });
     let truth = summary.coverage.as_ref().and_then(|coverage| coverage.by_truth).map(|truth| {
         format!("By the true position: {} % of reachable floor.", text::percent(truth.reachable))
     });

@@ -41,7 +41,7 @@ fn title(look: &Look, listed: &[&Area<MissReason>]) -> String {
         return format!("Missed  no area{others}");
     }
     let total_m2: f64 = listed.iter().map(|area| area.area_m2).sum();
-    let slivers = look.model.live.floor().map(|floor| floor.slivers);
+    let slivers = look.model.live.floor().map(|floor| &floor.slivers);
     let small = slivers.filter(|slivers| slivers.count > 0).map_or_else(String::new, |slivers| {
         format!(", {} smaller, {} m²", slivers.count, text::number(slivers.area_m2, 2))
     });
