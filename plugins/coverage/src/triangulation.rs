@@ -1,12 +1,13 @@
 //! The floor for the middle of the hull in triangles: a constrained Delaunay triangulation of the grown outlines and of cuts,
 //! and the walk through them from home.
 
+use crate::buckets::Buckets;
 use crate::inflation::{outline, wall_rings};
 use geometry::convex::Part;
 use spade::handles::{FaceHandle, FixedVertexHandle, InnerTag};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangulation as _};
 use std::collections::BTreeMap;
-use world::{Boundary, Point, polyline::edges};
+use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
 /// Corners are moved to multiples of this, so that those of outlines that touch coincide instead of lying a hair apart,
 /// metres.
@@ -14,6 +15,8 @@ const SNAP_M: f64 = 1.0 / 65536.0;
 /// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
 pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
+/// Edge of the buckets in which outlines are looked up, metres.
+const BUCKET_M: f64 = 1.0;
 /// A point this far outside a triangle still counts as inside, square metres of signed area.
 pub(crate) const NEARLY: f64 = 1e-9;
 /// No triangle.
@@ -29,6 +32,8 @@ pub(crate) struct Triangulation {
     keep_m: f64,
     /// Obstacles with the distance to keep.
     outlines: Vec<Vec<Point>>,
+    /// The same by place.
+    buckets: Buckets,
 }
 
 impl Triangulation {
@@ -38,7 +43,8 @@ impl Triangulation {
         for ring in wall_rings(wall, keep_m).iter().chain(&outlines) {
             constrain(&mut cdt, ring, true);
         }
-        Self { cdt, wall: wall.clone(), keep_m, outlines }
+        let boxes: Vec<(Point, Point)> = outlines.iter().map(|ring| bounds_of(ring)).collect();
+        Self { cdt, wall: wall.clone(), keep_m, outlines, buckets: Buckets::new(BUCKET_M, 0.0, &boxes) }
     }
 
     /// What can be reached from home without crossing a cut; `None` where there is no room at home.
@@ -59,7 +65,8 @@ impl Triangulation {
 
     fn is_free(&self, at: Point) -> bool {
         let is_inside = |ring: &Vec<Point>| edges(ring).all(|(a, b)| (b - a).perp(&(at - a)) > 0.0);
-        self.wall.wall_distance_m(at) >= self.keep_m && !self.outlines.iter().any(is_inside)
+        let mut near = self.buckets.at(at).iter().map(|k| &self.outlines[*k as usize]);
+        self.wall.wall_distance_m(at) >= self.keep_m && !near.any(is_inside)
     }
 }
 

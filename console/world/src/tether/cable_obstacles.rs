@@ -40,7 +40,8 @@ impl Post {
     ///
     /// A round post lies on the side from which the line touches it; at a corner only the edges decide.
     pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
-        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= -ALONG_EDGE)
+        let most = -ALONG_EDGE * line.norm();
+        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= most)
     }
 }
 
