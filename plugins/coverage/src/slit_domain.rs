@@ -91,7 +91,8 @@ impl<'a> SlitDomain<'a> {
             for side in 0..3 {
                 let next = self.triangles[own as usize].next[side];
                 if next != NONE && !is_reached[next as usize] {
-                    let (right, left) = (self.corner(own as usize, side), self.corner(own as usize, side + 1));
+                    let (right, left) =
+                        (self.corner(own as usize, side), self.corner(own as usize, side + 1));
                     let middle = right + (left - right) / 2.0;
                     let way = self.path_between(home, Spot { at: middle, triangle: own as usize });
                     waiting.push(Reverse(((polyline::length_m(&way) * 1e6) as u64, next, own)));

@@ -62,8 +62,7 @@ impl Workspace {
 
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub(crate) fn is_floor(&self, at: Point) -> bool {
-        self.wall.wall_distance_m(at) >= 0.0
-            && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
+        !self.room.is_solid(at)
     }
 
     /// The refusal where the robot has no room.
