@@ -1,6 +1,7 @@
 //! The floor for the middle of the hull in triangles: a constrained Delaunay triangulation of the grown outlines and of cuts,
 //! and the walk through them from home.
 
+use crate::arrangement::{Border, border};
 use crate::buckets::Buckets;
 use crate::inflation::{outline, wall_rings};
 use geometry::convex::Part;
@@ -40,8 +41,15 @@ impl Triangulation {
     pub(crate) fn new(wall: &Boundary, parts: &[Part], keep_m: f64) -> Self {
         let mut cdt = Cdt::new();
         let outlines: Vec<Vec<Point>> = parts.iter().map(|part| outline(part, keep_m)).collect();
-        for ring in wall_rings(wall, keep_m).iter().chain(&outlines) {
-            constrain(&mut cdt, ring, true);
+        let walls = wall_rings(wall, keep_m);
+        let snapped = |ring: &Vec<Point>| ring.iter().map(|p| p.map(snapped)).collect();
+        let (inward, solid): (Vec<_>, Vec<_>) = match wall {
+            Boundary::Circle { .. } => (walls, outlines.iter().map(snapped).collect()),
+            Boundary::Polygon { .. } => (Vec::new(), walls.iter().chain(&outlines).map(snapped).collect()),
+        };
+        inward.iter().for_each(|ring| constrain(&mut cdt, ring, true));
+        for Border { line, is_closed } in border(&solid, 2.0 * SNAP_M) {
+            constrain(&mut cdt, &line, is_closed);
         }
         let boxes: Vec<(Point, Point)> = outlines.iter().map(|ring| bounds_of(ring)).collect();
         Self { cdt, wall: wall.clone(), keep_m, outlines, buckets: Buckets::new(BUCKET_M, 0.0, &boxes) }
@@ -70,8 +78,11 @@ impl Triangulation {
     }
 }
 
+fn snapped(m: f64) -> f64 {
+    (m / SNAP_M).round() * SNAP_M
+}
+
 fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
-    let snapped = |m: f64| (m / SNAP_M).round() * SNAP_M;
     let corners: Vec<FixedVertexHandle> =
         line.iter().filter_map(|p| cdt.insert(Vertex::new(snapped(p.x), snapped(p.y))).ok()).collect();
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));

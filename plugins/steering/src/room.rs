@@ -34,7 +34,9 @@ impl KeptPart {
 
     /// The distance to a place, metres, as far as it is below a limit.
     fn distance_below(&self, at: Point, limit_m: f64) -> Option<f64> {
-        (self.least_m(at, at) < limit_m.max(f64::MIN_POSITIVE)).then(|| self.part.distance(at).0).filter(|m| *m < limit_m)
+        (self.least_m(at, at) < limit_m.max(f64::MIN_POSITIVE))
+            .then(|| self.part.distance(at).0)
+            .filter(|m| *m < limit_m)
     }
 }
 
