@@ -45,6 +45,14 @@ pub(crate) fn domain<'a>(
     Some(domain)
 }
 
+/// The domain of a floor between inner walls: every island is cut where the shortest ways from home on either side of it
+/// meet, so no cable is much longer than it has to be. `None` where there is no room at home.
+pub(crate) fn domain_between_walls(workspace: &Workspace) -> Option<SlitDomain<'_>> {
+    let mut domain = SlitDomain::new(workspace, Vec::new())?;
+    domain.close_up();
+    Some(domain)
+}
+
 /// The last cut made of those that keep the robot out of sealed floor.
 fn last_at_rim<'a>(cuts: &'a [Vec<Point>], sealed: &SealedRegion) -> Option<&'a [Point]> {
     let is_at_rim = |cut: &&[Point]| sealed.rim.iter().any(|p| polyline::distance_m(cut, *p) < SNAPPED_M);

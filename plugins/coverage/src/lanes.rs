@@ -19,15 +19,22 @@ pub(crate) fn lanes(domain: &SlitDomain<'_>, pattern: &Pattern, least_m: f64) ->
     let swath_m = domain.workspace.swath_m;
     let corridors = corridors(domain, pattern, swath_m);
     let mut lanes = Vec::new();
-    let mut clip = |line: &[Point], fences: &[Fence]| lanes.extend(clipped(domain, line, fences, least_m));
+    let spare_m = SLACK_M / 2.0;
+    let mut clip = |line: &[Point], fences: &[Fence], spare_m: f64| {
+        lanes.extend(clipped(domain, line, fences, (least_m, spare_m)));
+    };
     for (k, corridor) in corridors.iter().enumerate() {
         let before = fences(&corridors[..k], tuning::CORRIDOR_TO_CORRIDOR * swath_m);
-        clip(corridor, &[fences(&domain.cuts, tuning::CORRIDOR_TO_CUT * swath_m), before].concat());
+        let fences = [fences(&domain.cuts, tuning::CORRIDOR_TO_CUT * swath_m), before].concat();
+        clip(corridor, &fences, spare_m);
     }
     let to_cut = if pattern.ahead().is_some() { tuning::STRAIGHT_TO_CUT } else { tuning::CONTOUR_TO_CUT };
     let beside_cuts = fences(&domain.cuts, to_cut * swath_m);
     let fences = [beside_cuts, fences(&corridors, tuning::CORRIDOR_TO_LANE * swath_m)].concat();
-    pattern.lines(domain.workspace).iter().for_each(|line| clip(line, &fences));
+    let (laps, rows) = pattern.lines(domain);
+    laps.iter().for_each(|line| clip(line, &fences, spare_m));
+    let spare_m = if domain.workspace.is_room { pattern.within_laps_m(swath_m) } else { spare_m };
+    rows.iter().for_each(|line| clip(line, &fences, spare_m));
     lanes
 }
 
@@ -74,13 +81,18 @@ fn fences(lines: &[Vec<Point>], far_m: f64) -> Vec<Fence<'_>> {
     lines.iter().map(|line| Fence::new(line, far_m)).collect()
 }
 
-/// The pieces of a line that can be driven and keep off the fences.
-fn clipped(domain: &SlitDomain<'_>, line: &[Point], fences: &[Fence<'_>], least_m: f64) -> Vec<Lane> {
+/// The pieces of a line that can be driven with some room to spare and keep off the fences, but for short ones.
+fn clipped(
+    domain: &SlitDomain<'_>,
+    line: &[Point],
+    fences: &[Fence<'_>],
+    (least_m, spare_m): (f64, f64),
+) -> Vec<Lane> {
     let around = bounds_of(line);
     let near: Vec<&Fence<'_>> = fences.iter().filter(|fence| fence.may_bar(around)).collect();
     let is_open = |at: Point| {
         !near.iter().any(|fence| fence.bars(at))
-            && domain.workspace.room.spare_m(at) >= SLACK_M / 2.0
+            && domain.workspace.room.spare_m(at) >= spare_m
             && domain.contains(at)
     };
     let mut points = polyline::resampled(line, STEP_M);

@@ -10,6 +10,7 @@ pub mod boustrophedon;
 pub mod hull_partition;
 pub mod tether_safe;
 
+mod arrangement;
 mod buckets;
 mod cuts;
 mod draft;

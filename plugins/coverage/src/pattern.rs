@@ -2,6 +2,7 @@
 
 use crate::inflation::SLACK_M;
 use crate::plane::{direction, extent, left_of};
+use crate::slit_domain::SlitDomain;
 use crate::tuning::lanes::{INTO_LAP, SPACING};
 use crate::workspace::Workspace;
 use std::f64::consts::{PI, TAU};
@@ -56,19 +57,42 @@ impl Pattern {
         is_along.then(|| foot + rows.to_gap(foot) + along * 0.05)
     }
 
-    /// The unbroken lines of the pattern.
-    pub(crate) fn lines(&self, workspace: &Workspace) -> Vec<Vec<Point>> {
-        let start_m = workspace.keep_m + SLACK_M;
+    /// How far from the outermost lap along the wall straight lanes begin, metres.
+    pub(crate) fn within_laps_m(&self, swath_m: f64) -> f64 {
         match self {
-            Self::Contours => contours(workspace, start_m, usize::MAX),
-            Self::Straight { rows, laps } => {
-                let laps_m = if *laps == 0 { 0.0 } else { (*laps as f64 - INTO_LAP) * workspace.swath_m };
-                let mut lines = contours(workspace, start_m, *laps);
-                lines.extend(rows.lines(&workspace.wall, start_m + laps_m));
-                lines
-            }
+            Self::Straight { laps: laps @ 1.., .. } => (*laps as f64 - INTO_LAP) * swath_m,
+            Self::Straight { .. } | Self::Contours => 0.0,
         }
     }
+
+    /// The unbroken lines of the pattern: those along walls, and straight ones. Between inner walls, one lap runs along all of
+    /// them and around every obstacle.
+    pub(crate) fn lines(&self, domain: &SlitDomain<'_>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
+        let workspace = domain.workspace;
+        let start_m = workspace.keep_m + SLACK_M;
+        let Self::Straight { rows, laps } = self else {
+            return (contours(workspace, start_m, usize::MAX), Vec::new());
+        };
+        if workspace.is_room && *laps > 0 {
+            let along_walls = domain.rings().iter().map(|ring| moved_left(ring, SLACK_M / 2.0)).collect();
+            return (along_walls, rows.lines(&workspace.wall, start_m));
+        }
+        let laps_m = self.within_laps_m(workspace.swath_m);
+        (contours(workspace, start_m, *laps), rows.lines(&workspace.wall, start_m + laps_m))
+    }
+}
+
+/// A closed ring with every side moved to its left.
+fn moved_left(ring: &[Point], by_m: f64) -> Vec<Point> {
+    let sides: Vec<Vector> = ring.windows(2).map(|w| left_of((w[1] - w[0]).normalize())).collect();
+    let mut moved: Vec<Point> = (0..sides.len())
+        .map(|k| {
+            let (before, after) = (sides[(k + sides.len() - 1) % sides.len()], sides[k]);
+            ring[k] + (before + after) * (by_m / (1.0 + before.dot(&after)).max(0.2))
+        })
+        .collect();
+    moved.extend(moved.first().copied());
+    moved
 }
 
 /// Lines at even distances from the wall, outermost first; in a round tank the last is a small circle about its middle.

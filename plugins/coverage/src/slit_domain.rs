@@ -11,6 +11,8 @@ use crate::plane::meets;
 use crate::triangulation::{NEARLY, NONE, SealedRegion, Triangle, Walk, least_side};
 use crate::workspace::{Workspace, places_around};
 use funnel::funnel;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 use world::{Point, polyline};
 
 /// Triangles of the floor that can be reached from home without crossing a cut.
@@ -50,6 +52,10 @@ impl<'a> SlitDomain<'a> {
     /// Adds cuts across the last ways round obstacles that are left, each where the ways from home on either side meet. No
     /// floor is lost by it, and the domain is simply connected then.
     pub(crate) fn close_up(&mut self) {
+        if self.is_simple {
+            return;
+        }
+        self.reach_nearest_first();
         for own in 0..self.triangles.len() {
             for side in 0..3 {
                 let other = self.triangles[own].next[side];
@@ -71,6 +77,30 @@ impl<'a> SlitDomain<'a> {
         self.is_simple = true;
     }
 
+    /// Makes the tree of triangles anew, by the lengths of the shortest ways from home (Dijkstra 1959).
+    fn reach_nearest_first(&mut self) {
+        let Some(home) = self.spot(self.workspace.home) else { return };
+        let mut is_reached = vec![false; self.triangles.len()];
+        let mut waiting = BinaryHeap::from([Reverse((0, home.triangle as u32, NONE))]);
+        while let Some(Reverse((_, own, parent))) = waiting.pop() {
+            if std::mem::replace(&mut is_reached[own as usize], true) {
+                continue;
+            }
+            let depth = if parent == NONE { 0 } else { self.triangles[parent as usize].depth + 1 };
+            (self.triangles[own as usize].parent, self.triangles[own as usize].depth) = (parent, depth);
+            for side in 0..3 {
+                let next = self.triangles[own as usize].next[side];
+                if next != NONE && !is_reached[next as usize] {
+                    let (right, left) =
+                        (self.corner(own as usize, side), self.corner(own as usize, side + 1));
+                    let middle = right + (left - right) / 2.0;
+                    let way = self.path_between(home, Spot { at: middle, triangle: own as usize });
+                    waiting.push(Reverse(((polyline::length_m(&way) * 1e6) as u64, next, own)));
+                }
+            }
+        }
+    }
+
     fn corner(&self, triangle: usize, k: usize) -> Point {
         self.points[self.triangles[triangle].corners[k % 3] as usize]
     }
@@ -82,6 +112,29 @@ impl<'a> SlitDomain<'a> {
     /// The triangles, for filling a raster.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [Point; 3]> + '_ {
         (0..self.triangles.len()).map(|triangle| self.corners(triangle))
+    }
+
+    /// What bounds the domain, cuts left out: closed rings with the domain on their left.
+    pub(crate) fn rings(&self) -> Vec<Vec<Point>> {
+        let is_cut = |a: Point, b: Point| self.cuts.iter().any(|cut| cut[..] == [a, b] || cut[..] == [b, a]);
+        let mut onward: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (own, Triangle { corners, next, .. }) in self.triangles.iter().enumerate() {
+            for side in (0..3).filter(|side| next[*side] == NONE) {
+                if !is_cut(self.corner(own, side), self.corner(own, side + 1)) {
+                    onward.entry(corners[side]).or_default().push(corners[(side + 1) % 3]);
+                }
+            }
+        }
+        let mut rings = Vec::new();
+        while let Some((first, _)) = onward.first_key_value() {
+            let mut ring = vec![*first];
+            while let Some(next) = onward.get_mut(&ring[ring.len() - 1]).and_then(Vec::pop) {
+                ring.push(next);
+            }
+            onward.retain(|_, next| !next.is_empty());
+            rings.push(ring.into_iter().map(|corner| self.points[corner as usize]).collect());
+        }
+        rings
     }
 
     /// A place with its triangle; `None` outside the domain.

@@ -49,6 +49,7 @@ impl Planner for TetherSafe {
         let scope = Scope::of(request, Self::ID, self.preferences.cell_m)?;
         let workspace = Workspace::new(request.site, scope.anchor)?;
         let preferences = self.preferences.under(scope.tether);
+        let preferences = if workspace.is_room { preferences.between_walls() } else { preferences };
         if let Some(why) = no_lane(&workspace, preferences.limits.reel_length_m) {
             return Err(PlannerError::new(Code::Config, why));
         }

@@ -1,12 +1,14 @@
 //! The floor for the middle of the hull in triangles: a constrained Delaunay triangulation of the grown outlines and of cuts,
 //! and the walk through them from home.
 
+use crate::arrangement::{Border, border};
+use crate::buckets::Buckets;
 use crate::inflation::{outline, wall_rings};
 use geometry::convex::Part;
 use spade::handles::{FaceHandle, FixedVertexHandle, InnerTag};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangulation as _};
 use std::collections::BTreeMap;
-use world::{Boundary, Point, polyline::edges};
+use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
 /// Corners are moved to multiples of this, so that those of outlines that touch coincide instead of lying a hair apart,
 /// metres.
@@ -14,6 +16,8 @@ const SNAP_M: f64 = 1.0 / 65536.0;
 /// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
 pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
+/// Edge of the buckets in which outlines are looked up, metres.
+const BUCKET_M: f64 = 1.0;
 /// A point this far outside a triangle still counts as inside, square metres of signed area.
 pub(crate) const NEARLY: f64 = 1e-9;
 /// No triangle.
@@ -29,16 +33,26 @@ pub(crate) struct Triangulation {
     keep_m: f64,
     /// Obstacles with the distance to keep.
     outlines: Vec<Vec<Point>>,
+    /// The same by place.
+    buckets: Buckets,
 }
 
 impl Triangulation {
     pub(crate) fn new(wall: &Boundary, parts: &[Part], keep_m: f64) -> Self {
         let mut cdt = Cdt::new();
         let outlines: Vec<Vec<Point>> = parts.iter().map(|part| outline(part, keep_m)).collect();
-        for ring in wall_rings(wall, keep_m).iter().chain(&outlines) {
-            constrain(&mut cdt, ring, true);
+        let walls = wall_rings(wall, keep_m);
+        let snapped = |ring: &Vec<Point>| ring.iter().map(|p| p.map(snapped)).collect();
+        let (inward, solid): (Vec<_>, Vec<_>) = match wall {
+            Boundary::Circle { .. } => (walls, outlines.iter().map(snapped).collect()),
+            Boundary::Polygon { .. } => (Vec::new(), walls.iter().chain(&outlines).map(snapped).collect()),
+        };
+        inward.iter().for_each(|ring| constrain(&mut cdt, ring, true));
+        for Border { line, is_closed } in border(&solid, 2.0 * SNAP_M) {
+            constrain(&mut cdt, &line, is_closed);
         }
-        Self { cdt, wall: wall.clone(), keep_m, outlines }
+        let boxes: Vec<(Point, Point)> = outlines.iter().map(|ring| bounds_of(ring)).collect();
+        Self { cdt, wall: wall.clone(), keep_m, outlines, buckets: Buckets::new(BUCKET_M, 0.0, &boxes) }
     }
 
     /// What can be reached from home without crossing a cut; `None` where there is no room at home.
@@ -59,12 +73,16 @@ impl Triangulation {
 
     fn is_free(&self, at: Point) -> bool {
         let is_inside = |ring: &Vec<Point>| edges(ring).all(|(a, b)| (b - a).perp(&(at - a)) > 0.0);
-        self.wall.wall_distance_m(at) >= self.keep_m && !self.outlines.iter().any(is_inside)
+        let mut near = self.buckets.at(at).iter().map(|k| &self.outlines[*k as usize]);
+        self.wall.wall_distance_m(at) >= self.keep_m && !near.any(is_inside)
     }
 }
 
+fn snapped(m: f64) -> f64 {
+    (m / SNAP_M).round() * SNAP_M
+}
+
 fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
-    let snapped = |m: f64| (m / SNAP_M).round() * SNAP_M;
     let corners: Vec<FixedVertexHandle> =
         line.iter().filter_map(|p| cdt.insert(Vertex::new(snapped(p.x), snapped(p.y))).ok()).collect();
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));

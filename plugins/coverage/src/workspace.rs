@@ -8,7 +8,7 @@ use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
 use std::{f64::consts::TAU, sync::OnceLock};
 use steering::{Keep, Room, solids};
-use world::{Boundary, Point};
+use world::{Boundary, Point, polyline::edges, shape::reflex_corners};
 
 /// Wall and obstacles of a site with the distances to keep.
 pub(crate) struct Workspace {
@@ -24,6 +24,8 @@ pub(crate) struct Workspace {
     pub home: Point,
     /// Exact distances.
     pub room: Room,
+    /// Whether inner walls bend the way to floor: a straight wall has inward corners, or something solid stands at it.
+    pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
     pub floor: OnceLock<ReachableFloor>,
@@ -44,7 +46,8 @@ impl Workspace {
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
         let (home, triangulation, floor) = (home(&room, anchor), OnceLock::new(), OnceLock::new());
-        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, triangulation, floor })
+        let is_room = has_inner_walls(&wall, &parts, keep_m);
+        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.
@@ -59,8 +62,7 @@ impl Workspace {
 
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub(crate) fn is_floor(&self, at: Point) -> bool {
-        self.wall.wall_distance_m(at) >= 0.0
-            && self.room.parts_near(at).all(|(part, _)| part.distance(at).0 >= 0.0)
+        !self.room.is_solid(at)
     }
 
     /// The refusal where the robot has no room.
@@ -74,6 +76,20 @@ impl Workspace {
             ),
         )
     }
+}
+
+fn has_inner_walls(wall: &Boundary, parts: &[Part], keep_m: f64) -> bool {
+    let Boundary::Polygon { vertices } = wall else { return false };
+    let is_at_wall = |part: &Part| wall_gap_m(wall, part) < 2.0 * keep_m;
+    reflex_corners(vertices).next().is_some() || parts.iter().any(is_at_wall)
+}
+
+/// Room between wall and part, metres; not above zero where the part reaches the wall.
+pub(crate) fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
+    let corners = part.corners();
+    let ends = corners.iter().map(|c| wall.wall_distance_m(c.0) - c.1).fold(f64::INFINITY, f64::min);
+    let Boundary::Polygon { vertices } = wall else { return ends };
+    edges(vertices).map(|(a, b)| part.segment_distance_m(a, b)).fold(ends, f64::min)
 }
 
 /// How far a part reaches from its middle, metres.

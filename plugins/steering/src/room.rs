@@ -16,6 +16,37 @@ const ROUNDING_M: f64 = 1e-9;
 struct KeptPart {
     part: Part,
     keep_m: f64,
+    /// The box around the part.
+    low: Point,
+    high: Point,
+}
+
+impl KeptPart {
+    fn new(part: Part, keep_m: f64) -> Self {
+        let (low, high) = bounds(&part);
+        Self { part, keep_m, low, high }
+    }
+
+    /// The part is no nearer to the box between two corners than this, metres.
+    fn least_m(&self, low: Point, high: Point) -> f64 {
+        (self.low - high).sup(&(low - self.high)).sup(&Vector::zeros()).norm()
+    }
+
+    /// The distance to a place, metres, as far as it is below a limit.
+    fn distance_below(&self, at: Point, limit_m: f64) -> Option<f64> {
+        (self.least_m(at, at) < limit_m.max(f64::MIN_POSITIVE))
+            .then(|| self.part.distance(at).0)
+            .filter(|m| *m < limit_m)
+    }
+}
+
+fn bounds(part: &Part) -> (Point, Point) {
+    let far = f64::INFINITY;
+    let none = (Point::new(far, far), Point::new(-far, -far));
+    part.corners().iter().fold(none, |(low, high), (at, radius_m)| {
+        let around = Vector::new(*radius_m, *radius_m);
+        (low.inf(&(at - around)), high.sup(&(at + around)))
+    })
 }
 
 /// Distances the middle of the hull has to keep, metres.
@@ -48,9 +79,9 @@ impl Room {
 
     /// The floor between some parts.
     pub fn of_parts(wall: Boundary, parts: impl Iterator<Item = Part>, keep: Keep) -> Self {
-        let mut parts: Vec<KeptPart> = parts.map(|part| KeptPart { part, keep_m: keep.obstacle_m }).collect();
+        let mut parts: Vec<KeptPart> = parts.map(|part| KeptPart::new(part, keep.obstacle_m)).collect();
         if let Boundary::Polygon { vertices } = &wall {
-            let piece = |(a, b)| KeptPart { part: Part::segment(a, b), keep_m: keep.wall_m };
+            let piece = |(a, b)| KeptPart::new(Part::segment(a, b), keep.wall_m);
             parts.extend(edges(vertices).map(piece));
         }
         let (low, high) = wall.bounds();
@@ -66,14 +97,23 @@ impl Room {
     /// Room left at a place, metres: negative where the middle of the hull may not be, at most 0.6.
     pub fn spare_m(&self, at: Point) -> f64 {
         let wall = self.wall.wall_distance_m(at) - self.keep.wall_m + ROUNDING_M;
-        self.near(at).map(|s| s.part.distance(at).0 - s.keep_m).fold(wall.min(MOST_SPARE_M), f64::min)
+        self.near(at).fold(wall.min(MOST_SPARE_M), |spare_m, s| {
+            s.distance_below(at, spare_m + s.keep_m).map_or(spare_m, |m| m - s.keep_m)
+        })
+    }
+
+    /// Whether a place lies in an obstacle or outside the wall.
+    pub fn is_solid(&self, at: Point) -> bool {
+        self.wall.wall_distance_m(at) < 0.0 || self.near(at).any(|s| s.distance_below(at, 0.0).is_some())
     }
 
     /// Whether the middle of the hull may go straight from `a` to `b`, which are less than 0.6 m apart.
     pub fn is_free(&self, a: Point, b: Point) -> bool {
         let wall_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
         wall_m - self.keep.wall_m >= -ROUNDING_M
-            && self.near(nalgebra::center(&a, &b)).all(|s| s.part.segment_distance_m(a, b) >= s.keep_m)
+            && self.near(nalgebra::center(&a, &b)).all(|s| {
+                s.least_m(a.inf(&b), a.sup(&b)) >= s.keep_m || s.part.segment_distance_m(a, b) >= s.keep_m
+            })
     }
 
     /// The parts within reach of a place with what they demand, for those who look at them one by one.

@@ -14,6 +14,8 @@ use serde::{Deserialize, Serialize};
 
 /// Sine of the angle up to which a line along an edge does not enter the solid.
 const ALONG_EDGE: f64 = 1e-6;
+/// What is solid this far from a corner is solid right beside it, metres.
+const BESIDE_M: f64 = 1e-6;
 
 /// What a cable bears on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -40,7 +42,14 @@ impl Post {
     ///
     /// A round post lies on the side from which the line touches it; at a corner only the edges decide.
     pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
-        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= -ALONG_EDGE)
+        let most = -ALONG_EDGE * line.norm();
+        self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= most)
+    }
+
+    /// Whether a line can bend here, for all that is solid beside it: at a corner, both edges can be prolonged into free floor.
+    /// Floors from maps consist of many convex pieces, and most of their corners lie against other pieces.
+    fn can_bear(&self, is_solid: impl Fn(Point) -> bool) -> bool {
+        self.radius_m > 0.0 || !self.edges.iter().any(|edge| is_solid(self.center - edge * BESIDE_M))
     }
 }
 
@@ -104,7 +113,10 @@ impl CableObstacles {
             Boundary::Polygon { vertices } if !of_wall.is_empty() => edges(vertices).collect(),
             Boundary::Polygon { .. } | Boundary::Circle { .. } => Vec::new(),
         };
-        let posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
+        let sidestep = Sidestep::new(solids, margin_m > 0.0);
+        let is_solid = |at: Point| sidestep.holds(at) || boundary.wall_distance_m(at) < -BESIDE_M / 1e3;
+        let mut posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
+        posts.retain(|post| post.can_bear(is_solid));
         let around = |post: &Post| {
             let far = Vector::new(post.radius_m, post.radius_m);
             (post.center - far, post.center + far)
@@ -112,7 +124,7 @@ impl CableObstacles {
         Self {
             boxes: Boxes::new(posts.iter().map(around)),
             posts,
-            sidestep: Sidestep::new(solids, margin_m > 0.0),
+            sidestep,
             rays: Rays::new(&shapes.iter().map(ray_origin).collect::<Vec<_>>()),
             walls,
         }
@@ -215,6 +227,30 @@ mod tests {
             |shapes: &[Shape]| CableObstacles::new(&Boundary::Circle { radius_m: 9.0 }, shapes).posts.len();
         assert_eq!(n_posts(&[disc(0.0, 1.0), disc(0.2, 0.5), disc(3.0, 0.5)]), 2);
         assert_eq!(n_posts(&[disc(0.0, 1.0), disc(0.0, 1.0)]), 1);
+    }
+
+    #[test]
+    fn a_corner_against_another_solid_bears_nothing() {
+        let square = |x: f64, y: f64, edge: f64| {
+            let corners = [(x, y), (x + edge, y), (x + edge, y + edge), (x, y + edge)];
+            Shape::Polygon { vertices: corners.iter().map(|(x, y)| Point::new(*x, *y)).collect() }
+        };
+        let posts = |shapes: &[Shape]| {
+            let wall = Boundary::Polygon {
+                vertices: [(-9., -9.), (9., -9.), (9., 9.), (-9., 9.)]
+                    .map(|(x, y)| Point::new(x, y))
+                    .to_vec(),
+            };
+            let mut posts: Vec<Point> =
+                CableObstacles::new(&wall, shapes).posts.iter().map(|post| post.center).collect();
+            posts.sort_by(|a, b| (a.x, a.y).partial_cmp(&(b.x, b.y)).unwrap());
+            posts
+        };
+        let three = [square(0., 0., 2.), square(2., 0.5, 1.), square(0.5, -1., 1.)];
+        let corners = [(0., 0.), (0., 2.), (0.5, -1.), (1.5, -1.), (2., 0.), (2., 2.), (3., 0.5), (3., 1.5)];
+        assert_eq!(posts(&three), corners.map(|(x, y)| Point::new(x, y)));
+        assert_eq!(posts(&[square(-9., 0., 1.)]), [(-8., 0.), (-8., 1.)].map(|(x, y)| Point::new(x, y)));
+        assert_eq!(posts(&[square(0., 0., 2.), square(0., 0., 2.)]).len(), 8, "twice the same square");
     }
 
     #[test]

@@ -140,6 +140,15 @@ impl Geodesic {
             .flat_map(|post| [(post, 1.0), (post, -1.0)])
             .filter_map(move |(post, side)| {
                 let target = self.obstacles.posts[post];
+                let way = target.center - start.0;
+                // A taut line enters neither of the two corners that it joins.
+                let enters = |post: &Post, side: f64| !post.lies_on(side, way);
+                let is_straight = start.1 + target.radius_m == 0.0;
+                if is_straight
+                    && (enters(&target, side) || base.is_some_and(|(a, post)| enters(&post, a.side)))
+                {
+                    return None;
+                }
                 let bearing_rad = tangent(start, (target.center, target.radius_m, side))?;
                 let at = tangent_point(target.center, target.radius_m, side, bearing_rad);
                 let leaves = tangent_point(start.0, start.1, start.2, bearing_rad);

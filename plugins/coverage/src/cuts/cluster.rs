@@ -1,9 +1,9 @@
 //! Obstacles that leave the robot no room between them and count as one.
 
 use crate::inflation::SLACK_M;
-use crate::workspace::{Workspace, reach_m};
+use crate::workspace::{Workspace, reach_m, wall_gap_m};
 use geometry::convex::Part;
-use world::{Boundary, Point, polyline::edges};
+use world::Point;
 
 /// Parts that leave no room between them.
 pub(super) struct Cluster {
@@ -52,11 +52,4 @@ impl Cluster {
 
 fn are_near(a: &Part, b: &Part, near_m: f64) -> bool {
     (a.middle() - b.middle()).norm() <= reach_m(a) + reach_m(b) + near_m && a.gap(b).width_m < near_m
-}
-
-fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
-    let corners = part.corners();
-    let ends = corners.iter().map(|c| wall.wall_distance_m(c.0) - c.1).fold(f64::INFINITY, f64::min);
-    let Boundary::Polygon { vertices } = wall else { return ends };
-    edges(vertices).map(|(a, b)| part.segment_distance_m(a, b)).fold(ends, f64::min)
 }

@@ -1,6 +1,6 @@
 //! Candidates of a tether-safe plan: how lanes and cuts may lie.
 
-use crate::cuts::{CutRule, domain};
+use crate::cuts::{CutRule, domain, domain_between_walls};
 use crate::draft::{Draft, rotation_turns};
 use crate::pattern::{Pattern, Rows};
 use crate::scan::Scan;
@@ -29,7 +29,9 @@ impl Candidate {
                 main_direction_rad(&workspace.wall) + PI * k as f64 / preferences.directions as f64;
             Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
         };
-        let contours = preferences.contours.then_some(Pattern::Contours);
+        // Contours of the outer wall are no lanes of a floor between inner walls.
+        let is_meant = preferences.contours && (preferences.directions == 0 || !workspace.is_room);
+        let contours = is_meant.then_some(Pattern::Contours);
         let patterns = contours.into_iter().chain((0..preferences.directions).map(straight));
         patterns.map(|pattern| Self { pattern, alpha_rad }).collect()
     }
@@ -52,6 +54,9 @@ impl Candidate {
         workspace: &'a Workspace,
         preferences: &Preferences,
     ) -> Option<SlitDomain<'a>> {
+        if workspace.is_room {
+            return domain_between_walls(workspace);
+        }
         let (least_m, reel_length_m) = (least_cable_m(workspace), preferences.limits.reel_length_m);
         let most_m = (least_m * preferences.cable_share).min(reel_length_m);
         let made = |slack: f64| {

@@ -146,6 +146,13 @@ impl Preferences {
         Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
     }
 
+    /// The same between inner walls, which bend the cable whatever the cuts are: only what is demanded counts.
+    pub(super) fn between_walls(self) -> Self {
+        let Limits { wrap_max_rad, wrap_total_max_rad, .. } = self.demanded;
+        let limits = Limits { wrap_max_rad, wrap_total_max_rad, ..self.limits };
+        Self { alpha_rad: 0.0, cable_share: f64::INFINITY, limits, ..self }
+    }
+
     /// The same with so many times the length and the wraps of the tether.
     pub(super) fn with_leeway(&self, length: f64, wrap: f64) -> Self {
         let limits = Limits {
