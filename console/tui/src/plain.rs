@@ -36,7 +36,9 @@ impl Said {
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
         lines.extend(newly(&mut self.notice, notice).filter(|text| !is_said(text)));
-        lines.extend(newly(&mut self.question, question(model)));
+        // Who reads sentences types commands: the keys that a question names are pressed by one.
+        let question = newly(&mut self.question, question(model));
+        lines.extend(question.map(|question| format!("{question} Commands: `key enter`, `key esc`.")));
         let standing = standing(model);
         if standing != self.standing {
             lines.push(standing.clone());

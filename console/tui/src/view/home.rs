@@ -194,11 +194,17 @@ fn name_of(run: &PastRun) -> &str {
 fn run_row(run: &PastRun, [began, name, time, reach]: [usize; 4]) -> Parts {
     let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
     let scanned = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
+    // Without a column of its own, what was scanned says more than that the run is complete.
+    let end = if reach == 0 && run.end == "complete" && run.reachable.is_some() {
+        scanned.clone()
+    } else {
+        end_word(run).to_owned()
+    };
     let is_sound = matches!(run.end.as_str(), "complete" | "aborted");
     let parts = [
         (Role::Dim, text::column(&run.began, began)),
         (Role::Text, text::column(name_of(run), name)),
-        (if is_sound { Role::Text } else { Role::Warn }, text::column(end_word(run), END + 1)),
+        (if is_sound { Role::Text } else { Role::Warn }, text::column(&end, END + 1)),
         (Role::Dim, text::column(&took, time)),
         (Role::Text, if reach > 0 { format!("{scanned:>reach$}") } else { String::new() }),
     ];
