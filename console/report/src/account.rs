@@ -156,7 +156,7 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
     let mut by_plate = vec![Tally::default(); plates.as_ref().map_or(0, |map| map.plates.len())];
     for index in 0..floor.len() {
         let (kind, is_scanned) = (floor.kind(index), grid.is_covered(index));
-        let is_guaranteed = scanned.is_guaranteed(index);
+        let is_guaranteed = is_scanned && scanned.passes().is_guaranteed(index);
         whole.count(kind, is_scanned, is_guaranteed);
         if kind == Cell::Reachable {
             reachable.count(kind, is_scanned, is_guaranteed);

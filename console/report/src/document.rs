@@ -122,6 +122,24 @@ pub(crate) struct Pictures {
     pub(crate) runs: Vec<[Option<Figure>; 3]>,
 }
 
+impl Pictures {
+    /// Draws the coverage map in a thread of its own, which takes as long as the others together.
+    fn draw(layers: &Layers<'_>, floor: &Account, indications: &[Indication], past: &[PastRun]) -> Self {
+        std::thread::scope(|scope| {
+            let map = scope.spawn(|| maps::coverage(layers, indications));
+            let others = Self {
+                accuracy: maps::accuracy(layers),
+                guaranteed: maps::guaranteed(layers, &floor.whole),
+                zone: charts::zone(layers.run, floor, &layers.shell()),
+                runs: past.iter().map(|past| of_run(layers, past)).collect(),
+                ..Self::default()
+            };
+            let (coverage, badges) = map.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            Self { coverage, badges, ..others }
+        })
+    }
+}
+
 impl Document {
     /// The report on some runs on one floor.
     ///
@@ -143,15 +161,7 @@ impl Document {
         };
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
-        let (coverage, badges) = maps::coverage(&layers, &indications);
-        let pictures = Pictures {
-            coverage,
-            badges,
-            accuracy: maps::accuracy(&layers),
-            guaranteed: maps::guaranteed(&layers, &floor.whole),
-            zone: charts::zone(run, &floor, &evidence.shell()),
-            runs: past.iter().map(|past| of_run(&layers, past)).collect(),
-        };
+        let pictures = Pictures::draw(&layers, &floor, &indications, past);
         let mut document = Self {
             number: number(past),
             revision: letter(context.revisions.len()),

@@ -80,11 +80,6 @@ impl Scanned {
             && self.believed.floor().is_floor(cell)
     }
 
-    /// Whether a cell counts as scanned and is guaranteed to be.
-    pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
-        self.believed.is_covered(cell) && self.passes.is_guaranteed(cell)
-    }
-
     /// The figures so far; what was missed only if the floor was `to_scan`.
     pub(crate) fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
@@ -100,22 +95,40 @@ impl Scanned {
     }
 
     fn by_truth(&self) -> CoverageByTruth {
-        let truly = |is_claimed: &dyn Fn(usize) -> bool| {
-            let claimed = || (0..self.believed.floor().len()).filter(|cell| is_claimed(*cell));
-            let right = claimed().filter(|cell| self.truth[*cell]).count();
-            Some(claimed().count()).filter(|count| *count > 0).map(|count| right as f64 / count as f64)
-        };
-        let is_scanned = |cell| self.believed.floor().is_floor(cell) && self.believed.is_covered(cell);
-        let mut counts = Counts::default();
+        let (mut counts, mut scanned, mut sure) = (Counts::default(), Claim::default(), Claim::default());
         for (cell, truly) in self.truth.iter().enumerate() {
             counts.add(self.believed.floor().kind(cell), *truly);
+            if self.believed.floor().is_floor(cell) && self.believed.is_covered(cell) {
+                scanned.count(*truly);
+                if self.passes.is_guaranteed(cell) {
+                    sure.count(*truly);
+                }
+            }
         }
         let share = |part: usize, of: usize| if of == 0 { 0.0 } else { part as f64 / of as f64 };
         CoverageByTruth {
             reachable: share(counts.covered_reachable, counts.reachable),
             whole: share(counts.covered, counts.floor),
-            scanned_truly: truly(&is_scanned),
-            guaranteed_truly: truly(&|cell| is_scanned(cell) && self.passes.is_guaranteed(cell)),
+            scanned_truly: scanned.true_share(),
+            guaranteed_truly: sure.true_share(),
         }
+    }
+}
+
+/// Cells that are claimed as scanned, and how many of them truly were.
+#[derive(Default)]
+struct Claim {
+    cells: usize,
+    truly: usize,
+}
+
+impl Claim {
+    fn count(&mut self, truly: bool) {
+        self.cells += 1;
+        self.truly += usize::from(truly);
+    }
+
+    fn true_share(&self) -> Option<f64> {
+        (self.cells > 0).then(|| self.truly as f64 / self.cells as f64)
     }
 }

@@ -197,7 +197,7 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
     }
     scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));
     let width_m = |y_m: f64| {
-        let cells = (0..run.floor.len()).filter(|index| scanned.is_guaranteed(*index));
+        let cells = (0..run.floor.len()).filter(|index| scanned.passes().is_guaranteed(*index));
         let beside = cells.filter(|index| (run.floor.center(*index).y - y_m).abs() < 1.0);
         beside.count() as f64 * run.floor.cell_m2() / 2.0
     };

@@ -6,7 +6,7 @@ use crate::{
     scanned::Scanned,
 };
 use mission::{RunOpened, TaskConfig};
-use world::{Cell, Floor, PlateMap, Point};
+use world::{Cell, Floor, PlateMap, Point, ShellStretch};
 
 /// Smallest missed area with a number, square metres.
 const LEAST_M2: f64 = 0.01;
@@ -23,8 +23,32 @@ pub(crate) struct Layers<'a> {
     /// Missed areas that are listed, the largest first: a place in each, and its cells.
     pub(crate) gaps: Vec<(Point, Vec<usize>)>,
     plate_map: Option<PlateMap>,
+    /// What each cell counts as.
+    classes: Vec<Class>,
     /// Cells that were scanned more than once.
     twice: Vec<bool>,
+}
+
+/// What a cell counts as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Outside,
+    Scanned,
+    Missed,
+    Margin,
+    Unreachable,
+}
+
+impl Class {
+    fn of(kind: Cell, is_covered: bool) -> Self {
+        match kind {
+            Cell::Outside => Self::Outside,
+            _ if is_covered => Self::Scanned,
+            Cell::Reachable => Self::Missed,
+            Cell::Margin => Self::Margin,
+            Cell::Unreachable | Cell::Beside | Cell::NoGo => Self::Unreachable,
+        }
+    }
 }
 
 impl<'a> Layers<'a> {
@@ -41,8 +65,11 @@ impl<'a> Layers<'a> {
             .plates
             .zip(map.as_ref())
             .map(|(layout, map)| PlateLines::new(&layout, &run.world.boundary, floor, map));
+        let class = |cell: usize| Class::of(floor.kind(cell), scanned.believed().is_covered(cell));
+        let classes = (0..floor.len()).map(class).collect();
         let twice = (0..floor.len()).map(|cell| scanned.is_again(cell)).collect();
-        let mut layers = Self { run, scanned, evidence, plates, gaps: Vec::new(), plate_map: map, twice };
+        let (gaps, plate_map) = (Vec::new(), map);
+        let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, classes, twice };
         layers.gaps = layers.gaps_at(places);
         layers
     }
@@ -66,6 +93,11 @@ impl<'a> Layers<'a> {
     /// The floor.
     pub(crate) fn floor(&self) -> &'a Floor {
         self.scanned.believed().floor()
+    }
+
+    /// How the zone along the shell was scanned, stretch by stretch.
+    pub(crate) fn shell(&self) -> Vec<ShellStretch> {
+        self.evidence.shell()
     }
 
     /// What stands in the tank as it is known.
@@ -99,25 +131,27 @@ impl<'a> Layers<'a> {
 
     /// Whether a cell of floor was scanned.
     pub(crate) fn is_scanned(&self, cell: usize) -> bool {
-        let grid = self.scanned.believed();
-        grid.floor().is_floor(cell) && grid.is_covered(cell)
+        self.classes[cell] == Class::Scanned
     }
 
     /// Whether a cell was in reach and not scanned.
     pub(crate) fn is_missed(&self, cell: usize) -> bool {
-        let grid = self.scanned.believed();
-        grid.floor().is_reachable(cell) && !grid.is_covered(cell)
+        self.classes[cell] == Class::Missed
     }
 
     /// Whether a cell is shell margin.
     pub(crate) fn is_margin(&self, cell: usize) -> bool {
-        self.floor().kind(cell) == Cell::Margin && !self.is_scanned(cell)
+        self.classes[cell] == Class::Margin
     }
 
     /// Whether a cell is out of reach otherwise.
     pub(crate) fn is_unreachable(&self, cell: usize) -> bool {
-        matches!(self.floor().kind(cell), Cell::Unreachable | Cell::Beside | Cell::NoGo)
-            && !self.is_scanned(cell)
+        self.classes[cell] == Class::Unreachable
+    }
+
+    /// Whether a cell was scanned wherever the robot was within its 95 % error.
+    pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
+        self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
     }
 
     /// Whether a cell was scanned more than once.
@@ -173,11 +207,15 @@ impl<'a> Layers<'a> {
             }
             let mut near = [u8::MAX; 9];
             let mut count = 0;
-            for class in crate::account::areas::around(floor, cell).map(|near| rough[near]) {
-                if class != u8::MAX {
-                    near[count] = class;
-                    count += 1;
+            // Nothing is scanned along the edges of the grid.
+            for row in [cell.saturating_sub(floor.width), cell, cell + floor.width] {
+                for class in rough.get(row.saturating_sub(1)..row + 2).into_iter().flatten() {
+                    near[count] = *class;
+                    count += usize::from(*class != u8::MAX);
                 }
+            }
+            if near[..count].iter().all(|class| *class == rough[cell]) {
+                return rough[cell];
             }
             near[..count].sort_unstable();
             near[count / 2]

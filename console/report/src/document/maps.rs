@@ -213,7 +213,7 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &crate::account::Shares) ->
     let missed = sheet.pattern("missed");
     sheet.define_patterns(floor.cell_m);
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);
-    let sure = |cell: usize| layers.scanned.is_guaranteed(cell) && floor.is_floor(cell);
+    let sure = |cell: usize| layers.is_guaranteed(cell);
     sheet.cells(floor, sure, 0.9, &format!(r#"fill="{}""#, colour::ONCE));
     let thin = format!(r#"fill="{}" stroke="{}" stroke-width=".12""#, colour::THIN, colour::THIN_LINE);
     sheet.cells(floor, |cell| layers.is_scanned(cell) && !sure(cell), 0.6, &thin);
