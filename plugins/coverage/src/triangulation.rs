@@ -48,7 +48,7 @@ impl Triangulation {
             Boundary::Polygon { .. } => (Vec::new(), walls.iter().chain(&outlines).map(snapped).collect()),
         };
         inward.iter().for_each(|ring| constrain(&mut cdt, ring, true));
-        for Border { line, is_closed } in border(&solid, 2.0 * SNAP_M) {
+        for Border { line, is_closed } in border(&solid, 1e-9) {
             constrain(&mut cdt, &line, is_closed);
         }
         let boxes: Vec<(Point, Point)> = outlines.iter().map(|ring| bounds_of(ring)).collect();
