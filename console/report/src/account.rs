@@ -154,8 +154,9 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
     let plates = plate_map(run, floor);
     let (mut whole, mut reachable) = (Tally::default(), Tally::default());
     let mut by_plate = vec![Tally::default(); plates.as_ref().map_or(0, |map| map.plates.len())];
-    for index in 0..floor.len() {
-        let (kind, is_scanned) = (floor.kind(index), grid.is_covered(index));
+    let covered: Vec<bool> = (0..floor.len()).map(|index| grid.is_covered(index)).collect();
+    for (index, is_scanned) in covered.iter().copied().enumerate() {
+        let kind = floor.kind(index);
         let is_guaranteed = is_scanned && scanned.passes().is_guaranteed(index);
         whole.count(kind, is_scanned, is_guaranteed);
         if kind == Cell::Reachable {
@@ -167,11 +168,10 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
     }
     let reasons = evidence.reasons(run);
     let why_missed = |index: usize| {
-        let is_missed = floor.is_reachable(index) && !grid.is_covered(index);
+        let is_missed = floor.is_reachable(index) && !covered[index];
         is_missed.then(|| reasons.why_missed(floor.center(index), index))
     };
-    let why_out =
-        |index: usize| if grid.is_covered(index) { None } else { OutOfReach::of(floor.kind(index)) };
+    let why_out = |index: usize| OutOfReach::of(floor.kind(index)).filter(|_| !covered[index]);
     let (missed, slivers) =
         areas(floor, plates.as_ref(), why_missed, |why, cells| reasons.measure(grid, why, cells));
     let (unreachable, unreachable_slivers) =
@@ -184,7 +184,9 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
         critical_zone: CriticalZone::of(&evidence.shell(), plate_at),
-        plates: plates.as_ref().map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned)),
+        plates: plates
+            .as_ref()
+            .map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned, &covered)),
         missed,
         slivers,
         unreachable,
@@ -206,11 +208,15 @@ fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
     Some(map.plates[map.plate_of(nearest?)?].name.clone())
 }
 
-fn plate_accounts(map: &PlateMap, by_plate: &[Tally], scanned: &Scanned) -> Vec<PlateAccount> {
-    let grid = scanned.believed();
+fn plate_accounts(
+    map: &PlateMap,
+    by_plate: &[Tally],
+    scanned: &Scanned,
+    covered: &[bool],
+) -> Vec<PlateAccount> {
     let mut errors_mm: Vec<Vec<u16>> =
         by_plate.iter().map(|tally| Vec::with_capacity(tally.counts.covered)).collect();
-    for cell in (0..grid.floor().len()).filter(|cell| grid.is_covered(*cell)) {
+    for cell in (0..covered.len()).filter(|cell| covered[*cell]) {
         if let Some((plate, error_mm)) = map.plate_of(cell).zip(scanned.passes().error_mm(cell)) {
             errors_mm[plate].push(error_mm);
         }
@@ -222,7 +228,7 @@ fn plate_accounts(map: &PlateMap, by_plate: &[Tally], scanned: &Scanned) -> Vec<
             name: plate.name.clone(),
             kind: plate.kind,
             error_p95_m: nearest_rank(&errors_mm, 0.95).map(|mm| f64::from(mm) / 1000.0),
-            shares: tally.shares(grid.floor().cell_m2()),
+            shares: tally.shares(scanned.believed().floor().cell_m2()),
         }
     };
     tallied.map(plate).collect()

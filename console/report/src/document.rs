@@ -123,19 +123,22 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// Draws the coverage map in a thread of its own, which takes as long as the others together.
+    /// Draws the coverage map and what belongs to single runs in a thread of their own, which takes as long as the rest.
     fn draw(layers: &Layers<'_>, floor: &Account, indications: &[Indication], past: &[PastRun]) -> Self {
         std::thread::scope(|scope| {
-            let map = scope.spawn(|| maps::coverage(layers, indications));
+            let more = scope.spawn(|| {
+                let runs = past.iter().map(|past| of_run(layers, past)).collect();
+                (maps::coverage(layers, indications), runs)
+            });
             let others = Self {
                 accuracy: maps::accuracy(layers),
                 guaranteed: maps::guaranteed(layers, &floor.whole),
                 zone: charts::zone(layers.run, floor, &layers.shell()),
-                runs: past.iter().map(|past| of_run(layers, past)).collect(),
                 ..Self::default()
             };
-            let (coverage, badges) = map.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            Self { coverage, badges, ..others }
+            let ((coverage, badges), runs) =
+                more.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            Self { coverage, badges, runs, ..others }
         })
     }
 }

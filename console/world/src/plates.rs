@@ -65,8 +65,8 @@ const NONE: u32 = u32::MAX;
 type Place = (PlateKind, i64, i64);
 
 impl PlateLayout {
-    /// The plate under a point of the floor.
-    fn place_of(&self, boundary: &Boundary, point: Point) -> Place {
+    /// The plate under a point of the floor; `last`: that of its neighbour, with which it mostly shares the plate.
+    fn place_of(&self, boundary: &Boundary, point: Point, last: Option<Place>) -> Place {
         if boundary.wall_distance_m(point) < self.annular_m {
             let share = wrap_angle_rad(point.y.atan2(point.x)).rem_euclid(TAU) / TAU;
             let last = f64::from(self.n_annular.max(1)) - 1.0;
@@ -82,6 +82,12 @@ impl PlateLayout {
         let n_plates = ((high.x - low.x) / self.length_m).ceil() + 1.0;
         let west_m = middle.x - n_plates * self.length_m / 2.0 - shift_m;
         let number = ((point.x - west_m) / self.length_m).floor();
+        let same = |(kind, a, b): &Place| {
+            *kind != PlateKind::Annular && (*a, *b) == (row as i64 + 1, number as i64 + 1)
+        };
+        if let Some(same) = last.filter(same) {
+            return same;
+        }
         let corner = Point::new(west_m + number * self.length_m, south_m + row * self.width_m);
         let kind = if self.is_whole(boundary, corner) { PlateKind::Rectangular } else { PlateKind::Sketch };
         (kind, row as i64 + 1, number as i64 + 1)
@@ -107,18 +113,20 @@ impl PlateLayout {
         // In the order in which they are met; there are millions of cells, and neighbours mostly share a plate.
         let mut order: BTreeMap<Place, u32> = BTreeMap::new();
         let mut last: Option<(Place, u32)> = None;
-        let mut met = |place: Place| match last {
-            Some((same, index)) if same == place => index,
-            _ => {
-                let next = order.len() as u32;
-                let index = *order.entry(place).or_insert(next);
-                last = Some((place, index));
-                index
+        let mut met = |point: Point| {
+            let place = self.place_of(boundary, point, last.map(|(place, _)| place));
+            match last {
+                Some((same, index)) if same == place => index,
+                _ => {
+                    let next = order.len() as u32;
+                    let index = *order.entry(place).or_insert(next);
+                    last = Some((place, index));
+                    index
+                }
             }
         };
-        let plate_at = |index| self.place_of(boundary, floor.center(index));
         let mut of_cell: Vec<u32> = (0..floor.len())
-            .map(|index| if floor.is_floor(index) { met(plate_at(index)) } else { NONE })
+            .map(|index| if floor.is_floor(index) { met(floor.center(index)) } else { NONE })
             .collect();
         let mut sorted = vec![NONE; order.len()];
         order.values().zip(0..).for_each(|(met, index)| sorted[*met as usize] = index);

@@ -25,25 +25,27 @@ pub(crate) struct Layers<'a> {
     plate_map: Option<PlateMap>,
     /// What each cell counts as.
     classes: Vec<Class>,
-    /// Cells that were scanned more than once.
-    twice: Vec<bool>,
 }
 
 /// What a cell counts as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Class {
     Outside,
+    /// Once.
     Scanned,
+    /// More than once.
+    Again,
     Missed,
     Margin,
     Unreachable,
 }
 
 impl Class {
-    fn of(kind: Cell, is_covered: bool) -> Self {
-        match kind {
+    fn of(scanned: &Scanned, cell: usize) -> Self {
+        match scanned.believed().floor().kind(cell) {
             Cell::Outside => Self::Outside,
-            _ if is_covered => Self::Scanned,
+            _ if scanned.is_again(cell) => Self::Again,
+            _ if scanned.believed().is_covered(cell) => Self::Scanned,
             Cell::Reachable => Self::Missed,
             Cell::Margin => Self::Margin,
             Cell::Unreachable | Cell::Beside | Cell::NoGo => Self::Unreachable,
@@ -65,11 +67,9 @@ impl<'a> Layers<'a> {
             .plates
             .zip(map.as_ref())
             .map(|(layout, map)| PlateLines::new(&layout, &run.world.boundary, floor, map));
-        let class = |cell: usize| Class::of(floor.kind(cell), scanned.believed().is_covered(cell));
-        let classes = (0..floor.len()).map(class).collect();
-        let twice = (0..floor.len()).map(|cell| scanned.is_again(cell)).collect();
+        let classes = (0..floor.len()).map(|cell| Class::of(scanned, cell)).collect();
         let (gaps, plate_map) = (Vec::new(), map);
-        let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, classes, twice };
+        let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, classes };
         layers.gaps = layers.gaps_at(places);
         layers
     }
@@ -131,7 +131,7 @@ impl<'a> Layers<'a> {
 
     /// Whether a cell of floor was scanned.
     pub(crate) fn is_scanned(&self, cell: usize) -> bool {
-        self.classes[cell] == Class::Scanned
+        matches!(self.classes[cell], Class::Scanned | Class::Again)
     }
 
     /// Whether a cell was in reach and not scanned.
@@ -156,18 +156,18 @@ impl<'a> Layers<'a> {
 
     /// Whether a cell was scanned more than once.
     pub(crate) fn is_twice(&self, cell: usize) -> bool {
-        self.twice[cell]
+        self.classes[cell] == Class::Again
     }
 
     /// Where most cells around were scanned more than once: for the eye only.
     pub(crate) fn smoothed_twice(&self) -> Vec<bool> {
         let width = self.floor().width;
         let at = |cell: Option<usize>| {
-            cell.and_then(|cell| self.twice.get(cell)).map_or(0, |twice| u8::from(*twice))
+            cell.and_then(|cell| self.classes.get(cell)).map_or(0, |class| u8::from(*class == Class::Again))
         };
         // Sums of three along the rows first; nothing is scanned along the edges of the grid.
         let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));
-        let rows: Vec<u8> = (0..self.twice.len()).map(across).collect();
+        let rows: Vec<u8> = (0..self.classes.len()).map(across).collect();
         let row = |cell: Option<usize>| cell.and_then(|cell| rows.get(cell)).copied().unwrap_or(0);
         let most =
             |cell: usize| row(cell.checked_sub(width)) + row(Some(cell)) + row(Some(cell + width)) >= 5;
