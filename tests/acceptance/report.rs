@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, scenario};
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A short run with plates.
 fn flown(bench: &Bench) -> (PathBuf, String) {
@@ -127,6 +127,21 @@ fn a_report_is_signed_when_every_item_is_answered_and_the_next_one_is_another_re
     assert_eq!((&draft["revision"], draft["revisions"].as_array().unwrap().len()), (&"C".into(), 2));
 }
 
+/// Report, list and verification of a run name what speaks against its files, and it is not signed.
+fn assert_doubted(bench: &Bench, run: &Path, path: &str, doubts: [&str; 2]) {
+    let [doubt, listed] = doubts;
+    let report = bench.tankops(&["report", path]);
+    assert!(report.out.contains(doubt), "{report:?}");
+    let runs = bench.tankops(&["runs"]);
+    assert!(runs.out.contains(listed), "{runs:?}");
+    let verified = bench.verify(run, &["--from-journal"]);
+    assert!(verified.code == Some(1) && verified.out.contains(doubt), "{verified:?}");
+    bench.file("facts.toml", FACTS);
+    let signed =
+        bench.tankops(&["report", path, "-o", "a.html", "--inspection", "facts.toml", "--sign", "L. Kern"]);
+    assert!(signed.code == Some(2) && signed.err.contains(doubt), "{signed:?}");
+}
+
 #[test]
 fn a_recording_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_the_signature() {
     let bench = Bench::new();
@@ -135,15 +150,16 @@ fn a_recording_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_th
     let mut bytes = std::fs::read(&file).unwrap();
     bytes.extend(b"junk");
     std::fs::write(&file, bytes).unwrap();
-    let doubt = "the recording is not the one";
-    let report = bench.tankops(&["report", &path]);
-    assert!(report.out.contains(doubt), "{report:?}");
-    let runs = bench.tankops(&["runs"]);
-    assert!(runs.out.contains(doubt), "{runs:?}");
-    let verified = bench.verify(&run, &["--from-journal"]);
-    assert!(verified.code == Some(1) && verified.out.contains(doubt), "{verified:?}");
-    bench.file("facts.toml", FACTS);
-    let signed =
-        bench.tankops(&["report", &path, "-o", "a.html", "--inspection", "facts.toml", "--sign", "L. Kern"]);
-    assert!(signed.code == Some(2) && signed.err.contains(doubt), "{signed:?}");
+    assert_doubted(&bench, &run, &path, ["the recording is not the one"; 2]);
+}
+
+#[test]
+fn a_figure_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_the_signature() {
+    let bench = Bench::new();
+    let (run, path) = flown(&bench);
+    let file = run.join("report.json");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();
+    let doubt = "report.json was changed: collisions is 1, the journal gives 0";
+    assert_doubted(&bench, &run, &path, [doubt, "report.json was changed after the run ended"]);
 }
