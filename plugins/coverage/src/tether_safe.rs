@@ -78,8 +78,12 @@ impl Planner for TetherSafe {
         let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { COMPLETE };
         plan.complete = worth.coverage >= enough.min(least) && is_all_in_reach;
         warn(&worth, preferences, &scope, plan.complete, ctx);
+        if workspace.is_room && scope.tether.is_none() {
+            // There is no cable for which a robot a little off its path would have to come back on the right side of a cut.
+            plan.cuts.clear();
+        }
         self.follow.take(&plan);
-        self.current = Some(CurrentPlan::new(&scan.pieces, &plan.cuts, worth.meets(preferences)));
+        self.current = Some(CurrentPlan::new(&scan.pieces, &scan.domain.cuts, worth.meets(preferences)));
         Ok(plan)
     }
 
