@@ -2,7 +2,7 @@
 
 use crate::floor::ReachableFloor;
 use crate::follow::Follow;
-use crate::lanes::{Lane, lanes, wanted_pieces};
+use crate::lanes::{Lane, laps_and_rows, wanted_pieces};
 use crate::pattern::{Pattern, Rows};
 use crate::plane::direction;
 use crate::scan::{Piece, Scan};
@@ -10,7 +10,6 @@ use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
 use crate::stages::{Stage, Stages};
 use crate::tuning::lanes::LEAST_TO_AND_FRO_IN_SWATH;
-use crate::unreachable;
 use crate::untethered_paths::UntetheredPaths;
 use crate::workspace::Workspace;
 use planner_api::{
@@ -58,14 +57,15 @@ impl Planner for Boustrophedon {
         stages.next(0.5, "lanes").begin();
         let domain = SlitDomain::new(&workspace, Vec::new()).ok_or_else(|| workspace.no_room())?;
         let floor = ReachableFloor::new(&domain, scope.cell_m);
-        let lanes = self.lanes(&domain, &floor, scope.regions)?;
+        let (laps, rows) = self.lanes(&domain, &floor, scope.regions)?;
         let ways = UntetheredPaths::new(&workspace, ctx)?;
         let ends = (domain.start(scope.start), workspace.home);
-        let pieces = self.in_order(&lanes, &ways, ends, &stages.next(0.25, "ways between lanes"))?;
+        let stage = stages.next(0.25, "ways between lanes");
+        let pieces = self.in_order(&rows, laps, &ways, ends, &stage)?;
         stages.next(1.0, "floor out of reach").begin();
         let scan = Scan::new(pieces, domain, floor);
-        unreachable::report(&scan, &scope, ctx);
-        let plan = scan.plan(scope.start, &[]);
+        let mut plan = scan.plan(scope.start, &[]);
+        plan.complete = scan.reports_all(&scope, ctx);
         self.follow.take(&plan);
         Ok(plan)
     }
@@ -76,21 +76,27 @@ impl Planner for Boustrophedon {
 }
 
 impl Boustrophedon {
-    /// The lanes over the floor that is asked for.
+    /// The lanes over the floor that is asked for: between inner walls a lap along them, and straight ones.
     fn lanes(
         &self,
         domain: &SlitDomain<'_>,
         floor: &ReachableFloor,
         regions: &[&[Point]],
-    ) -> Result<Vec<Lane>> {
+    ) -> Result<(Vec<Lane>, Vec<Lane>)> {
         let workspace = domain.workspace;
-        let pattern = Pattern::Straight { rows: Rows::even(workspace, self.direction_rad), laps: 0 };
-        let mut lanes = lanes(domain, &pattern, workspace.swath_m / LEAST_TO_AND_FRO_IN_SWATH);
-        if !regions.is_empty() {
-            let within = floor.clone().within(regions);
-            lanes = lanes.iter().flat_map(|lane| wanted_pieces(lane, |at| within.is_near(at))).collect();
-        }
-        if lanes.is_empty() {
+        let rows = Rows::even(workspace, self.direction_rad);
+        let pattern = Pattern::Straight { rows, laps: usize::from(workspace.is_room) };
+        let least_m = workspace.swath_m / LEAST_TO_AND_FRO_IN_SWATH;
+        let within = floor.clone().within(regions);
+        let wanted = |lanes: Vec<Lane>| -> Vec<Lane> {
+            if regions.is_empty() {
+                return lanes;
+            }
+            lanes.iter().flat_map(|lane| wanted_pieces(lane, |at| within.is_near(at))).collect()
+        };
+        let (laps, rows) = laps_and_rows(domain, &pattern, least_m);
+        let (laps, rows) = (wanted(laps), wanted(rows));
+        if laps.is_empty() && rows.is_empty() {
             let keep_m = workspace.keep_m;
             return Err(PlannerError::new(
                 Code::NoPath,
@@ -99,13 +105,14 @@ impl Boustrophedon {
                 ),
             ));
         }
-        Ok(lanes)
+        Ok((laps, rows))
     }
 
-    /// The lanes row by row, every other row backward, with ways between and home.
+    /// The lanes row by row, every other row backward, then the nearest lap each time, with ways between and home.
     fn in_order(
         &self,
         lanes: &[Lane],
+        mut laps: Vec<Lane>,
         ways: &UntetheredPaths,
         (start, home): (Point, Point),
         stage: &Stage<'_>,
@@ -131,6 +138,19 @@ impl Boustrophedon {
                 at = lane[lane.len() - 1];
                 pieces.push(Piece { points: lane, is_lane: true });
             }
+        }
+        let far_m = |lap: &Lane, at: Point| (lap[0] - at).norm().min((lap[lap.len() - 1] - at).norm());
+        while let Some((k, _)) =
+            laps.iter().enumerate().min_by(|a, b| far_m(a.1, at).total_cmp(&far_m(b.1, at)))
+        {
+            stage.ctx.check()?;
+            let mut lap = laps.swap_remove(k);
+            if (lap[0] - at).norm() > (lap[lap.len() - 1] - at).norm() {
+                lap.reverse();
+            }
+            pieces.push(Piece { points: ways.path(at, lap[0]), is_lane: false });
+            at = lap[lap.len() - 1];
+            pieces.push(Piece { points: lap, is_lane: true });
         }
         pieces.push(Piece { points: ways.path(at, home), is_lane: false });
         Ok(pieces)

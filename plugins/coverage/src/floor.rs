@@ -44,6 +44,12 @@ impl SweptFloor {
         self.n_swept as f64 / self.floor.n.max(1) as f64
     }
 
+    /// Swept share of a part of the floor.
+    pub(crate) fn coverage_of(&self, part: &ReachableFloor) -> f64 {
+        let swept = self.swept.iter().zip(&part.cells).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
+        swept as f64 / part.n.max(1) as f64
+    }
+
     /// Groups of neighbouring cells that the tool could reach and has not swept, largest first.
     pub(crate) fn missed(&self) -> Vec<Vec<usize>> {
         self.raster().groups(|cell| self.is_missed(cell))

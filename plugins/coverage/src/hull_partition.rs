@@ -15,8 +15,7 @@ use crate::plane::{direction, extent, left_of};
 use crate::scan::{Piece, Scan};
 use crate::scope::Scope;
 use crate::stages::{Stage, Stages};
-use crate::tuning::hull_partition::{INSIDE_M, SEALED_M2};
-use crate::unreachable;
+use crate::tuning::hull_partition::{INSIDE_M, MOST_COLUMNS, SEALED_M2};
 use crate::untethered_paths::UntetheredPaths;
 use crate::workspace::Workspace;
 use cells::{Cell, is_convex};
@@ -67,11 +66,8 @@ impl Planner for HullPartition {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let scope = Scope::of(request, Self::ID, self.cell_m)?;
         let workspace = Workspace::new(request.site, scope.anchor)?;
-        if matches!(&workspace.wall, Boundary::Polygon { vertices } if !is_convex(vertices)) {
-            return Err(PlannerError::new(
-                Code::Unsupported,
-                "hull rings need a convex wall; choose tether-safe",
-            ));
+        if let Some(why) = no_rings(&workspace) {
+            return Err(PlannerError::new(Code::Unsupported, why));
         }
         let mut stages = Stages::new(ctx);
         stages.next(0.1, "cells").begin();
@@ -88,8 +84,8 @@ impl Planner for HullPartition {
         let pieces = self.pieces(&division, &floor, &scope, &mut stages, request.site.seed)?;
         stages.next(1.0, "floor out of reach").begin();
         let scan = Scan::new(pieces, division.domain, floor);
-        unreachable::report(&scan, &scope, ctx);
         let mut plan = scan.plan(scope.start, &[]);
+        plan.complete = scan.reports_all(&scope, ctx);
         plan.cuts.iter_mut().for_each(|cut| trim(cut));
         let sealed_m2 = scan.domain.sealed.area_m2;
         if sealed_m2 > SEALED_M2 {
@@ -157,6 +153,21 @@ impl HullPartition {
             centers.iter().map(|a| centers.iter().map(|b| (a - b).norm()).collect()).collect();
         let ordered = if self.is_exact { genetic::exact } else { genetic::evolved };
         ordered(&distance, seed, &|share| stage.reached(share)).into_iter().map(|k| names[k]).collect()
+    }
+}
+
+/// Why there are no hull rings, if so.
+fn no_rings(workspace: &Workspace) -> Option<String> {
+    let n = workspace.parts.len();
+    match &workspace.wall {
+        Boundary::Polygon { vertices } if !is_convex(vertices) => {
+            Some("hull rings need a convex wall; choose tether-safe".to_owned())
+        }
+        _ if workspace.is_room && n > MOST_COLUMNS => Some(format!(
+            "hull rings are made of columns, and between the walls there are {n} convex obstacles; at most {MOST_COLUMNS} can be \
+             planned: choose tether-safe"
+        )),
+        _ => None,
     }
 }
 

@@ -16,26 +16,35 @@ pub(crate) type Lane = Vec<Point>;
 
 /// The lanes of a pattern, and a corridor beside every cut across them; shorter ones are left out.
 pub(crate) fn lanes(domain: &SlitDomain<'_>, pattern: &Pattern, least_m: f64) -> Vec<Lane> {
+    let (mut lanes, rows) = laps_and_rows(domain, pattern, least_m);
+    lanes.extend(rows);
+    lanes
+}
+
+/// The same, those along walls and cuts apart from the straight rows.
+pub(crate) fn laps_and_rows(
+    domain: &SlitDomain<'_>,
+    pattern: &Pattern,
+    least_m: f64,
+) -> (Vec<Lane>, Vec<Lane>) {
     let swath_m = domain.workspace.swath_m;
     let corridors = corridors(domain, pattern, swath_m);
-    let mut lanes = Vec::new();
     let spare_m = SLACK_M / 2.0;
-    let mut clip = |line: &[Point], fences: &[Fence], spare_m: f64| {
-        lanes.extend(clipped(domain, line, fences, (least_m, spare_m)));
-    };
+    let clip =
+        |line: &[Point], fences: &[Fence], spare_m: f64| clipped(domain, line, fences, (least_m, spare_m));
+    let mut along = Vec::new();
     for (k, corridor) in corridors.iter().enumerate() {
         let before = fences(&corridors[..k], tuning::CORRIDOR_TO_CORRIDOR * swath_m);
         let fences = [fences(&domain.cuts, tuning::CORRIDOR_TO_CUT * swath_m), before].concat();
-        clip(corridor, &fences, spare_m);
+        along.extend(clip(corridor, &fences, spare_m));
     }
     let to_cut = if pattern.ahead().is_some() { tuning::STRAIGHT_TO_CUT } else { tuning::CONTOUR_TO_CUT };
     let beside_cuts = fences(&domain.cuts, to_cut * swath_m);
     let fences = [beside_cuts, fences(&corridors, tuning::CORRIDOR_TO_LANE * swath_m)].concat();
     let (laps, rows) = pattern.lines(domain);
-    laps.iter().for_each(|line| clip(line, &fences, spare_m));
+    along.extend(laps.iter().flat_map(|line| clip(line, &fences, spare_m)));
     let spare_m = if domain.workspace.is_room { pattern.within_laps_m(swath_m) } else { spare_m };
-    rows.iter().for_each(|line| clip(line, &fences, spare_m));
-    lanes
+    (along, rows.iter().flat_map(|line| clip(line, &fences, spare_m)).collect())
 }
 
 /// Lines along one side of every cut across the lanes, the same side everywhere, so that what was swept outward is left

@@ -1,8 +1,11 @@
 //! A path over the floor, and the plan that is made of it.
 
 use crate::floor::{ReachableFloor, SweptFloor};
+use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
-use planner_api::{Leg, LegTag, Plan};
+use crate::tuning::lanes::COMPLETE_WITH_SLIVERS;
+use crate::unreachable;
+use planner_api::{Ctx, Leg, LegTag, LogLevel, Plan};
 use world::{Point, polyline};
 
 /// A piece of a path.
@@ -28,6 +31,21 @@ impl<'a> Scan<'a> {
         let mut scan = Self { pieces, domain, swept: SweptFloor::new(floor) };
         scan.swept.sweep(&scan.path());
         scan
+    }
+
+    /// Reports what a plan without touch-ups leaves out; whether it is complete, but for slivers.
+    pub(crate) fn reports_all(&self, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool {
+        let is_all_in_reach = unreachable::report(self, scope, ctx);
+        let share = self.swept.coverage_of(&self.swept.floor.clone().within(scope.regions));
+        let is_enough = share >= COMPLETE_WITH_SLIVERS;
+        if !is_enough {
+            let scanned = format!("the plan scans {:.1} % of the floor that is to be scanned", 100.0 * share);
+            ctx.log(
+                LogLevel::Warn,
+                &format!("{scanned}: the rest lies beside its lanes; choose tether-safe"),
+            );
+        }
+        is_enough && is_all_in_reach
     }
 
     /// The whole path.

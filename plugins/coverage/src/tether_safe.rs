@@ -7,6 +7,7 @@ mod pipeline;
 mod tests;
 mod under_way;
 
+use crate::cuts::domain_between_walls;
 use crate::follow::Follow;
 use crate::repair::{CurrentPlan, Repaired};
 use crate::scope::Scope;
@@ -68,17 +69,21 @@ impl Planner for TetherSafe {
         };
         stages.end = 1.0;
         stages.next(1.0, "floor out of reach").begin();
-        unreachable::report(&scan, &scope, ctx);
+        let is_all_in_reach = unreachable::report(&scan, &scope, ctx);
         if ctx.wants_drawing() {
             scan.domain.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, cut));
         }
         let mut plan = scan.plan(scope.start, &lead_in);
         // A reel near the least that can do may still reach all there is.
         let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { COMPLETE };
-        plan.complete = worth.coverage >= enough.min(least);
+        plan.complete = worth.coverage >= enough.min(least) && is_all_in_reach;
         warn(&worth, preferences, &scope, plan.complete, ctx);
+        if workspace.is_room && scope.tether.is_none() {
+            // There is no cable for which a robot a little off its path would have to come back on the right side of a cut.
+            plan.cuts.clear();
+        }
         self.follow.take(&plan);
-        self.current = Some(CurrentPlan::new(&scan.pieces, &plan.cuts, worth.meets(preferences)));
+        self.current = Some(CurrentPlan::new(&scan.pieces, &scan.domain.cuts, worth.meets(preferences)));
         Ok(plan)
     }
 
@@ -94,8 +99,13 @@ impl Planner for TetherSafe {
 fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preferences) -> Scope<'a> {
     let (low, high) = workspace.wall.bounds();
     let least_cell_m = ((high.x - low.x) * (high.y - low.y) / MOST_CELLS).sqrt();
-    let is_long = preferences.limits.reel_length_m > least_cable_m(workspace) * preferences.cable_share;
-    let reel_length_m = if is_long { f64::INFINITY } else { preferences.limits.reel_length_m };
+    let reel_length_m = preferences.limits.reel_length_m;
+    let is_long = if workspace.is_room {
+        domain_between_walls(workspace).is_some_and(|domain| domain.is_all_within(reel_length_m))
+    } else {
+        reel_length_m > least_cable_m(workspace) * preferences.cable_share
+    };
+    let reel_length_m = if is_long { f64::INFINITY } else { reel_length_m };
     Scope { reel_length_m, enough: preferences.enough, cell_m: scope.cell_m.max(least_cell_m), ..scope }
 }
 

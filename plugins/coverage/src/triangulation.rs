@@ -47,7 +47,9 @@ impl Triangulation {
             Boundary::Circle { .. } => (walls, outlines.iter().map(snapped).collect()),
             Boundary::Polygon { .. } => (Vec::new(), walls.iter().chain(&outlines).map(snapped).collect()),
         };
-        inward.iter().for_each(|ring| constrain(&mut cdt, ring, true));
+        for ring in &inward {
+            constrain(&mut cdt, ring, true);
+        }
         for Border { line, is_closed } in border(&solid, 1e-9) {
             constrain(&mut cdt, &line, is_closed);
         }

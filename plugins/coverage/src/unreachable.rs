@@ -1,20 +1,21 @@
 //! The report of floor that cannot be scanned, and why.
 
+use crate::floor::ReachableFloor;
 use crate::plane::direction;
 use crate::scan::Scan;
 use crate::scope::Scope;
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel};
 use std::f64::consts::TAU;
-use world::Point;
+use world::{Point, shape::mean_of};
 
 /// Floor out of reach below this is not worth a line, square metres.
 const LEAST_M2: f64 = 0.05;
 /// Places listed one by one.
 const MOST_PLACES: usize = 8;
 
-/// Logs which floor cannot be scanned, and why.
-pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) {
+/// Logs which floor cannot be scanned, and why; whether all regions that are asked for hold floor in reach.
+pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool {
     let Workspace { swath_m, keep_m, .. } = *scan.domain.workspace;
     let raster = scan.swept.raster();
     let log = |why: &str, is_meant: &dyn Fn(usize) -> bool| {
@@ -51,6 +52,21 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) {
         let why = format!("is beyond the reel of {:.1} m", scope.reel_length_m);
         log(&why, &|cell| scan.swept.is_missed(cell) && is_far(raster.center(cell)));
     }
+    let whole = ReachableFloor::new(&scan.domain, scope.cell_m);
+    let closed: Vec<Point> = scope
+        .regions
+        .iter()
+        .filter(|ring| whole.cells_in(ring).is_empty())
+        .map(|ring| mean_of(ring))
+        .collect();
+    for at in closed.iter().take(MOST_PLACES) {
+        let place = format!("the area to be scanned about ({:.1}, {:.1})", at.x, at.y);
+        ctx.log(LogLevel::Warn, &format!("{place} is left out: the tool cannot reach any floor in it"));
+    }
+    if let Some(n) = closed.len().checked_sub(MOST_PLACES + 1) {
+        ctx.log(LogLevel::Warn, &format!("{} more areas are left out for the same reason", n + 1));
+    }
+    closed.is_empty()
 }
 
 /// Whether floor that is not in reach lies along the wall, beside floor that is, with no gap between wall and obstacle.

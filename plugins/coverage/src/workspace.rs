@@ -4,11 +4,17 @@ use crate::floor::ReachableFloor;
 use crate::inflation::SLACK_M;
 use crate::plane::direction;
 use crate::triangulation::Triangulation;
+use crate::tuning::rooms::{FEW_PARTS, MOST_LANES_M, MOST_PARTS};
 use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
-use std::{f64::consts::TAU, sync::OnceLock};
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 use steering::{Keep, Room, solids};
-use world::{Boundary, Point, polyline::edges, shape::reflex_corners};
+use world::{
+    Boundary, Point,
+    polyline::edges,
+    shape::{reflex_corners, ring_area_m2},
+};
 
 /// Wall and obstacles of a site with the distances to keep.
 pub(crate) struct Workspace {
@@ -24,7 +30,8 @@ pub(crate) struct Workspace {
     pub home: Point,
     /// Exact distances.
     pub room: Room,
-    /// Whether inner walls bend the way to floor: a straight wall has inward corners, or something solid stands at it.
+    /// Whether inner walls bend the way to floor: a straight wall has inward corners, something solid stands at it, or there are
+    /// more obstacles than columns.
     pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
@@ -44,9 +51,12 @@ impl Workspace {
         if let Some((code, why)) = refusal.or_else(|| refused_anchor(&wall, &parts, anchor)) {
             return Err(PlannerError::new(code, why));
         }
+        let is_room = has_inner_walls(&wall, &parts, keep_m);
+        if let Some(why) = is_room.then(|| too_large(&wall, &parts, swath_m)).flatten() {
+            return Err(PlannerError::new(Code::Config, why));
+        }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
         let (home, triangulation, floor) = (home(&room, anchor), OnceLock::new(), OnceLock::new());
-        let is_room = has_inner_walls(&wall, &parts, keep_m);
         Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor })
     }
 
@@ -78,10 +88,38 @@ impl Workspace {
     }
 }
 
+/// Why a floor between inner walls is too large or too much cut up to be planned in time, if it is.
+fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
+    let Boundary::Polygon { vertices } = wall else { return None };
+    let solid_m2: f64 = parts.iter().map(area_m2).sum();
+    let floor_m2 = (ring_area_m2(vertices).abs() - solid_m2).max(0.0);
+    let most_m2 = MOST_LANES_M * swath_m;
+    if floor_m2 > most_m2 {
+        return Some(format!(
+            "the floor of {floor_m2:.0} m2 between walls is too large: at lanes of {swath_m:.2} m at most {most_m2:.0} m2 can be \
+             planned; divide the map, close parts of it by no-go zones, or choose a wider swath"
+        ));
+    }
+    (parts.len() > MOST_PARTS).then(|| {
+        format!(
+            "the floor is cut up by {} convex obstacles; at most {MOST_PARTS} can be planned: divide the map, or let it be \
+             simplified by a larger map_tolerance_m",
+            parts.len()
+        )
+    })
+}
+
+fn area_m2(part: &Part) -> f64 {
+    match part {
+        Part::Polygon { vertices } => ring_area_m2(vertices).abs(),
+        Part::Capsule { a, b, half_width_m } => half_width_m * (2.0 * (b - a).norm() + PI * half_width_m),
+    }
+}
+
 fn has_inner_walls(wall: &Boundary, parts: &[Part], keep_m: f64) -> bool {
     let Boundary::Polygon { vertices } = wall else { return false };
     let is_at_wall = |part: &Part| wall_gap_m(wall, part) < 2.0 * keep_m;
-    reflex_corners(vertices).next().is_some() || parts.iter().any(is_at_wall)
+    parts.len() > FEW_PARTS || reflex_corners(vertices).next().is_some() || parts.iter().any(is_at_wall)
 }
 
 /// Room between wall and part, metres; not above zero where the part reaches the wall.

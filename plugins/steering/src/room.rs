@@ -147,8 +147,12 @@ impl Room {
         let kept = &self.parts[index];
         let reach_m = kept.keep_m + MOST_SPARE_M + BUCKET_M * std::f64::consts::FRAC_1_SQRT_2;
         let n_rows = self.buckets.len() / self.columns;
-        for row in 0..n_rows {
-            for column in 0..self.columns {
+        let around = Vector::new(reach_m, reach_m);
+        let (from, to) = (kept.low - around - self.low, kept.high + around - self.low);
+        let indices =
+            |from: f64, to: f64, n: usize| (from / BUCKET_M) as usize..((to / BUCKET_M) as usize + 1).min(n);
+        for row in indices(from.y, to.y, n_rows) {
+            for column in indices(from.x, to.x, self.columns) {
                 let corner = Vector::new(column as f64 + 0.5, row as f64 + 0.5) * BUCKET_M;
                 if kept.part.distance(self.low + corner).0 < reach_m {
                     self.buckets[row * self.columns + column].push(index as u32);

@@ -35,3 +35,18 @@ fn a_robot_a_little_too_near_to_a_column_goes_on_from_beside_it() {
     let path = bench::plan_from::<Boustrophedon>(&tank, start).unwrap().path;
     assert!((path[0] - start).norm() < 1e-9 && (path[1] - start).norm() < 0.1, "{} {}", path[0], path[1]);
 }
+
+#[test]
+fn between_walls_a_lap_is_driven_along_all_of_them() {
+    let corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 4.0), (4.0, 4.0), (4.0, 9.0), (0.0, 9.0)];
+    let vertices = corners.map(|(x, y)| Point::new(x, y)).to_vec();
+    let tank = trials::tanks::Tank {
+        boundary: world::Boundary::Polygon { vertices },
+        columns: vec![(Point::new(2.0, 5.0), 0.3)],
+        anchor: Point::new(0.8, 0.8),
+    };
+    let plan = bench::plan::<Boustrophedon>(&tank, &[], None).0.unwrap();
+    let scan = tank.score(&plan.path, &[], CELL_M).unwrap();
+    assert!(plan.complete && scan.coverage_reachable > 0.99, "{}", scan.coverage_reachable);
+    assert_eq!(scan.certificate.collisions, 0, "{:?}", scan.certificate.reasons);
+}

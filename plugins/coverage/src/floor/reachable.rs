@@ -2,7 +2,7 @@
 
 use crate::floor::raster::Raster;
 use crate::slit_domain::SlitDomain;
-use world::Point;
+use world::{Point, shape::mean_of};
 
 /// Cells of the floor, and which of them the tool can reach.
 #[derive(Clone)]
@@ -51,12 +51,20 @@ impl ReachableFloor {
             return self;
         }
         let mut within = vec![false; self.cells.len()];
-        for ring in regions {
-            self.raster.fill_ring(ring, |cells| within[cells].fill(true));
-        }
-        self.cells.iter_mut().zip(within).for_each(|(cell, within)| *cell &= within);
+        regions.iter().flat_map(|ring| self.cells_in(ring)).for_each(|cell| within[cell] = true);
+        self.cells = within;
         self.n = self.cells.iter().filter(|reachable| **reachable).count();
         self
+    }
+
+    /// The cells in a polygon that the tool can reach; of a polygon that holds no centre of any, the one about its middle.
+    pub(crate) fn cells_in(&self, ring: &[Point]) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.raster.fill_ring(ring, |cells| found.extend(cells.filter(|cell| self.cells[*cell])));
+        if found.is_empty() {
+            found.extend(self.raster.cell_at(mean_of(ring)).filter(|cell| self.cells[*cell]));
+        }
+        found
     }
 
     /// Whether there is floor to scan within half a swath of a place.

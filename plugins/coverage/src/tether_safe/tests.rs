@@ -264,3 +264,34 @@ proptest! {
         prop_assert_eq!(scan.certificate.cut_crossings, 0);
     }
 }
+
+fn room(columns: Vec<(Point, f64)>, scale: f64) -> Tank {
+    let corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 4.0), (4.0, 4.0), (4.0, 9.0), (0.0, 9.0)];
+    let vertices = corners.map(|(x, y)| Point::new(x, y) * scale).to_vec();
+    Tank { boundary: world::Boundary::Polygon { vertices }, columns, anchor: Point::new(0.8, 0.8) }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn a_room_with_a_corner_is_covered_and_the_cable_comes_in_whatever_stands_in_it(
+        columns in prop::collection::vec((1.5..8.5_f64, 1.5..8.5_f64, 0.1..0.6_f64), 0..6),
+    ) {
+        let columns = columns.into_iter().map(|(x, y, radius_m)| (Point::new(x, y), radius_m));
+        let tank = room(columns.filter(|(at, _)| at.x < 4.0 || at.y < 4.0).collect(), 1.0);
+        let plan = plan(&tank, &[], None).0.unwrap();
+        let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+        prop_assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+        prop_assert!(plan.complete && scan.coverage_reachable >= 0.98, "{}", scan.coverage_reachable);
+    }
+}
+
+#[test]
+fn a_room_that_is_too_large_is_refused_with_the_size_that_can_be_planned() {
+    let (plan, bench) = plan(&room(Vec::new(), 12.0), &[], None);
+    let error = plan.unwrap_err();
+    let message =
+        "the floor of 8064 m2 between walls is too large: at lanes of 0.60 m at most 4800 m2 can be planned";
+    assert!(error.code == Code::Config && error.message.starts_with(message), "{error}");
+    assert!(bench.progress().is_empty(), "before any work");
+}
