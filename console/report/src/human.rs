@@ -157,11 +157,7 @@ fn coverage(coverage: &Coverage) -> Vec<String> {
         let (scanned, guaranteed) = (percent(scanned), guaranteed.unwrap_or_default());
         format!("by truth {scanned} of the floor claimed as scanned{guaranteed} was scanned")
     }));
-    lines.extend(
-        coverage
-            .overlap
-            .map(|share| format!("overlap {} of scanned floor (scanned more than once)", percent(share))),
-    );
+    lines.extend(coverage.overlap.map(|share| format!("overlap {}", text::overlap(share))));
     lines
 }
 

@@ -5,7 +5,7 @@ use crate::{
     account::{Account, account},
     human::{
         floor,
-        text::{Text, percent},
+        text::{Text, overlap, percent},
     },
     joined::{Joined, joined},
     summary::{Coverage, Summary},
@@ -82,11 +82,7 @@ impl Merged {
                 format!("{reachable} of reachable floor, {whole} of whole floor")
             }),
         );
-        let overlap = self.coverage.overlap;
-        text.some(
-            "overlap",
-            overlap.map(|share| format!("{} of scanned floor (scanned more than once)", percent(share))),
-        );
+        text.some("overlap", self.coverage.overlap.map(overlap));
         text.lines(floor::lines(&self.floor));
         text.0
     }

@@ -27,6 +27,6 @@ pub use log::{CLOSE_TIMEOUT, Closed, RunLog};
 pub use logs::{check_logs, check_recorder, free_bytes};
 pub use notes::{NOTES_FILE, read_notes, write_notes};
 pub use past::Past;
-pub use report_file::{end_is_missing, journal_doubt, recording_doubt};
+pub use report_file::{end_is_missing, journal_doubt};
 pub use signed::{SIGNED_FILE, add_signed, signed_reports};
 pub use standing::{Standing, standing};

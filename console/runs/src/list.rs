@@ -4,7 +4,7 @@ use crate::{
     error::RunError,
     folder::past_runs,
     notes::read_notes,
-    report_file::recording_doubt,
+    report_file::Reported,
     standing::{Standing, standing},
 };
 use recording::{JournalReader, journal_of};
@@ -83,7 +83,8 @@ fn look_at(folder: &Path) -> Listed {
     match standing(folder) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
-            let note = note.or_else(|| recording_doubt(folder, None));
+            let reported = || Reported::read(folder).ok().flatten();
+            let note = note.or_else(|| reported()?.recording_doubt(folder, None));
             listed(folder, word(&summary), Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {

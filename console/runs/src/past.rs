@@ -1,12 +1,9 @@
 //! Past runs, read from their journals.
 
-use crate::{
-    error::RunError,
-    report_file::{figures_doubt, journal_doubt, names_digests, recording_doubt},
-};
+use crate::{error::RunError, report_file::Reported};
 use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
 use recording::{JournalError, JournalReader, RECORDING_FILE, events_sha256, journal_of, sha256, sha256_of};
-use report::{Fold, Logs, PastRun, Record, document::Files};
+use report::{Fold, Logs, PastRun, Record, Summary, document::Files};
 use std::{fs, path::Path, sync::mpsc::sync_channel, thread};
 use world::{CellRun, Floor};
 
@@ -49,10 +46,8 @@ impl Past {
         })?;
         let opened = opened.ok_or_else(|| reader.not_opened())?;
         let shown = |path: &Path| path.exists().then(|| path.display().to_string());
-        let is_todays = opened.journal_version == JOURNAL_VERSION;
         let summary = fold.summary();
-        let figures = figures_doubt(folder, is_todays.then_some(&summary));
-        let files = files(folder, &opened, digests, figures);
+        let files = files(folder, &opened, digests, &summary);
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
@@ -104,18 +99,28 @@ fn files(
     folder: &Path,
     opened: &RunOpened,
     [journal_sha256, recording_sha256]: [Option<String>; 2],
-    figures_doubt: Option<String>,
+    summary: &Summary,
 ) -> Files {
     let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
     let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
-    let doubts = journal_doubt(folder, journal_sha256.as_deref());
-    let doubts = doubts.into_iter().chain(recording_doubt(folder, recording_sha256.as_deref()));
-    let doubts: Vec<String> = doubts.chain(figures_doubt).collect();
+    let is_todays = opened.journal_version == JOURNAL_VERSION;
+    let (reported, damage) = Reported::read(folder).map_or_else(|why| (None, Some(why)), |read| (read, None));
+    let doubts_of = |reported: &Reported| {
+        [
+            reported.journal_doubt(journal_sha256.as_deref()),
+            reported.recording_doubt(folder, recording_sha256.as_deref()),
+            reported.figures_doubt(is_todays.then_some(summary)),
+        ]
+    };
+    let doubts = reported.as_ref().map(doubts_of).into_iter().flatten();
+    let doubts: Vec<String> = doubts.chain([damage]).flatten().collect();
     Files {
         journal_bytes: bytes(&journal),
         recording_bytes: bytes(&recording),
         scenario_sha256: Some(sha256_of(opened.scenario_toml.as_bytes())),
-        are_as_reported: names_digests(folder).then_some(doubts.is_empty()),
+        are_as_reported: reported
+            .is_some_and(|reported| reported.names_digests())
+            .then_some(doubts.is_empty()),
         journal_sha256,
         recording_sha256,
         doubts,

@@ -1,14 +1,10 @@
 //! How a past run stands, by its report, its journal and the signs that its writer left.
 
-use crate::{
-    files::{LOCK_FILE, REPORT_FILE},
-    report_file::read_report,
-};
+use crate::{files::LOCK_FILE, report_file::Reported};
 use recording::recorded_failure;
 use report::Summary;
 use std::{
-    fs::{self, File, TryLockError},
-    io,
+    fs::{File, TryLockError},
     path::Path,
 };
 
@@ -36,13 +32,12 @@ pub enum Standing {
 /// journal, counts for nothing.
 pub fn standing(folder: &Path) -> Standing {
     let failure = recorded_failure(folder);
-    let doubt = match fs::read_to_string(folder.join(REPORT_FILE)) {
-        Ok(text) => match read_report(folder, &text) {
-            Ok(summary) => return reported(summary, failure),
-            Err(why) => Some(why),
-        },
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => Some(format!("{REPORT_FILE} cannot be read: {error}")),
+    let summary = Reported::read(folder)
+        .and_then(|reported| reported.map(|reported| reported.summary(folder)).transpose());
+    let doubt = match summary {
+        Ok(Some(summary)) => return reported(summary, failure),
+        Ok(None) => None,
+        Err(why) => Some(why),
     };
     if doubt.is_none() && is_locked(folder) {
         return Standing::Running;

@@ -22,13 +22,13 @@ pub(crate) fn border(rings: &[Vec<Point>], near_m: f64) -> Vec<Border> {
         let others = (0..rings.len()).filter(|k| *k != own && may_meet(boxes[own], boxes[*k], near_m));
         let others: Vec<_> =
             others.map(|k| (&rings[k], boxes[k], if k < own { -near_m } else { near_m })).collect();
-        let open_parts = |a: Point, b: Point| {
+        let uncovered = |a: Point, b: Point| {
             let near = others.iter().filter(|(_, around, _)| may_meet(bounds_of(&[a, b]), *around, near_m));
             open_parts(near.filter_map(|(ring, _, deep_m)| share_within(ring, a, b, *deep_m)).collect())
         };
         let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
         for (a, b) in edges(ring) {
-            for (from, to) in open_parts(a, b) {
+            for (from, to) in uncovered(a, b) {
                 let at = |share: f64| if share < 1.0 { a + (b - a) * share } else { b };
                 let line =
                     lines.last_mut().filter(|line| from == 0.0 && line.last().is_none_or(|last| *last == a));

@@ -92,7 +92,7 @@ impl Planner for HullPartition {
             plan.complete = false;
             ctx.log(
                 LogLevel::Warn,
-                &format!("the cells leave no gate to {sealed_m2:.2} m2; choose tether-safe"),
+                &format!("the cells leave no gate to {sealed_m2:.2} m²; choose tether-safe"),
             );
         }
         self.follow.take(&plan);

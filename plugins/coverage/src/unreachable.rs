@@ -24,14 +24,14 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         let worth: Vec<&Vec<usize>> = groups.iter().filter(|group| area_m2(group) > LEAST_M2).collect();
         for group in worth.iter().take(MOST_PLACES) {
             let (area_m2, at) = (area_m2(group), raster.center(group[group.len() / 2]));
-            let place = format!("{area_m2:.2} m2 of floor about ({:.1}, {:.1})", at.x, at.y);
+            let place = format!("{area_m2:.2} m² of floor about ({:.1}, {:.1})", at.x, at.y);
             ctx.log(LogLevel::Warn, &format!("{place} {why} (hull and clearance {keep_m:.2} m)"));
         }
         if let Some(rest @ [_, ..]) = worth.get(MOST_PLACES..) {
             let places =
                 if rest.len() == 1 { "1 more place" } else { &format!("{} more places", rest.len()) };
             let area_m2 = rest.iter().map(|group| group.len()).sum::<usize>() as f64 * raster.cell_m2();
-            ctx.log(LogLevel::Warn, &format!("{places}, {area_m2:.2} m2 together, {why}"));
+            ctx.log(LogLevel::Warn, &format!("{places}, {area_m2:.2} m² together, {why}"));
         }
     };
     let is_closed = |cell: usize| {

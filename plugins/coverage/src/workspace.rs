@@ -96,7 +96,7 @@ fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
     let most_m2 = MOST_LANES_M * swath_m;
     if floor_m2 > most_m2 {
         return Some(format!(
-            "the floor of {floor_m2:.0} m2 between walls is too large: at lanes of {swath_m:.2} m at most {most_m2:.0} m2 can be \
+            "the floor of {floor_m2:.0} m² between walls is too large: at lanes of {swath_m:.2} m at most {most_m2:.0} m² can be \
              planned; divide the map, close parts of it by no-go zones, or choose a wider swath"
         ));
     }

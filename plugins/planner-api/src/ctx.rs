@@ -195,7 +195,7 @@ impl<'a> Ctx<'a> {
     /// use planner_api::{LogLevel, testing::Bench};
     ///
     /// let bench = Bench::new();
-    /// bench.ctx().log(LogLevel::Warn, "0.4 m2 of the floor are left out");
+    /// bench.ctx().log(LogLevel::Warn, "0.4 m² of the floor are left out");
     /// assert_eq!(bench.logs()[0].0, LogLevel::Warn);
     /// ```
     pub fn log(&self, level: LogLevel, message: &str) {

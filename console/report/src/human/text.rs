@@ -33,6 +33,11 @@ impl Text {
     }
 }
 
+/// The overlap of a scan with its definition.
+pub(crate) fn overlap(share: f64) -> String {
+    format!("{} of scanned floor (scanned more than once)", percent(share))
+}
+
 /// So many of something.
 pub(crate) fn counted(n: u64, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }

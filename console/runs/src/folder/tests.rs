@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    report_file::{ReportFile, figures_doubt, journal_doubt},
+    report_file::{ReportFile, Reported, journal_doubt},
     standing::{Standing, standing},
 };
 use mission::{Event, EventKind, Outcome};
@@ -153,8 +153,10 @@ fn the_report_takes_the_space_that_was_reserved_for_it() {
 fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     let logs = tempfile::tempdir().unwrap();
     let (folder, _, summary) = ended(logs.path());
-    let figures = |summary: &Summary| figures_doubt(&folder, Some(summary));
-    assert_eq!((figures(&summary), figures_doubt(&folder, None)), (None, None));
+    let doubt_with =
+        |figures: Option<&Summary>| Reported::read(&folder).unwrap().unwrap().figures_doubt(figures);
+    let figures = |summary: &Summary| doubt_with(Some(summary));
+    assert_eq!((figures(&summary), doubt_with(None)), (None, None));
     change(&folder.join(REPORT_FILE), "\"holds\": 0", "\"holds\": 1");
     assert!(doubt(&folder).starts_with("report.json was changed after the run ended"), "{}", doubt(&folder));
     assert_eq!(
@@ -165,9 +167,7 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     let other = Summary { holds: 1, ..summary.clone() };
     let text = ReportFile::text(&other, None, None).unwrap();
     fs::write(folder.join(REPORT_FILE), text).unwrap();
-    assert!(
-        figures(&summary).is_some() && figures(&other).is_none() && figures_doubt(&folder, None).is_none()
-    );
+    assert!(figures(&summary).is_some() && figures(&other).is_none() && doubt_with(None).is_none());
 }
 
 #[test]

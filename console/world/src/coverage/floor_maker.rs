@@ -10,12 +10,14 @@ use std::{collections::VecDeque, sync::Arc};
 
 /// Difference of distances up to which the wall counts as nearer than an obstacle, metres.
 const ROUNDING_M: f64 = 1e-6;
+/// Cells along each side of the blocks that are asked for their distance first.
+const BLOCK: usize = 8;
 
 /// A floor with all that is needed to update it when an obstacle is found.
 #[derive(Clone)]
 pub struct FloorMaker {
     floor: Floor,
-    /// Distance from the centre of every cell to the nearest solid, metres.
+    /// Distance from the centre of every cell to the nearest solid, metres; exact only where it is from 0 to `room_m`.
     clearance_m: Vec<f32>,
     /// Whether a zone forbids the robot's centre in a cell.
     forbidden: Vec<bool>,
@@ -28,7 +30,7 @@ impl Floor {
     /// The floor of a tank for a robot whose centre keeps `room_m` (hull radius and clearance) from everything solid, with
     /// a tool of some swath, driving from `start`; all in metres and the tank frame.
     ///
-    /// Costs one distance query per cell and a flood fill.
+    /// Costs one distance query per block of 64 cells, one per cell of the blocks near something solid, and a flood fill.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -73,7 +75,7 @@ impl FloorMaker {
     /// ```
     pub fn of(grid: &Floor, world: &World, room_m: f64, swath_m: f64, start: Point) -> Self {
         let map = ObstacleMap::new(&world.boundary, &world.obstacles);
-        let clearance_m = (0..grid.len()).map(|index| map.clearance_m(grid.center(index)) as f32).collect();
+        let clearance_m = clearances_m(grid, &map, room_m);
         let mut forbidden = vec![false; grid.len()];
         for zone in world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
             for index in around(grid, &zone.shape, room_m) {
@@ -136,7 +138,9 @@ impl FloorMaker {
         let free: Vec<bool> = self.clearance_m.iter().zip(&self.forbidden).map(is_free).collect();
         let drivable = self.drivable(&free);
         self.reach(&drivable, Cell::Reachable);
-        self.reach(&free, Cell::Unreachable);
+        let cut_off: Vec<bool> =
+            free.iter().zip(&drivable).map(|(free, drivable)| *free && !drivable).collect();
+        self.reach(&cut_off, Cell::Unreachable);
         for index in 0..self.floor.len() {
             if self.floor.cells[index] == Cell::Beside {
                 let kind = self.why_not(index, world);
@@ -196,6 +200,32 @@ impl FloorMaker {
     }
 }
 
+/// The distance from the centre of every cell to the nearest solid, metres. Where the distance in the middle of a block shows
+/// that all its cells have `room_m`, or that all are solid, they have the bound that shows it.
+fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
+    let mut clearances_m = vec![0.0; grid.len()];
+    for (row, column) in (0..grid.height)
+        .step_by(BLOCK)
+        .flat_map(|row| (0..grid.width).step_by(BLOCK).map(move |column| (row, column)))
+    {
+        let (rows, columns) = (row..(row + BLOCK).min(grid.height), column..(column + BLOCK).min(grid.width));
+        let index = |row: usize, column: usize| row * grid.width + column;
+        let (low, high) =
+            (grid.center(index(row, column)), grid.center(index(rows.end - 1, columns.end - 1)));
+        let (middle_m, far_m) = (map.clearance_m(nalgebra::center(&low, &high)), (high - low).norm() / 2.0);
+        let bound_m = Some(middle_m - far_m)
+            .filter(|least_m| *least_m > room_m)
+            .or_else(|| Some(middle_m + far_m).filter(|most_m| *most_m < 0.0));
+        for row in rows {
+            let cells = index(row, columns.start)..index(row, columns.end);
+            for (clearance_m, cell) in clearances_m[cells.clone()].iter_mut().zip(cells) {
+                *clearance_m = bound_m.unwrap_or_else(|| map.clearance_m(grid.center(cell))) as f32;
+            }
+        }
+    }
+    clearances_m
+}
+
 /// The cells of the box around an outline, with some margin.
 fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = usize> + use<> {
     let (low, high) = shape.bounds();
@@ -243,6 +273,23 @@ mod tests {
         assert_eq!(kind(&floor, 4.72, 0.02), Cell::Beside);
         assert_eq!(kind(&floor, 4.92, 0.02), Cell::Margin);
         assert_eq!(kind(&floor, -4.72, 0.02), Cell::Reachable);
+    }
+
+    #[test]
+    fn asking_blocks_first_gives_the_same_floor_as_asking_every_cell() {
+        let world = tank(&[(2.0, 0.0, 0.3), (2.9, 0.1, 0.2), (-1.0, 3.0, 0.5), (-4.6, 0.0, 0.2)]);
+        for (cell_m, room_m) in [(0.05, 0.35), (0.1, 0.2), (0.03, 0.6)] {
+            let mut maker = FloorMaker::new(&world, cell_m, room_m, 0.5, Point::origin());
+            let map = ObstacleMap::new(&world.boundary, &world.obstacles);
+            let clearance_m = |cell| map.clearance_m(maker.floor.center(cell)) as f32;
+            let exact: Vec<f32> = (0..maker.floor.len()).map(clearance_m).collect();
+            let n_asked = exact.iter().zip(&maker.clearance_m).filter(|(a, b)| a == b).count();
+            assert!(n_asked < exact.len() / 2, "{n_asked} of {}", exact.len());
+            let floor = maker.clone().into_floor();
+            maker.clearance_m = exact;
+            maker.classify(&world);
+            assert_eq!(maker.into_floor(), floor, "cells of {cell_m} m, room of {room_m} m");
+        }
     }
 
     #[test]

@@ -62,7 +62,7 @@ impl Reasons<'_> {
             reasons.push(format!("the path crosses cuts {} times", certificate.cut_crossings));
         }
         if let Some(sealed) = self.sealed {
-            reasons.push(format!("cuts seal off {:.2} m2 of floor at {}", sealed.area_m2, place(sealed.at)));
+            reasons.push(format!("cuts seal off {:.2} m² of floor at {}", sealed.area_m2, place(sealed.at)));
         }
         reasons
     }
