@@ -17,8 +17,8 @@ pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()>
     Ok(say_line(&serde_json::to_string(value).with_context(|| format!("writing {name} as JSON"))?)?)
 }
 
-/// Writes a file that the user asked for; `name` is what an error calls it.
+/// Writes a file that the user asked for, whole or not at all; `name` is what an error calls it.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
-    std::fs::write(file, text)
+    runs::write_whole(file, text.as_bytes())
         .map_err(|error| bad_input(format!("{name} cannot be written: {error}: {}", file.display())))
 }

@@ -39,16 +39,10 @@ fn load_from(file: &Path) -> Vec<String> {
     }
     recalled.reverse();
     if text.lines().count() > MOST {
-        let _ = replace(file, &recalled);
+        // Another console may be reading it.
+        let _ = runs::write_whole(file, (recalled.join("\n") + "\n").as_bytes());
     }
     recalled
-}
-
-/// Whole or not at all: another console may be reading it.
-fn replace(file: &Path, lines: &[String]) -> io::Result<()> {
-    let draft = file.with_extension("part");
-    fs::write(&draft, lines.join("\n") + "\n")?;
-    fs::rename(draft, file)
 }
 
 fn append_to(file: &Path, line: &str) -> io::Result<()> {

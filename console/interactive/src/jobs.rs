@@ -38,7 +38,7 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
         Job::Verify(_) => verdict(&folder, plugins),
         Job::Report(_) => {
             let file = folder.join(REPORT);
-            std::fs::write(&file, report_text(&folder)?).context("writing the report")?;
+            runs::write_whole(&file, report_text(&folder)?.as_bytes()).context("writing the report")?;
             Ok(format!("report written: {}", file.display()))
         }
         Job::View(_) => view(&folder.join(RECORDING_FILE)),

@@ -5,17 +5,17 @@ use crate::{
     files::{LOCK_FILE, REPORT_FILE, plain, utc},
     logs::{LogsError, make_logs},
     report_file::ReportFile,
+    whole::{draft_of, write_whole},
 };
 use recording::{FAILURE_FILE, JOURNAL_FILE, PLAIN_JOURNAL_FILE, RECORDING_FILE, journal_of};
 use report::Summary;
 use std::{
-    fs::{self, File, OpenOptions},
-    io::{self, Write},
+    fs::{self, File},
+    io,
     path::{Path, PathBuf},
     time::SystemTime,
 };
 
-const REPORT_DRAFT: &str = "report.json.part";
 /// A folder with one of these files is that of a run.
 const SIGNS: [&str; 5] = [JOURNAL_FILE, PLAIN_JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
 /// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
@@ -41,7 +41,7 @@ impl RunFolder {
         let lock = File::create_new(path.join(LOCK_FILE)).map_err(refused)?;
         let locking = || format!("locking the folder of the run: {}", path.display());
         lock.try_lock().map_err(io::Error::from).map_err(RunError::during(locking()))?;
-        fs::write(path.join(REPORT_DRAFT), vec![b'\n'; REPORT_RESERVE]).map_err(refused)?;
+        fs::write(draft_of(&path.join(REPORT_FILE)), vec![b'\n'; REPORT_RESERVE]).map_err(refused)?;
         Ok(Self { path, _lock: lock })
     }
 
@@ -57,21 +57,11 @@ impl RunFolder {
     pub fn write_report(&self, summary: &Summary) -> Result<(), RunError> {
         let bytes = |file: &str| fs::metadata(self.path.join(file)).ok().map(|file| file.len());
         let (journal_bytes, recording_bytes) = (bytes(JOURNAL_FILE), bytes(RECORDING_FILE));
-        let (draft, final_name) = (self.path.join(REPORT_DRAFT), self.path.join(REPORT_FILE));
-        let writing = |file: &Path| RunError::during(format!("writing {}", file.display()));
-        let text = ReportFile::text(summary, journal_bytes, recording_bytes);
-        let text = text.map_err(io::Error::from).map_err(writing(&draft))?;
-        replace_bytes(&draft, text.as_bytes()).map_err(writing(&draft))?;
-        fs::rename(&draft, &final_name).map_err(writing(&final_name))
+        let file = self.path.join(REPORT_FILE);
+        let text = ReportFile::text(summary, journal_bytes, recording_bytes).map_err(io::Error::from);
+        text.and_then(|text| write_whole(&file, text.as_bytes()))
+            .map_err(RunError::during(format!("writing {}", file.display())))
     }
-}
-
-/// Writes over the bytes of a file, so that the space they take is used, then cuts off what is left of them.
-fn replace_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
-    file.write_all(bytes)?;
-    file.set_len(bytes.len() as u64)?;
-    file.sync_all()
 }
 
 fn not_writable(logs: &Path, error: &io::Error) -> RunError {

@@ -17,6 +17,7 @@ mod past;
 mod report_file;
 mod signed;
 mod standing;
+mod whole;
 
 pub use error::RunError;
 pub use files::utc;
@@ -30,3 +31,4 @@ pub use past::Past;
 pub use report_file::{end_is_missing, journal_doubt};
 pub use signed::{SIGNED_FILE, add_signed, signed_reports};
 pub use standing::{Standing, standing};
+pub use whole::{write_by_draft, write_whole};

@@ -1,12 +1,9 @@
 //! The notes of people, in a file of their own beside the journal: no file of the run changes.
 
+use crate::whole::write_whole;
 use recording::journal_of;
 use report::notes::Notes;
-use std::{
-    fs::{self, File},
-    io::{self, Write},
-    path::Path,
-};
+use std::{fs, io, path::Path};
 
 /// Name of the notes in the folder of a run.
 pub const NOTES_FILE: &str = "notes.json";
@@ -46,14 +43,9 @@ pub fn write_notes(folder: &Path, notes: &Notes) -> Result<(), String> {
     if !journal_of(folder).exists() {
         return Err(format!("{}: there is no run any more", folder.display()));
     }
-    let (path, draft) = (folder.join(NOTES_FILE), folder.join(format!("{NOTES_FILE}.part")));
+    let path = folder.join(NOTES_FILE);
     let text = serde_json::to_string_pretty(notes).map_err(|error| error.to_string())? + "\n";
-    let written = File::create(&draft).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&draft, &path)
-    });
-    written.map_err(|error| format!("{}: {error}", path.display()))
+    write_whole(&path, text.as_bytes()).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Signed reports of a run: which there are, and that none is changed.
 
-use crate::error::RunError;
+use crate::{error::RunError, whole::write_whole};
 use recording::sha256;
 use report::document::Revision;
 use std::{
@@ -41,17 +41,37 @@ pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), Run
     Ok((revisions, doubts))
 }
 
-/// Adds a signed report to the list of its run.
+/// Adds a signed report to the lists of all runs that it is about, or to none of them.
 ///
 /// # Errors
-/// The list cannot be read or written.
-pub fn add_signed(folder: &Path, revision: Revision) -> Result<(), RunError> {
-    let (mut revisions, _) = signed_reports(folder)?;
-    revisions.push(revision);
-    let (path, draft) = (folder.join(SIGNED_FILE), folder.join(format!("{SIGNED_FILE}.part")));
-    let writing = || RunError::during(format!("writing the list of signed reports: {}", path.display()));
-    let text = serde_json::to_string_pretty(&revisions).map_err(io::Error::from).map_err(writing())? + "\n";
-    fs::write(&draft, text).and_then(|()| fs::rename(&draft, &path)).map_err(writing())
+/// A list cannot be read or written.
+pub fn add_signed(folders: &[PathBuf], revision: &Revision) -> Result<(), RunError> {
+    for (count, folder) in folders.iter().enumerate() {
+        let added = signed_reports(folder).and_then(|(mut revisions, _)| {
+            revisions.push(revision.clone());
+            write_list(folder, &revisions)
+        });
+        if let Err(error) = added {
+            folders[..count].iter().for_each(|folder| take_back(folder, revision));
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+/// Takes a report off the list again, if the system lets it.
+fn take_back(folder: &Path, revision: &Revision) {
+    if let Ok((mut revisions, _)) = signed_reports(folder) {
+        revisions.retain(|listed| listed != revision);
+        let _ = write_list(folder, &revisions);
+    }
+}
+
+fn write_list(folder: &Path, revisions: &[Revision]) -> Result<(), RunError> {
+    let path = folder.join(SIGNED_FILE);
+    let text = serde_json::to_string_pretty(revisions).map_err(io::Error::from);
+    text.and_then(|text| write_whole(&path, (text + "\n").as_bytes()))
+        .map_err(RunError::during(format!("writing the list of signed reports: {}", path.display())))
 }
 
 #[cfg(test)]
@@ -71,8 +91,9 @@ mod tests {
         let (name, digest) = (file.display().to_string(), sha256(&file).unwrap());
         let revision =
             Revision { number: "1-1".into(), revision: "A".into(), signature, file: name, sha256: digest };
-        add_signed(folder.path(), revision.clone()).unwrap();
-        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision], vec![]));
+        let folders = [folder.path().to_owned()];
+        add_signed(&folders, &revision).unwrap();
+        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision.clone()], vec![]));
         fs::write(&file, "forged").unwrap();
         let (_, doubts) = signed_reports(folder.path()).unwrap();
         assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A was changed"), "{doubts:?}");
@@ -81,6 +102,10 @@ mod tests {
         let (_, doubts) = signed_reports(folder.path()).unwrap();
         assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A cannot be read"), "{doubts:?}");
         fs::write(folder.path().join(SIGNED_FILE), "[{").unwrap();
+        let other = tempfile::tempdir().unwrap();
+        let both = [other.path().to_owned(), folder.path().to_owned()];
+        assert!(add_signed(&both, &revision).is_err());
+        assert_eq!(signed_reports(other.path()).unwrap(), (vec![], vec![]), "in all lists or in none");
         let error = signed_reports(folder.path()).unwrap_err().to_string();
         assert!(error.contains("reading the list of signed reports"), "{error}");
     }

@@ -3,9 +3,9 @@
 use anyhow::Context;
 use campaign::{Campaign, Table, table};
 use flight::failure::bad_input;
+use runs::write_by_draft;
 use std::{
     fs::{self, File},
-    io::{self, Write},
     path::{Path, PathBuf},
     time::{Duration, SystemTime},
 };
@@ -99,16 +99,7 @@ impl Folder {
         let file = self.0.join(name);
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_nanos();
         let draft = file.with_extension(format!("draft-{}-{now}", std::process::id()));
-        let write = || -> io::Result<()> {
-            let mut drafted = File::create_new(&draft)?;
-            drafted.write_all(bytes)?;
-            drafted.sync_all()?;
-            fs::rename(&draft, &file)?;
-            file.parent().map_or(Ok(()), |folder| File::open(folder)?.sync_all())
-        };
-        write()
-            .inspect_err(|_| drop(fs::remove_file(&draft)))
-            .with_context(|| format!("writing {}", file.display()))
+        write_by_draft(&file, &draft, bytes).with_context(|| format!("writing {}", file.display()))
     }
 
     /// Removes what killed workers have left.

@@ -141,7 +141,7 @@ fn a_run_whose_writer_failed_is_distinguished_from_one_that_was_killed() {
 fn the_report_takes_the_space_that_was_reserved_for_it() {
     let logs = tempfile::tempdir().unwrap();
     let folder = RunFolder::create(logs.path(), "demo", "rpf", 1).unwrap();
-    let draft = folder.path().join(REPORT_DRAFT);
+    let draft = draft_of(&folder.path().join(REPORT_FILE));
     assert_eq!(fs::metadata(&draft).unwrap().len(), REPORT_RESERVE as u64);
     folder.write_report(&Summary::default()).unwrap();
     assert!(!draft.exists());

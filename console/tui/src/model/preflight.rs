@@ -53,8 +53,12 @@ impl Model {
 
     /// What blocks the start, as a sentence; `None` if nothing does.
     pub fn start_is_blocked(&self) -> Option<String> {
-        let failed = self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)?;
-        Some(format!("start blocked: {}: {}", failed.what, failed.found))
+        self.blocking_check().map(|failed| format!("start blocked: {}: {}", failed.what, failed.found))
+    }
+
+    /// The first check that blocks the start.
+    pub(crate) fn blocking_check(&self) -> Option<Check> {
+        self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)
     }
 
     /// What the screen knows by itself.

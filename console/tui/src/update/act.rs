@@ -121,8 +121,13 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
 
 /// Opens the list of planners, on the one that drives.
 fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
-    let selected = driving(model);
-    open(model, Overlay::Planners { purpose, selected })
+    let driving = driving(model);
+    // Beside the planner that drives another one is wanted.
+    let others = (1..model.console.planners.len()).map(|by| (driving + by) % model.console.planners.len());
+    let other = others
+        .filter(|_| purpose != Purpose::Drive)
+        .find(|index| model.live.run.cannot_fly(&model.console.planners[*index]).is_none());
+    open(model, Overlay::Planners { purpose, selected: other.unwrap_or(driving) })
 }
 
 /// Changes what the operator looks at, and nothing else.

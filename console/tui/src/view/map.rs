@@ -1,5 +1,6 @@
 //! The map: scanned floor below, walls, obstacles, paths and forces above, in one canvas.
 
+mod drawn;
 mod legend;
 mod pen;
 mod plates;

@@ -99,7 +99,7 @@ pub(crate) fn standing(model: &Model) -> String {
 /// Where the operator goes from a mission that has ended.
 fn more(model: &Model) -> String {
     match model.ui.screen {
-        Screen::Result => "<again>: again, <rescan>: re-scan, <home>: home.",
+        Screen::Result => "<again>: plan again, <rescan>: re-scan, <home>: home.",
         _ => "<result>: result. <home>: home.",
     }
     .into()
@@ -143,11 +143,14 @@ fn idle(model: &Model) -> Clauses {
     if model.live.preflight.is_starting {
         return (Role::Title, vec!["Checking before the start...".into()]);
     }
+    let preflight = "<preflight>: pre-flight check.";
+    if let Some(failed) = model.blocking_check() {
+        let (what, why) =
+            (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));
+        return (Role::Warn, vec![what, why, preflight.into()]);
+    }
     let who = model.live.run.planner_id().unwrap_or("unknown");
-    (
-        Role::Title,
-        vec![format!("Press <start> to start (planner {who})."), "<preflight>: pre-flight check.".into()],
-    )
+    (Role::Title, vec![format!("Press <start> to start (planner {who})."), preflight.into()])
 }
 
 fn running(model: &Model) -> Clauses {
@@ -174,7 +177,7 @@ fn running(model: &Model) -> Clauses {
         return (Role::Title, vec!["Waiting for first command.".into(), calm]);
     };
     let (at, done) = (text::place(progress.target), text::percent(progress.done));
-    (Role::Title, vec![format!("Next target: {at}; task {done} % done."), calm])
+    (Role::Title, vec![format!("Next target: {at}; path {done} % done."), calm])
 }
 
 /// Why the robot stands, then what ends the hold.

@@ -294,3 +294,15 @@ fn an_alarm_of_the_console_stays_when_another_run_is_opened() {
     screen.send(Msg::Measured(Measured::Disk(99 << 20)));
     assert_eq!(screen.model.live.run.alarms.count(Severity::Warn), 1);
 }
+
+#[test]
+fn the_same_key_acknowledges_an_alarm_on_every_screen() {
+    for digit in ["1", "2", "3", "4", "5", "6", "7", "8"] {
+        let mut screen = troubled();
+        let waiting = screen.model.live.run.alarms.open().filter(|alarm| alarm.is_unacknowledged()).count();
+        screen.type_text(digit);
+        screen.type_text("a");
+        let left = screen.model.live.run.alarms.open().filter(|alarm| alarm.is_unacknowledged()).count();
+        assert_eq!(left, waiting - 1, "screen {digit}");
+    }
+}

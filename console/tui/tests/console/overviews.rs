@@ -117,7 +117,7 @@ fn plan() {
     screen.press([tui::Key::Enter]);
     let path = vec![Point::new(9.4, 0.0), Point::new(0.0, 0.0)];
     let ghost = GhostPlan { path, estimate: estimate(391.2), certified: None };
-    screen.hear(RunMsg::Compared(choice("rpf"), Ok(Box::new(ghost))));
+    screen.hear(RunMsg::Compared(choice("spiral-tangent"), Ok(Box::new(ghost))));
     store("plan", &mut screen);
 }
 
@@ -235,8 +235,8 @@ fn forecasts_are_also_said_in_sentences() {
 fn what_if() {
     let mut screen = forecast();
     screen.type_text("+");
-    screen.press([tui::Key::Up, tui::Key::Enter]);
-    screen.hear(RunMsg::ForecastAt(choice("apf"), 0.42));
+    screen.press([tui::Key::Enter]);
+    screen.hear(RunMsg::ForecastAt(choice("spiral-tangent"), 0.42));
     store("what_if", &mut screen);
 }
 
@@ -244,20 +244,23 @@ fn what_if() {
 fn a_forecast_is_chosen_with_a_question_and_what_was_compared_is_written_down() {
     let mut screen = forecast();
     screen.type_text("+");
-    let added = screen.press([tui::Key::Up, tui::Key::Enter]);
-    assert_eq!(added, [Effect::Forecast(vec![choice("apf")])]);
+    let added = screen.press([tui::Key::Enter]);
+    assert_eq!(added, [Effect::Forecast(vec![choice("spiral-tangent")])]);
     assert_eq!(screen.press([tui::Key::Enter]), [], "it is not finished");
     let Some(Ok(mut made)) = screen.model.live.what_if.as_ref().unwrap().candidates[0].made.clone() else {
         panic!()
     };
-    made.outlook.choice = choice("apf");
-    screen.hear(RunMsg::Forecast(choice("apf"), Ok(Box::new(made))));
+    made.outlook.choice = choice("spiral-tangent");
+    screen.hear(RunMsg::Forecast(choice("spiral-tangent"), Ok(Box::new(made))));
     let effects = screen.press([tui::Key::Enter]);
     assert!(
         matches!(&effects[..], [Effect::Order(Order::NoteOutlooks(noted))] if noted.len() == 2),
         "{effects:?}"
     );
-    assert_eq!(screen.press([tui::Key::Enter]), [Effect::Order(Order::ChoosePlanner(choice("apf")))]);
+    assert_eq!(
+        screen.press([tui::Key::Enter]),
+        [Effect::Order(Order::ChoosePlanner(choice("spiral-tangent")))]
+    );
 }
 
 #[test]

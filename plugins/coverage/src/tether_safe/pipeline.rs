@@ -117,7 +117,10 @@ impl<'a> Pipeline<'a> {
         }
         for Drafted { name, estimate_m, .. } in hopeless {
             let more_m = estimate_m - least_m;
-            ctx.log(LogLevel::Info, &format!("{name}: left, it would cost about {more_m:.0} m more"));
+            ctx.log(
+                LogLevel::Info,
+                &format!("{name}: not finished: about {more_m:.0} m longer by its first tour"),
+            );
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! What the marks on the map stand for: the floor on the left, lines and marks on the right.
 
+use super::drawn;
 use super::shade::{Shade, compared};
 use crate::model::{Raster, ui::MapLayer};
 use crate::theme::Role;
@@ -12,7 +13,7 @@ use ratatui::widgets::Clear;
 use report::account::Shares;
 
 /// Columns of the right side, and most rows.
-const SIZE: (u16, u16) = (12, 8);
+const SIZE: (u16, u16) = (12, 10);
 
 /// A mark and its word.
 type Entry = (Role, String, &'static str);
@@ -68,17 +69,24 @@ fn marks(look: &Look) -> Vec<Entry> {
     let line = |dots: &'static str, letters: &'static str| if has_dots { dots } else { letters };
     let found = look.run.about.iter().flat_map(|run| &run.world.obstacles).any(|obstacle| !obstacle.known);
     let has_other = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
-    let entries = [
+    let drawings = drawn::shown(look);
+    let drawn = drawn::KINDS.map(|(role, word)| {
+        let shown = drawings.iter().any(|drawing| drawn::role(drawing) == role);
+        (shown, role, line("⠤⠤", "''"), word)
+    });
+    let lines = [
         (layers.shows(MapLayer::Trail), Role::Trail, line("⠤⠤", ".."), "trail"),
         (has_other, Role::Ghost, line("⠤⠤", ";;"), "run B"),
         (layers.shows(MapLayer::Plan), Role::Plan, line("⠄⠠", ",,"), "plan"),
         (look.run.shadow.is_some(), Role::Ghost, line("⠤⠤", ";;"), "shadow"),
         (look.run.tether.is_some(), Role::Tether, line("⠤⠤", "~~"), "tether"),
+    ];
+    let marks = [
         (true, Role::Obstacle, "# ", "obstacle"),
         (found, Role::Found, "? ", "found"),
         (layers.shows(MapLayer::Stations), Role::Station, "S ", "station"),
         (true, Role::Target, "× ", "target"),
     ];
-    let shown = entries.into_iter().filter(|(shown, ..)| *shown);
+    let shown = lines.into_iter().chain(drawn).chain(marks).filter(|(shown, ..)| *shown);
     shown.map(|(_, role, mark, word)| (role, mark.to_owned(), word)).collect()
 }

@@ -1,12 +1,13 @@
 //! What the model has, drawn on the canvas of the map.
 
+use super::drawn;
 use super::plates::{self, Outlines};
 use super::shapes::{Filled, Stroke, Window, ellipse};
 use crate::caps::Glyphs;
 use crate::model::{Overlay, Screen, WhatIf, position, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
-use planner_api::{Drawing, Layer};
+use planner_api::Drawing;
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
@@ -122,26 +123,14 @@ impl Pen<'_> {
     }
 
     pub(super) fn drawings(&self, ctx: &mut Context<'_>) {
-        let planning = &self.look.run.planning;
-        let old = self.look.run.clock.tick.saturating_sub(planning.drawings_tick) > 10;
-        if old || !self.look.model.ui.layers.shows(MapLayer::Drawings) {
-            return;
-        }
         self.take_up(ctx, '\'');
-        for drawing in &planning.drawings {
-            let (layer, points) = match *drawing {
-                Drawing::Arrow { layer, at, vector } => (layer, vec![at, at + vector]),
-                Drawing::Line { layer, from, to } => (layer, vec![from, to]),
-                Drawing::Circle { layer, center, radius_m } => {
-                    (layer, ellipse(center, (radius_m, radius_m), 0.0, 32))
-                }
+        for drawing in drawn::shown(&self.look) {
+            let points = match *drawing {
+                Drawing::Arrow { at, vector, .. } => vec![at, at + vector],
+                Drawing::Line { from, to, .. } => vec![from, to],
+                Drawing::Circle { center, radius_m, .. } => ellipse(center, (radius_m, radius_m), 0.0, 32),
             };
-            let role = match layer {
-                Layer::Attraction => Role::Pull,
-                Layer::Repulsion => Role::Push,
-                _ => Role::Drawn,
-            };
-            self.stroke(ctx, &points, role, false);
+            self.stroke(ctx, &points, drawn::role(drawing), false);
         }
     }
 

@@ -20,10 +20,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ghost =
         live.plans.ghost.as_ref().and_then(|ghost| Some((ghost, ghost.made.as_ref()?.as_ref().ok()?)));
     let width = columns.saturating_sub(LABEL + 2) / if ghost.is_some() { 2 } else { 1 };
-    let head =
-        (look.run.planner_id().unwrap_or("-").to_owned(), ghost.map(|(ghost, _)| ghost.choice.id.clone()));
-    let (mine, other) = head;
-    let head = ((Role::Title, mine), other.map(|other| (Role::Ghost, other)));
+    let mine = look.run.planner_id().unwrap_or("-");
+    let head = match ghost.map(|(ghost, _)| ghost.choice.id.as_str()) {
+        // Who is compared is said beside the planner.
+        Some(other) if text::width(mine).max(text::width(other)) >= width => ("active", Some("compared")),
+        other => (mine, other),
+    };
+    let title = |role: Role, words: &str| (role, words.to_owned());
+    let head = (title(Role::Title, head.0), head.1.map(|other| title(Role::Ghost, other)));
     let mut rows = vec![row("", head, width)];
     let other = ghost.map(|(_, plan)| &plan.estimate);
     let estimate = live.estimate();
@@ -31,7 +35,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     for (label, figure) in FIGURES {
         let of = |estimate: Option<&Estimate>, role: Role| {
             let Some(estimate) = estimate else { return (role, "-".to_owned()) };
-            match mission.and_then(|mission| beyond(label, estimate, mission)) {
+            match mission.and_then(|mission| beyond(label, estimate, mission, width)) {
                 Some(words) => (Role::Warn, words),
                 None => (role, figure(estimate, width)),
             }
@@ -51,11 +55,14 @@ fn row(label: &str, (mine, other): (Figured, Option<Figured>), width: usize) -> 
     std::iter::once((Role::Dim, format!(" {label:<LABEL$}"))).chain(cells).collect()
 }
 
-/// A figure that breaks a limit of the mission, with the limit.
-fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig) -> Option<String> {
+/// A figure that breaks a limit of the mission, with the limit where there is room.
+fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig, width: usize) -> Option<String> {
+    let said = |found: String, limit: String| {
+        text::wording([format!("{found} > {limit}"), format!("{found}!")], width.saturating_sub(1))
+    };
     let metres = |value: f64, limit: f64, decimals| {
-        let words = || format!("{} m > {} m", text::number(value, decimals), text::number(limit, decimals));
-        (value > limit).then(words)
+        let metres = |value| format!("{} m", text::number(value, decimals));
+        (value > limit).then(|| said(metres(value), metres(limit)))
     };
     let tether = || Some((estimate.tether.as_ref()?, mission.tether.as_ref()?.limits));
     match label {
@@ -64,17 +71,14 @@ fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig) -> Option<S
         }
         "wrap" => tether().and_then(|(tether, limits)| {
             let (wrap, limit) = (tether.wrap_max.value.to_degrees(), limits.wrap_max_rad.to_degrees());
-            let words = || format!("{}° > {}°", text::number(wrap, 0), text::number(limit, 0));
-            (wrap > limit).then(words)
+            let degrees = |value| format!("{}°", text::number(value, 0));
+            (wrap > limit).then(|| said(degrees(wrap), degrees(limit)))
         }),
         "AE error" => {
             estimate.accuracy_worst.and_then(|worst| metres(worst.value, mission.position_limit_m, 2))
         }
-        "time" => {
-            let words =
-                || format!("{} > {}", text::clock(estimate.time_s), text::clock(mission.time_limit_s));
-            (estimate.time_s > mission.time_limit_s).then(words)
-        }
+        "time" => (estimate.time_s > mission.time_limit_s)
+            .then(|| said(text::clock(estimate.time_s), text::clock(mission.time_limit_s))),
         _ => None,
     }
 }
@@ -85,15 +89,17 @@ type Figure = fn(&Estimate, usize) -> String;
 const FIGURES: [(&str, Figure); 8] = [
     ("time", |e, _| text::clock(e.time_s)),
     ("length", |e, _| format!("{} m", text::number(e.length_m, 1))),
-    ("coverage", |e, _| {
-        e.reachable.map_or_else(|| "-".into(), |share| format!("{} % reachable", text::percent(share)))
+    ("coverage", |e, width| {
+        let Some(share) = e.reachable.map(text::percent) else { return "-".into() };
+        text::wording([format!("{share} % reachable"), format!("{share} %")], width.saturating_sub(1))
     }),
     ("clearance", |e, width| worst(e.clearance_min, "m", 2, width)),
     ("tether out", |e, width| worst(e.tether.as_ref().map(|t| t.length_max), "m", 1, width)),
     ("wrap", |e, width| {
         let Some(tether) = &e.tether else { return "-".into() };
+        let wrap = format!("{}°", text::number(tether.wrap_max.value.to_degrees(), 0));
         let on = if tether.wrapped.is_empty() { String::new() } else { format!(" on {}", tether.wrapped) };
-        text::fit(&format!("{}°{on}", text::number(tether.wrap_max.value.to_degrees(), 0)), width)
+        text::wording([format!("{wrap}{on}"), wrap], width.saturating_sub(1))
     }),
     ("AE error", |e, width| worst(e.accuracy_worst, "m", 2, width)),
     ("without fix", |e, _| format!("{} m", text::number(e.without_fix_m, 1))),
@@ -102,6 +108,5 @@ const FIGURES: [(&str, Figure); 8] = [
 fn worst(worst: Option<report::estimate::Worst>, unit: &str, decimals: usize, width: usize) -> String {
     let Some(worst) = worst else { return "-".into() };
     let figure = format!("{} {unit}", text::number(worst.value, decimals));
-    let full = format!("{figure} at {}", text::place(worst.at));
-    if text::width(&full) <= width { full } else { figure }
+    text::wording([format!("{figure} at {}", text::place(worst.at)), figure], width)
 }

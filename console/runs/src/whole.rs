@@ -1,0 +1,156 @@
+//! Files that are there whole or not at all.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Writes a file whole or not at all: to a draft beside it, [`draft_of`], onto the disk, then renamed. The space that a draft
+/// already takes is used. When it fails, the file is as it was, and there is no draft.
+///
+/// What is no regular file (a pipe, `/dev/stdout`) is written to as it is.
+///
+/// # Errors
+/// The system refuses.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // A link stays one: what it leads to is replaced.
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if path.metadata().is_ok_and(|file| !file.is_file()) {
+        return fs::write(&path, bytes);
+    }
+    write_by_draft(&path, &draft_of(&path), bytes)
+}
+
+/// [`write_whole`] by a draft of another name, for files that several processes may write at once.
+///
+/// # Errors
+/// The system refuses.
+pub fn write_by_draft(path: &Path, draft: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_in(path, draft, bytes, || OpenOptions::new().write(true).create(true).truncate(false).open(draft))
+}
+
+/// Where a file is drafted: `NAME.part`.
+pub(crate) fn draft_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// What is written to.
+trait Draft: Write {
+    /// Cuts off what is longer.
+    fn cut(&mut self, bytes: u64) -> io::Result<()>;
+    /// Puts it on the disk.
+    fn settle(&mut self) -> io::Result<()>;
+}
+
+impl Draft for File {
+    fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.set_len(bytes)
+    }
+
+    fn settle(&mut self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
+fn write_in<D: Draft>(
+    path: &Path,
+    draft: &Path,
+    bytes: &[u8],
+    open: impl FnOnce() -> io::Result<D>,
+) -> io::Result<()> {
+    let write = || {
+        let mut file = open()?;
+        file.write_all(bytes)?;
+        file.cut(bytes.len() as u64)?;
+        file.settle()?;
+        fs::rename(draft, path)
+    };
+    write().inspect_err(|_| drop(fs::remove_file(draft)))?;
+    // The new name is kept by the folder; some file systems cannot be asked for that.
+    let _ = path.parent().map(|folder| File::open(folder).and_then(|folder| folder.sync_all()));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    /// A file whose call number `fails_at` fails; it takes a few bytes at a time.
+    struct FaultyFile {
+        file: File,
+        calls: usize,
+        fails_at: usize,
+    }
+
+    impl FaultyFile {
+        fn fault(&mut self) -> io::Result<()> {
+            self.calls += 1;
+            if self.calls == self.fails_at { Err(io::ErrorKind::StorageFull.into()) } else { Ok(()) }
+        }
+    }
+
+    impl Write for FaultyFile {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.fault()?;
+            self.file.write(&bytes[..bytes.len().min(7)])
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.fault()
+        }
+    }
+
+    impl Draft for FaultyFile {
+        fn cut(&mut self, bytes: u64) -> io::Result<()> {
+            self.fault()?;
+            self.file.cut(bytes)
+        }
+
+        fn settle(&mut self) -> io::Result<()> {
+            self.fault()
+        }
+    }
+
+    #[test]
+    fn whichever_call_fails_the_file_before_stays_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, new) = (folder.path().join("report.json"), b"the new report".repeat(9));
+        let draft = draft_of(&path);
+        let mut fails_at = 0;
+        loop {
+            fails_at += 1;
+            fs::write(&path, "the old report").unwrap();
+            fs::write(&draft, vec![b'\n'; 4096]).unwrap();
+            let open =
+                || Ok(FaultyFile { file: OpenOptions::new().write(true).open(&draft)?, calls: 0, fails_at });
+            let written = write_in(&path, &draft, &new, open);
+            assert!(!draft.exists(), "call {fails_at}");
+            if written.is_ok() {
+                break;
+            }
+            assert_eq!(fs::read(&path).unwrap(), b"the old report", "call {fails_at}");
+        }
+        assert_eq!(fs::read(&path).unwrap(), new);
+        assert_eq!(fails_at, new.len().div_ceil(7) + 2 + 1, "every call failed once");
+    }
+
+    #[test]
+    fn a_link_stays_a_link_and_what_is_no_file_is_written_to() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_whole(&link, b"new").unwrap();
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        write_whole(Path::new("/dev/null"), b"new").unwrap();
+        assert!(!Path::new("/dev/null").metadata().unwrap().is_file());
+        assert!(write_whole(folder.path(), b"new").is_err(), "a folder");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+}
