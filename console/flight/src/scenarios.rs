@@ -2,7 +2,7 @@
 
 use crate::failure::bad_input;
 use scenario::{Scenario, Settings};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The demo, so that `tankops` shows something wherever it is started.
 const DEMO: &str = include_str!("../../../scenarios/demo.toml");
@@ -15,10 +15,48 @@ pub fn demo(settings: &Settings) -> anyhow::Result<Scenario> {
     Scenario::parse_with(DEMO, "the demo scenario", settings).map_err(|errors| bad_input(errors.render()))
 }
 
-/// Reads a scenario, with what the command line changes about it.
+/// Reads a scenario by its path or by the name that the home screen lists: `cover-circle` is `scenarios/cover-circle.toml`.
 ///
 /// # Errors
 /// Every objection, with its place in the file.
 pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
+    let listed = listed(path).filter(|_| !path.exists());
+    match &listed {
+        Some(file) if file.exists() => read_file(file, settings),
+        Some(_) if path == Path::new("demo") => demo(settings),
+        Some(file) => Err(bad_input(format!(
+            "{}: there is no such file, and no {} either; give the path of a scenario, or a name that the home screen lists",
+            path.display(),
+            file.display()
+        ))),
+        None => read_file(path, settings),
+    }
+}
+
+/// The file of a scenario that is named without folder and extension.
+fn listed(name: &Path) -> Option<PathBuf> {
+    let is_bare = name.components().count() == 1 && name.file_name().is_some() && name.extension().is_none();
+    is_bare.then(|| Path::new("scenarios").join(name).with_extension("toml"))
+}
+
+fn read_file(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
     Scenario::read_with(path, settings).map_err(|errors| bad_input(errors.render()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn a_scenario_is_named_by_path_or_as_the_home_screen_lists_it() {
+        assert_eq!(listed(Path::new("cover-circle")), Some("scenarios/cover-circle.toml".into()));
+        for path in ["cover-circle.toml", "tanks/a", "/a", "..", ""] {
+            assert_eq!(listed(Path::new(path)), None, "{path}");
+        }
+        assert_eq!(read(Path::new("demo"), &Settings::default()).unwrap().name, "demo");
+        let error = read(Path::new("no-such-tank"), &Settings::default()).unwrap_err().to_string();
+        assert!(error.contains("no scenarios/no-such-tank.toml either"), "{error}");
+    }
 }

@@ -24,7 +24,7 @@ pub(crate) struct ScreenArgs {
 
 #[derive(Debug, Default, Args)]
 pub(crate) struct ConsoleArgs {
-    /// Scenario file; default: the demo.
+    /// Scenario: a file, or the name of one in the folder `scenarios`; default: the demo.
     pub scenario: Option<PathBuf>,
     #[command(flatten)]
     pub changes: Changes,

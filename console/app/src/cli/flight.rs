@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// Scenario file.
+    /// Scenario: a file, or the name of one in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
@@ -42,7 +42,7 @@ pub(crate) struct ShadowArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
-    /// Scenario file.
+    /// Scenario: a file, or the name of one in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
@@ -59,7 +59,7 @@ pub(crate) struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct AccuracyArgs {
-    /// Scenario file.
+    /// Scenario: a file, or the name of one in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
