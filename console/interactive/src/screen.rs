@@ -11,7 +11,9 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use tui::{Cache, Caps, Effect, Model, Msg, Redraw, RunMsg, Signal, redraw, terminal::TerminalGuard};
+use tui::{
+    Cache, Caps, Effect, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, redraw, terminal::TerminalGuard,
+};
 
 /// Messages that are taken in before the next frame, at most.
 const BURST: usize = 256;
@@ -134,7 +136,7 @@ impl Screen {
         let mut next = first;
         for _ in 0..BURST {
             let Some(msg) = next else { break };
-            self.answer_seen |= is_answer(&msg);
+            self.answer_seen |= is_answer(&self.session.model, &msg);
             if matches!(msg, Msg::Signal(Signal::Continue)) {
                 self.measure = Measure::since(Instant::now());
             }
@@ -223,12 +225,15 @@ fn taken(bytes: usize, rate: f64) -> Duration {
     Duration::from_secs_f64(bytes as f64 / rate)
 }
 
-/// Whether an operator waits to see this: a key, or that the robot was stopped.
-fn is_answer(msg: &Msg) -> bool {
+/// Whether an operator waits to see this: a key, that the robot was stopped, or the moment of a past run that was gone to.
+fn is_answer(model: &Model, msg: &Msg) -> bool {
     match msg {
         Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
         Msg::Run(_, RunMsg::Events(events)) => {
             events.iter().any(|event| matches!(event.kind, EventKind::Held { .. }))
+        }
+        Msg::Run(_, RunMsg::Replay(ReplayMsg::At(..) | ReplayMsg::Moved(..))) => {
+            model.live.replay.as_ref().is_some_and(|replay| !replay.is_playing)
         }
         _ => false,
     }

@@ -18,8 +18,8 @@ use tui::model::{
 };
 
 /// Copies of a run that are kept at most.
-pub(super) const MOST_FRAMES: u64 = 128;
-/// Bytes of the journal between two copies at least: a few milliseconds to read.
+pub(super) const MOST_FRAMES: usize = 128;
+/// Bytes of lines between two copies at least: a few milliseconds to read.
 const LEAST_SPACING: u64 = 1 << 18;
 /// Marks of a run at most.
 const MOST_MARKS: usize = 100_000;
@@ -65,6 +65,15 @@ impl Reel {
         folder: &Path,
         report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
     ) -> anyhow::Result<Arc<Self>> {
+        Self::begin_spaced(folder, LEAST_SPACING, report)
+    }
+
+    /// [`Reel::begin`] with at first so many bytes of lines between two copies.
+    pub(super) fn begin_spaced(
+        folder: &Path,
+        spacing: u64,
+        report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
+    ) -> anyhow::Result<Arc<Self>> {
         let journal = journal_of(folder);
         let reader = JournalReader::open(&journal)?;
         let place = reader.place();
@@ -74,7 +83,7 @@ impl Reel {
             reel: Arc::downgrade(&reel),
             place,
             bytes,
-            spacing: (bytes / (MOST_FRAMES - 1)).max(LEAST_SPACING),
+            spacing,
             run: Run::default(),
             marker: Marker::default(),
             marks: Vec::new(),
@@ -134,8 +143,9 @@ struct Loading {
     reel: Weak<Reel>,
     /// Where the next event begins.
     place: JournalPlace,
+    /// Bytes of the file.
     bytes: u64,
-    /// Bytes between two copies.
+    /// Bytes of lines between two copies: twice as many whenever there are too many copies.
     spacing: u64,
     run: Run,
     marker: Marker,
@@ -191,6 +201,11 @@ impl Loading {
         (content.until_s, content.bytes) = (t_s, place.bytes);
         if self.kept_at.is_none_or(|at| place.bytes - at >= self.spacing) {
             self.kept_at = Some(place.bytes);
+            if content.frames.len() >= MOST_FRAMES {
+                let mut index = 0..;
+                content.frames.retain(|_| index.next().is_some_and(|index| index % 2 == 0));
+                self.spacing *= 2;
+            }
             content.frames.push(Frame { t_s, place, run: Arc::new(self.run.clone()) });
         }
     }
@@ -217,7 +232,10 @@ impl Loading {
         }
         let until_s = content.until_s;
         drop(content);
-        let share = if self.bytes > 0 { place.bytes as f64 / self.bytes as f64 } else { 1.0 };
+        let share = match self.bytes {
+            bytes if bytes > 0 && !is_whole => place.file_bytes() as f64 / bytes as f64,
+            _ => 1.0,
+        };
         let marks = std::mem::take(&mut self.marks);
         report(tui::model::replay::Reel { until_s, share: share.min(1.0), is_whole, problem, marks })
     }

@@ -50,17 +50,26 @@ fn folded(events: &[Event], t_s: f64) -> Run {
 
 #[test]
 fn every_moment_is_the_one_that_playing_leads_to() {
+    every_moment_is_reached(1 << 18);
+}
+
+#[test]
+fn with_too_many_copies_every_other_one_goes() {
+    every_moment_is_reached(1 << 10);
+}
+
+fn every_moment_is_reached(spacing: u64) {
     let (folder, events) = (tempfile::tempdir().unwrap(), events());
     written(folder.path(), &events);
     let (send, heard) = channel();
-    let reel = Reel::begin(folder.path(), move |news| send.send(news).is_ok()).unwrap();
+    let reel = Reel::begin_spaced(folder.path(), spacing, move |news| send.send(news).is_ok()).unwrap();
     let news: Vec<_> = heard.iter().collect();
     let last = news.last().unwrap();
     assert!(last.is_whole && last.problem.is_none() && last.until_s > 899.0, "{last:?}");
     let marks: Vec<_> = news.iter().flat_map(|news| &news.marks).collect();
     assert!(marks.iter().any(|mark| mark.kind == MarkKind::Event && mark.severity == Severity::Info));
     let frames = reel.content().frames.len();
-    assert!((3..=MOST_FRAMES as usize).contains(&frames), "{frames} copies");
+    assert!((3..=MOST_FRAMES).contains(&frames), "{frames} copies");
 
     let mut deck = Deck::new(reel);
     let mut run = Run::default();

@@ -37,6 +37,13 @@ pub struct JournalPlace {
     frame: FrameStart,
 }
 
+impl JournalPlace {
+    /// Bytes of the file that are read before it; fewer by a part of a frame where the file is compressed.
+    pub fn file_bytes(&self) -> u64 {
+        self.frame.file
+    }
+}
+
 /// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
 ///
 /// Ends after the first error.
