@@ -4,7 +4,7 @@ use anyhow::Context;
 use flight::failure::bad_input;
 use report::print::say_line;
 use serde::Serialize;
-use std::path::Path;
+use std::{io, path::Path};
 
 /// A value as JSON for people to read; `name` is what an error calls it.
 pub(crate) fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String> {
@@ -19,6 +19,15 @@ pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()>
 
 /// Writes a file that the user asked for, whole or not at all; `name` is what an error calls it.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
-    runs::write_whole(file, text.as_bytes())
-        .map_err(|error| bad_input(format!("{name} cannot be written: {error}: {}", file.display())))
+    runs::write_whole(file, text.as_bytes()).map_err(|error| {
+        let why = format!("{name} cannot be written: {error}: {}", file.display());
+        if is_of_machine(&error) { anyhow::anyhow!(why) } else { bad_input(why) }
+    })
+}
+
+/// Whether an error is one of the machine: another file name would not help.
+fn is_of_machine(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    // EIO has no kind of its own.
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge) || error.raw_os_error() == Some(5)
 }

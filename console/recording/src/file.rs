@@ -19,6 +19,15 @@ pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
 }
 
+/// The text of a regular file.
+///
+/// # Errors
+/// It is no regular file, cannot be read, or is no UTF-8.
+pub fn read_regular(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    open_regular(path)?.read_to_string(&mut text).map(|_| text)
+}
+
 /// SHA-256 of a file, hexadecimal.
 ///
 /// # Errors

@@ -67,6 +67,10 @@ fn title(run: &Summary) -> String {
 fn warnings(run: &Summary) -> Vec<String> {
     let mut found = Vec::new();
     match run.outcome {
+        None if is_open(run) => found.push(
+            "run in progress: the figures end where its journal ended when it was read, and are not checked against [expect]"
+                .to_owned(),
+        ),
         None => found.push(
             "run cut off: the figures end where the journal ends and are not checked against [expect]"
                 .to_owned(),
@@ -120,8 +124,14 @@ fn beyond_reel(floor: &Account) -> Option<String> {
     })
 }
 
+/// Whether somebody is still writing the run.
+fn is_open(run: &Summary) -> bool {
+    run.logs.as_ref().is_some_and(|logs| logs.is_open)
+}
+
 fn outcome(run: &Summary) -> String {
-    let word = run.outcome.map_or("cut off", Outcome::word);
+    let without_end = if is_open(run) { "in progress" } else { "cut off" };
+    let word = run.outcome.map_or(without_end, Outcome::word);
     run.reason.as_ref().map_or_else(|| word.to_owned(), |reason| format!("{word}: {reason}"))
 }
 

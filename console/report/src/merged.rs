@@ -129,7 +129,7 @@ mod tests {
         let recording = Some(format!("logs/{name}/recording.rrd"));
         PastRun {
             name: name.into(),
-            logs: Logs { journal: None, recording, error: None },
+            logs: Logs { journal: None, recording, error: None, is_open: false },
             began: None,
             files: Files { recording_sha256: Some(format!("5a{name}")), ..Files::default() },
             summary: fold.summary(),

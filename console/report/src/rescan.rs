@@ -187,7 +187,7 @@ mod tests {
         for kind in [EventKind::RunOpened(Box::new(run)), EventKind::Covered { runs }] {
             fold.apply(&Event { tick: 0, t_s: 0.0, kind });
         }
-        let logs = Logs { journal: None, recording: None, error: None };
+        let logs = Logs { journal: None, recording: None, error: None, is_open: false };
         let (files, record, summary) = (Files::default(), Record::new(), fold.summary());
         PastRun { name: "a".into(), logs, began: None, files, fold, summary, record }
     }

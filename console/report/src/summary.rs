@@ -245,7 +245,7 @@ pub struct PlannerCalls {
 }
 
 /// The files of a run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Logs {
     /// The journal.
     pub journal: Option<String>,
@@ -253,4 +253,7 @@ pub struct Logs {
     pub recording: Option<String>,
     /// What went wrong while they were written; absent if they are whole.
     pub error: Option<String>,
+    /// Whether somebody is still writing them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_open: bool,
 }

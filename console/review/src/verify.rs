@@ -39,6 +39,8 @@ struct Findings {
     difference: Option<Difference>,
     /// What speaks against the file as a whole.
     doubt: Option<String>,
+    /// Whether a report names the digests of journal and recording.
+    is_reported: bool,
     /// Why the journal has no end; what it holds up to there is compared.
     no_end: Option<String>,
     /// What the planners did when they were asked again; `None` if they were not.
@@ -81,17 +83,13 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     thread::scope(|scope| {
-        let files = scope.spawn(|| files_doubt(folder));
+        let files = scope.spawn(|| Past::read(folder).map(|past| past.run.files));
         let findings = compare(&journal_of(folder), plugins)?;
-        let doubt = files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
+        let files = files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
         let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
-        Ok(Findings { doubt: doubt.or_else(missing_end), ..findings })
+        let doubt = files.doubts.into_iter().next().or_else(missing_end);
+        Ok(Findings { doubt, is_reported: files.are_as_reported.is_some(), ..findings })
     })
-}
-
-/// What speaks against the files of a run: digests of journal or recording, or figures in its report that the journal does not give.
-fn files_doubt(folder: &Path) -> anyhow::Result<Option<String>> {
-    Ok(Past::read(folder)?.run.files.doubts.into_iter().next())
 }
 
 impl Findings {
@@ -109,6 +107,11 @@ impl Findings {
 fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     let Findings { difference, doubt, no_end, planners, events, last_tick, .. } = findings;
     let mut lines = Vec::new();
+    if !findings.is_reported && no_end.is_none() {
+        lines.push(
+            "note: no report.json names the digests of journal and recording, so the recording is not checked".into(),
+        );
+    }
     if let Some(why) = no_end {
         lines.push(format!("note: the journal has no end ({why}); what it holds before is compared"));
     }

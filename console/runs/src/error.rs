@@ -44,6 +44,14 @@ pub enum RunError {
         /// The folder of runs.
         logs: PathBuf,
     },
+    /// A file beside a run is damaged.
+    #[error("{} is damaged: {why}; put the file back as it was written", file.display())]
+    Damaged {
+        /// Which.
+        file: PathBuf,
+        /// What is wrong, with line and column.
+        why: String,
+    },
     /// The system refuses something else.
     #[error("{what}: {why}")]
     System {
@@ -57,7 +65,14 @@ pub enum RunError {
 impl RunError {
     /// Whether it is for the user to correct, and says how.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Logs(_) | Self::NoRun { .. } | Self::ManyRuns { .. } | Self::Journal(_))
+        matches!(
+            self,
+            Self::Logs(_)
+                | Self::NoRun { .. }
+                | Self::ManyRuns { .. }
+                | Self::Damaged { .. }
+                | Self::Journal(_)
+        )
     }
 
     /// What the system refuses while something is being done.

@@ -112,6 +112,7 @@ impl RunLog {
             journal: finished.journal.as_ref().map(|path| path.display().to_string()),
             recording: finished.recording.as_ref().map(|path| path.display().to_string()),
             error: finished.error.clone(),
+            is_open: false,
         });
         let summary = Summary {
             wall_time_s: Some(began.elapsed().as_secs_f64()),

@@ -1,9 +1,9 @@
 //! The notes of people, in a file of their own beside the journal: no file of the run changes.
 
 use crate::whole::write_whole;
-use recording::journal_of;
+use recording::{journal_of, read_regular};
 use report::notes::Notes;
-use std::{fs, io, path::Path};
+use std::{io, path::Path};
 
 /// Name of the notes in the folder of a run.
 pub const NOTES_FILE: &str = "notes.json";
@@ -14,7 +14,7 @@ pub const NOTES_FILE: &str = "notes.json";
 /// The file cannot be read or understood: a sentence with its line and column.
 pub fn read_notes(folder: &Path) -> Result<Notes, String> {
     let path = folder.join(NOTES_FILE);
-    let text = match fs::read_to_string(&path) {
+    let text = match read_regular(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
         Err(error) => return Err(format!("{}: {error}", path.display())),
@@ -54,6 +54,7 @@ mod tests {
 
     use super::*;
     use recording::JOURNAL_FILE;
+    use std::fs;
 
     #[test]
     fn notes_are_kept_beside_the_journal_and_damaged_ones_are_named_and_left_alone() {

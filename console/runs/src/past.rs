@@ -1,6 +1,6 @@
 //! Past runs, read from their journals.
 
-use crate::{error::RunError, report_file::Reported};
+use crate::{error::RunError, report_file::Reported, standing::is_locked};
 use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
 use recording::{JournalError, JournalReader, RECORDING_FILE, events_sha256, journal_of, sha256, sha256_of};
 use report::{Fold, Logs, PastRun, Record, Summary, document::Files};
@@ -57,6 +57,7 @@ impl Past {
                 journal: shown(&journal),
                 recording: shown(&folder.join(RECORDING_FILE)),
                 error: doubts.or_else(|| reader.truncated().map(str::to_owned)),
+                is_open: summary.outcome.is_none() && is_locked(folder),
             },
             files,
             fold,
@@ -110,6 +111,7 @@ fn files(
             reported.journal_doubt(journal_sha256.as_deref()),
             reported.recording_doubt(folder, recording_sha256.as_deref()),
             reported.figures_doubt(is_todays.then_some(summary)),
+            reported.length_doubt(bytes(&journal), bytes(&recording)),
         ]
     };
     let doubts = reported.as_ref().map(doubts_of).into_iter().flatten();

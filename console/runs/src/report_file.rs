@@ -4,7 +4,7 @@ mod figures;
 
 use crate::files::REPORT_FILE;
 use mission::{Event, EventKind};
-use recording::{RECORDING_FILE, events_sha256, journal_of, read_ending, sha256, sha256_of};
+use recording::{RECORDING_FILE, events_sha256, journal_of, read_ending, read_regular, sha256, sha256_of};
 use report::Summary;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -84,7 +84,7 @@ impl Reported {
     /// # Errors
     /// It cannot be read, as a sentence.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, String> {
-        match fs::read_to_string(folder.join(REPORT_FILE)) {
+        match read_regular(&folder.join(REPORT_FILE)) {
             Ok(text) => {
                 let source = serde_json::from_str(&text).map_err(damaged)?;
                 Ok(Some(Self { text, source }))
@@ -131,6 +131,21 @@ impl Reported {
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
+    /// What speaks against the lengths that it names for journal and recording, bytes, where these are the files that it was
+    /// written with.
+    pub(crate) fn length_doubt(&self, journal: Option<u64>, recording: Option<u64>) -> Option<String> {
+        let source = &self.source;
+        source.report_sha256.as_ref().and(source.events_sha256.as_ref())?;
+        let pairs = [
+            ("journal_bytes", source.journal_bytes, journal),
+            ("recording_bytes", source.recording_bytes, recording),
+        ];
+        pairs.into_iter().find_map(|(key, then, now)| {
+            let (then, now) = then.zip(now)?;
+            (then != now).then(|| format!("{REPORT_FILE} was changed: {key} is {then}, the file has {now}"))
+        })
+    }
+
     /// What speaks against the recording whose digest is `sha256_now`; `None` to look at length and time first, as lists do.
     /// A recording that is not there any more can be made again, and is no doubt.
     pub(crate) fn recording_doubt(&self, folder: &Path, sha256_now: Option<&str>) -> Option<String> {
@@ -154,7 +169,10 @@ impl Reported {
         // Older reports have no digest, and some of their figures are defined otherwise; those of a journal that is not whole
         // are few.
         self.source.report_sha256.as_ref().and(self.source.events_sha256.as_ref())?;
-        let reported: Summary = serde_json::from_str(&self.text).ok()?;
+        let reported: Summary = match serde_json::from_str(&self.text) {
+            Ok(reported) => reported,
+            Err(error) => return Some(damaged(error)),
+        };
         let other = figures.and_then(|figures| figures::difference(reported, figures));
         other
             .map(|difference| format!("{REPORT_FILE} was changed: {difference}"))

@@ -1,10 +1,10 @@
 //! Signed reports of a run: which there are, and that none is changed.
 
 use crate::{error::RunError, whole::write_whole};
-use recording::sha256;
+use recording::{read_regular, sha256};
 use report::document::Revision;
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
 };
 
@@ -19,12 +19,13 @@ pub const SIGNED_FILE: &str = "signed.json";
 pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), RunError> {
     let path = folder.join(SIGNED_FILE);
     let reading = || RunError::during(format!("reading the list of signed reports: {}", path.display()));
-    let text = match fs::read_to_string(&path) {
+    let text = match read_regular(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
         Err(error) => return Err(reading()(error)),
     };
-    let revisions: Vec<Revision> = serde_json::from_str(&text).map_err(io::Error::from).map_err(reading())?;
+    let revisions: Vec<Revision> = serde_json::from_str(&text)
+        .map_err(|error| RunError::Damaged { file: path.clone(), why: error.to_string() })?;
     let doubt = |revision: &Revision| {
         let Revision { revision: letter, file, sha256: then, .. } = revision;
         match sha256(&PathBuf::from(file)) {
@@ -80,6 +81,7 @@ mod tests {
 
     use super::*;
     use report::document::Signature;
+    use std::fs;
 
     #[test]
     fn signed_reports_are_listed_and_one_that_was_changed_is_named() {
@@ -107,6 +109,6 @@ mod tests {
         assert!(add_signed(&both, &revision).is_err());
         assert_eq!(signed_reports(other.path()).unwrap(), (vec![], vec![]), "in all lists or in none");
         let error = signed_reports(folder.path()).unwrap_err().to_string();
-        assert!(error.contains("reading the list of signed reports"), "{error}");
+        assert!(error.contains("signed.json is damaged: ") && error.contains("line 1"), "{error}");
     }
 }

@@ -53,7 +53,8 @@ fn reported(summary: Box<Summary>, failure: Option<String>) -> Standing {
     Standing::NotRecorded(summary, error.unwrap_or_else(|| "the journal is not whole".into()))
 }
 
-fn is_locked(folder: &Path) -> bool {
+/// Whether somebody is writing to the run in a folder.
+pub(crate) fn is_locked(folder: &Path) -> bool {
     let locked = File::open(folder.join(LOCK_FILE))
         .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     locked.unwrap_or(false)

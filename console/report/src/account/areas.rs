@@ -101,7 +101,9 @@ impl<R> fmt::Display for Area<R> {
         let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
         // Rounded before it is written: a coordinate near zero has no sign.
         let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
-        write!(f, "{area_m2:.2} m² at {x:.1}, {y:.1} m{plate}: {}", self.why())
+        // So fine that an area does not look as large as the limit below which it is.
+        let decimals = if *area_m2 < 0.1 { 3 } else { 2 };
+        write!(f, "{area_m2:.decimals$} m² at {x:.1}, {y:.1} m{plate}: {}", self.why())
     }
 }
 

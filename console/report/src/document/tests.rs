@@ -23,7 +23,7 @@ fn past() -> PastRun {
         fold.apply(&event);
         record.apply(&event);
     }
-    let logs = Logs { journal: None, recording: None, error: None };
+    let logs = Logs { journal: None, recording: None, error: None, is_open: false };
     let (name, files, summary) = ("20261122T040132Z-tiny".to_owned(), Files::default(), fold.summary());
     PastRun { name, logs, began: None, files, fold, summary, record }
 }

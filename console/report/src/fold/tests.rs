@@ -237,7 +237,12 @@ fn full_run() -> Summary {
         }),
         stops: Stops::of(&[0.8, 1.2, 2.4]),
         events_sha256: Some("5e1f".into()),
-        logs: Some(Logs { journal: Some("logs/run/events.jsonl".into()), recording: None, error: None }),
+        logs: Some(Logs {
+            journal: Some("logs/run/events.jsonl".into()),
+            recording: None,
+            error: None,
+            is_open: false,
+        }),
         ..fold(&events).summary()
     }
 }

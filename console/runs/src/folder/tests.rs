@@ -48,7 +48,7 @@ fn ended(logs: &Path) -> (PathBuf, Finished, Summary) {
     let finished = recorder.finish(Duration::from_secs(20));
     let mut fold = Fold::new();
     fold.apply(&event);
-    let logs = Logs { journal: None, recording: None, error: finished.error.clone() };
+    let logs = Logs { journal: None, recording: None, error: finished.error.clone(), is_open: false };
     let events_sha256 = finished.events_sha256.clone();
     let summary = Summary { events_sha256, logs: Some(logs), ..fold.summary() };
     folder.write_report(&summary).unwrap();
@@ -131,7 +131,8 @@ fn a_run_whose_writer_failed_is_distinguished_from_one_that_was_killed() {
     assert_eq!(standing(&folder), Standing::JournalOnly { doubt: None, failure });
     // With a report that could still be written.
     let (folder, ..) = ended(logs.path());
-    let logs = Logs { journal: None, recording: None, error: Some("the disk is full".into()) };
+    let logs =
+        Logs { journal: None, recording: None, error: Some("the disk is full".into()), is_open: false };
     let summary = Summary { events_sha256: None, logs: Some(logs), ..summary };
     fs::write(folder.join(REPORT_FILE), serde_json::to_string(&summary).unwrap()).unwrap();
     assert_eq!(standing(&folder), Standing::NotRecorded(Box::new(summary), "the disk is full".into()));
@@ -168,6 +169,38 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     let text = ReportFile::text(&other, None, None).unwrap();
     fs::write(folder.join(REPORT_FILE), text).unwrap();
     assert!(figures(&summary).is_some() && figures(&other).is_none() && doubt_with(None).is_none());
+}
+
+#[test]
+fn a_report_that_does_not_parse_or_names_other_lengths_is_no_report() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, _, summary) = ended(logs.path());
+    let file = folder.join(REPORT_FILE);
+    let text = fs::read_to_string(&file).unwrap();
+    for (before, after) in
+        [("\"holds\": 0", "\"holds\": \"none\""), ("\"holds\": 0", "\"holds\": 0, \"holds\": 0")]
+    {
+        assert!(text.contains(before));
+        fs::write(&file, text.replace(before, after)).unwrap();
+        let doubt = Reported::read(&folder).unwrap().unwrap().figures_doubt(Some(&summary));
+        assert!(
+            doubt.as_ref().is_some_and(|doubt| doubt.starts_with("report.json is damaged: ")),
+            "{doubt:?}"
+        );
+    }
+    fs::write(&file, ReportFile::text(&summary, Some(3), None).unwrap()).unwrap();
+    let doubt = Reported::read(&folder).unwrap().unwrap().length_doubt(Some(59), None);
+    assert_eq!(doubt.as_deref(), Some("report.json was changed: journal_bytes is 3, the file has 59"));
+}
+
+#[test]
+fn a_pipe_in_place_of_a_report_is_named_and_not_waited_for() {
+    let logs = tempfile::tempdir().unwrap();
+    let (folder, ..) = ended(logs.path());
+    let file = folder.join(REPORT_FILE);
+    fs::remove_file(&file).unwrap();
+    rustix::fs::mkfifoat(rustix::fs::CWD, &file, rustix::fs::Mode::from_raw_mode(0o600)).unwrap();
+    assert!(doubt(&folder).contains("it is not a regular file"), "{}", doubt(&folder));
 }
 
 #[test]

@@ -126,6 +126,9 @@ fn accept(model: &Model) -> Result<(), String> {
         Screen::Mission => model.ui.pane == Pane::Events,
         Screen::Plan | Screen::Result | Screen::Plugins => false,
     };
+    if matches!(model.ui.overlay, Overlay::Preflight { .. }) {
+        return demand(model.n_by_hand() > 0, "nothing is ticked by hand in this scenario");
+    }
     demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
 }
 

@@ -105,8 +105,8 @@ fn worst(look: &Look, tether: &Tether, room: usize) -> String {
     }
     let Some(most) = tether.largest() else { return "none, tether straight".into() };
     let limit = limits(look).map_or_else(|| "-".into(), |limits| degrees(limits.wrap_max_rad));
-    let sign = if most.wrap_rad > 0.0 { "+" } else { "" };
-    let wrap = format!("{sign}{}° on {}", degrees(most.wrap_rad), most.on);
+    let turn = if most.wrap_rad > 0.0 { "CCW" } else { "CW" };
+    let wrap = format!("{}° {turn} on {}", degrees(most.wrap_rad.abs()), most.on);
     text::wording([format!("{wrap}, max {limit}°"), wrap], room)
 }
 

@@ -24,7 +24,7 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
 fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     let guide = guide(&alarm.cause);
     let mut fields: Vec<Field> = vec![("Cause", guide.cause.into()), ("Effect", guide.effect.into())];
-    fields.push(("Now", now(alarm)));
+    fields.push(("Message", message(alarm)));
     if let Some((_, text)) = &alarm.fallen {
         fields.push(("Since then", text::capitalized(text)));
     }
@@ -41,7 +41,7 @@ fn fields_of(look: &Look, alarm: &Alarm) -> Vec<Field> {
     fields
 }
 
-fn now(alarm: &Alarm) -> String {
+fn message(alarm: &Alarm) -> String {
     let text = text::capitalized(&alarm.text);
     match alarm.reading.as_ref().filter(|_| alarm.is_active()) {
         Some(reading) => format!("{text}; now {}", reading.now),

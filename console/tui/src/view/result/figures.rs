@@ -9,8 +9,11 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// A figure: what it is, as the plan promised it, as it came, and the limit.
-type Figure = [String; 4];
+/// A figure: what it is, as the plan promised it, as it came, and the limit; whether it broke the limit.
+struct Figure {
+    cells: [String; 4],
+    is_beyond: bool,
+}
 
 /// Rows of the table, in some columns.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
@@ -32,14 +35,18 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
     let why = reason(result, columns).into_iter();
     let mut lines: Vec<Line> = why.map(|line| look.line([(role(result), format!(" {line}"))])).collect();
     let head = ["", "predicted", "actual", "limit"].map(str::to_owned);
-    let table = std::iter::once((Role::Dim, head))
-        .chain(figures(look, result).into_iter().map(|row| (Role::Text, row)));
+    let table = std::iter::once((Role::Dim, head)).chain(figures(look, result).into_iter().map(|row| {
+        let role = if row.is_beyond { Role::Warn } else { Role::Text };
+        (role, row.cells)
+    }));
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
+        // Without colours the mark says that a limit was broken.
+        let mark = if role == Role::Warn { "!" } else { " " };
         look.line([
             (Role::Dim, format!(" {}", text::column(&what, label))),
             (Role::Dim, format!("{predicted:>width$}")),
-            (role, format!("{actual:>width$}")),
-            (Role::Dim, format!("{limit:>width$}")),
+            (role, format!("{actual:>width$}{mark}")),
+            (Role::Dim, format!("{limit:>0$}", width.saturating_sub(1))),
         ])
     }));
     lines.extend(trouble(look, result, columns).into_iter().map(|parts| look.line(parts)));
@@ -50,67 +57,80 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     let (run, summary) = (look.run, &result.summary);
     let promised = look.model.live.plans.estimate.as_ref().map(|(_, estimate)| estimate);
     let mission = run.about.as_ref().map(|about| &about.mission);
-    let metres = |value: Option<f64>, decimals| {
-        value.map_or_else(dash, |m| format!("{} m", text::number(m, decimals)))
-    };
-    let degrees =
-        |value: Option<f64>| value.map_or_else(dash, |rad| format!("{}°", text::number(rad.to_degrees(), 0)));
-    let clock = |value: Option<f64>| value.map_or_else(dash, text::clock);
+    let metres = |decimals| move |m: f64| format!("{} m", text::number(m, decimals));
+    let degrees = |rad: f64| format!("{}°", text::number(rad.to_degrees(), 0));
+    let clearance = promised.and_then(|p| p.clearance_min).map(|worst| worst.value);
+    // The plan and the limit are about the time that the mission does not wait.
+    let moving_s = Some(run.clock.moving_s);
     let mut figures = vec![
-        row(
-            "time",
-            [
-                clock(promised.map(|p| p.time_s)),
-                clock(summary.mission_time_s),
-                clock(mission.map(|mission| mission.time_limit_s)),
-            ],
+        at_most(
+            "time moving",
+            text::clock,
+            [promised.map(|p| p.time_s), moving_s, mission.map(|mission| mission.time_limit_s)],
         ),
-        row(
-            "path",
-            [metres(promised.map(|p| p.length_m), 1), metres(summary.path_length_m, 1), String::new()],
-        ),
-        row(
+        at_most("path", metres(1), [promised.map(|p| p.length_m), summary.path_length_m, None]),
+        at_least(
             "clearance",
-            [
-                metres(promised.and_then(|p| p.clearance_min).map(|worst| worst.value), 2),
-                metres(summary.clearance_min_m, 2),
-                metres(mission.map(|mission| mission.clearance_m), 2),
-            ],
+            metres(2),
+            [clearance, summary.clearance_min_m, mission.map(|mission| mission.clearance_m)],
         ),
     ];
     if let Some(tether) = &summary.tether {
-        let (estimate, limits) =
-            (promised.and_then(|p| p.tether.as_ref()), mission.and_then(|m| m.tether.as_ref()));
-        figures.push(row(
+        let estimate = promised.and_then(|p| p.tether.as_ref());
+        let limits = mission.and_then(|m| m.tether.as_ref()).map(|tether| tether.limits);
+        figures.push(at_most(
             "tether out",
+            metres(1),
             [
-                metres(estimate.map(|t| t.length_max.value), 1),
-                metres(Some(tether.tether_length_max_m), 1),
-                metres(limits.map(|t| t.limits.reel_length_m), 1),
+                estimate.map(|t| t.length_max.value),
+                Some(tether.tether_length_max_m),
+                limits.map(|limits| limits.reel_length_m),
             ],
         ));
-        figures.push(row(
+        figures.push(at_most(
             "wrap",
+            degrees,
             [
-                degrees(estimate.map(|t| t.wrap_max.value)),
-                degrees(Some(tether.wrap_max_rad)),
-                degrees(limits.map(|t| t.limits.wrap_max_rad)),
+                estimate.map(|t| t.wrap_max.value),
+                Some(tether.wrap_max_rad),
+                limits.map(|limits| limits.wrap_max_rad),
             ],
         ));
     }
-    figures.push(row(
+    let accuracy = summary.accuracy.as_ref();
+    figures.push(at_most(
         "95 % error",
+        metres(2),
         [
-            String::new(),
-            metres(summary.accuracy.as_ref().map(|accuracy| accuracy.p95_m), 2),
-            metres(summary.accuracy.as_ref().map(|accuracy| accuracy.limit_m), 2),
+            promised.and_then(|p| p.accuracy_worst).map(|worst| worst.value),
+            accuracy.map(|accuracy| accuracy.max_m),
+            accuracy.map(|accuracy| accuracy.limit_m),
         ],
     ));
     figures
 }
 
-fn row(what: &str, [predicted, actual, limit]: [String; 3]) -> Figure {
-    [what.to_owned(), predicted, actual, limit]
+/// A figure that shall not be larger than its limit: as promised, as it came, the limit.
+fn at_most(what: &str, written: impl Fn(f64) -> String, values: [Option<f64>; 3]) -> Figure {
+    figure(what, written, values, |actual, limit| actual > limit)
+}
+
+/// A figure that shall not be smaller than its limit: as promised, as it came, the limit.
+fn at_least(what: &str, written: impl Fn(f64) -> String, values: [Option<f64>; 3]) -> Figure {
+    figure(what, written, values, |actual, limit| actual < limit)
+}
+
+fn figure(
+    what: &str,
+    written: impl Fn(f64) -> String,
+    values: [Option<f64>; 3],
+    is_beyond: impl Fn(f64, f64) -> bool,
+) -> Figure {
+    let [_, actual, limit] = values;
+    let [predicted, came, most] = values.map(|value| value.map_or_else(dash, &written));
+    // What is printed alike is alike.
+    let is_beyond = came != most && actual.zip(limit).is_some_and(|(actual, limit)| is_beyond(actual, limit));
+    Figure { cells: [what.to_owned(), predicted, came, most], is_beyond }
 }
 
 fn dash() -> String {
