@@ -72,8 +72,7 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let home = &look.model.home;
     let listed = home.scenarios();
     let note = filter_note(&home.filter);
-    let block = look.block(border(look, HomeList::Scenarios), &format!("Scenarios  {}", listed.len()), &note);
-    let inner = block.inner(area);
+    let inner = look.block(Role::Border, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     let names = name_columns(&listed, columns);
     let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
@@ -82,6 +81,8 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let longest = listed.iter().map(|entry| about_lines(look, entry, columns).len()).max().unwrap_or(0);
     let about = if height > 12 { longest.min(height / 2) } else { 0 };
     let shown = table::window(selected.unwrap_or(0), rows.len(), height - about);
+    let title = format!("Scenarios  {}", table::counted(&shown, rows.len()));
+    let block = look.block(border(look, HomeList::Scenarios), &title, &note);
     table::place(look, inner, Rows::Scenarios, shown);
     let mut lines = table::rows(look, rows, selected, (columns, height - about));
     if lines.is_empty() {
@@ -153,14 +154,16 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let home = &look.model.home;
     let listed = home.runs();
     let logs = home.found.as_ref().map_or("", |found| found.logs.as_str());
-    let block = look.block(border(look, HomeList::Runs), &format!("Past runs  {}", listed.len()), logs);
-    let inner = block.inner(area);
+    let inner = look.block(Role::Border, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     let names = listed.iter().map(|run| text::width(name_of(run)) + 1).max().unwrap_or(0);
     let widths = run_columns(names, columns);
     let rows: Vec<Parts> = listed.iter().map(|run| run_row(run, widths)).collect();
     let selected = (home.list == HomeList::Runs).then_some(home.run);
-    table::place(look, inner, Rows::Runs, table::window(selected.unwrap_or(0), rows.len(), height));
+    let shown = table::window(selected.unwrap_or(0), rows.len(), height);
+    let title = format!("Past runs  {}", table::counted(&shown, rows.len()));
+    let block = look.block(border(look, HomeList::Runs), &title, logs);
+    table::place(look, inner, Rows::Runs, shown);
     let mut lines = table::rows(look, rows, selected, (columns, height));
     if lines.is_empty() {
         let words = if home.filter.is_empty() { " No runs yet." } else { " No run matches." };

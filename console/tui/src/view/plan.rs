@@ -30,7 +30,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let side = if wide { SIDE.0 } else { SIDE.1 };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     map::draw(look, frame, left);
-    let rows = if wide { 10 } else { 6 };
+    // The parameters have one row at least.
+    let rows = if wide { 10 } else { 7 };
     let [top, middle, bottom] = Layout::vertical([
         Constraint::Length(rows),
         Constraint::Length(estimate::ROWS + 2),
@@ -60,15 +61,12 @@ fn state(look: &Look, frame: &mut Frame, area: Rect) {
     };
     let mut rows: Vec<Parts> = vec![vec![(Role::Title, format!(" {name}"))], vec![progress(look)]];
     rows.extend(certificate(look));
-    rows.extend(
-        objections(look)
-            .into_iter()
-            .flat_map(|why| {
-                text::wrap(&why, columns).into_iter().map(|line| vec![(Role::Warn, format!(" {line}"))])
-            })
-            .take(REASONS),
-    );
-    rows.extend(ghost(look, columns));
+    let ghost = ghost(look, columns);
+    let room = usize::from(block.inner(area).height).saturating_sub(rows.len() + ghost.len()).min(REASONS);
+    let why = objections(look).into_iter().flat_map(|why| text::wrap(&why, columns)).collect();
+    let why = text::first_lines(why, room, columns);
+    rows.extend(why.into_iter().map(|line| vec![(Role::Warn, format!(" {line}"))]));
+    rows.extend(ghost);
     let lines: Vec<Line> = rows.into_iter().map(|parts| look.line(parts)).collect();
     fill(frame, area, block, lines);
 }
@@ -106,7 +104,11 @@ fn objections(look: &Look) -> Vec<String> {
     let alarms = look.run.alarms.list().iter();
     alarms
         .filter(|alarm| matches!(alarm.cause, Cause::Certificate | Cause::Planner))
-        .map(|alarm| alarm.text.clone())
+        .map(|alarm| match alarm.text.split_once(": ") {
+            // That it is not certified is said above.
+            Some((_, why)) if alarm.cause == Cause::Certificate => text::capitalized(why),
+            _ => alarm.text.clone(),
+        })
         .collect()
 }
 

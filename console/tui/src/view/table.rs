@@ -14,6 +14,11 @@ pub(super) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
     first..(first + rows).min(len)
 }
 
+/// How many rows a list has, and which of them are shown if not all: `15`, `1-10 of 15`.
+pub(super) fn counted(shown: &Range<usize>, len: usize) -> String {
+    if shown.len() == len { len.to_string() } else { format!("{}-{} of {len}", shown.start + 1, shown.end) }
+}
+
 /// A row; the selected one begins with a mark and is reversed to its end.
 pub(super) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
     parts.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));

@@ -102,6 +102,17 @@ pub(super) fn column(text: &str, columns: usize) -> String {
     cut + &" ".repeat(blank)
 }
 
+/// The first lines of a text; an ellipsis at the end of the last one if there are more.
+pub(super) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -> Vec<String> {
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some(last) = lines.last_mut() {
+            *last = fit(last, columns.saturating_sub(1)).trim_end_matches('…').to_owned() + "…";
+        }
+    }
+    lines
+}
+
 /// Columns that a text takes.
 pub(super) fn width(text: &str) -> usize {
     Span::raw(text).width()

@@ -28,7 +28,12 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
             }
         }
     }
-    rows.extend(notes(look, result, columns).into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
+    // A note that does not fit would be half a sentence; the report has all of them.
+    for note in notes(look, result, columns) {
+        if rows.len() + note.len() <= usize::from(block.inner(area).height) {
+            rows.extend(note.into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
+        }
+    }
     let lines: Vec<Line> = rows.into_iter().map(|parts| look.line(parts)).collect();
     fill(frame, area, block, lines);
 }
@@ -89,8 +94,8 @@ fn of_all_runs(look: &Look) -> Option<String> {
     }
 }
 
-/// What the table does not say.
-fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
+/// What the table does not say: notes in lines.
+fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);
     let again = overlap.map(|share| {
@@ -116,5 +121,5 @@ fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<String> {
     });
     let notes =
         of_all_runs(look).into_iter().chain(zone).chain(plates).chain(again).chain(truth).chain(broken);
-    notes.flat_map(|note| text::wrap(&note, columns)).collect()
+    notes.map(|note| text::wrap(&note, columns)).collect()
 }
