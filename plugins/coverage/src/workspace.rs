@@ -14,6 +14,7 @@ use world::{
     Boundary, Point,
     polyline::edges,
     shape::{reflex_corners, ring_area_m2},
+    tether::Ground,
 };
 
 /// Wall and obstacles of a site with the distances to keep.
@@ -36,6 +37,8 @@ pub(crate) struct Workspace {
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
     pub floor: OnceLock<ReachableFloor>,
+    /// What the cable lies on; made when it is first asked for.
+    pub ground: OnceLock<Ground>,
 }
 
 impl Workspace {
@@ -56,8 +59,9 @@ impl Workspace {
             return Err(PlannerError::new(Code::Config, why));
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
-        let (home, triangulation, floor) = (home(&room, anchor), OnceLock::new(), OnceLock::new());
-        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor })
+        let home = home(&room, anchor);
+        let (triangulation, floor, ground) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor, ground })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.
