@@ -46,7 +46,8 @@ impl SweptFloor {
 
     /// Swept share of a part of the floor.
     pub(crate) fn coverage_of(&self, part: &ReachableFloor) -> f64 {
-        let swept = self.swept.iter().zip(part.cells.iter()).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
+        let swept =
+            self.swept.iter().zip(part.cells.iter()).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
         swept as f64 / part.n.max(1) as f64
     }
 

@@ -202,8 +202,7 @@ fn is_straight(run: &[Point]) -> bool {
         let offset = p - a;
         let (ahead, aside) = (along.dot(&offset), along.perp(&offset));
         // Most points are clearly near, which can be seen without a division.
-        let is_clear =
-            (0.0..=squared).contains(&ahead) && aside * aside < 0.99 * near_m * near_m * squared;
+        let is_clear = (0.0..=squared).contains(&ahead) && aside * aside < 0.99 * near_m * near_m * squared;
         is_clear || (p - polyline::nearest_on_segment(a, b, *p)).norm() < near_m
     })
 }

@@ -80,8 +80,7 @@ fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<Neigh
             break;
         }
         let cost_m = connectors.cost(u, end);
-        let is_before =
-            |other: &Neighbour| other.cost_m.total_cmp(&cost_m).then(other.end.cmp(&end)).is_lt();
+        let is_before = |other: &Neighbour| other.cost_m.total_cmp(&cost_m).then(other.end.cmp(&end)).is_lt();
         priced.insert(priced.partition_point(is_before), Neighbour { end, cost_m });
         priced.truncate(NEIGHBOURS);
     }

@@ -108,10 +108,12 @@ fn a_way_home_round_a_wall_between_two_arms_of_a_floor_never_leads_through_it() 
         let placed = |p: &Point| turn * Point::new(if mirrored { -p.x } else { p.x }, p.y);
         let wall = Boundary::Polygon { vertices: u_shape(wide_m).iter().map(placed).collect() };
         let mut floor = Floor::new(&wall, placed(&Point::new(-5.0, 4.0)), &[], 0.15);
-        let way = [(-5.0, 4.0), (-5.0, -4.0), (5.76, -4.75), (5.76, 4.75), (2.26, 4.75), (2.26, -1.2), (0.0, -1.3)];
+        let way =
+            [(-5.0, 4.0), (-5.0, -4.0), (5.76, -4.75), (5.76, 4.75), (2.26, 4.75), (2.26, -1.2), (0.0, -1.3)];
         for at in polyline::resampled(&way.map(|(x, y)| placed(&Point::new(x, y))), 0.05) {
             floor.cable.drag_to(at);
-            let home = floor.home(0.15).unwrap_or_else(|| panic!("none from {at}, {wide_m} m, {turned_deg} deg"));
+            let home =
+                floor.home(0.15).unwrap_or_else(|| panic!("none from {at}, {wide_m} m, {turned_deg} deg"));
             let (home_m, cable_m) = (polyline::length_m(&home), floor.cable.length_m());
             assert!(home_m > cable_m - 0.02, "{home_m} m of {cable_m} m at {at}");
             let is_on_floor = |p: &Point| wall.wall_distance_m(*p) > 0.1;
