@@ -66,7 +66,7 @@ impl Planner for Boustrophedon {
         let scan = Scan::new(pieces, domain, floor);
         let mut plan = scan.plan(scope.start, &[]);
         plan.complete = scan.reports_all(&scope, ctx);
-        self.follow.take(&plan);
+        self.follow.take(&plan, &workspace);
         Ok(plan)
     }
 

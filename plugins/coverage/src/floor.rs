@@ -37,7 +37,7 @@ impl SweptFloor {
     pub(crate) fn sweep(&mut self, path: &[Point]) {
         let swept = &mut self.swept;
         self.floor.raster.along(path, |cells| swept[cells].iter_mut().for_each(|n| *n = n.saturating_add(1)));
-        self.n_swept = swept.iter().zip(&self.floor.cells).filter(|(n, r)| **n > 0 && **r).count();
+        self.n_swept = swept.iter().zip(self.floor.cells.iter()).filter(|(n, r)| **n > 0 && **r).count();
     }
 
     pub(crate) fn coverage(&self) -> f64 {
@@ -46,7 +46,8 @@ impl SweptFloor {
 
     /// Swept share of a part of the floor.
     pub(crate) fn coverage_of(&self, part: &ReachableFloor) -> f64 {
-        let swept = self.swept.iter().zip(&part.cells).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
+        let swept =
+            self.swept.iter().zip(part.cells.iter()).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
         swept as f64 / part.n.max(1) as f64
     }
 

@@ -6,6 +6,7 @@
 
 mod steer;
 
+use crate::workspace::Workspace;
 use planner_api::{
     Command, Config, Ctx, Drive, LegTag, LogLevel, Motion, Plan, Result, Sensed, Site, Status,
 };
@@ -71,8 +72,9 @@ impl Follow {
     }
 
     /// Takes over the cuts of a new plan; they hold from the end of its return path on, if it begins with one.
-    pub(crate) fn take(&mut self, plan: &Plan) {
-        self.cuts = plan.cuts.iter().map(|line| Cut { line: line.clone(), is_beyond: false }).collect();
+    pub(crate) fn take(&mut self, plan: &Plan, workspace: &Workspace) {
+        let cut = |line: &Vec<Point>| Cut { line: workspace.rooted(line), is_beyond: false };
+        self.cuts = plan.cuts.iter().map(cut).collect();
         let return_path = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract);
         self.from = plan.path.get(return_path.map_or(0, |leg| leg.last)).copied();
         self.seen_at = None;

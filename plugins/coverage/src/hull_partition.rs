@@ -95,7 +95,7 @@ impl Planner for HullPartition {
                 &format!("the cells leave no gate to {sealed_m2:.2} m²; choose tether-safe"),
             );
         }
-        self.follow.take(&plan);
+        self.follow.take(&plan, &workspace);
         Ok(plan)
     }
 

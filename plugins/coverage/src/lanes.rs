@@ -10,6 +10,8 @@ use world::{Point, Vector, polyline, shape::bounds_of};
 
 /// Sampling step along lanes, metres.
 const STEP_M: f64 = 0.04;
+/// So many samples are looked at together: few fences are near all of them.
+const STRETCH: usize = 64;
 
 /// A lane in the direction in which it was made: at least two points.
 pub(crate) type Lane = Vec<Point>;
@@ -99,13 +101,19 @@ fn clipped(
 ) -> Vec<Lane> {
     let around = bounds_of(line);
     let near: Vec<&Fence<'_>> = fences.iter().filter(|fence| fence.may_bar(around)).collect();
-    let is_open = |at: Point| {
-        !near.iter().any(|fence| fence.bars(at))
+    let is_open_among = |fences: &[&Fence<'_>], at: Point| {
+        !fences.iter().any(|fence| fence.bars(at))
             && domain.workspace.room.spare_m(at) >= spare_m
             && domain.contains(at)
     };
+    let is_open = |at: Point| is_open_among(&near, at);
     let mut points = polyline::resampled(line, STEP_M);
-    let mut open: Vec<bool> = points.iter().map(|p| is_open(*p)).collect();
+    let mut open = Vec::with_capacity(points.len());
+    for stretch in points.chunks(STRETCH) {
+        let around = bounds_of(stretch);
+        let near: Vec<&Fence<'_>> = near.iter().copied().filter(|fence| fence.may_bar(around)).collect();
+        open.extend(stretch.iter().map(|p| is_open_among(&near, *p)));
+    }
     let is_ring = line.len() > 2 && (line[0] - line[line.len() - 1]).norm() < 1e-9;
     if is_ring {
         begin_behind_a_break(&mut points, &mut open);
@@ -188,5 +196,13 @@ pub(crate) fn thinned(points: &[Point]) -> Lane {
 
 fn is_straight(run: &[Point]) -> bool {
     let (a, b) = (run[0], run[run.len() - 1]);
-    run.iter().all(|p| (p - polyline::nearest_on_segment(a, b, *p)).norm() < 1e-3)
+    let (along, near_m) = (b - a, 1e-3);
+    let squared = along.norm_squared();
+    run.iter().all(|p| {
+        let offset = p - a;
+        let (ahead, aside) = (along.dot(&offset), along.perp(&offset));
+        // Most points are clearly near, which can be seen without a division.
+        let is_clear = (0.0..=squared).contains(&ahead) && aside * aside < 0.99 * near_m * near_m * squared;
+        is_clear || (p - polyline::nearest_on_segment(a, b, *p)).norm() < near_m
+    })
 }

@@ -4,7 +4,7 @@ use crate::slit_domain::SlitDomain;
 use crate::workspace::Workspace;
 use planner_api::{PlanRequest, Site};
 use std::sync::Arc;
-use world::tether::{Cable, Case, Certificate, Limits, certify};
+use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
 /// Longest straight way from the anchor to where the robot can be, about: the least cable that can do, metres.
@@ -37,32 +37,53 @@ pub(crate) fn return_path(workspace: &Workspace, site: &Site<'_>, cable: &Cable)
     cable.return_path(&roomy, &ObstacleMap::new(&workspace.wall, &obstacles), keep_m)
 }
 
-/// What a path that returns does to the tether, if the cable lies like this at its start.
-pub(crate) fn certificate(
-    SlitDomain { workspace, cuts, .. }: &SlitDomain<'_>,
-    site: &Site<'_>,
-    limits: Limits,
-    path: &[Point],
-    cable: Option<&Cable>,
-) -> Certificate {
-    let case = Case {
-        path,
-        anchor: workspace.anchor,
-        cable,
-        boundary: &workspace.wall,
-        obstacles: &obstacles(site),
-        room_m: workspace.keep_m,
-        limits,
-        returns: true,
-        cuts,
-    };
-    certify(&case).unwrap_or_else(|error| Certificate {
-        tether_length_max_m: f64::INFINITY,
-        eccentricity_m: least_cable_m(workspace),
-        wrap_max_rad: f64::INFINITY,
-        wrap_total_max_rad: f64::INFINITY,
-        ..Certificate::refused(error.to_string())
-    })
+/// A path that returns to the anchor, and how the cable lies at its start.
+#[derive(Clone, Copy)]
+pub(crate) struct Tethered<'a> {
+    pub domain: &'a SlitDomain<'a>,
+    pub path: &'a [Point],
+    pub cable: Option<&'a Cable>,
+}
+
+impl Tethered<'_> {
+    /// What the path means to the tether.
+    pub(crate) fn certificate(&self, site: &Site<'_>, limits: Limits) -> Certificate {
+        let obstacles = obstacles(site);
+        let certificate = certify_on(self.ground(&obstacles), &self.case(&obstacles, limits));
+        certificate.unwrap_or_else(|error| Certificate {
+            tether_length_max_m: f64::INFINITY,
+            eccentricity_m: least_cable_m(self.domain.workspace),
+            wrap_max_rad: f64::INFINITY,
+            wrap_total_max_rad: f64::INFINITY,
+            ..Certificate::refused(error.to_string())
+        })
+    }
+
+    /// What the path does to the cable itself; `None` where no cable can lie.
+    pub(crate) fn strain(&self, site: &Site<'_>, limits: Limits) -> Option<Strain> {
+        let obstacles = obstacles(site);
+        strain(self.ground(&obstacles), &self.case(&obstacles, limits)).ok()
+    }
+
+    fn ground(&self, obstacles: &[Obstacle]) -> &Ground {
+        let Workspace { wall, anchor, ground, .. } = self.domain.workspace;
+        ground.get_or_init(|| Ground::new(*anchor, wall, obstacles))
+    }
+
+    fn case<'b>(&'b self, obstacles: &'b [Obstacle], limits: Limits) -> Case<'b> {
+        let SlitDomain { workspace, cuts, .. } = self.domain;
+        Case {
+            path: self.path,
+            anchor: workspace.anchor,
+            cable: self.cable,
+            boundary: &workspace.wall,
+            obstacles,
+            room_m: workspace.keep_m,
+            limits,
+            returns: true,
+            cuts,
+        }
+    }
 }
 
 /// The obstacles of a site, no-go zones left out: they stop the robot, not its cable.

@@ -82,7 +82,7 @@ impl Planner for TetherSafe {
             // There is no cable for which a robot a little off its path would have to come back on the right side of a cut.
             plan.cuts.clear();
         }
-        self.follow.take(&plan);
+        self.follow.take(&plan, workspace);
         self.current = Some(CurrentPlan::new(&scan.pieces, &scan.domain.cuts, worth.meets(preferences)));
         Ok(plan)
     }

@@ -11,10 +11,17 @@ use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use steering::{Keep, Room, solids};
 use world::{
-    Boundary, Point,
-    polyline::edges,
+    Boundary, Point, Vector,
+    polyline::{self, edges},
     shape::{reflex_corners, ring_area_m2},
+    tether::Ground,
 };
+
+/// A cut is led on into solids that are no further from its ends than this multiple of the distance to keep: outlines are
+/// drawn around the exact ones.
+const ROOT_SHARE: f64 = 1.1;
+/// How far it is led into them, metres.
+const ROOT_M: f64 = 0.01;
 
 /// Wall and obstacles of a site with the distances to keep.
 pub(crate) struct Workspace {
@@ -36,6 +43,8 @@ pub(crate) struct Workspace {
     triangulation: OnceLock<Triangulation>,
     /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
     pub floor: OnceLock<ReachableFloor>,
+    /// What the cable lies on; made when it is first asked for.
+    pub ground: OnceLock<Ground>,
 }
 
 impl Workspace {
@@ -56,8 +65,9 @@ impl Workspace {
             return Err(PlannerError::new(Code::Config, why));
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
-        let (home, triangulation, floor) = (home(&room, anchor), OnceLock::new(), OnceLock::new());
-        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor })
+        let home = home(&room, anchor);
+        let (triangulation, floor, ground) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor, ground })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.
@@ -73,6 +83,30 @@ impl Workspace {
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub(crate) fn is_floor(&self, at: Point) -> bool {
         !self.room.is_solid(at)
+    }
+
+    /// A cut from solid to solid: one that ends where the room of a wall or an obstacle begins is led on into that. So
+    /// nobody gets round its end, however little the robot cuts a corner there.
+    pub(crate) fn rooted(&self, cut: &[Point]) -> Vec<Point> {
+        let before = cut.first().and_then(|end| self.root(*end));
+        let behind = cut.last().and_then(|end| self.root(*end));
+        before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
+    }
+
+    /// Where the solid begins from which a place keeps off just as far as the hull has to, a little inside.
+    fn root(&self, at: Point) -> Option<Point> {
+        let of_parts = self.parts.iter().map(|part| part.distance(at));
+        let (distance_m, away) = of_parts.chain(self.wall_beside(at)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let is_beside = distance_m > 0.0 && distance_m <= ROOT_SHARE * self.keep_m;
+        is_beside.then(|| at - away * (distance_m + ROOT_M))
+    }
+
+    /// Distance from the nearest straight wall, metres, and the direction away from it.
+    fn wall_beside(&self, at: Point) -> Option<(f64, Vector)> {
+        let Boundary::Polygon { vertices } = &self.wall else { return None };
+        let off = |(a, b): (Point, Point)| at - polyline::nearest_on_segment(a, b, at);
+        let off = edges(vertices).map(off).min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+        Some((off.norm(), off.try_normalize(1e-9)?))
     }
 
     /// The refusal where the robot has no room.

@@ -159,7 +159,19 @@ impl Cover {
         let block_m = if self.regions.iter().any(is_narrow) { 0.0 } else { BLOCK_LANES * lane_m };
         let block = ((block_m / floor.cell_m).round() as usize).max(1);
         let left = regions::boxes(floor, block, is_left);
-        if left.is_empty() { vec![regions::square(self.anchor, floor.cell_m)] } else { left }
+        let left = if left.is_empty() { vec![regions::square(self.anchor, floor.cell_m)] } else { left };
+        left.into_iter().chain(self.regions_out_of_reach(coverage)).collect()
+    }
+
+    /// Areas to be scanned that hold no floor in reach, as they were asked for: planners name them, and their plans are not
+    /// complete.
+    fn regions_out_of_reach(&self, coverage: &CoverageGrid) -> impl Iterator<Item = Vec<Point>> {
+        let floor = coverage.floor();
+        let holds_floor = move |region: &Vec<Point>| {
+            let within = regions::cells_within(floor, std::slice::from_ref(region));
+            within.is_some_and(|within| (0..floor.len()).any(|k| within[k] && floor.is_reachable(k)))
+        };
+        self.regions.iter().filter(move |region| !holds_floor(region)).cloned()
     }
 
     /// Reachable cells that are left to scan.
@@ -220,6 +232,18 @@ mod tests {
         Floor::new(&world, 0.1, 0.3, 0.6, Point::origin())
     }
 
+    /// A tank in which a column leaves no room at (2.9, 0).
+    fn narrow_world() -> World {
+        let column = world::Obstacle {
+            id: world::ObstacleId(0),
+            name: "C".into(),
+            shape: Shape::Disc { center: Point::new(2.8, 0.0), radius_m: 0.3 },
+            known: true,
+        };
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        World { boundary, obstacles: vec![column], stations: vec![], zones: vec![] }
+    }
+
     fn area_m2(regions: &[Vec<Point>]) -> f64 {
         regions.iter().map(|vertices| world::shape::ring_area_m2(vertices)).sum()
     }
@@ -252,6 +276,18 @@ mod tests {
         let cover = Cover::new(Point::origin(), vec![region], 0.2, Point::origin());
         let left_m2 = area_m2(&cover.regions_left(&CoverageGrid::new(floor()), 0.6));
         assert!((left_m2 - 1.0).abs() < 0.3, "{left_m2}");
+    }
+
+    #[test]
+    fn a_region_without_floor_in_reach_is_asked_for_as_it_is() {
+        let outside = regions::square(Point::new(2.9, 0.0), 0.1);
+        let regions = vec![regions::square(Point::new(1.0, 1.0), 1.0), outside.clone()];
+        let cover = Cover::new(Point::origin(), regions, 0.2, Point::origin());
+        let mut grid = CoverageGrid::new(Floor::new(&narrow_world(), 0.1, 0.5, 0.6, Point::origin()));
+        let left = cover.regions_left(&grid, 0.6);
+        assert!(left.len() > 1 && left.last() == Some(&outside), "{left:?}");
+        grid.mark_swath(Point::new(0.0, 0.0), Point::new(0.0, 0.0), 20.0);
+        assert_eq!(cover.regions_left(&grid, 0.6).len(), 2, "a cell at the anchor, and what is out of reach");
     }
 
     #[test]

@@ -107,7 +107,7 @@ impl CableObstacles {
         let mut solids: Vec<RoundedPolygon> =
             shapes.iter().flat_map(|shape| RoundedPolygon::parts_of(shape, margin_m)).collect();
         if margin_m > 0.0 {
-            solids.extend(of_wall.iter().map(|post| RoundedPolygon::new(vec![post.center], margin_m)));
+            solids.extend(wall_corners(boundary, margin_m));
         }
         let walls = match boundary {
             Boundary::Polygon { vertices } if !of_wall.is_empty() => edges(vertices).collect(),
@@ -161,13 +161,18 @@ impl CableObstacles {
 
     /// Whether a segment enters no obstacle and does not leave the floor.
     pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
+        self.sidestep.is_open(from, to) && !self.leads_through_wall(from, to)
+    }
+
+    /// Whether a segment crosses a wall with inward corners.
+    pub(super) fn leads_through_wall(&self, from: Point, to: Point) -> bool {
         let crosses = |(p, q): &(Point, Point)| {
             let (u, v) = (to - from, q - p);
             let apart = |d: Vector, s: f64, t: f64| s * t < 0.0 && s.abs().min(t.abs()) > 1e-9 * d.norm();
             apart(u, u.perp(&(p - from)), u.perp(&(q - from)))
                 && apart(v, v.perp(&(from - p)), v.perp(&(to - p)))
         };
-        self.sidestep.is_open(from, to) && !self.walls.iter().any(crosses)
+        self.walls.iter().any(crosses)
     }
 }
 
@@ -191,6 +196,22 @@ fn posts_of(shape: &Shape, margin_m: f64, of: Bearing) -> Vec<Post> {
 fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
     let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
     reflex_corners(vertices).map(|k| corner_post(vertices, k, margin_m, Bearing::Wall)).collect()
+}
+
+/// The same corners as solids, grown by a margin. Each has some of the wall behind it: a disc about the corner alone would not
+/// tell on which side of it the floor lies, and a cable that bears on the corner might be led into the wall.
+fn wall_corners(boundary: &Boundary, margin_m: f64) -> Vec<RoundedPolygon> {
+    let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
+    let n = vertices.len();
+    let solid = |k: usize| {
+        let corner = vertices[k];
+        let behind = [vertices[(k + n - 1) % n], vertices[(k + 1) % n]].map(|beside| {
+            let edge = beside - corner;
+            corner + edge * (margin_m / edge.norm()).min(1.0)
+        });
+        RoundedPolygon::new(vec![corner, behind[0], behind[1]], margin_m)
+    };
+    reflex_corners(vertices).map(solid).collect()
 }
 
 fn corner_post(ring: &[Point], k: usize, radius_m: f64, of: Bearing) -> Post {

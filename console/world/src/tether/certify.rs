@@ -2,16 +2,15 @@
 
 use super::{
     cable::TetherError,
-    cable_obstacles::CableObstacles,
     case::Case,
     certificate::Certificate,
     clearance::Clearance,
     cuts,
+    ground::Ground,
     reasons::Reasons,
     replay::Replay,
     sealed_region::{SealedRegions, sealed_regions},
 };
-use std::sync::Arc;
 
 /// Certifies a path: drags the cable along it and checks for collisions, crossings of cuts and sealed floor.
 ///
@@ -33,15 +32,21 @@ use std::sync::Arc;
 /// [`TetherError`]: the anchor lies inside an obstacle or has a coordinate that is not finite, and the case brings no
 /// cable of its own.
 pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
-    let shapes: Vec<_> = case.obstacles.iter().map(|o| o.shape.clone()).collect();
-    let obstacles = Arc::new(CableObstacles::new(case.boundary, &shapes));
-    let replay = Replay::new(case, &obstacles)?;
+    certify_on(&Ground::new(case.anchor, case.boundary, case.obstacles), case)
+}
+
+/// The same on ground that serves several paths: that of the case's anchor, wall and obstacles.
+///
+/// # Errors
+/// As [`certify`].
+pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, TetherError> {
+    let replay = Replay::new(case, ground)?;
     let clearance = Clearance::of(case);
     let sealed = if case.cuts.is_empty() { None } else { sealed_regions(case) };
     let left = replay.cable_on_return(case.anchor);
     let mut certificate = Certificate {
         tether_length_max_m: replay.max_cable.0,
-        eccentricity_m: replay.eccentricity_m(case.anchor, obstacles),
+        eccentricity_m: replay.eccentricity_m(ground),
         wrap_max_rad: replay.max_wrap.0,
         wrap_total_max_rad: replay.max_sum.0,
         end_length_m: case.returns.then(|| left.length_m()),
@@ -56,6 +61,48 @@ pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
     certificate.reasons = reasons.of(&certificate);
     certificate.certified = certificate.reasons.is_empty();
     Ok(certificate)
+}
+
+/// What a path does to the cable itself: the figures of the certificate with the same names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strain {
+    /// Longest cable, metres.
+    pub tether_length_max_m: f64,
+    /// Length of the shortest cable that would do, metres.
+    pub eccentricity_m: f64,
+    /// Largest wrap on one obstacle, radians.
+    pub wrap_max_rad: f64,
+    /// Largest total wrap, radians.
+    pub wrap_total_max_rad: f64,
+}
+
+/// What a path does to the cable, without a look at collisions, cuts and sealed floor: quicker than [`certify_on`].
+///
+/// # Errors
+/// As [`certify`].
+pub fn strain(ground: &Ground, case: &Case<'_>) -> Result<Strain, TetherError> {
+    let replay = Replay::new(case, ground)?;
+    Ok(Strain {
+        tether_length_max_m: replay.max_cable.0,
+        eccentricity_m: replay.eccentricity_m(ground),
+        wrap_max_rad: replay.max_wrap.0,
+        wrap_total_max_rad: replay.max_sum.0,
+    })
+}
+
+impl Strain {
+    /// Longest cable as a multiple of the least that would do.
+    pub fn cable_share(&self) -> f64 {
+        self.tether_length_max_m / self.eccentricity_m.max(1e-9)
+    }
+}
+
+impl From<&Certificate> for Strain {
+    fn from(certificate: &Certificate) -> Self {
+        let Certificate { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, .. } =
+            *certificate;
+        Self { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad }
+    }
 }
 
 #[cfg(test)]

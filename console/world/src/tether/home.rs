@@ -1,8 +1,8 @@
 //! The return path: back along the cable, with room for the hull.
 //!
 //! The taut cable itself is no path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
-//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Its signature is checked at the
-//! end: where grown obstacles close a gap, the line may have been bent to the wrong side of one.
+//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Its signature, and that it crosses no
+//! wall, are checked at the end: where grown obstacles close a gap, the line may have been bent to the wrong side of one.
 
 use super::{cable::Cable, cable_obstacles::CableObstacles, homotopy::HomotopySignature};
 use crate::obstacles::ObstacleMap;
@@ -51,9 +51,11 @@ impl Cable {
         way.extend(inner);
         way.push(self.tip());
         way.dedup_by(|a, b| (*a - *b).norm() < 1e-9);
-        let unwinds = HomotopySignature::of(&way, &self.obstacles().rays) == *self.signature();
+        let obstacles = self.obstacles();
+        let stays = !way.windows(2).any(|pair| obstacles.leads_through_wall(pair[0], pair[1]));
+        let unwinds = HomotopySignature::of(&way, &obstacles.rays) == *self.signature();
         way.reverse();
-        (fits && unwinds).then_some(way)
+        (fits && stays && unwinds).then_some(way)
     }
 }
 

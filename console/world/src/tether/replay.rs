@@ -2,9 +2,9 @@
 
 use super::{
     cable::{Cable, TetherError},
-    cable_obstacles::{Bearing, CableObstacles},
+    cable_obstacles::Bearing,
     case::Case,
-    geodesic::Geodesic,
+    ground::Ground,
 };
 use geometry::Point;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ pub(super) struct Replay {
 }
 
 impl Replay {
-    pub(super) fn new(case: &Case<'_>, obstacles: &Arc<CableObstacles>) -> Result<Self, TetherError> {
+    pub(super) fn new(case: &Case<'_>, ground: &Ground) -> Result<Self, TetherError> {
         let cable = match case.cable {
             Some(cable) => cable.clone(),
-            None => Cable::on(case.anchor, Arc::clone(obstacles))?,
+            None => Cable::on(case.anchor, Arc::clone(&ground.obstacles))?,
         };
         let mut replay = Self {
             cable,
@@ -60,12 +60,13 @@ impl Replay {
     /// Largest distance from the anchor to a point of the path, by the shortest path, metres.
     ///
     /// It lies between the largest straight distance and the longest cable: a search is needed only if these differ.
-    pub(super) fn eccentricity_m(&self, anchor: Point, obstacles: Arc<CableObstacles>) -> f64 {
-        let straight_m = self.lengths.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
+    pub(super) fn eccentricity_m(&self, ground: &Ground) -> f64 {
+        let from_anchor_m = |(point, _): &(Point, f64)| (point - ground.anchor).norm();
+        let straight_m = self.lengths.iter().map(from_anchor_m).fold(0.0, f64::max);
         if self.max_cable.0 <= straight_m + 1e-3 {
             return straight_m;
         }
-        Geodesic::new(anchor, obstacles).farthest_m(self.lengths.iter().copied())
+        ground.geodesic().farthest_m(self.lengths.iter().copied())
     }
 
     /// The cable after a straight return to the anchor.

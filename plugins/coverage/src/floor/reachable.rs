@@ -2,14 +2,15 @@
 
 use crate::floor::raster::Raster;
 use crate::slit_domain::SlitDomain;
+use std::sync::Arc;
 use world::{Point, shape::mean_of};
 
 /// Cells of the floor, and which of them the tool can reach.
 #[derive(Clone)]
 pub(crate) struct ReachableFloor {
     pub raster: Raster,
-    /// Whether the tool can reach a cell.
-    pub cells: Vec<bool>,
+    /// Whether the tool can reach a cell; candidates share them.
+    pub cells: Arc<[bool]>,
     /// Number of cells that it can reach.
     pub n: usize,
 }
@@ -42,7 +43,7 @@ impl ReachableFloor {
             }
         }
         let n = cells.iter().filter(|reachable| **reachable).count();
-        Self { raster, cells, n }
+        Self { raster, cells: cells.into(), n }
     }
 
     /// The floor within some polygons; all of it without polygons.
@@ -52,7 +53,7 @@ impl ReachableFloor {
         }
         let mut within = vec![false; self.cells.len()];
         regions.iter().flat_map(|ring| self.cells_in(ring)).for_each(|cell| within[cell] = true);
-        self.cells = within;
+        self.cells = within.into();
         self.n = self.cells.iter().filter(|reachable| **reachable).count();
         self
     }

@@ -57,7 +57,7 @@ proptest! {
         prop_assert_eq!(floor.exchange(&old, &new), asked);
         let lost = (coverage - floor.coverage()) * floor.floor.n as f64;
         prop_assert!((lost - asked as f64).abs() < 1e-6);
-        let count = floor.swept.iter().zip(&floor.floor.cells).filter(|(n, r)| **n > 0 && **r).count();
+        let count = floor.swept.iter().zip(floor.floor.cells.iter()).filter(|(n, r)| **n > 0 && **r).count();
         prop_assert_eq!(count, floor.n_swept);
         prop_assert!(!floor.loses_more([&old[..]], &new, i64::MAX - 1));
     }

@@ -1,18 +1,18 @@
 //! Candidates of a tether-safe plan: how lanes and cuts may lie.
 
 use crate::cuts::{CutRule, domain, domain_between_walls};
-use crate::draft::{Draft, rotation_turns};
+use crate::draft::rotation_turns;
 use crate::pattern::{Pattern, Rows};
 use crate::scan::Scan;
 use crate::slit_domain::SlitDomain;
-use crate::tether::{certificate, least_cable_m};
+use crate::tether::{Tethered, least_cable_m};
 use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::cuts::{AROUND_SHARE, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
 use planner_api::Site;
 use std::f64::consts::PI;
-use world::tether::{Cable, Certificate};
-use world::{Boundary, Point, polyline};
+use world::tether::{Cable, Certificate, Strain};
+use world::{Boundary, polyline};
 
 /// One way to make a plan.
 pub(super) struct Candidate {
@@ -98,30 +98,13 @@ impl Worth {
         scan: &Scan<'_>,
         cable: Option<&Cable>,
     ) -> Self {
-        Self::of_path(site, preferences, (&scan.domain, &scan.path(), scan.swept.coverage()), cable)
-    }
-
-    /// The same of a first tour; its coverage does not count yet.
-    pub(super) fn of_draft(
-        site: &Site<'_>,
-        preferences: &Preferences,
-        draft: &Draft<'_>,
-        cable: Option<&Cable>,
-    ) -> Self {
-        Self::of_path(site, preferences, (draft.domain(), &draft.path(), 0.0), cable)
-    }
-
-    fn of_path(
-        site: &Site<'_>,
-        preferences: &Preferences,
-        (domain, path, coverage): (&SlitDomain<'_>, &[Point], f64),
-        cable: Option<&Cable>,
-    ) -> Self {
+        let path = scan.path();
+        let tethered = Tethered { domain: &scan.domain, path: &path, cable };
         Self {
-            length_m: polyline::length_m(path),
-            turns: rotation_turns(path),
-            coverage,
-            certificate: certificate(domain, site, preferences.demanded, path, cable),
+            length_m: polyline::length_m(&path),
+            turns: rotation_turns(&path),
+            coverage: scan.swept.coverage(),
+            certificate: tethered.certificate(site, preferences.demanded),
         }
     }
 
@@ -134,11 +117,6 @@ impl Worth {
         pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
     }
 
-    /// Longest cable as a multiple of the least that can do.
-    pub(super) fn cable_share(&self) -> f64 {
-        self.certificate.tether_length_max_m / self.certificate.eccentricity_m.max(1e-9)
-    }
-
     /// One line for the operator.
     pub(super) fn summary(&self, name: &str) -> String {
         let c = &self.certificate;
@@ -149,7 +127,7 @@ impl Worth {
             self.turns,
             100.0 * self.coverage,
             c.tether_length_max_m,
-            self.cable_share(),
+            Strain::from(c).cable_share(),
             c.wrap_max_rad.to_degrees(),
             c.wrap_total_max_rad.to_degrees(),
             if c.certified { String::new() } else { format!("; not certified: {}", c.reasons.join("; ")) },
@@ -158,15 +136,7 @@ impl Worth {
 
     /// Whether it is certified and meets the preferences for the cable as well.
     pub(super) fn meets(&self, preferences: &Preferences) -> bool {
-        self.certificate.certified && self.is_preferred(preferences)
-    }
-
-    /// Whether the tether is as short and straight as is preferred.
-    pub(super) fn is_preferred(&self, preferences: &Preferences) -> bool {
-        let Certificate { wrap_max_rad, wrap_total_max_rad, .. } = self.certificate;
-        self.cable_share() <= preferences.cable_share + 1e-6
-            && wrap_max_rad <= preferences.limits.wrap_max_rad
-            && wrap_total_max_rad <= preferences.limits.wrap_total_max_rad
+        self.certificate.certified && preferences.allow(&Strain::from(&self.certificate))
     }
 
     /// Whether it is to be chosen rather than another: certified, then within the preferences, then by the figure that counts.

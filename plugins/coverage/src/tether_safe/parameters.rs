@@ -4,7 +4,7 @@ use crate::tour::Effort;
 use planner_api::{Config, ParamSpec, TetherLimits, choice, float, int};
 use std::f64::consts::TAU;
 use steering::params as p;
-use world::tether::Limits;
+use world::tether::{Limits, Strain};
 
 const UNLIMITED: Limits =
     Limits { reel_length_m: f64::INFINITY, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
@@ -151,6 +151,13 @@ impl Preferences {
         let Limits { wrap_max_rad, wrap_total_max_rad, .. } = self.demanded;
         let limits = Limits { wrap_max_rad, wrap_total_max_rad, ..self.limits };
         Self { alpha_rad: 0.0, cable_share: f64::INFINITY, limits, ..self }
+    }
+
+    /// Whether the tether is as short and straight as is preferred.
+    pub(super) fn allow(&self, strain: &Strain) -> bool {
+        strain.cable_share() <= self.cable_share + 1e-6
+            && strain.wrap_max_rad <= self.limits.wrap_max_rad
+            && strain.wrap_total_max_rad <= self.limits.wrap_total_max_rad
     }
 
     /// The same with so many times the length and the wraps of the tether.

@@ -5,6 +5,7 @@ use crate::jobs::{Job, run_all};
 use crate::scan::Scan;
 use crate::scope::Scope;
 use crate::stages::{Stage, Stages};
+use crate::tether::Tethered;
 use crate::tether_safe::candidate::{Candidate, Worth};
 use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::choice::{ANGLES, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
@@ -82,7 +83,9 @@ impl<'a> Pipeline<'a> {
             let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
             let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
             let estimate_m = draft.estimate_m(preferences.choice_turn_m);
-            let may_meet = Worth::of_draft(site, preferences, &draft, cable).is_preferred(&lenient);
+            let tethered = Tethered { domain: draft.domain(), path: &draft.path(), cable };
+            let strain = tethered.strain(site, preferences.demanded);
+            let may_meet = strain.is_some_and(|strain| lenient.allow(&strain));
             Ok(Some(Drafted { name: candidate.name(), estimate_m, may_meet, draft }))
         };
         let drafts = run_all(Candidate::all(workspace, preferences, alpha_rad), stage, drafted)?;

@@ -1,9 +1,10 @@
 use super::*;
 use crate::bench;
-use planner_api::TetherLimits;
 use planner_api::testing::Bench;
+use planner_api::{PoseEstimate, TetherLimits};
 use proptest::prelude::*;
 use trials::tanks::{CELL_M, Known, Tank};
+use world::Vector;
 
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
     bench::plan::<TetherSafe>(tank, values, tether)
@@ -294,4 +295,47 @@ fn a_room_that_is_too_large_is_refused_with_the_size_that_can_be_planned() {
         "the floor of 8064 m² between walls is too large: at lanes of 0.60 m at most 4800 m² can be planned";
     assert!(error.code == Code::Config && error.message.starts_with(message), "{error}");
     assert!(bench.progress().is_empty(), "before any work");
+}
+
+#[test]
+fn a_robot_millimetres_beyond_a_cut_goes_round_its_end_at_an_obstacle() {
+    // A passage between a column and a straight wall, closed by a cut that begins where the column's room does.
+    let square = world::shape::rectangle(Point::new(-3.0, -3.0), Point::new(3.0, 3.0));
+    let tank = Tank {
+        boundary: world::Boundary::Polygon { vertices: square },
+        columns: vec![(Point::new(2.0, 0.0), 0.3)],
+        anchor: Point::new(-2.0, 0.0),
+    };
+    let (bench, obstacles) = (Bench::new(), tank.obstacles());
+    let workspace = Workspace::new(&tank.site(&obstacles), tank.anchor).unwrap();
+    let keep_m = workspace.keep_m + 0.3;
+    let at = |bearing_rad: f64, far_m: f64| {
+        Point::new(2.0, 0.0) + Vector::new(bearing_rad.cos(), bearing_rad.sin()) * (keep_m + far_m)
+    };
+    let cut = vec![at(0.0, 0.005), Point::new(2.6999, -2.69)];
+    let plan = Plan { cuts: vec![cut.clone()], path: vec![at(-0.15, 0.02)], ..Default::default() };
+    let mut planner: TetherSafe = bench.configure(&[], &tank.site(&obstacles)).unwrap();
+    planner.follow.take(&plan, &workspace);
+    // On the side of the wall, and on along an arc about the column, on which the chord passes inside the end of the cut.
+    let (here, aim) = (Point::new(2.612, -0.09), at(0.3, 0.005));
+    assert_eq!(
+        world::tether::crossings(&[here, aim], &[cut]),
+        1,
+        "the chord crosses what the plan calls the cut"
+    );
+    let pose = PoseEstimate { position: here, heading_rad: 1.5, covariance: nalgebra::Matrix3::zeros() };
+    let sensed = Sensed {
+        tick: 0,
+        t_s: 0.0,
+        dt_s: 0.1,
+        pose,
+        v_m_per_s: 0.0,
+        w_rad_per_s: 0.0,
+        target: aim,
+        targets_ahead: &[aim],
+        path_ahead: &[aim],
+        obstacles: &[],
+    };
+    let command = planner.step(&sensed, &bench.ctx()).unwrap();
+    assert_ne!(command.status, planner_api::Status::Stuck, "{:?}", bench.logs());
 }

@@ -11,8 +11,15 @@ use world::Point;
 /// How far a tour is when neighbours are listed, as a share of its time, about.
 pub(super) const LISTED: f64 = 0.3;
 
+/// An end and what it costs to go there, metres.
+#[derive(Clone, Copy)]
+pub(super) struct Neighbour {
+    pub end: End,
+    pub cost_m: f64,
+}
+
 /// The cheapest ends from every end, cheapest first.
-pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<Vec<End>>> {
+pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<Vec<Neighbour>>> {
     let n = connectors.len();
     let mut buckets: HashMap<(i64, i64), Vec<End>> = HashMap::new();
     for u in 0..n {
@@ -29,7 +36,7 @@ pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<V
 }
 
 /// The same for so few ends that all others can be looked at.
-pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<End>> {
+pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<Neighbour>> {
     let list = |u: End| {
         let others = (0..connectors.len()).filter(|v| v / 2 != u / 2).collect();
         cheapest(connectors, u, nearest_of(connectors, u, others))
@@ -64,20 +71,20 @@ fn nearest_of(connectors: &Connectors<'_>, u: End, mut ends: Vec<End>) -> Vec<En
 }
 
 /// The cheapest of some ends, which come nearest first.
-fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<End> {
-    let mut priced: Vec<(f64, End)> = Vec::with_capacity(NEIGHBOURS + 1);
-    for v in nearest {
+fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<Neighbour> {
+    let mut priced: Vec<Neighbour> = Vec::with_capacity(NEIGHBOURS + 1);
+    for end in nearest {
         // The rest are further away than the last in the list, and no way is shorter than the straight one.
-        if priced.len() == NEIGHBOURS && priced[NEIGHBOURS - 1].0 < connectors.least(u, v) * (1.0 - ROUNDING)
-        {
+        let least_m = connectors.least(u, end) * (1.0 - ROUNDING);
+        if priced.len() == NEIGHBOURS && priced[NEIGHBOURS - 1].cost_m < least_m {
             break;
         }
-        let cost = connectors.cost(u, v);
-        let is_before = |other: &(f64, End)| other.0.total_cmp(&cost).then(other.1.cmp(&v)).is_lt();
-        priced.insert(priced.partition_point(is_before), (cost, v));
+        let cost_m = connectors.cost(u, end);
+        let is_before = |other: &Neighbour| other.cost_m.total_cmp(&cost_m).then(other.end.cmp(&end)).is_lt();
+        priced.insert(priced.partition_point(is_before), Neighbour { end, cost_m });
         priced.truncate(NEIGHBOURS);
     }
-    priced.into_iter().map(|(_, v)| v).collect()
+    priced
 }
 
 /// Chains of lanes that grow together.
@@ -120,13 +127,14 @@ impl Chains {
 }
 
 /// A tour by the cheapest pairs of neighbours.
-pub(super) fn greedy(connectors: &Connectors<'_>, near: &[Vec<End>]) -> Tour {
+pub(super) fn greedy(connectors: &Connectors<'_>, near: &[Vec<Neighbour>]) -> Tour {
     let n = connectors.len();
     let mut chains = Chains { joined: vec![None; n], above: (0..n / 2).collect() };
     let mut pairs: Vec<(f64, End, End)> = Vec::new();
     for (u, list) in near.iter().enumerate() {
-        let fresh = list.iter().filter(|v| u < **v || !near[**v].contains(&u));
-        pairs.extend(fresh.map(|v| (connectors.cost(u, *v), u, *v)));
+        let is_fresh = |v: End| u < v || !near[v].iter().any(|back| back.end == u);
+        let fresh = list.iter().filter(|to| is_fresh(to.end));
+        pairs.extend(fresh.map(|to| (to.cost_m, u, to.end)));
     }
     chains.join_all(pairs);
     // What is left are a few chains: join the nearest loose ends.

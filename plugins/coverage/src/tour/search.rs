@@ -3,7 +3,7 @@
 use crate::jobs::Job;
 use crate::tour::connectors::Connectors;
 use crate::tour::costs::{End, ROUNDING, Tour};
-use crate::tour::greedy::LISTED;
+use crate::tour::greedy::{LISTED, Neighbour};
 use crate::tuning::tour::{KICK_REACH, RUN};
 use planner_api::Result;
 use rand::{RngExt, SeedableRng};
@@ -24,10 +24,23 @@ pub(crate) struct Effort {
 /// A tour under improvement.
 struct Search<'a> {
     connectors: &'a Connectors<'a>,
-    near: &'a [Vec<End>],
+    near: &'a [Vec<Neighbour>],
     entries: Tour,
     /// Where in the tour each lane is.
     place: Vec<usize>,
+}
+
+/// Two ends that may be joined, their partners, and what is known of the connectors, metres.
+struct Join {
+    u: End,
+    pu: End,
+    v: End,
+    pv: End,
+    /// From `u` to its partner, and from `v` to its own.
+    left_m: f64,
+    opened_m: f64,
+    /// From `u` to `v`.
+    joined_m: f64,
 }
 
 /// A change of the tour.
@@ -40,7 +53,7 @@ struct Change {
 /// Improves a tour as far as the effort goes.
 pub(super) fn improved(
     connectors: &Connectors<'_>,
-    near: &[Vec<End>],
+    near: &[Vec<Neighbour>],
     entries: Tour,
     effort: &Effort,
     job: &Job,
@@ -132,21 +145,22 @@ impl Search<'_> {
 
     /// Joins an end to the first of its neighbours that makes the tour better, by either kind of move.
     fn improve(&mut self, u: End) -> Option<Change> {
-        let near = self.near;
-        let pu = self.partner(u);
-        near[u]
-            .iter()
-            .filter(|v| **v != pu)
-            .find_map(|v| self.reverse_between(u, *v).or_else(|| self.move_run(u, *v)))
+        let (near, ways, pu) = (self.near, self.connectors, self.partner(u));
+        let left_m = ways.cost(u, pu);
+        near[u].iter().filter(|to| to.end != pu).find_map(|to| {
+            let (v, pv) = (to.end, self.partner(to.end));
+            let join = Join { u, pu, v, pv, left_m, opened_m: ways.cost(v, pv), joined_m: to.cost_m };
+            self.reverse_between(&join).or_else(|| self.move_run(&join))
+        })
     }
 
     /// 2-opt: joins `u` to `v`, both exits or both entries, and their partners to each other, if that is a gain.
-    fn reverse_between(&mut self, u: End, v: End) -> Option<Change> {
-        let (pu, pv, ways) = (self.partner(u), self.partner(v), self.connectors);
+    fn reverse_between(&mut self, join: &Join) -> Option<Change> {
+        let (&Join { u, pu, v, pv, .. }, ways) = (join, self.connectors);
         if self.is_exit(u) != self.is_exit(v) {
             return None;
         }
-        let most_m = ways.cost(u, pu) + ways.cost(v, pv) - ways.cost(u, v);
+        let most_m = join.left_m + join.opened_m - join.joined_m;
         // A lower bound of a connector's cost is known before the cost is computed.
         if most_m - ways.least(pu, pv) <= LEAST_GAIN_M {
             return None;
@@ -185,9 +199,9 @@ impl Search<'_> {
     }
 
     /// Or-opt: moves a run of lanes that ends in `u` to between `v` and its partner, if that is a gain.
-    fn move_run(&mut self, u: End, v: End) -> Option<Change> {
+    fn move_run(&mut self, join: &Join) -> Option<Change> {
+        let (&Join { u, v, pv, .. }, ways) = (join, self.connectors);
         let (n, start, is_exit) = (self.entries.len(), self.place[u / 2], self.is_exit(u));
-        let (pv, ways) = (self.partner(v), self.connectors);
         for run in 1..=RUN.min(n.saturating_sub(3)) {
             // The run reaches from `u` away from its partner.
             let far = if is_exit { (start + n + 1 - run) % n } else { (start + run - 1) % n };
@@ -198,8 +212,12 @@ impl Search<'_> {
             }
             let tail = if is_exit { self.entries[far] } else { self.entries[far] ^ 1 };
             let (before, after) = (self.entries[(first + n - 1) % n] ^ 1, self.entries[(last + 1) % n]);
-            let removed_m = self.cost_behind((first + n - 1) % n) + self.cost_behind(last) + ways.cost(v, pv);
-            let most_m = removed_m - ways.cost(u, v);
+            let (before_m, behind_m) = if is_exit {
+                (self.cost_behind((first + n - 1) % n), join.left_m)
+            } else {
+                (join.left_m, self.cost_behind(last))
+            };
+            let most_m = before_m + behind_m + join.opened_m - join.joined_m;
             if most_m - ways.least(tail, pv) - ways.least(before, after) <= LEAST_GAIN_M {
                 continue;
             }

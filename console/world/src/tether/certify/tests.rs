@@ -3,7 +3,7 @@ mod hostile;
 use super::*;
 use crate::{
     tank::{Obstacle, ObstacleId},
-    tether::{Cable, Limits},
+    tether::{Cable, CableObstacles, Limits},
 };
 use geometry::{Boundary, Point, Shape};
 use proptest::prelude::*;

@@ -84,6 +84,44 @@ fn a_way_home_round_an_inward_corner_of_the_wall_keeps_the_hull_off_it() {
     assert!((polyline::distance_m(&way, Point::origin()) - HULL_M).abs() < 0.01, "{way:?}");
 }
 
+/// A floor in the shape of a U, its two arms joined below a wall that ends in two inward corners.
+fn u_shape(wide_m: f64) -> Vec<Point> {
+    let corners = [
+        (-6.0, -5.0),
+        (6.0, -5.0),
+        (6.0, 5.0),
+        (wide_m, 5.0),
+        (wide_m, -1.0),
+        (-wide_m, -1.0),
+        (-wide_m, 5.0),
+        (-6.0, 5.0),
+    ];
+    corners.map(|(x, y)| Point::new(x, y)).to_vec()
+}
+
+#[test]
+fn a_way_home_round_a_wall_between_two_arms_of_a_floor_never_leads_through_it() {
+    for (wide_m, mirrored, turned_deg) in
+        [(2.0, false, 0.0), (2.0, true, 0.0), (2.0, false, 90.0), (0.05, false, 200.0), (0.05, true, 30.0)]
+    {
+        let turn = nalgebra::Rotation2::new(f64::to_radians(turned_deg));
+        let placed = |p: &Point| turn * Point::new(if mirrored { -p.x } else { p.x }, p.y);
+        let wall = Boundary::Polygon { vertices: u_shape(wide_m).iter().map(placed).collect() };
+        let mut floor = Floor::new(&wall, placed(&Point::new(-5.0, 4.0)), &[], 0.15);
+        let way =
+            [(-5.0, 4.0), (-5.0, -4.0), (5.76, -4.75), (5.76, 4.75), (2.26, 4.75), (2.26, -1.2), (0.0, -1.3)];
+        for at in polyline::resampled(&way.map(|(x, y)| placed(&Point::new(x, y))), 0.05) {
+            floor.cable.drag_to(at);
+            let home =
+                floor.home(0.15).unwrap_or_else(|| panic!("none from {at}, {wide_m} m, {turned_deg} deg"));
+            let (home_m, cable_m) = (polyline::length_m(&home), floor.cable.length_m());
+            assert!(home_m > cable_m - 0.02, "{home_m} m of {cable_m} m at {at}");
+            let is_on_floor = |p: &Point| wall.wall_distance_m(*p) > 0.1;
+            assert!(polyline::resampled(&home, 0.05).iter().all(is_on_floor), "{home:?}");
+        }
+    }
+}
+
 #[test]
 fn a_cable_in_a_closed_gap_has_no_way_home_on_the_other_side_of_it() {
     // The gap is 0.4 m wide; there is room enough beyond either column.
