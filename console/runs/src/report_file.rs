@@ -86,7 +86,7 @@ impl Reported {
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, String> {
         match read_regular(&folder.join(REPORT_FILE)) {
             Ok(text) => {
-                let source = serde_json::from_str(&text).map_err(damaged)?;
+                let source = serde_json::from_str(&text).map_err(|error| damaged(&error))?;
                 Ok(Some(Self { text, source }))
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -99,8 +99,10 @@ impl Reported {
     /// # Errors
     /// Why it is not believed, as a sentence.
     pub(crate) fn summary(&self, folder: &Path) -> Result<Box<Summary>, String> {
-        let report = serde_json::from_str(&self.text).map(recording::with_todays_names).map_err(damaged)?;
-        let summary: Box<Summary> = serde_json::from_value(report).map_err(damaged)?;
+        let report = serde_json::from_str(&self.text)
+            .map(recording::with_todays_names)
+            .map_err(|error| damaged(&error))?;
+        let summary: Box<Summary> = serde_json::from_value(report).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
         // A report that says itself that the journal is not whole claims nothing about it.
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
@@ -171,7 +173,7 @@ impl Reported {
         self.source.report_sha256.as_ref().and(self.source.events_sha256.as_ref())?;
         let reported: Summary = match serde_json::from_str(&self.text) {
             Ok(reported) => reported,
-            Err(error) => return Some(damaged(error)),
+            Err(error) => return Some(damaged(&error)),
         };
         let other = figures.and_then(|figures| figures::difference(reported, figures));
         other
@@ -190,7 +192,7 @@ impl Reported {
     }
 }
 
-fn damaged(error: serde_json::Error) -> String {
+fn damaged(error: &serde_json::Error) -> String {
     format!("{REPORT_FILE} is damaged: {error}")
 }
 

@@ -283,7 +283,8 @@ mod tests {
             let map = ObstacleMap::new(&world.boundary, &world.obstacles);
             let clearance_m = |cell| map.clearance_m(maker.floor.center(cell)) as f32;
             let exact: Vec<f32> = (0..maker.floor.len()).map(clearance_m).collect();
-            let n_asked = exact.iter().zip(&maker.clearance_m).filter(|(a, b)| a == b).count();
+            let n_asked =
+                exact.iter().zip(&maker.clearance_m).filter(|(a, b)| a.to_bits() == b.to_bits()).count();
             assert!(n_asked < exact.len() / 2, "{n_asked} of {}", exact.len());
             let floor = maker.clone().into_floor();
             maker.clearance_m = exact;

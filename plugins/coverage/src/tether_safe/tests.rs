@@ -132,7 +132,7 @@ fn a_little_floor_far_away_is_scanned_if_nothing_else_is_asked_for() {
     let bench = Bench::new();
     let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0), ("kicks", 0.0)], &site).unwrap();
     let (position, covariance) = (tank.anchor, nalgebra::Matrix3::zeros());
-    let start = planner_api::PoseEstimate { position, heading_rad: 0.0, covariance };
+    let start = PoseEstimate { position, heading_rad: 0.0, covariance };
     let little = world::coverage::regions::square(farthest, 0.2);
     let task =
         planner_api::Task::Cover { anchor: tank.anchor, regions: &[&little], tether: None, tolerance_m: 0.3 };
@@ -151,11 +151,8 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
     let site = Site { swath_m: 1.4 * (site.clearance_m + site.limits.radius_m), ..site };
     let bench = Bench::new();
     let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0), ("kicks", 0.0)], &site).unwrap();
-    let start = planner_api::PoseEstimate {
-        position: tank.anchor,
-        heading_rad: 0.0,
-        covariance: nalgebra::Matrix3::zeros(),
-    };
+    let start =
+        PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
     let reason = planner_api::Reason::Start;
     planner
@@ -198,11 +195,8 @@ fn a_swath_wider_than_the_gaps_still_gives_a_certified_plan() {
     let site = Site { swath_m: 1.6, ..tank.site(&obstacles) };
     let bench = Bench::new();
     let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0)], &site).unwrap();
-    let start = planner_api::PoseEstimate {
-        position: tank.anchor,
-        heading_rad: 0.0,
-        covariance: nalgebra::Matrix3::zeros(),
-    };
+    let start =
+        PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
     let reason = planner_api::Reason::Start;
     let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
