@@ -111,7 +111,6 @@ fn files(
             reported.journal_doubt(journal_sha256.as_deref()),
             reported.recording_doubt(folder, recording_sha256.as_deref()),
             reported.figures_doubt(is_todays.then_some(summary)),
-            reported.length_doubt(bytes(&journal), bytes(&recording)),
         ]
     };
     let doubts = reported.as_ref().map(doubts_of).into_iter().flatten();

@@ -133,21 +133,6 @@ impl Reported {
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
-    /// What speaks against the lengths that it names for journal and recording, bytes, where these are the files that it was
-    /// written with.
-    pub(crate) fn length_doubt(&self, journal: Option<u64>, recording: Option<u64>) -> Option<String> {
-        let source = &self.source;
-        source.report_sha256.as_ref().and(source.events_sha256.as_ref())?;
-        let pairs = [
-            ("journal_bytes", source.journal_bytes, journal),
-            ("recording_bytes", source.recording_bytes, recording),
-        ];
-        pairs.into_iter().find_map(|(key, then, now)| {
-            let (then, now) = then.zip(now)?;
-            (then != now).then(|| format!("{REPORT_FILE} was changed: {key} is {then}, the file has {now}"))
-        })
-    }
-
     /// What speaks against the recording whose digest is `sha256_now`; `None` to look at length and time first, as lists do.
     /// A recording that is not there any more can be made again, and is no doubt.
     pub(crate) fn recording_doubt(&self, folder: &Path, sha256_now: Option<&str>) -> Option<String> {
