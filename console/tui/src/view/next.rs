@@ -144,7 +144,9 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Checking before the start...".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
-    if let Some(failed) = model.blocking_check() {
+    // A planner that is still being opened blocks nothing yet.
+    let is_opened = model.planner().is_some() || model.live.run.planning.fault.is_some();
+    if let Some(failed) = model.blocking_check().filter(|_| is_opened) {
         let (what, why) =
             (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));
         return (Role::Warn, vec![what, why, preflight.into()]);
