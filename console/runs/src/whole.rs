@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a file whole or not at all: to a draft beside it, [`draft_of`], onto the disk, then renamed. The space that a draft
+/// Writes a file whole or not at all: to a draft beside it, `NAME.part`, onto the disk, then renamed. The space that a draft
 /// already takes is used. When it fails, the file is as it was, and there is no draft.
 ///
 /// What is no regular file (a pipe, `/dev/stdout`) is written to as it is.
