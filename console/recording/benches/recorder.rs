@@ -54,7 +54,7 @@ fn recording(criterion: &mut Criterion) {
                 recorder.push(event, &account, now).expect("nothing to fail");
                 account.apply(event);
             }
-            recorder.finish(&account.summary()).expect("nothing to fail");
+            recorder.finish(&account.summary(), None).expect("nothing to fail");
         });
     });
     group.finish();

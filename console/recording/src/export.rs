@@ -21,6 +21,6 @@ pub fn export(journal: &Path, recording: &Path) -> Result<Option<String>, Record
         recorder.push(&event, &account, now)?;
         account.apply(&event);
     }
-    recorder.finish(&account.summary())?;
+    recorder.finish(&account.summary(), None)?;
     Ok(reader.truncated().map(str::to_owned))
 }

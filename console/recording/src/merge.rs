@@ -9,32 +9,28 @@ use std::{
     fs::{self, File},
     io::{BufReader, BufWriter, Write},
     path::{Path, PathBuf},
+    time::Instant,
 };
 
-/// Larger recordings keep their chunks: closing a run must not take long.
-const MOST_FILE_BYTES: u64 = 32 << 20;
 /// No chunk is made larger than this.
 const MOST_ROWS: usize = 1 << 15;
 const MOST_CHUNK_BYTES: usize = 4 << 20;
 /// Ending of the file that takes the place of the recording when it is whole.
 const ENDING: &str = "merging";
 
-/// Merges the chunks of a recording, if it is not too large.
+/// Merges the chunks of a recording, about 60 MB of them in a second; gives up when `until` has come, if it is given.
 ///
 /// # Errors
-/// It cannot be read or its successor cannot be written; the recording stays as it was.
-pub(crate) fn merge(path: &Path) -> Result<(), RecordingError> {
-    let failed = |why: String| RecordingError::Merge { why, path: path.to_owned() };
-    if fs::metadata(path).map_err(|error| failed(error.to_string()))?.len() > MOST_FILE_BYTES {
-        return Ok(());
-    }
+/// It cannot be read, its successor cannot be written, or the time is over; the recording stays as it was.
+pub(crate) fn merge(path: &Path, until: Option<Instant>) -> Result<(), RecordingError> {
     let successor = with_ending(path);
-    let done = write(path, &successor).and_then(|()| fs::rename(&successor, path).map_err(|e| e.to_string()));
+    let done = write(path, &successor, until)
+        .and_then(|()| fs::rename(&successor, path).map_err(|error| error.to_string()));
     if done.is_err() {
         // Nothing more can be done about a file that cannot be removed.
         let _ = fs::remove_file(&successor);
     }
-    done.map_err(failed)
+    done.map_err(|why| RecordingError::Merge { why, path: path.to_owned() })
 }
 
 fn with_ending(path: &Path) -> PathBuf {
@@ -43,7 +39,7 @@ fn with_ending(path: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn write(from: &Path, to: &Path) -> Result<(), String> {
+fn write(from: &Path, to: &Path, until: Option<Instant>) -> Result<(), String> {
     let text = |error: &dyn std::fmt::Display| error.to_string();
     let file = File::open(from).map_err(|error| text(&error))?;
     let out = BufWriter::new(File::create(to).map_err(|error| text(&error))?);
@@ -52,6 +48,9 @@ fn write(from: &Path, to: &Path) -> Result<(), String> {
         rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, out).map_err(|error| text(&error))?;
     let mut merger = Merger::default();
     for message in rr::DecoderApp::decode_lazy(BufReader::with_capacity(1 << 18, file)) {
+        if until.is_some_and(|until| Instant::now() >= until) {
+            return Err("it is too large for the time left".into());
+        }
         for message in merger.take(message.map_err(|error| text(&error))?)? {
             encoder.append(&message).map_err(|error| text(&error))?;
         }

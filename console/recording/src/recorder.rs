@@ -138,12 +138,13 @@ impl Recorder {
         if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
     }
 
-    /// Writes everything and closes the recording of a run, of which the summary is given.
+    /// Writes everything and closes the recording of a run, of which the summary is given. Then its chunks are merged
+    /// into larger ones, unless that takes until the moment given.
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
     /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
-    pub fn finish(mut self, summary: &Summary) -> Result<(), RecordingError> {
+    pub fn finish(mut self, summary: &Summary, until: Option<Instant>) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(summary, stream)?;
             self.fold.send(stream)?;
@@ -155,7 +156,7 @@ impl Recorder {
         }
         let Some(watch) = &self.watch else { return Ok(()) };
         watch.check_closed(self.health.bytes())?;
-        if let Err(error) = merge::merge(watch.path()) {
+        if let Err(error) = merge::merge(watch.path(), until) {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
         }

@@ -205,7 +205,10 @@ impl RunRecorder {
     }
 
     fn close(&mut self, timeout: Duration) -> Option<(Option<JournalEnd>, Summary)> {
-        drop(self.sender.take()?);
+        let sender = self.sender.take()?;
+        // The other half is for what still waits to be written, and for slow disks.
+        self.shared.set_merge_until(Instant::now() + timeout / 2);
+        drop(sender);
         let ended = self.ended.get_mut().unwrap_or_else(PoisonError::into_inner);
         match ended.recv_timeout(timeout) {
             Ok(ended) => Some(ended),

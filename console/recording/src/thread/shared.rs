@@ -1,6 +1,9 @@
 //! What the writing thread and everyone else share.
 
-use std::sync::{Mutex, MutexGuard, PoisonError, atomic::AtomicU64};
+use std::{
+    sync::{Mutex, MutexGuard, PoisonError, atomic::AtomicU64},
+    time::Instant,
+};
 
 /// Figures that the thread and everyone else share.
 #[derive(Default)]
@@ -12,6 +15,8 @@ pub(super) struct Shared {
     losses: Mutex<Vec<String>>,
     /// What is wrong now and may be over later.
     trouble: Mutex<Option<String>>,
+    /// Until when the chunks of the recording may be merged, once somebody waits for the end.
+    merge_until: Mutex<Option<Instant>>,
 }
 
 impl Shared {
@@ -24,6 +29,14 @@ impl Shared {
 
     pub(super) fn set_trouble(&self, trouble: Option<String>) {
         *locked(&self.trouble) = trouble;
+    }
+
+    pub(super) fn set_merge_until(&self, until: Instant) {
+        *locked(&self.merge_until) = Some(until);
+    }
+
+    pub(super) fn merge_until(&self) -> Option<Instant> {
+        *locked(&self.merge_until)
     }
 
     pub(super) fn error(&self) -> Option<String> {

@@ -121,7 +121,8 @@ impl Writer {
     fn close(&mut self) -> (Option<JournalEnd>, Summary) {
         let journal = self.journal.take().map(JournalWriter::finish).transpose();
         let summary = self.account.summary();
-        let recording = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish(&summary));
+        let until = self.shared.merge_until();
+        let recording = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish(&summary, until));
         let end = journal.unwrap_or_else(|error| {
             self.shared.lose(&error);
             None

@@ -152,7 +152,7 @@ fn a_call_that_fails_once_costs_the_recording_nothing() {
         for event in &events {
             recorder.push(event, &Fold::new(), begin).expect("nothing is lost");
         }
-        recorder.finish(&Summary::default()).expect("it is whole in the end");
+        recorder.finish(&Summary::default(), None).expect("it is whole in the end");
         let path = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(path.path(), disk.written()).expect("writable");
         assert!(recording::inspect(path.path()).expect("readable").is_complete(), "call {fails_at}");
@@ -232,7 +232,7 @@ fn a_full_disk_is_reported_and_the_recording_is_not_whole() {
     }
     assert!(matches!(recorder.trouble(), Some(RecordingError::Stalled { .. })));
     assert!(health.bytes() <= 300_000);
-    assert!(recorder.finish(&Summary::default()).is_err(), "it is not whole");
+    assert!(recorder.finish(&Summary::default(), None).is_err(), "it is not whole");
     assert!(begin.elapsed() < Duration::from_secs(30));
 }
 
@@ -246,7 +246,7 @@ fn a_disk_that_has_space_again_gives_a_whole_recording() {
         recorder.push(&event, &Fold::new(), begin).expect("it is kept in memory");
     }
     disk.grow(100_000_000);
-    recorder.finish(&Summary::default()).expect("it is whole");
+    recorder.finish(&Summary::default(), None).expect("it is whole");
     let path = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(path.path(), disk.written()).expect("writable");
     assert!(recording::inspect(path.path()).expect("readable").is_complete());

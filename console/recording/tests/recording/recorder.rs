@@ -16,6 +16,10 @@ use tempfile::tempdir;
 const TICKS: u64 = 600;
 
 fn record(path: &Path, events: &[Event], step: Duration) {
+    record_and_merge(path, events, step, None);
+}
+
+fn record_and_merge(path: &Path, events: &[Event], step: Duration, until: Option<Instant>) {
     let mut now = Instant::now();
     let mut recorder = Recorder::create(path, &Identity::of_run("test"), now).expect("a new file");
     let mut account = Fold::new();
@@ -24,7 +28,7 @@ fn record(path: &Path, events: &[Event], step: Duration) {
         account.apply(event);
         now += step;
     }
-    recorder.finish(&account.summary()).expect("room on the disk");
+    recorder.finish(&account.summary(), until).expect("room on the disk");
 }
 
 fn recorded(events: &[Event]) -> Content {
@@ -245,7 +249,7 @@ fn a_run_with_a_date_in_its_name_has_a_calendar() {
     for event in &events(20) {
         recorder.push(event, &Fold::new(), now).expect("room on the disk");
     }
-    recorder.finish(&Summary::default()).expect("room on the disk");
+    recorder.finish(&Summary::default(), None).expect("room on the disk");
     let content = content(&path);
     let began_ns = 1_795_320_092_000_000_000_i64;
     let (times, _) = rows(&content, "map/world/robot/true", "Transform3D:translation").last().expect("rows");
@@ -280,6 +284,23 @@ fn a_closed_recording_has_few_chunks() {
     let chunks = crate::content::chunks(&path);
     assert!(chunks <= 2 * kinds.len(), "{chunks} chunks of {} entities", kinds.len());
     assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1, "nothing else is left");
+}
+
+#[test]
+fn a_recording_that_cannot_be_merged_in_time_stays_as_it_was_written() {
+    let folder = tempdir().expect("a folder");
+    let (whole, long) = (folder.path().join("whole.rrd"), folder.path().join("long.rrd"));
+    let step = Duration::from_millis(700);
+    record(&whole, &events(TICKS), step);
+    record_and_merge(&long, &events(TICKS), step, Some(Instant::now()));
+    assert!(crate::content::chunks(&long) > 2 * crate::content::chunks(&whole));
+    // What holds for the whole run was written again with each change; the last counts.
+    let timed = |mut content: Content| {
+        content.values_mut().for_each(|rows| rows.retain(|(times, _)| !times.is_empty()));
+        content
+    };
+    assert!(timed(content(&whole)) == timed(content(&long)), "each moment is as it was");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 2, "nothing else is left");
 }
 
 #[test]
