@@ -67,7 +67,7 @@ impl Explained for MissReason {
                 format!("passed with position error {value_m:.2} m, limit {limit_m:.2} m")
             }
             Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
-            Self::NotAsked => self.plainly().to_owned(),
+            Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
                 format!("{value_m:.2} m beyond lanes of {limit_m:.2} m, the swath less the overlap")
             }
@@ -144,7 +144,10 @@ impl Explained for OutOfReach {
             (Self::ClosedOff, Some(Measure { value_m, .. })) => {
                 format!("no passage as wide as hull and clearance, {value_m:.2} m")
             }
-            _ => self.plainly().to_owned(),
+            (Self::NoGo, Some(Measure { value_m, .. })) => {
+                format!("in a no-go zone, up to {value_m:.2} m from floor in reach")
+            }
+            (_, None) => self.plainly().to_owned(),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{
     measure::{Measure, depth_m},
     reason::{MissReason, OutOfReach},
 };
-use world::{CoverageGrid, Point, polyline, tether::Reach};
+use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
 
 /// Why floor was missed.
 pub struct Reasons<'a> {
@@ -77,7 +77,7 @@ impl Reasons<'_> {
             MissReason::FoundObstacle => {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
-            MissReason::NotAsked => None,
+            MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
             MissReason::Narrow => most(&|cell| Some(self.room_m - solid(cell).1 - self.lane_m / 2.0))
                 .map(|m| Measure::of(m).against(self.lane_m)),
             MissReason::Clearance => {
@@ -103,13 +103,16 @@ impl Reasons<'_> {
         reason: OutOfReach,
         cells: &[usize],
     ) -> Option<Measure> {
-        let solid = |cell: &usize| self.evidence.nearest_solid(grid.floor().center(*cell));
+        let floor = grid.floor();
+        let solid = |cell: &usize| self.evidence.nearest_solid(floor.center(*cell));
         match reason {
             OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
                 Measure::off(cells.iter().map(solid)).map(|m| m.against(self.room_m))
             }
             OutOfReach::ClosedOff => Some(Measure::of(2.0 * self.room_m)),
-            OutOfReach::NoGo => None,
+            OutOfReach::NoGo => {
+                depth_m(floor, cells, |cell| floor.kind(cell) == Cell::Reachable).map(Measure::of)
+            }
         }
     }
 
