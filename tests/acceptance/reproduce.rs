@@ -90,3 +90,46 @@ fn tuning_repeats_and_is_evaluated_on_other_layouts() {
     let overlap = bench.tankops(&[&asked[..], &["--test-first-seed", "2"]].concat());
     assert!(overlap.code == Some(2) && overlap.err.contains("overlap"), "{overlap:?}");
 }
+
+#[test]
+fn a_study_with_a_folder_resumes_and_is_shared_by_several_processes() {
+    let bench = Bench::new();
+    let arguments =
+        ["reproduce", "trap-suite", "--layouts", "3", "--case", "u", "--method", "shortest", "--json"];
+    let alone = bench.tankops(&arguments);
+    let shared = [&arguments[..], &["--out", "study"]].concat();
+    let both = std::thread::scope(|scope| {
+        let other = scope.spawn(|| bench.tankops(&shared));
+        [bench.tankops(&shared), other.join().unwrap()]
+    });
+    assert!(both.iter().all(|answer| answer.code == Some(0)), "{both:?}");
+    assert_eq!(both[0].out, both[1].out, "times, too: each layout was computed once");
+    let rows = |answer: &str| without_times(serde_json::from_str(answer).unwrap());
+    assert_eq!(rows(&both[0].out), rows(&alone.out));
+
+    let parts = || std::fs::read_dir(bench.path().join("study/parts")).unwrap().flatten();
+    let part = parts().next().unwrap().path();
+    std::fs::remove_file(&part).unwrap();
+    assert_eq!(rows(&bench.tankops(&shared).out), rows(&alone.out));
+    assert!(part.exists() && std::fs::read_dir(bench.path().join("study/claims")).unwrap().next().is_none());
+
+    std::fs::write(&part, b"half").unwrap();
+    let damaged = bench.tankops(&shared);
+    assert!(damaged.code == Some(2) && damaged.err.contains("damaged; delete it"), "{damaged:?}");
+    let other = bench.tankops(&[&shared[..], &["--first-seed", "9"]].concat());
+    assert!(other.code == Some(2) && other.err.contains("to other arguments"), "{other:?}");
+}
+
+#[test]
+fn a_search_with_a_folder_gives_what_one_without_gives_and_computes_nothing_twice() {
+    let bench = Bench::new();
+    let layouts =
+        ["--on", "wang-d1", "--layouts", "4", "--test-layouts", "4", "--generations", "2", "--json"];
+    let arguments = [&["tune", "--planner", "rpf"], &layouts[..]].concat();
+    let alone = bench.tankops(&arguments).json();
+    let shared = [&arguments[..], &["--out", "search"]].concat();
+    let [first, again] = [bench.tankops(&shared), bench.tankops(&shared)];
+    assert_eq!(first.out, again.out, "with its times");
+    assert_eq!(first.json()["parameters"], alone["parameters"]);
+    assert_eq!(first.json()["training_loss"], alone["training_loss"]);
+}

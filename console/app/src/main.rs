@@ -21,7 +21,9 @@ mod report_file;
 mod reproduce;
 mod rescan;
 mod shadowing;
+mod shared_folder;
 mod stop_signal;
+mod study_folder;
 mod trial;
 mod tune;
 

@@ -1,12 +1,15 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
-use crate::{cli::ReproduceArgs, output::say_json};
-use ::reproduce::{Gallery, Options, Runner, gallery, studies, study, table};
+use crate::{cli::ReproduceArgs, output::say_json, study_folder::StudyFolder};
+use ::reproduce::{Gallery, Options, Parts, Runner, gallery, studies, study, table};
 use flight::failure::{COMPLETE, bad_input};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
 use report::print::say;
 use std::{io::IsTerminal, process::ExitCode};
+
+/// A list of cases has so many parts at most: few files, and work for many machines.
+const MOST_PARTS: usize = 256;
 
 /// `tankops reproduce`.
 pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -21,6 +24,17 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
         cases: args.case.clone(),
         methods: args.method.clone(),
     };
+    let asked = || {
+        serde_json::json!({
+            "study": study.name,
+            "layouts": args.layouts.unwrap_or(study.layouts),
+            "first_seed": args.first_seed,
+            "cases": args.case,
+            "methods": args.method,
+        })
+    };
+    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, asked(), plugins)).transpose()?;
+    let parts = folder.as_ref().map(|folder| folder as &dyn Parts);
     let gallery = args.svg.as_ref().map(|folder| gallery(study, folder)).transpose().map_err(bad_input)?;
     let template = "{prefix}  {wide_bar} {pos}/{len}  {elapsed} of about {duration}";
     let bar = shown(ProgressBar::new(0), study.name, template);
@@ -29,10 +43,12 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
         bar.set_position(done as u64);
     };
     let rows = Runner::new(plugins, args.threads, &progress)
-        .and_then(|runner| study.rows(&runner.with_gallery(gallery.as_ref()), &options));
+        .map(|runner| runner.with_gallery(gallery.as_ref()).with_parts(parts, MOST_PARTS))
+        .and_then(|runner| study.rows(&runner, &options));
     bar.finish_and_clear();
     let rows = rows.map_err(bad_input)?;
     gallery.map_or(Ok(()), Gallery::finish).map_err(bad_input)?;
+    folder.map_or(Ok(()), |folder| folder.finish(&serde_json::to_value(&rows)?))?;
     if args.json {
         say_json("the rows", &rows)?;
     } else {

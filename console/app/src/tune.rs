@@ -1,7 +1,10 @@
 //! `tankops tune`: better parameters, evaluated on layouts that they were not tuned on.
 
-use crate::{cli::TuneArgs, output::say_json, reproduce::shown};
-use ::reproduce::{Runner, tune::Tuning};
+use crate::{cli::TuneArgs, output::say_json, reproduce::shown, study_folder::StudyFolder};
+use ::reproduce::{
+    Parts, Runner,
+    tune::{Tuned, Tuning},
+};
 use flight::{
     failure::{COMPLETE, bad_input},
     planners,
@@ -12,6 +15,9 @@ use planner_host::{PluginDirs, check_parameters};
 use report::print::say;
 use std::process::ExitCode;
 use toml_edit::Value;
+
+/// Every set of values that is tried makes so many parts at most.
+const MOST_PARTS: usize = 16;
 
 /// `tankops tune`.
 pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -29,27 +35,46 @@ pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
         generations: args.generations,
         seed: args.seed,
     };
+    let asked = || {
+        serde_json::json!({
+            "planner": args.planner,
+            "start": start,
+            "tune": args.tune,
+            "on": args.on,
+            "training": tuning.training,
+            "test": tuning.test,
+            "generations": args.generations,
+            "seed": args.seed,
+        })
+    };
+    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, asked(), plugins)).transpose()?;
+    let parts = folder.as_ref().map(|folder| folder as &dyn Parts);
     let bar = if args.json { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
     let bar = shown(bar, "tune", "{spinner} {prefix}  {elapsed}");
     let progress = |_: usize, _: usize| bar.tick();
-    let tuned = Runner::new(plugins, args.threads, &progress).and_then(|runner| tuning.search(&runner));
+    let tuned = Runner::new(plugins, args.threads, &progress)
+        .and_then(|runner| tuning.search(&runner.with_parts(parts, MOST_PARTS)));
     bar.finish_and_clear();
     let tuned = tuned.map_err(bad_input)?;
+    folder.map_or(Ok(()), |folder| folder.finish(&answer(args, &tuned)))?;
     if args.json {
-        let (before, after) = tuned.loss;
-        let answer = serde_json::json!({
-            "planner": args.planner,
-            "on": args.on,
-            "parameters": tuned.values,
-            "training_loss": { "start": before, "tuned": after },
-            "evaluations": tuned.evaluations,
-            "rows": tuned.rows,
-        });
-        say_json("the result", &answer)?;
+        say_json("the result", &answer(args, &tuned))?;
     } else {
         say(&tuned.text(&tuning))?;
     }
     Ok(ExitCode::from(COMPLETE))
+}
+
+fn answer(args: &TuneArgs, tuned: &Tuned) -> serde_json::Value {
+    let (before, after) = tuned.loss;
+    serde_json::json!({
+        "planner": args.planner,
+        "on": args.on,
+        "parameters": tuned.values,
+        "training_loss": { "start": before, "tuned": after },
+        "evaluations": tuned.evaluations,
+        "rows": tuned.rows,
+    })
 }
 
 /// The values to start from.

@@ -26,6 +26,10 @@ pub(crate) struct ReproduceArgs {
     /// whole floors.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
+    /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and
+    /// several that run at once, on any machines, share the work.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print the rows as a JSON array on stdout.
     #[arg(long)]
     pub json: bool,
@@ -69,6 +73,10 @@ pub(crate) struct TuneArgs {
     /// Number of threads; 0: one per core. Does not affect the result.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+    /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and
+    /// several that run at once, on any machines, share the work.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print values, losses and rows as JSON on stdout.
     #[arg(long)]
     pub json: bool,

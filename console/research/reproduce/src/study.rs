@@ -3,6 +3,7 @@
 mod error;
 mod gallery;
 mod method;
+mod parts;
 mod planners;
 mod row;
 mod runner;
@@ -11,6 +12,7 @@ mod sample;
 pub use error::{Result, StudyError};
 pub use gallery::Gallery;
 pub(crate) use method::Method;
+pub use parts::Parts;
 pub(crate) use planners::{Planned, Planners};
 pub(crate) use row::Block;
 pub use row::Row;

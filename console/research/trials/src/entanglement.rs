@@ -4,6 +4,7 @@
 //! path's length, sampled every 0.2 m; what is left out on return and the wraps are in the certificate.
 
 use crate::tanks::Tank;
+use serde::{Deserialize, Serialize};
 use std::{f64::consts::PI, sync::Arc};
 use world::{
     Point, Vector, polyline,
@@ -18,7 +19,7 @@ const DETOUR_M: f64 = 0.05;
 const AHEAD_RAD: f64 = PI / 6.0;
 
 /// How a taut cable lay along a path.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Entanglement {
     /// Most cable out beyond the least that would do, metres.
     pub max_excess_m: f64,

@@ -1,6 +1,7 @@
 //! The figures of a path that scans the floor of a tank: coverage, length, turns and what it does to the tether.
 
 use crate::tanks::{CLEARANCE_M, HULL_M, SWATH_M, Tank};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{
     CoverageGrid, Floor, Point, Pose, Vector,
@@ -14,7 +15,7 @@ use world::{
 const TURN_STEP_RAD: f64 = 0.2;
 
 /// How a path over a floor went.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scan {
     /// Scanned share of the floor that the tool can reach.
     pub coverage_reachable: f64,

@@ -1,6 +1,7 @@
 //! The paper's figures of a planned path, and ours: cross-track, clearance, wall, heading.
 
 use crate::discs;
+use serde::{Deserialize, Serialize};
 use world::{Point, Vector, polyline};
 
 /// A planned point this near to its preset point is correct, metres; the paper's `T0`.
@@ -13,7 +14,7 @@ const HEADING_SPAN_M: f64 = 0.2;
 const WINDOW_M: f64 = 1.5;
 
 /// How well a planned path follows its preset points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Share of planned points within 0.2 m of the preset point of the same index; the paper's P.
     pub precision: f64,
@@ -34,7 +35,7 @@ pub struct Score {
 }
 
 /// What a planned path keeps clear of, and how it turns.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Safety {
     /// The least distance between the path and an obstacle, metres; infinite without obstacles.
     pub clearance_m: f64,

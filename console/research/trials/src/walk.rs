@@ -1,6 +1,7 @@
 //! Whether a walk along the spiral succeeds, since the paper says "success" and defines none.
 
 use crate::score::ARRIVED_M;
+use serde::{Deserialize, Serialize};
 use world::Point;
 
 /// A walk is trapped when so many moves in a row ...
@@ -13,7 +14,7 @@ const TRAP_LAG_M: f64 = 0.2;
 const COIL_M: f64 = 0.4 * std::f64::consts::PI;
 
 /// How a walk went.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WalkOutcome {
     /// Ends within 0.4 m of the last preset point.
     pub arrives: bool,

@@ -4,6 +4,7 @@ use crate::study::{Method, Planned, Planners, Result, Runner, StudyError};
 use mission::{Cause, Fault};
 use planner_api::{Code, Task};
 use report::{drawing::plan::Drawn, leg::legs};
+use serde::{Deserialize, Serialize};
 use trials::{
     Entanglement, Scan,
     tanks::{CELL_M, CLEARANCE_M, HULL_M, SWATH_M, Tank},
@@ -18,7 +19,7 @@ const LARGE_M: f64 = 20.0;
 const TOLERANCE_M: f64 = 0.3;
 
 /// A plan and its figures.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Measured {
     /// The figures; none if there is no path.
     pub figures: Option<(Scan, Entanglement)>,

@@ -2,6 +2,7 @@
 
 use crate::study::{Block, Job, Method, Planners, Result, Row, Sample, StudyError};
 use planner_api::Task;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_4;
 use trials::amphibious::{AmphibiousLayout, Group};
 use world::{Amphibious, Medium, Mode, Point, Pose, Shape, Zone, ZoneKind, polyline};
@@ -27,7 +28,7 @@ struct Entry {
 }
 
 /// The figures of a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Measured {
     arrived: bool,
     steps: f64,

@@ -2,6 +2,7 @@
 
 use crate::study::{Block, Method, Planned, Planners, Result, Row, StudyError};
 use planner_api::{Boundary, Limits, Motion, Site, Task};
+use serde::{Deserialize, Serialize};
 use trials::discs;
 use world::{Point, Pose, Vector, polyline, shape::rectangle};
 
@@ -28,7 +29,7 @@ pub(super) struct GotoLayout {
 }
 
 /// The figures of a plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Measured {
     /// The answer.
     pub planned: Planned,

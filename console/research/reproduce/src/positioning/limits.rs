@@ -7,6 +7,7 @@ use super::{
     setup::{Cycle, Layout, RADIUS_M, SESSION, Setup},
 };
 use crate::study::{Job, Result, Row, Sample, Study};
+use serde::{Deserialize, Serialize};
 use sim::NoiseModel;
 
 pub(super) const STUDY: Study = Study {
@@ -70,6 +71,7 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(all)
 }
 
+#[derive(Serialize, Deserialize)]
 struct Session {
     /// For each method, one for each truth.
     outcomes: Vec<Vec<Outcome>>,

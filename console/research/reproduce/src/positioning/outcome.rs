@@ -3,13 +3,14 @@
 use crate::study::{Block, Result, Row, Sample};
 use nalgebra::Matrix2;
 use positioning::{Fix, FixError, Integrity};
+use serde::{Deserialize, Serialize};
 use world::Point;
 
 /// A fix further off than this without a warning is a danger, metres.
 const DANGER_M: f64 = 0.3;
 
 /// What became of one cycle.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Outcome {
     /// Distance from the truth, metres; none without a fix.
     pub error_m: Option<f64>,

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::study::{Block, Job, Method, Planned, Planners, Result, Runner, StudyError};
 use planner_api::{Motion, Task};
+use serde::{Deserialize, Serialize};
 use trials::{Layout, Safety, Score, WalkOutcome, floor_rmse_m, safety, score};
 use world::Pose;
 
@@ -14,7 +15,7 @@ use world::Pose;
 const TOLERANCE_M: f64 = 0.2;
 
 /// One plan and its figures.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Measured {
     /// The answer.
     pub planned: Planned,

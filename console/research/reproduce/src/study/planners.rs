@@ -8,6 +8,7 @@ use mission::{Cause, Fault};
 use nalgebra::Matrix3;
 use planner_api::{Code, Plan, PlanRequest, PoseEstimate, Reason, Site, Task};
 use planner_host::{BlockingHost, HostConfig, PluginDirs};
+use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 use world::{Point, Pose};
 
@@ -18,7 +19,7 @@ const PLAN_WITHIN: Duration = Duration::from_mins(5);
 const MEMORY_BYTES: u64 = 1 << 30;
 
 /// A planner's answer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Planned {
     /// The plan; where none was found, as much as there is of it.
     pub plan: Plan,

@@ -3,10 +3,12 @@
 use super::{
     error::{Result, StudyError},
     gallery::Gallery,
+    parts::{Kept, Parts},
     planners::Planners,
 };
 use planner_host::PluginDirs;
 use rayon::prelude::*;
+use serde::{Serialize, de::DeserializeOwned};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// More threads than this do not help, and each starts planners of its own.
@@ -18,6 +20,10 @@ pub struct Runner<'a> {
     threads: rayon::ThreadPool,
     progress: &'a (dyn Fn(usize, usize) + Sync),
     gallery: Option<&'a Gallery>,
+    /// Where answers are kept, and how many parts a list of cases has at most.
+    parts: Option<(&'a dyn Parts, usize)>,
+    /// Lists of cases so far; a study has the same ones in every process.
+    lists: AtomicUsize,
 }
 
 impl<'a> Runner<'a> {
@@ -39,7 +45,14 @@ impl<'a> Runner<'a> {
         let threads = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build();
         let threads = threads
             .map_err(|error| StudyError::Refused(format!("the threads cannot be started: {error}")))?;
-        Ok(Self { planners: Planners::new(dirs), threads, progress, gallery: None })
+        Ok(Self {
+            planners: Planners::new(dirs),
+            threads,
+            progress,
+            gallery: None,
+            parts: None,
+            lists: AtomicUsize::new(0),
+        })
     }
 
     /// The same, drawing every plan into a gallery; only some studies have plans to draw.
@@ -48,28 +61,39 @@ impl<'a> Runner<'a> {
         Self { gallery, ..self }
     }
 
+    /// The same, keeping the answers of each list of cases in so many parts at most, and reading those that are there.
+    #[must_use]
+    pub fn with_parts(self, parts: Option<&'a dyn Parts>, most: usize) -> Self {
+        Self { parts: parts.map(|parts| (parts, most)), ..self }
+    }
+
     /// Where plans are to be drawn, if they are.
     pub(crate) fn gallery(&self) -> Option<&Gallery> {
         self.gallery
     }
 
-    /// Computes every case; the answers keep the order of the cases, whichever thread computed them.
+    /// Computes every case, or reads its answer; the answers keep the order of the cases, whichever thread computed them.
     ///
     /// # Errors
     /// The first error in the order of the cases.
-    pub(crate) fn map<C: Sync, T: Send>(
+    pub(crate) fn map<C: Sync, T: Send + Serialize + DeserializeOwned>(
         &self,
         cases: &[C],
         compute: impl Fn(&Planners, &C) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
+        let list = self.lists.fetch_add(1, Ordering::Relaxed);
         let done = AtomicUsize::new(0);
         (self.progress)(0, cases.len());
+        let is_done = |n: usize| (self.progress)(done.fetch_add(n, Ordering::Relaxed) + n, cases.len());
         let one = |case: &C| {
             let answer = compute(&self.planners, case);
-            (self.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, cases.len());
+            is_done(1);
             answer
         };
         self.threads.install(|| {
+            if let Some((parts, most)) = self.parts {
+                return Kept { parts, list, most }.map(cases, one, is_done);
+            }
             let answers: Vec<Result<T, StudyError>> = cases.par_iter().map(one).collect();
             answers.into_iter().collect()
         })
@@ -81,7 +105,7 @@ impl<'a> Runner<'a> {
     ///
     /// # Errors
     /// The first error in the order of the draws.
-    pub(crate) fn grid<C: Sync, D: Sync, T: Send>(
+    pub(crate) fn grid<C: Sync, D: Sync, T: Send + Serialize + DeserializeOwned>(
         &self,
         cases: &[C],
         draws: &[D],

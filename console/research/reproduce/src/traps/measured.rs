@@ -1,6 +1,7 @@
 //! The figures of one attempt to leave a trap.
 
 use crate::study::{Result, StudyError};
+use serde::{Deserialize, Serialize};
 use trials::Trap;
 use world::{Point, polyline};
 
@@ -10,7 +11,7 @@ pub(super) const TOLERANCE_M: f64 = 0.1;
 const ROUNDING_M: f64 = 1e-6;
 
 /// How a method did on a trap.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Measured {
     /// Whether the goal is reached without a collision.
     pub arrives: bool,
