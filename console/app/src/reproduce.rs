@@ -33,7 +33,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
             "methods": args.method,
         })
     };
-    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, asked(), plugins)).transpose()?;
+    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, &asked(), plugins)).transpose()?;
     let parts = folder.as_ref().map(|folder| folder as &dyn Parts);
     let gallery = args.svg.as_ref().map(|folder| gallery(study, folder)).transpose().map_err(bad_input)?;
     let template = "{prefix}  {wide_bar} {pos}/{len}  {elapsed} of about {duration}";

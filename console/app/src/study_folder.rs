@@ -23,7 +23,7 @@ pub(crate) struct StudyFolder(SharedFolder);
 
 impl StudyFolder {
     /// The folder for what is asked for with the planners and the program that are here, which is made if there is none.
-    pub(crate) fn open(path: &Path, asked: Value, plugins: &PluginDirs) -> anyhow::Result<Self> {
+    pub(crate) fn open(path: &Path, asked: &Value, plugins: &PluginDirs) -> anyhow::Result<Self> {
         let folder = SharedFolder::new(path);
         folder.make(&[PARTS]).map_err(|error| bad_input(format!("--out {error:#}")))?;
         let asked = serde_json::json!({ "asked": asked, "program": Here::survey(plugins)?.program });

@@ -47,7 +47,7 @@ pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
             "seed": args.seed,
         })
     };
-    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, asked(), plugins)).transpose()?;
+    let folder = args.out.as_ref().map(|out| StudyFolder::open(out, &asked(), plugins)).transpose()?;
     let parts = folder.as_ref().map(|folder| folder as &dyn Parts);
     let bar = if args.json { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
     let bar = shown(bar, "tune", "{spinner} {prefix}  {elapsed}");
