@@ -5,13 +5,13 @@ use anyhow::Context;
 use runs::write_by_draft;
 use std::{
     fs::{self, File},
-    io::Write,
+    io::{self, Write},
     path::{Path, PathBuf},
     time::{Duration, SystemTime},
 };
 
-/// A claim whose holder has not said anything for so long is void.
-const CLAIM_LASTS: Duration = Duration::from_mins(10);
+/// A claim whose holder has not said anything for so long is void, and a draft of that age was left by somebody.
+const SILENT_FOR: Duration = Duration::from_mins(10);
 /// Folder of the claims.
 const CLAIMS: &str = "claims";
 
@@ -48,7 +48,7 @@ impl SharedFolder {
         write_by_draft(&file, &draft, bytes).with_context(|| format!("writing {}", file.display()))
     }
 
-    /// Removes what killed processes have left in these folders.
+    /// Removes what killed processes have left in these folders; what others are writing now stays.
     pub(crate) fn tidy(&self, inner: &[&str]) {
         for folder in inner.iter().map(|inner| self.0.join(inner)) {
             let files = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -56,7 +56,8 @@ impl SharedFolder {
                 file.extension().is_some_and(|extension| extension.to_string_lossy().starts_with("draft-"))
             };
             // A draft that stays behind harms nobody.
-            files.map(|file| file.path()).filter(is_draft).for_each(|file| drop(fs::remove_file(file)));
+            let left = files.map(|file| file.path()).filter(|file| is_draft(file) && is_silent(file));
+            left.for_each(|file| drop(fs::remove_file(file)));
         }
     }
 
@@ -71,9 +72,13 @@ impl SharedFolder {
             // Two that find it void do at worst the same work twice.
             let _ = fs::remove_file(&claim);
         }
-        let Ok(mut made) = File::create_new(&claim) else { return false };
-        // Without its holder a claim is void when it is old.
-        let _ = write!(made, "{} {}", host(), std::process::id());
+        match File::create_new(&claim) {
+            // Without its holder a claim is void when it is old.
+            Ok(mut made) => drop(write!(made, "{} {}", host(), std::process::id())),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return false,
+            // Nobody can claim anything here: whoever waited would wait for ever. Publishing says what is wrong.
+            Err(_) => {}
+        }
         true
     }
 
@@ -93,8 +98,7 @@ impl SharedFolder {
 
 /// Whether the holder of a claim is gone: silent for long, or a process of this machine that has ended.
 fn is_void(claim: &Path) -> bool {
-    let age = fs::metadata(claim).and_then(|claim| claim.modified());
-    if age.is_ok_and(|at| at.elapsed().unwrap_or_default() > CLAIM_LASTS) {
+    if is_silent(claim) {
         return true;
     }
     let holder = fs::read_to_string(claim).unwrap_or_default();
@@ -103,6 +107,12 @@ fn is_void(claim: &Path) -> bool {
     let processes = Path::new("/proc");
     processes.join("self").exists()
         && process.is_some_and(|process| !processes.join(process.to_string()).exists())
+}
+
+/// Whether a file has not been touched for so long that nobody is at work on it.
+fn is_silent(file: &Path) -> bool {
+    let touched = fs::metadata(file).and_then(|file| file.modified());
+    touched.is_ok_and(|at| at.elapsed().unwrap_or_default() > SILENT_FOR)
 }
 
 /// The name of this machine; two with one name do at worst the same work twice.
@@ -115,14 +125,19 @@ fn host() -> String {
 mod tests {
     use super::*;
 
+    /// Makes a file look as if nobody had touched it for long.
+    fn age(file: &Path) {
+        let file = File::options().write(true).open(file).expect("a file");
+        file.set_modified(SystemTime::now() - SILENT_FOR - Duration::from_secs(1)).expect("set");
+    }
+
     #[test]
     fn a_claim_is_taken_once_and_void_when_its_holder_is_silent() {
         let here = tempfile::tempdir().expect("a folder");
         let folder = SharedFolder::new(here.path());
         folder.make(&[]).expect("a folder");
         assert!(folder.claim("3") && !folder.claim("3") && folder.claim("4"));
-        let silent = File::options().write(true).open(here.path().join("claims/3")).expect("a claim");
-        silent.set_modified(SystemTime::now() - CLAIM_LASTS - Duration::from_secs(1)).expect("set");
+        age(&here.path().join("claims/3"));
         assert!(folder.claim("3") && !folder.claim("3"));
         folder.release("3");
         assert!(folder.claim("3"));
@@ -143,14 +158,27 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_published_whole_and_drafts_are_tidied() {
+    fn where_nothing_can_be_claimed_nobody_waits() {
+        let here = tempfile::tempdir().expect("a folder");
+        let folder = SharedFolder::new(here.path());
+        fs::write(here.path().join("claims"), "not a folder").expect("written");
+        assert!(folder.claim("3") && folder.claim("3"));
+    }
+
+    #[test]
+    fn a_file_is_published_whole_and_drafts_that_were_left_are_tidied() {
         let here = tempfile::tempdir().expect("a folder");
         let folder = SharedFolder::new(here.path());
         folder.publish(Path::new("a.json"), b"{}").expect("written");
-        fs::write(here.path().join("a.draft-1-2"), "half").expect("written");
-        folder.tidy(&["."]);
-        let names: Vec<_> =
-            fs::read_dir(here.path()).expect("read").flatten().map(|file| file.file_name()).collect();
-        assert_eq!(names, ["a.json"]);
+        let draft = here.path().join("a.draft-1-2");
+        fs::write(&draft, "half").expect("written");
+        let names = || {
+            folder.tidy(&["."]);
+            let files = fs::read_dir(here.path()).expect("read").flatten();
+            files.map(|file| file.file_name()).collect::<std::collections::BTreeSet<_>>()
+        };
+        assert_eq!(names().len(), 2, "somebody may be writing it");
+        age(&draft);
+        assert_eq!(names().into_iter().collect::<Vec<_>>(), ["a.json"]);
     }
 }

@@ -2,7 +2,6 @@
 //! resumes, and shares the work with those that run at the same time.
 
 use crate::{campaign::Here, shared_folder::SharedFolder};
-use anyhow::Context;
 use flight::failure::bad_input;
 use planner_host::PluginDirs;
 use reproduce::Parts;
@@ -69,6 +68,10 @@ fn difference(there: &Value, now: &Value) -> Option<&'static str> {
 }
 
 impl Parts for StudyFolder {
+    fn place(&self, name: &str) -> String {
+        self.part(name).display().to_string()
+    }
+
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
         match fs::read(self.part(name)) {
             Ok(bytes) => Ok(Some(bytes)),
@@ -90,7 +93,6 @@ impl Parts for StudyFolder {
     }
 
     fn publish(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
-        let published = self.0.publish(&Path::new(PARTS).join(name), bytes).context("keeping the answers");
-        published.map_err(|error| format!("{error:#}"))
+        self.0.publish(&Path::new(PARTS).join(name), bytes).map_err(|error| error.root_cause().to_string())
     }
 }

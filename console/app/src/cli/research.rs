@@ -23,7 +23,7 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
     /// Folder for drawings of every plan, one file per layout and method; created if missing. Only for studies of
-    /// whole floors.
+    /// whole floors; with --out, only plans that this process makes.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
     /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and

@@ -10,6 +10,8 @@ const POLL: Duration = Duration::from_millis(200);
 
 /// Where parts are kept: a folder in which several processes may work at once.
 pub trait Parts: Sync {
+    /// Where a part is or would be, for people.
+    fn place(&self, name: &str) -> String;
     /// A part, if it is there.
     ///
     /// # Errors
@@ -73,7 +75,7 @@ impl Kept<'_> {
         is_done: impl Fn(usize),
     ) -> Result<Option<Vec<T>>> {
         let name = format!("part-{:05}-{n:05}.cbor", self.list);
-        let refused = |why: String| StudyError::Refused(format!("{name}: {why}"));
+        let refused = |why: String| StudyError::Refused(format!("{}: {why}", self.parts.place(&name)));
         let there = || -> Result<Option<Vec<T>>> {
             let Some(bytes) = self.parts.read(&name).map_err(refused)? else { return Ok(None) };
             let answers = read(&bytes).filter(|answers: &Vec<T>| answers.len() == cases.len());
@@ -131,6 +133,9 @@ mod tests {
     }
 
     impl Parts for Memory {
+        fn place(&self, name: &str) -> String {
+            format!("memory/{name}")
+        }
         fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
             Ok(self.parts.lock().unwrap().get(name).cloned())
         }
@@ -194,6 +199,6 @@ mod tests {
         squares(&memory, None).0.unwrap();
         memory.parts.lock().unwrap().get_mut("part-00000-00002.cbor").unwrap().truncate(5);
         let why = squares(&memory, None).0.unwrap_err().to_string();
-        assert!(why.starts_with("part-00000-00002.cbor: damaged; delete it"), "{why}");
+        assert!(why.starts_with("memory/part-00000-00002.cbor: damaged; delete it"), "{why}");
     }
 }
