@@ -117,8 +117,16 @@ fn a_study_with_a_folder_resumes_and_is_shared_by_several_processes() {
     let damaged = bench.tankops(&shared);
     assert!(damaged.code == Some(2) && damaged.err.contains(".cbor: damaged; delete it"), "{damaged:?}");
     assert!(damaged.err.contains("study/parts/part-"), "{damaged:?}");
+    std::fs::remove_file(&part).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(&part).status().unwrap();
+    let pipe = bench.tankops(&shared);
+    assert!(made.success() && pipe.code == Some(2) && pipe.err.contains("not a regular file"), "{pipe:?}");
     let other = bench.tankops(&[&shared[..], &["--first-seed", "9"]].concat());
     assert!(other.code == Some(2) && other.err.contains("to other arguments"), "{other:?}");
+    std::fs::write(bench.path().join("study/study.json"), b"{half").unwrap();
+    let broken = bench.tankops(&shared);
+    assert!(broken.code == Some(2) && broken.err.contains("study.json: "), "{broken:?}");
+    assert!(!broken.err.contains("other arguments"), "{broken:?}");
 }
 
 #[test]

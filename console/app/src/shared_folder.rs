@@ -2,10 +2,11 @@
 //! claims that say who works on what.
 
 use anyhow::Context;
+use recording::{open_regular, read_regular};
 use runs::write_by_draft;
 use std::{
     fs::{self, File},
-    io::{self, Write},
+    io::{self, Read, Write},
     path::{Path, PathBuf},
     time::{Duration, SystemTime},
 };
@@ -40,6 +41,16 @@ impl SharedFolder {
         self.0.join(name).exists()
     }
 
+    /// The bytes of a regular file, if it is there.
+    pub(crate) fn read(&self, name: &Path) -> io::Result<Option<Vec<u8>>> {
+        let mut bytes = Vec::new();
+        match open_regular(&self.0.join(name)).and_then(|mut file| file.read_to_end(&mut bytes)) {
+            Ok(_) => Ok(Some(bytes)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
     /// Writes a file whole or not at all: under another name, to the disk, then renamed.
     pub(crate) fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let file = self.0.join(name);
@@ -61,7 +72,8 @@ impl SharedFolder {
         }
     }
 
-    fn claim_file(&self, name: &str) -> PathBuf {
+    /// Where a claim is; it holds the machine and the process.
+    pub(crate) fn claim_file(&self, name: &str) -> PathBuf {
         self.0.join(CLAIMS).join(name)
     }
 
@@ -101,9 +113,9 @@ fn is_void(claim: &Path) -> bool {
     if is_silent(claim) {
         return true;
     }
-    let holder = fs::read_to_string(claim).unwrap_or_default();
+    let holder = read_regular(claim).unwrap_or_default();
     let here = format!("{} ", host());
-    let process = holder.strip_prefix(&here).and_then(|process| process.parse::<u32>().ok());
+    let process = holder.strip_prefix(&here).and_then(|process| process.trim().parse::<u32>().ok());
     let processes = Path::new("/proc");
     processes.join("self").exists()
         && process.is_some_and(|process| !processes.join(process.to_string()).exists())

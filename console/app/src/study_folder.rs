@@ -4,11 +4,12 @@
 use crate::{campaign::Here, shared_folder::SharedFolder};
 use flight::failure::bad_input;
 use planner_host::PluginDirs;
+use report::print::warn_line;
 use reproduce::Parts;
 use serde_json::Value;
 use std::{
-    fs, io,
     path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 /// What was asked for, and with which program.
@@ -18,7 +19,11 @@ const PARTS: &str = "parts";
 const RESULT: &str = "result.json";
 
 /// A folder of answers.
-pub(crate) struct StudyFolder(SharedFolder);
+pub(crate) struct StudyFolder {
+    folder: SharedFolder,
+    /// Whether it was said that others are waited for.
+    has_waited: AtomicBool,
+}
 
 impl StudyFolder {
     /// The folder for what is asked for with the planners and the program that are here, which is made if there is none.
@@ -26,33 +31,28 @@ impl StudyFolder {
         let folder = SharedFolder::new(path);
         folder.make(&[PARTS]).map_err(|error| bad_input(format!("--out {error:#}")))?;
         let asked = serde_json::json!({ "asked": asked, "program": Here::survey(plugins)?.program });
-        let file = path.join(FROZEN);
-        match fs::read(&file) {
-            Ok(there) => {
-                if let Some(what) = difference(&serde_json::from_slice(&there).unwrap_or_default(), &asked) {
-                    let path = path.display();
-                    return Err(bad_input(format!(
-                        "--out {path} holds answers {what}; choose another folder"
-                    )));
-                }
-            }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                folder.publish(Path::new(FROZEN), &serde_json::to_vec_pretty(&asked)?)?;
-            }
-            Err(error) => return Err(bad_input(format!("{}: {error}", file.display()))),
+        let refused = |why: &str| bad_input(format!("--out {}: {why}", path.join(FROZEN).display()));
+        match folder.read(Path::new(FROZEN)).map_err(|error| refused(&error.to_string()))? {
+            None => folder.publish(Path::new(FROZEN), &serde_json::to_vec_pretty(&asked)?)?,
+            Some(there) => match serde_json::from_slice(&there) {
+                Err(error) => return Err(refused(&format!("{error}; choose another folder"))),
+                Ok(there) => difference(&there, &asked).map_or(Ok(()), |what| {
+                    Err(refused(&format!("the folder holds answers {what}; choose another one")))
+                })?,
+            },
         }
-        Ok(Self(folder))
+        Ok(Self { folder, has_waited: AtomicBool::new(false) })
     }
 
     /// Keeps the results, and removes what killed processes have left.
     pub(crate) fn finish(&self, result: &Value) -> anyhow::Result<()> {
-        self.0.publish(Path::new(RESULT), &serde_json::to_vec_pretty(result)?)?;
-        self.0.tidy(&[PARTS, "."]);
+        self.folder.publish(Path::new(RESULT), &serde_json::to_vec_pretty(result)?)?;
+        self.folder.tidy(&[PARTS, "."]);
         Ok(())
     }
 
     fn part(&self, name: &str) -> PathBuf {
-        self.0.path().join(PARTS).join(name)
+        self.folder.path().join(PARTS).join(name)
     }
 }
 
@@ -73,26 +73,32 @@ impl Parts for StudyFolder {
     }
 
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        match fs::read(self.part(name)) {
-            Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error.to_string()),
-        }
+        self.folder.read(&Path::new(PARTS).join(name)).map_err(|error| error.to_string())
     }
 
     fn claim(&self, name: &str) -> bool {
-        self.0.claim(name)
+        self.folder.claim(name)
+    }
+
+    fn wait_for(&self, name: &str) {
+        if !self.has_waited.swap(true, Ordering::Relaxed) {
+            let (place, claim) = (self.place(name), self.folder.claim_file(name));
+            let until = "until it has done so, has ended, or has been silent for 10 min";
+            warn_line(&format!("waiting for {place}: {} says who computes it, {until}", claim.display()));
+        }
     }
 
     fn keep_claim(&self, name: &str) {
-        self.0.keep_claim(name);
+        self.folder.keep_claim(name);
     }
 
     fn release(&self, name: &str) {
-        self.0.release(name);
+        self.folder.release(name);
     }
 
     fn publish(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
-        self.0.publish(&Path::new(PARTS).join(name), bytes).map_err(|error| error.root_cause().to_string())
+        self.folder
+            .publish(&Path::new(PARTS).join(name), bytes)
+            .map_err(|error| error.root_cause().to_string())
     }
 }

@@ -13,7 +13,10 @@ use std::{
 };
 
 /// Opens a regular file: a device or a pipe may never end.
-pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
+///
+/// # Errors
+/// It is no regular file, or cannot be opened.
+pub fn open_regular(path: &Path) -> io::Result<File> {
     let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
     // Looked at before it is opened, since opening a pipe waits for a writer.
     if fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }

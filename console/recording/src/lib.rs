@@ -26,7 +26,7 @@ pub mod thread;
 pub use self::mcap::export_mcap;
 pub use error::RecordingError;
 pub use export::export;
-pub use file::{FileChange, read_regular, sha256, sha256_of};
+pub use file::{FileChange, open_regular, read_regular, sha256, sha256_of};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{

@@ -19,6 +19,8 @@ pub trait Parts: Sync {
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String>;
     /// Takes a part for this process alone; false if another one has it.
     fn claim(&self, name: &str) -> bool;
+    /// Is told that this process waits for a part that another one has.
+    fn wait_for(&self, name: &str);
     /// Says that the holder of a claim is alive.
     fn keep_claim(&self, name: &str);
     /// Gives a part back.
@@ -60,10 +62,15 @@ impl Kept<'_> {
             if let Some(answers) = take(part)? {
                 return Ok(answers);
             }
+            self.parts.wait_for(&self.name(part.0));
             std::thread::sleep(POLL);
         };
         let answers = taken.into_iter().zip(&parts).map(|(taken, part)| taken.unwrap_or_else(|| wait(part)));
         answers.collect::<Result<Vec<Vec<T>>>>().map(|parts| parts.into_iter().flatten().collect())
+    }
+
+    fn name(&self, n: usize) -> String {
+        format!("part-{:05}-{n:05}.cbor", self.list)
     }
 
     /// The answers of a part; none if another process computes them.
@@ -74,7 +81,7 @@ impl Kept<'_> {
         compute: impl Fn(&C) -> Result<T>,
         is_done: impl Fn(usize),
     ) -> Result<Option<Vec<T>>> {
-        let name = format!("part-{:05}-{n:05}.cbor", self.list);
+        let name = self.name(n);
         let refused = |why: String| StudyError::Refused(format!("{}: {why}", self.parts.place(&name)));
         let there = || -> Result<Option<Vec<T>>> {
             let Some(bytes) = self.parts.read(&name).map_err(refused)? else { return Ok(None) };
@@ -141,6 +148,9 @@ mod tests {
         }
         fn claim(&self, name: &str) -> bool {
             self.claims.lock().unwrap().insert(name.to_owned())
+        }
+        fn wait_for(&self, name: &str) {
+            assert!(name.starts_with("part-00000-"));
         }
         fn keep_claim(&self, name: &str) {
             assert!(self.claims.lock().unwrap().contains(name));
