@@ -21,6 +21,9 @@ use world::{Pose, Zone};
 const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
 
+/// What is said to whom it leaves without a way.
+const INSTEAD: &str = "choose shortest or navfn, which find a way wherever there is one";
+
 /// The hybrid of potential field and dynamic window, for land and water.
 pub(crate) struct ApfDwa {
     settings: HybridSettings,
@@ -56,7 +59,7 @@ impl Planner for ApfDwa {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let (goal, tolerance_m) = ends::single_goal(request, Self::ID)?;
         let (site, start) = (request.site, request.start);
-        let map = KnownMap::new(site);
+        let map = KnownMap::standing(site);
         let run = if Surroundings::is_small(&map) {
             let pose = Pose { position: start.position, heading_rad: start.heading_rad };
             let mut hybrid = Hybrid::new(self.settings, zones(site), site.limits.radius_m);
@@ -78,7 +81,7 @@ impl Planner for ApfDwa {
         let clearance_m = map.path_clearance_m(&run.path, site.clearance_m + 1.0);
         self.around = Surroundings::new(map);
         self.hybrid.take_change(Changed { parts: true, ways: true });
-        Ok(Walk { path: run.path, shortfall }.into_plan(clearance_m, site.clearance_m, ctx))
+        Ok(Walk { path: run.path, shortfall }.into_plan_or(clearance_m, site.clearance_m, INSTEAD, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

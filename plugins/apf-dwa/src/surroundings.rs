@@ -64,9 +64,9 @@ impl Surroundings {
         map.solids.len() <= PARTS_MOST
     }
 
-    /// About a robot at a site.
+    /// About a robot at a site; what moves counts only while it is sensed.
     pub fn of_site(site: &Site<'_>) -> Self {
-        Self::new(KnownMap::new(site))
+        Self::new(KnownMap::standing(site))
     }
 
     /// The whole of a map, for a search that may take its time.
