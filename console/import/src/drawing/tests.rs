@@ -133,3 +133,41 @@ fn the_scenario_holds_shell_obstacles_and_zones() {
         assert!(text.contains(wanted), "{text}");
     }
 }
+
+#[test]
+fn blocks_that_insert_each_other_without_end_are_refused() {
+    let mut text =
+        String::from("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n");
+    for k in 0..12 {
+        let next = (k + 1) % 12;
+        let insert = format!("0\nINSERT\n8\nSHELL\n2\nB{next}\n70\n1000\n71\n1000\n");
+        text += &format!("0\nBLOCK\n2\nB{k}\n{insert}{insert}0\nENDBLK\n");
+    }
+    text += "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nINSERT\n8\nSHELL\n2\nB0\n0\nENDSEC\n0\nEOF\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    std::fs::write(&file, text).unwrap();
+    let message = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap_err().to_string();
+    assert!(message.contains("more than 1000000 entities"), "{message}");
+}
+
+#[test]
+fn a_hundred_thousand_lines_are_joined_to_the_shell() {
+    let n = 100_000;
+    let mut text =
+        String::from("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+    let at = |k: usize| {
+        let angle = std::f64::consts::TAU * (k % n) as f64 / n as f64;
+        (100.0 * angle.cos(), 60.0 * angle.sin())
+    };
+    for k in 0..n {
+        let ((x, y), (u, v)) = (at(k * 7 % n), at(k * 7 % n + 1));
+        text += &format!("0\nLINE\n8\nSHELL\n10\n{x:.6}\n20\n{y:.6}\n11\n{u:.6}\n21\n{v:.6}\n");
+    }
+    text += "0\nENDSEC\n0\nEOF\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    std::fs::write(&file, text).unwrap();
+    let plan = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap();
+    assert!((plan.boundary.area_m2() - std::f64::consts::PI * 6000.0).abs() < 1.0);
+}
