@@ -137,6 +137,18 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
                 arc(at(10, 20)?, entity.number(40, 0.0), entity.number(50, 0.0), entity.number(51, 360.0));
             Some(Outline::Chain { points: placed(points, &in_plane), is_closed: false, width_m: 0.0 })
         }
+        // In the coordinates of the drawing: the centre, the long half axis from there, and the share of the short one.
+        "ELLIPSE" => {
+            let (center, long) = (at(10, 20)?, at(11, 21)?.coords);
+            let short = Vector::new(-long.y, long.x) * entity.number(40, 1.0);
+            let (from, to) = (entity.number(41, 0.0), entity.number(42, TAU));
+            let sweep = if to > from { (to - from).min(TAU) } else { (to - from).rem_euclid(TAU) };
+            let is_closed = sweep > TAU - 1e-6;
+            let on_unit = along_arc(Point::origin(), 1.0, from, sweep);
+            let points =
+                on_unit.iter().skip(usize::from(is_closed)).map(|p| center + long * p.x + short * p.y);
+            Some(Outline::Chain { points: placed(points.collect(), map), is_closed, width_m: 0.0 })
+        }
         "LWPOLYLINE" | "POLYLINE" => {
             let corners = match entity.kind.as_str() {
                 "POLYLINE" => entity

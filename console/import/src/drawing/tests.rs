@@ -171,3 +171,25 @@ fn a_hundred_thousand_lines_are_joined_to_the_shell() {
     let plan = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap();
     assert!((plan.boundary.area_m2() - std::f64::consts::PI * 6000.0).abs() < 1.0);
 }
+
+#[test]
+fn an_ellipse_is_an_outline_turned_as_drawn() {
+    let shell = "0 CIRCLE,8 SHELL,10 0,20 0,40 10,";
+    let ellipse = "0 ELLIPSE,8 NOGO,10 3,20 0,11 0,21 2,40 0.5,41 0,42 6.283185307179586";
+    let plan = read_text(",9 $INSUNITS,70 6", "", &format!("{shell}{ellipse}"), METRES).unwrap();
+    let (low, high) = plan.no_go[0].shape.bounds();
+    let is_near = |at: Point, x: f64, y: f64| (at - Point::new(x, y)).norm() < 0.02;
+    assert!(is_near(low, 2.0, -2.0) && is_near(high, 4.0, 2.0), "{low} {high}");
+}
+
+#[test]
+fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\nSHELL\n10\n0\n20\n0\n40\n5\n").unwrap();
+    let message = read(&file, METRES).unwrap_err().to_string();
+    assert!(
+        message.ends_with("the drawing is cut off: it does not end with EOF; save it again"),
+        "{message}"
+    );
+}
