@@ -1,5 +1,5 @@
 use super::*;
-use std::fs;
+use std::{fmt::Write, fs};
 
 const METRES: Assumed = Assumed { unit_m: None, pipe_width_m: 0.1 };
 
@@ -141,12 +141,12 @@ fn blocks_that_insert_each_other_without_end_are_refused() {
     for k in 0..12 {
         let next = (k + 1) % 12;
         let insert = format!("0\nINSERT\n8\nSHELL\n2\nB{next}\n70\n1000\n71\n1000\n");
-        text += &format!("0\nBLOCK\n2\nB{k}\n{insert}{insert}0\nENDBLK\n");
+        write!(text, "0\nBLOCK\n2\nB{k}\n{insert}{insert}0\nENDBLK\n").unwrap();
     }
     text += "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nINSERT\n8\nSHELL\n2\nB0\n0\nENDSEC\n0\nEOF\n";
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
-    std::fs::write(&file, text).unwrap();
+    fs::write(&file, text).unwrap();
     let message = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap_err().to_string();
     assert!(message.contains("more than 1000000 entities"), "{message}");
 }
@@ -162,12 +162,12 @@ fn a_hundred_thousand_lines_are_joined_to_the_shell() {
     };
     for k in 0..n {
         let ((x, y), (u, v)) = (at(k * 7 % n), at(k * 7 % n + 1));
-        text += &format!("0\nLINE\n8\nSHELL\n10\n{x:.6}\n20\n{y:.6}\n11\n{u:.6}\n21\n{v:.6}\n");
+        write!(text, "0\nLINE\n8\nSHELL\n10\n{x:.6}\n20\n{y:.6}\n11\n{u:.6}\n21\n{v:.6}\n").unwrap();
     }
     text += "0\nENDSEC\n0\nEOF\n";
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
-    std::fs::write(&file, text).unwrap();
+    fs::write(&file, text).unwrap();
     let plan = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap();
     assert!((plan.boundary.area_m2() - std::f64::consts::PI * 6000.0).abs() < 1.0);
 }
