@@ -7,6 +7,9 @@ use crate::{
 use std::{collections::HashSet, path::Path};
 use world::{Boundary, Point, Shape};
 
+/// So much of the name of a field is repeated in a message, characters.
+const LONGEST_NAME: usize = 40;
+
 /// Reads a list of round columns in a round tank of a radius, metres.
 ///
 /// The first line names the fields: `x_m`, `y_m`, `radius_m` or `diameter_m`, and perhaps `name`, in any order, separated by
@@ -39,9 +42,10 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
     let header = reader.headers().map_err(|error| bad(&error))?.clone();
     let known = ["name", "x_m", "y_m", "radius_m", "diameter_m"];
     if let Some(other) = header.iter().find(|field| !known.contains(field)) {
+        let other: String = other.chars().take(LONGEST_NAME).collect();
         return Err(wrong(
             1,
-            other,
+            &other,
             format!("is no field; the first line names some of {}", known.join(", ")),
         ));
     }

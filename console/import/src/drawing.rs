@@ -58,7 +58,13 @@ pub fn read(file: &Path, assumed: Assumed) -> Result<FloorPlan, ImportError> {
     }
     let mut by_role: BTreeMap<Role, Vec<Drawn>> = BTreeMap::new();
     let mut unused: BTreeMap<String, usize> = BTreeMap::new();
-    for drawn in entities::all(&drawing, unit_m) {
+    let all = entities::all(&drawing, unit_m).ok_or_else(|| {
+        of_file(format!(
+            "more than {} entities, those of inserted blocks included; keep the layers of the floor only",
+            entities::MOST
+        ))
+    })?;
+    for drawn in all {
         match (role_of(&drawn.layer), &drawn.outline) {
             (Some(Role::Plates) | None, _) | (_, None) => {
                 *unused.entry(format!("layer {}: {}", drawn.layer, drawn.kind)).or_default() += 1;

@@ -6,6 +6,7 @@ use planner_apf_dwa::{
     Hybrid, HybridSettings, State, Twist, Weights, Window,
     guide::{Field, GuideBy},
     near::NearThings,
+    surroundings::Surroundings,
 };
 use steering::KnownMap;
 use trials::amphibious::{AmphibiousLayout, Group, HULL_M};
@@ -54,7 +55,9 @@ fn step(criterion: &mut Criterion) {
     let mut hybrid = Hybrid::new(settings(), Vec::new(), HULL_M);
     criterion.bench_function("dwa_step", |bencher| {
         let state = State { pose, twist };
-        bencher.iter(|| hybrid.decide(&state, layout.goal, &map, |_| Vector::zeros()));
+        let mut around = Surroundings::new(map.clone());
+        around.look(pose.position, 3.0, &[], |_| false);
+        bencher.iter(|| hybrid.decide(&state, layout.goal, &[], &around, |_| Vector::zeros()));
     });
 }
 

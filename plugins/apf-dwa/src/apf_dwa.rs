@@ -1,8 +1,9 @@
 //! The planner: offline on the known map, and tick by tick.
 
 use crate::{
-    hybrid::{Hybrid, HybridSettings, State, run},
+    hybrid::{Hybrid, HybridSettings, State, distances_m, route, run},
     parameters,
+    surroundings::{Changed, Surroundings},
     window::{Twist, Window, arc, moved},
 };
 use field::{
@@ -20,12 +21,14 @@ use world::{Pose, Zone};
 const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
 
+/// What is said to whom it leaves without a way.
+const INSTEAD: &str = "choose shortest or navfn, which find a way wherever there is one";
+
 /// The hybrid of potential field and dynamic window, for land and water.
 pub(crate) struct ApfDwa {
     settings: HybridSettings,
     hybrid: Hybrid,
-    map: KnownMap,
-    no_go: Vec<Body>,
+    around: Surroundings,
     motion: Motion,
     stuck_s: f64,
     stall: Stall,
@@ -45,8 +48,7 @@ impl Planner for ApfDwa {
         Ok(Self {
             settings,
             hybrid: Hybrid::new(settings, zones(site), site.limits.radius_m),
-            map: KnownMap::new(site),
-            no_go: Body::no_go(site),
+            around: Surroundings::of_site(site),
             motion: site.limits.motion,
             stuck_s: config.float("stuck_s"),
             stall: Stall::default(),
@@ -57,39 +59,52 @@ impl Planner for ApfDwa {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let (goal, tolerance_m) = ends::single_goal(request, Self::ID)?;
         let (site, start) = (request.site, request.start);
-        self.map = KnownMap::new(site);
-        self.hybrid.forget_map();
-        let pose = Pose { position: start.position, heading_rad: start.heading_rad };
-        let mut hybrid = Hybrid::new(self.settings, zones(site), site.limits.radius_m);
-        let steps_max = self.steps_max((goal - start.position).norm());
-        let run = run(&mut hybrid, pose, goal, tolerance_m, steps_max, &self.map, || ctx.check())?;
-        ctx.scalar("virtual_goals", f64::from(hybrid.guide().used()), "");
-        ctx.scalar("overspeed", run.overspeed_m_per_s, "m/s");
+        let map = KnownMap::standing(site);
+        let run = if Surroundings::is_small(&map) {
+            let pose = Pose { position: start.position, heading_rad: start.heading_rad };
+            let mut hybrid = Hybrid::new(self.settings, zones(site), site.limits.radius_m);
+            let steps_max = self.steps_max((goal - start.position).norm());
+            let run = run(&mut hybrid, pose, goal, tolerance_m, steps_max, &map, || ctx.check())?;
+            ctx.scalar("virtual_goals", f64::from(hybrid.guide().used()), "");
+            ctx.scalar("overspeed", run.overspeed_m_per_s, "m/s");
+            run
+        } else {
+            ctx.log(
+                LogLevel::Info,
+                "on a map of this size the plan is the shortest way; the window flies it",
+            );
+            route(&map, start.position, goal, self.settings.field.keep_m, || ctx.check())?
+        };
         let at = run.path[run.path.len() - 1];
         let missing_m = (goal - at).norm();
         let shortfall = (!run.arrived).then_some(Shortfall::Short { missing_m, at });
-        let clearance_m = self.map.path_clearance_m(&run.path, site.clearance_m + 1.0);
-        Ok(Walk { path: run.path, shortfall }.into_plan(clearance_m, site.clearance_m, ctx))
+        let clearance_m = map.path_clearance_m(&run.path, site.clearance_m + 1.0);
+        self.around = Surroundings::new(map);
+        self.hybrid.take_change(Changed { parts: true, ways: true });
+        Ok(Walk { path: run.path, shortfall }.into_plan_or(clearance_m, site.clearance_m, INSTEAD, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        if self.map.learn(&Body::sensed(sensed, &self.no_go)) {
-            self.hybrid.forget_map();
-        }
         let pose = Pose { position: sensed.pose.position, heading_rad: sensed.pose.heading_rad };
         let twist = Twist { v_m_per_s: sensed.v_m_per_s.max(0.0), w_rad_per_s: sensed.w_rad_per_s };
         let velocity_of = |id| {
             let sighted = sensed.obstacles.iter().find(|o| o.id == id);
             sighted.map_or_else(Vector2::zeros, |o| o.velocity_m_per_s)
         };
+        let bodies = Body::sensed(sensed, &[]);
+        let reach_m = self.hybrid.reach_m(fastest_m_per_s(sensed));
+        let changed =
+            self.around.look(pose.position, reach_m, &bodies, |id| velocity_of(id) != Vector2::zeros());
+        self.hybrid.take_change(changed);
         let state = State { pose, twist };
-        let decision = self.hybrid.decide(&state, sensed.target, &self.map, velocity_of);
+        let decision =
+            self.hybrid.decide(&state, sensed.target, sensed.path_ahead, &self.around, velocity_of);
         decision.forces.show(ctx, pose.position, self.settings.field.square.k_att);
-        for (index, distance_m) in decision.distances_m.iter().enumerate() {
-            ctx.scalar(DISTANCES[index], *distance_m, "m");
+        for (name, distance_m) in DISTANCES.iter().zip(distances_m(self.around.map(), pose.position)) {
+            ctx.scalar(name, distance_m, "m");
         }
-        ctx.scalar("safe_distance", self.settings.window.keep_m - self.map.hull_m, "m");
+        ctx.scalar("safe_distance", self.settings.window.keep_m - self.around.map().hull_m, "m");
         ctx.scalar("mode", self.hybrid.mode().unwrap_or(0.0), "");
         ctx.scalar("speed_limit", decision.pace.v_max_m_per_s, "m/s");
         self.report(&pose, decision.twist, ctx);
@@ -152,6 +167,10 @@ impl ApfDwa {
         // A point robot looks where it goes: it cannot turn on the spot.
         Drive::Velocity(turned.direction() * twist.v_m_per_s.max(1e-3))
     }
+}
+
+fn fastest_m_per_s(sensed: &Sensed<'_>) -> f64 {
+    sensed.obstacles.iter().map(|o| o.velocity_m_per_s.norm()).fold(0.0, f64::max)
 }
 
 fn zones(site: &Site<'_>) -> Vec<Zone> {

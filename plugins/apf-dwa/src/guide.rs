@@ -1,12 +1,13 @@
 //! Where the field is to pull: the paper's virtual goals, or the next corner of the shortest way.
 
+use crate::surroundings::{Changed, Surroundings};
 use field::{
     GoalLaw, Sides,
     virtual_goals::{SquareLaw, VirtualGoals},
 };
 use std::collections::VecDeque;
-use steering::{Forces, KnownMap, Nearby};
-use world::{Point, Shape, Vector, shortest::GrownFloor};
+use steering::{Forces, Nearby};
+use world::{Point, Vector};
 
 /// Steps over which the robot must have come on (the paper's loop looks at 60).
 const STALL_STEPS: usize = 60;
@@ -23,6 +24,10 @@ const ATTEMPTS: u32 = 6;
 const LOOK_STEPS: usize = 20;
 /// It is replanned after so many steps in any case: the robot has moved aside.
 const FRESH_STEPS: usize = 40;
+/// A place further along the plan than the end of the way by this makes the way too short, metres.
+const AIM_MOVED_M: f64 = 1.0;
+/// What moves is seen to stand in the way after so many steps.
+const MOVING_STEPS: usize = 5;
 /// A way counts as free with this much less room than the window keeps, metres.
 const SLACK_M: f64 = 0.03;
 
@@ -56,8 +61,17 @@ pub struct Guide {
     places: VecDeque<Point>,
     way: Vec<Point>,
     age: usize,
-    /// Floors of the map as it is, one for each attempt to find a way.
-    floors: Vec<GrownFloor>,
+}
+
+/// Where a robot is and where it is to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trip {
+    /// Where it is.
+    pub at: Point,
+    /// The end of the way.
+    pub goal: Point,
+    /// Where to go first: the goal, or a place on the plan that is nearer than what is left out of the map.
+    pub aim: Point,
 }
 
 impl Guide {
@@ -69,15 +83,17 @@ impl Guide {
             places: VecDeque::new(),
             way: Vec::new(),
             age: usize::MAX,
-            floors: Vec::new(),
         }
     }
 
     /// The map has changed.
-    pub fn forget_map(&mut self) {
-        self.nearby.forget();
-        self.age = usize::MAX;
-        self.floors.clear();
+    pub fn take_change(&mut self, changed: Changed) {
+        if changed.parts {
+            self.nearby.forget();
+        }
+        if changed.ways {
+            self.age = usize::MAX;
+        }
     }
 
     /// The virtual goal in use.
@@ -95,12 +111,13 @@ impl Guide {
         self.goals.used
     }
 
-    /// The forces at a place.
-    pub fn forces(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point, step_m: f64) -> Forces {
-        let forces = field.push.forces(at, goal, map, &mut self.nearby, &mut Sides::default());
+    /// The forces at a place; a step is `step_m` long.
+    pub fn forces(&mut self, field: &Field, around: &Surroundings, trip: &Trip, step_m: f64) -> Forces {
+        let map = around.map();
+        let forces = field.push.forces(trip.at, trip.goal, map, &mut self.nearby, &mut Sides::default());
         let pull = match field.by {
-            GuideBy::Square => self.toward_square(field, map, at, goal, forces.repulsion, step_m),
-            GuideBy::Corners => self.toward_corner(field, map, at, goal),
+            GuideBy::Square => self.toward_square(field, around, trip, forces.repulsion, step_m),
+            GuideBy::Corners => self.toward_corner(field, around, trip),
         };
         Forces { attraction: pull, ..forces }
     }
@@ -108,49 +125,58 @@ impl Guide {
     fn toward_square(
         &mut self,
         field: &Field,
-        map: &KnownMap,
-        at: Point,
-        goal: Point,
+        around: &Surroundings,
+        trip: &Trip,
         push: Vector,
         step_m: f64,
     ) -> Vector {
+        let Trip { at, goal, .. } = *trip;
         let law = &field.square;
         let without = law.attraction(at, goal, None) + push;
         let stalled = self.stalled(at);
         let force = if stalled { Vector::zeros() } else { without };
         if self.goals.needs_one(law, at, goal, force, step_m) {
+            // The goal may lie beyond what is kept of the map.
+            let map = if around.is_everything() { around.map() } else { around.charted() };
             self.goals.take_best(law, at, goal, push, map);
         }
         law.attraction(at, goal, self.goals.current())
     }
 
     /// Toward the first corner of the shortest way that is not passed yet, as strongly as toward a goal.
-    fn toward_corner(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point) -> Vector {
-        let leads_elsewhere = self.way.last().is_none_or(|end| (end - goal).norm() > 1e-6);
-        if self.age == usize::MAX || leads_elsewhere {
-            self.find_way(field, map, at, goal);
+    fn toward_corner(&mut self, field: &Field, around: &Surroundings, trip: &Trip) -> Vector {
+        let (map, at) = (around.map(), trip.at);
+        if self.age == usize::MAX || self.leads_elsewhere(trip) {
+            self.find_way(field, around, trip);
         }
         self.age += 1;
+        let margin_m = field.keep_m - map.hull_m - SLACK_M;
         if self.age.is_multiple_of(LOOK_STEPS) {
-            let margin_m = field.keep_m - map.hull_m - SLACK_M;
             while self.way.len() > 1 && map.is_free(at, self.way[1], margin_m + SLACK_M + ROOM_M / 2.0) {
                 self.way.remove(0);
             }
-            let corner = self.way.first().copied().unwrap_or(goal);
-            if self.age >= FRESH_STEPS || !map.is_free(at, corner, margin_m) {
-                self.find_way(field, map, at, goal);
-            }
+        }
+        let corner = self.way.first().copied().unwrap_or(trip.aim);
+        let is_due = self.age >= FRESH_STEPS && self.age.is_multiple_of(LOOK_STEPS);
+        if is_due || (self.age.is_multiple_of(MOVING_STEPS) && !map.is_free(at, corner, margin_m)) {
+            self.find_way(field, around, trip);
         }
         while self.way.len() > 1 && (self.way[0] - at).norm() < PASSED_M {
             self.way.remove(0);
         }
-        let corner = self.way.first().copied().unwrap_or(goal);
-        let pull = field.square.attraction(at, goal, None).norm().max(field.square.k_att);
+        let corner = self.way.first().copied().unwrap_or(trip.aim);
+        let pull = field.square.attraction(at, trip.goal, None).norm().max(field.square.k_att);
         (corner - at).try_normalize(1e-9).unwrap_or_else(Vector::zeros) * pull
     }
 
-    fn find_way(&mut self, field: &Field, map: &KnownMap, at: Point, goal: Point) {
-        self.way = shortest_way(map, at, goal, field.keep_m, &mut self.floors);
+    fn leads_elsewhere(&self, trip: &Trip) -> bool {
+        let allowed_m = if trip.aim == trip.goal { 1e-6 } else { AIM_MOVED_M };
+        self.way.last().is_none_or(|end| (end - trip.aim).norm() > allowed_m)
+    }
+
+    fn find_way(&mut self, field: &Field, around: &Surroundings, trip: &Trip) {
+        let way = shortest_way(around, trip.at, trip.aim, field.keep_m, &mut || true);
+        self.way = way.unwrap_or_else(|| vec![trip.aim]);
         self.age = 0;
     }
 
@@ -164,67 +190,65 @@ impl Guide {
     }
 }
 
-/// The corners of the shortest way from a place, the goal last; only the goal if no way is found. `floors` are those made
-/// so far for this map and this distance.
+/// The corners of the shortest way from a place, the goal last; none if there is none, or if `keep_going` ends the search.
 pub fn shortest_way(
-    map: &KnownMap,
+    around: &Surroundings,
     at: Point,
     goal: Point,
     keep_m: f64,
-    floors: &mut Vec<GrownFloor>,
-) -> Vec<Point> {
-    for attempt in 0..ATTEMPTS {
+    keep_going: &mut dyn FnMut() -> bool,
+) -> Option<Vec<Point>> {
+    let map = around.map();
+    let ends_m = map.clearance_m(at).min(map.clearance_m(goal)) + map.hull_m;
+    // A step on a large map can afford half of the attempts.
+    let first = if around.is_everything() { 0..ATTEMPTS } else { ATTEMPTS / 2..ATTEMPTS };
+    for attempt in first {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
         // A robot that stands, or is to stand, nearer than that finds a way with less room.
         let wished_m = keep_m + room_m;
-        if floors.len() <= attempt as usize {
-            floors.push(grown(map, wished_m));
+        if wished_m > ends_m + 1e-6 {
+            continue;
         }
-        if let Ok(way) = floors[attempt as usize].shortest(at, goal, &mut || true) {
-            return way.points().into_iter().skip(1).collect();
+        if let Ok(way) = around.floor(wished_m).shortest(at, goal, keep_going) {
+            return Some(way.points().into_iter().skip(1).collect());
         }
     }
-    vec![goal]
-}
-
-fn grown(map: &KnownMap, keep_m: f64) -> GrownFloor {
-    let shapes: Vec<Shape> = map.solids.iter().map(|solid| solid.part.to_shape()).collect();
-    GrownFloor::new(&map.wall, keep_m, shapes.iter().map(|shape| (shape, keep_m)))
+    None
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use steering::Solid;
+    use steering::{KnownMap, Solid};
     use world::Boundary;
 
-    fn map(discs: &[(f64, f64, f64)]) -> KnownMap {
+    fn around(discs: &[(f64, f64, f64)], at: Point) -> Surroundings {
         let disc =
             |(id, (x, y, r)): (usize, &(f64, f64, f64))| Solid::disc(id as u32, Point::new(*x, *y), *r);
-        KnownMap {
+        let mut around = Surroundings::new(KnownMap {
             solids: discs.iter().enumerate().map(disc).collect(),
             wall: Boundary::Circle { radius_m: 20.0 },
             hull_m: 0.2,
-        }
+        });
+        around.look(at, 1.0, &[], |_| false);
+        around
+    }
+
+    fn way(discs: &[(f64, f64, f64)], at: Point, goal: Point) -> Vec<Point> {
+        shortest_way(&around(discs, at), at, goal, 0.3, &mut || true).expect("there is a way")
     }
 
     #[test]
     fn a_free_way_has_no_corner_and_a_blocked_one_leads_past() {
         let goal = Point::new(6.0, 0.0);
-        assert_eq!(shortest_way(&map(&[]), Point::origin(), goal, 0.3, &mut Vec::new()), [goal]);
-        let way = shortest_way(&map(&[(3.0, 0.1, 0.5)]), Point::origin(), goal, 0.3, &mut Vec::new());
+        assert_eq!(way(&[], Point::origin(), goal), [goal]);
+        let way = way(&[(3.0, 0.1, 0.5)], Point::origin(), goal);
         assert!(way.len() > 1 && way[0].y < -0.2 && way[way.len() - 1] == goal);
     }
 
     #[test]
     fn near_something_the_way_is_found_with_less_room() {
-        let way = shortest_way(
-            &map(&[(1.0, 0.0, 0.5)]),
-            Point::new(0.18, 0.0),
-            Point::new(6.0, 0.0),
-            0.3,
-            &mut Vec::new(),
-        );
+        let way = way(&[(1.0, 0.0, 0.5)], Point::new(0.18, 0.0), Point::new(6.0, 0.0));
         assert!(way.len() > 1);
     }
 }

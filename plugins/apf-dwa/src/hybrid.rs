@@ -1,12 +1,13 @@
 //! The loop of Yang et al. 2021, Fig. 6: medium, limits, forces, virtual goal, window.
 
 use crate::{
-    guide::{Field, Guide},
+    guide::{Field, Guide, Trip, shortest_way},
     near::NearThings,
+    surroundings::{Changed, Surroundings},
     window::{Twist, Window, moved},
 };
 use steering::{Forces, KnownMap};
-use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Vector, Zone};
+use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Vector, Zone, polyline};
 
 /// Near the goal, or a place to pass, the robot does not go faster than it can turn there.
 const TURNING_M: f64 = 1.2;
@@ -14,6 +15,9 @@ const TURNING_M: f64 = 1.2;
 const ASIDE_RAD: f64 = 0.35;
 /// The reference leaves a little of every speed, so that the window is never empty, metres per second.
 const SLOWEST_M_PER_S: f64 = 0.02;
+
+/// Spacing of the points of a way over a large map, metres.
+const ROUTE_M: f64 = 0.25;
 
 /// Everything that the loop needs besides the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +50,6 @@ pub struct Decision {
     pub forces: Forces,
     /// The limits that hold now.
     pub pace: Pace,
-    /// Distance from the hull to the nearest outlines, up to ten, nearest first, metres.
-    pub distances_m: Vec<f64>,
 }
 
 /// The loop and what it remembers.
@@ -84,28 +86,39 @@ impl Hybrid {
     }
 
     /// The map has changed.
-    pub fn forget_map(&mut self) {
-        self.guide.forget_map();
+    pub fn take_change(&mut self, changed: Changed) {
+        self.guide.take_change(changed);
     }
 
-    /// Decides how to move in the next tick; `velocity_of` gives the velocity of an obstacle, metres per second.
+    /// How far away things can matter to the next step, metres; `fastest_m_per_s` is the speed of the fastest of them.
+    pub fn reach_m(&self, fastest_m_per_s: f64) -> f64 {
+        let Amphibious { land, underwater, .. } = self.settings.robot;
+        let reach_m = |pace| self.settings.window.reach_m(pace, fastest_m_per_s);
+        reach_m(land).max(reach_m(underwater)).max(self.settings.field.push.rho_m)
+    }
+
+    /// Decides how to move in the next tick; `ahead` is the plan for the next metres, if there is one, and `velocity_of`
+    /// gives the velocity of an obstacle, metres per second.
     pub fn decide(
         &mut self,
         state: &State,
         goal: Point,
-        map: &KnownMap,
+        ahead: &[Point],
+        around: &Surroundings,
         velocity_of: impl Fn(u32) -> Vector,
     ) -> Decision {
         let pace = self.adapt(state.pose.position);
         let window = &self.settings.window;
         let (at, step_m) = (state.pose.position, pace.v_max_m_per_s * window.dt_s);
-        let forces = self.guide.forces(&self.settings.field, map, at, goal, step_m);
+        let aim = if around.is_everything() { goal } else { ahead.last().copied().unwrap_or(goal) };
+        let forces = self.guide.forces(&self.settings.field, around, &Trip { at, goal, aim }, step_m);
         let reference = forces.resultant().try_normalize(1e-9).unwrap_or(goal - at);
+        let map = around.map();
         let fastest = map.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
         let near = NearThings::of(map, at, window.reach_m(pace, fastest), velocity_of);
         let drivable = Pace { v_max_m_per_s: drivable(state, goal, pace), ..pace };
         let twist = window.choose(&state.pose, state.twist, drivable, reference, &near);
-        Decision { twist, forces, pace, distances_m: distances_m(map, at) }
+        Decision { twist, forces, pace }
     }
 
     /// The limits by the floor under the robot; one step of the transition each time.
@@ -135,7 +148,8 @@ fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
     slow.min(pace.v_max_m_per_s)
 }
 
-fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
+/// Distances from the hull to the nearest outlines, up to ten, nearest first, metres.
+pub fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
     let mut all: Vec<f64> = map.solids.iter().map(|s| s.distance(at).0 - map.hull_m).collect();
     if all.len() > N_DISTANCES {
         all.select_nth_unstable_by(N_DISTANCES, f64::total_cmp);
@@ -169,16 +183,20 @@ pub fn run<E>(
     map: &KnownMap,
     mut check: impl FnMut() -> Result<(), E>,
 ) -> Result<Run, E> {
+    let mut around = Surroundings::new(map.clone());
     let mut state = State { pose: start, twist: Twist::default() };
     let mut run = Run { path: vec![start.position], arrived: false, overspeed_m_per_s: 0.0 };
+    let reach_m = hybrid.reach_m(0.0);
     let dt_s = hybrid.settings.window.dt_s;
     for _ in 0..steps_max {
-        if (goal - state.pose.position).norm() <= tolerance_m {
+        let at = state.pose.position;
+        if (goal - at).norm() <= tolerance_m {
             run.arrived = true;
             break;
         }
         check()?;
-        let decision = hybrid.decide(&state, goal, map, |_| Vector::zeros());
+        hybrid.take_change(around.look(at, reach_m, &[], |_| false));
+        let decision = hybrid.decide(&state, goal, &[], &around, |_| Vector::zeros());
         state.twist = decision.twist;
         state.pose = moved(&state.pose, state.twist, dt_s);
         run.path.push(state.pose.position);
@@ -186,6 +204,31 @@ pub fn run<E>(
         run.overspeed_m_per_s = run.overspeed_m_per_s.max(over);
     }
     Ok(run)
+}
+
+/// The shortest way over a map that is too large to be flown in thought; the start alone if there is none. `check` ends it
+/// early.
+///
+/// # Errors
+/// What `check` says.
+pub fn route<E>(
+    map: &KnownMap,
+    start: Point,
+    goal: Point,
+    keep_m: f64,
+    mut check: impl FnMut() -> Result<(), E>,
+) -> Result<Run, E> {
+    let mut stopped = Ok(());
+    let mut keep_going = || {
+        stopped = check();
+        stopped.is_ok()
+    };
+    let whole = Surroundings::whole(map.clone());
+    let corners = shortest_way(&whole, start, goal, keep_m, &mut keep_going);
+    stopped?;
+    let way: Vec<Point> = std::iter::once(start).chain(corners.iter().flatten().copied()).collect();
+    let path = polyline::resampled(&way, ROUTE_M);
+    Ok(Run { path, arrived: corners.is_some(), overspeed_m_per_s: 0.0 })
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ pub mod window;
 pub mod guide;
 pub mod hybrid;
 pub mod near;
+pub mod surroundings;
 
 mod apf_dwa;
 mod parameters;

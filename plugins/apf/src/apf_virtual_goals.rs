@@ -115,7 +115,13 @@ impl Planner for ApfVirtualGoals {
             ctx.log(LogLevel::Info, &format!("the way uses {} virtual goals", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
-        Ok(checked.plan_of(walk, map, ctx))
+        let instead = format!(
+            "virtual goals lie {:.1} m from the goal (square_m) and lead out of single minima, not round the {} parts of this \
+             map: choose shortest or navfn, which find a way wherever there is one",
+            law.square.square_m,
+            map.solids.len(),
+        );
+        Ok(checked.plan_of(walk, map, &instead, ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -76,9 +76,9 @@ impl GoalFlight {
 }
 
 impl Checked {
-    /// A walk as a plan; what is wrong with it is logged.
-    pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, ctx: &Ctx<'_>) -> Plan {
+    /// A walk as a plan; what is wrong with it is logged, and what to do `instead`.
+    pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = map.path_clearance_m(&walk.path, self.demanded_m + 1.0);
-        walk.into_plan(clearance_m, self.demanded_m, ctx)
+        walk.into_plan_or(clearance_m, self.demanded_m, instead, ctx)
     }
 }

@@ -91,7 +91,12 @@ impl Planner for Tapf {
         let force = |at| law.forces(at, trip.goal, map, &mut nearby, &mut sides).resultant();
         let next = goal_walk::descent(&trip, self.step_m, self.window_m, force);
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
-        Ok(checked.plan_of(walk, map, ctx))
+        Ok(checked.plan_of(
+            walk,
+            map,
+            "choose shortest or navfn, which find a way wherever there is one",
+            ctx,
+        ))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -13,10 +13,13 @@ use field::{
     params as p,
 };
 use planner_api::{
-    Caps, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site,
-    Status,
+    Caps, Code, Command, Config, Ctx, Drive, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner,
+    PlannerError, Result, Sensed, Site, Status,
 };
-use steering::{Flight, Forces, KnownMap, Pilot, Side, Tick, drawing};
+use steering::{
+    Flight, Forces, KnownMap, Pilot, Side, Tick, drawing,
+    evade::{self, Around},
+};
 use world::Point;
 
 /// On its way back the robot aims this far ahead, metres.
@@ -24,11 +27,17 @@ const BACK_AHEAD_M: f64 = 0.2;
 /// In flight the window of oscillation is this many times as long: the robot slows down and turns.
 const FLIGHT_WINDOWS: f64 = 1.5;
 
+/// Larger maps are refused: every part is compared with every other, and the way is walked in thought.
+const PARTS_MOST: usize = 4000;
+/// What is said to whom it leaves without a way.
+const INSTEAD: &str = "in rooms choose shortest or navfn, which find a way wherever there is one";
+
 /// The potential field of Xu et al. 2022 that builds virtual obstacles.
 pub(crate) struct BvoApf {
     settings: MachineSettings,
     flight: Flight,
     pilot: Pilot,
+    clearance_m: f64,
     map: KnownMap,
     flying: Option<Flying>,
 }
@@ -53,7 +62,8 @@ impl Planner for BvoApf {
             settings: parameters::settings(config, site, 1.0),
             flight: p::flight(config),
             pilot: Pilot::pursuing(site),
-            map: KnownMap::new(site),
+            clearance_m: site.clearance_m,
+            map: KnownMap::standing(site),
             flying: None,
         })
     }
@@ -61,7 +71,8 @@ impl Planner for BvoApf {
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         let (goal, tolerance_m) = ends::single_goal(request, Self::ID)?;
         let start = request.start.position;
-        self.map = KnownMap::new(request.site);
+        self.map = KnownMap::standing(request.site);
+        check_size(self.map.solids.len())?;
         let mut machine = Machine::new(self.settings_for(start, goal), self.map.clone());
         let walked = self.walked(&mut machine, start, goal, tolerance_m, ctx)?;
         report(&machine.news, ctx);
@@ -73,16 +84,46 @@ impl Planner for BvoApf {
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let bodies = self.pilot.bodies(sensed);
-        let tick = Tick::toward_target(sensed, &bodies);
+        let (movers, standing) = evade::sorted(sensed, self.pilot.bodies(sensed));
+        if let Some(flying) = &mut self.flying {
+            // At first sight what moves seems to stand.
+            flying.machine.forget(&movers.iter().map(|mover| mover.body.id).collect::<Vec<_>>());
+        }
+        let tick = Tick::toward_target(sensed, &standing);
         let Some((aim, forces)) = self.aim(sensed, &tick, ctx) else {
             return Ok(Command::still(Status::Stuck));
         };
         let decision = self.pilot.pursue(&self.flight, &tick, aim);
         forces.show(ctx, sensed.pose.position, self.settings.law.k_rep);
-        drawing::show_nearest(ctx, sensed.pose.position, self.map.hull_m, &bodies);
-        Ok(decision.into())
+        drawing::show_nearest(ctx, sensed.pose.position, self.map.hull_m, &standing);
+        if movers.is_empty() {
+            return Ok(decision.into());
+        }
+        for mover in &movers {
+            ctx.arrow(Layer::Virtual, mover.body.center(), mover.velocity);
+        }
+        let around = Around {
+            movers: &movers,
+            standing: &standing,
+            wall: self.pilot.wall(),
+            limits: self.pilot.limits(),
+            clearance_m: self.clearance_m,
+        };
+        let velocity = evade::evade(decision.velocity, &sensed.pose, &around);
+        Ok(Command { drive: Drive::Velocity(velocity), status: Status::Moving })
     }
+}
+
+/// Refuses a map that it cannot plan on in time.
+fn check_size(n_parts: usize) -> Result<()> {
+    if n_parts <= PARTS_MOST {
+        return Ok(());
+    }
+    let what = format!(
+        "bvo-apf compares every part of a map with every other and takes {PARTS_MOST} at most; this map has {n_parts}: \
+         choose shortest, navfn or apf-dwa, or simplify the map (map_tolerance_m)"
+    );
+    Err(PlannerError::new(Code::Unsupported, what))
 }
 
 impl BvoApf {
@@ -223,7 +264,7 @@ fn plan_of(
         _ => Shortfall::Short { missing_m: (goal - end).norm(), at: end },
     });
     let clearance_m = map.path_clearance_m(&walked.path, demanded_m + 1.0);
-    Walk { path: walked.path, shortfall }.into_plan(clearance_m, demanded_m, ctx)
+    Walk { path: walked.path, shortfall }.into_plan_or(clearance_m, demanded_m, INSTEAD, ctx)
 }
 
 #[cfg(test)]

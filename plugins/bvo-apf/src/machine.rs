@@ -184,6 +184,13 @@ impl Machine {
         }
     }
 
+    /// Takes off the map what was found to move.
+    pub fn forget(&mut self, movers: &[u32]) {
+        if self.map.forget(movers) {
+            self.map_changed();
+        }
+    }
+
     fn map_changed(&mut self) {
         self.clusters = Clusters::new(&self.map, self.settings.margin_m);
         self.nearby.forget();

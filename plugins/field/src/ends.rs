@@ -2,7 +2,8 @@
 
 use crate::scene::Scene;
 use geometry::Point;
-use planner_api::{Code, PlanRequest, PlannerError, Result, Task};
+use planner_api::{Code, Obstacle, PlanRequest, PlannerError, Result, Site, Task};
+use steering::evade;
 
 /// Outside the floor by no more than this is rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -16,7 +17,10 @@ pub fn single_goal(request: &PlanRequest<'_>, id: &str) -> Result<(Point, f64)> 
         let message = format!("{id} goes to single goals; for preset paths choose apf or rpf");
         return Err(PlannerError::new(Code::Unsupported, message));
     };
-    let scene = Scene::new(request.site);
+    // What passes over the goal now will be gone when the robot arrives.
+    let standing: Vec<Obstacle<'_>> =
+        request.site.obstacles.iter().filter(|o| !evade::moves(o)).copied().collect();
+    let scene = Scene::new(&Site { obstacles: &standing, ..*request.site });
     check_start(&scene, request.start.position, request.site.limits.radius_m)?;
     check_goal(&scene, goal, tolerance_m)?;
     Ok((goal, tolerance_m))

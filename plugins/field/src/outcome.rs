@@ -20,11 +20,17 @@ impl Walk {
     /// The plan, with the least distance between hull and anything solid along it and that demanded, metres; what is
     /// wrong with it is logged, the first thing if there are several.
     pub fn into_plan(self, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
+        self.into_plan_or(clearance_m, demanded_m, "", ctx)
+    }
+
+    /// The same; where the walk falls short, the log says what to do `instead` in the same line, after a semicolon.
+    pub fn into_plan_or(self, clearance_m: f64, demanded_m: f64, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let is_close = clearance_m < demanded_m - ROUNDING_M;
         let close = is_close.then_some(Shortfall::Close { clearance_m, demanded_m });
         let shortfall = self.shortfall.or(close);
         if let Some(reason) = shortfall {
-            ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}"));
+            let separator = if instead.is_empty() { "" } else { "; " };
+            ctx.log(LogLevel::Warn, &format!("the plan is not complete: {reason}{separator}{instead}"));
         }
         Plan {
             cost: polyline::length_m(&self.path),

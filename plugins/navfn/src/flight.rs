@@ -1,8 +1,10 @@
 //! Flying along a plan.
 
-use crate::evade::{self, Around, Mover};
 use planner_api::{Command, Ctx, Drive, Layer, Result, Sensed, Site, Status};
-use steering::{Body, Flight, Forces, Pilot, Tick};
+use steering::{
+    Flight, Forces, Pilot, Tick,
+    evade::{self, Around},
+};
 
 /// Follows the plan, half a metre ahead, with the guard's word as the last; what moves is evaded.
 pub(crate) struct Flyer {
@@ -31,7 +33,7 @@ impl Flyer {
         if sensed.path_ahead.is_empty() {
             return Ok(Command::still(Status::Waiting));
         }
-        let (movers, standing) = self.sorted(sensed);
+        let (movers, standing) = evade::sorted(sensed, self.pilot.bodies(sensed));
         let (tick, at) = (Tick::along_path(sensed, &standing), sensed.pose.position);
         Forces::toward(at, tick.target).show(ctx, at, 1.0);
         let decision = self.pilot.pursue(&self.flight, &tick, tick.target);
@@ -50,19 +52,5 @@ impl Flyer {
         };
         let velocity = evade::evade(decision.velocity, &sensed.pose, &around);
         Ok(Command { drive: Drive::Velocity(velocity), status: Status::Moving })
-    }
-
-    /// What is sensed: what moves, and what stands, no-go zones included.
-    fn sorted(&self, sensed: &Sensed<'_>) -> (Vec<Mover>, Vec<Body>) {
-        let of = |id: u32| sensed.obstacles.iter().find(|o| o.id == id && evade::moves(o));
-        let mut movers = Vec::new();
-        let mut standing = Vec::new();
-        for body in self.pilot.bodies(sensed) {
-            match of(body.id) {
-                Some(obstacle) => movers.push(Mover { body, velocity: obstacle.velocity_m_per_s }),
-                None => standing.push(body),
-            }
-        }
-        (movers, standing)
     }
 }

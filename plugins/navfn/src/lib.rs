@@ -4,7 +4,6 @@
 pub mod navfn;
 pub mod shortest;
 
-mod evade;
 mod flight;
 pub mod marching;
 mod navigation;

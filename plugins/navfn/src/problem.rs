@@ -1,9 +1,9 @@
 //! What a request asks of a point robot: its start and goal among shapes grown by the hull, and how it refuses.
 
-use crate::evade;
 use planner_api::{
     Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
 };
+use steering::evade;
 use world::{
     Boundary, Point, Shape, polyline,
     shortest::{GrownFloor, NoWay, Way},

@@ -2,6 +2,7 @@
 
 use crate::{
     body::{Body, solid_parts},
+    evade,
     solid::Solid,
 };
 use geometry::{Boundary, Point, convex::Part, polyline::edges};
@@ -29,6 +30,21 @@ impl KnownMap {
             wall: site.boundary.to_owned(),
             hull_m: site.limits.radius_m,
         }
+    }
+
+    /// The map of a site without what moves: when the robot arrives it will be elsewhere.
+    pub fn standing(site: &Site<'_>) -> Self {
+        let movers: Vec<u32> = site.obstacles.iter().filter(|o| evade::moves(o)).map(|o| o.id).collect();
+        let mut map = Self::new(site);
+        map.forget(&movers);
+        map
+    }
+
+    /// Takes obstacles off the map; true if there were any of them.
+    pub fn forget(&mut self, ids: &[u32]) -> bool {
+        let n_before = self.solids.len();
+        self.solids.retain(|solid| !ids.contains(&solid.id));
+        self.solids.len() < n_before
     }
 
     /// Takes what is sensed instead of what was known of the same obstacles; true if that changed anything.

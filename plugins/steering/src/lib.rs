@@ -9,6 +9,7 @@ pub mod body;
 pub mod contact;
 pub mod detour;
 pub mod drawing;
+pub mod evade;
 pub mod guard;
 pub mod known_map;
 pub mod params;

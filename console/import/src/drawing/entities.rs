@@ -7,6 +7,8 @@ use world::{Point, Vector};
 
 /// Blocks within blocks are followed this far.
 const DEEPEST: usize = 16;
+/// Entities and insertions that are looked at, at most: a small file can insert blocks within blocks without end.
+pub(super) const MOST: usize = 1_000_000;
 /// Longest arc between two points of a curve, radians.
 const STEP_RAD: f64 = 0.1;
 
@@ -25,17 +27,31 @@ pub(super) struct Drawn {
     pub outline: Option<Outline>,
 }
 
-/// Everything in the model space of a drawing with some metres to the unit.
-pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Vec<Drawn> {
+/// Everything in the model space of a drawing with some metres to the unit; none if that is more than [`MOST`].
+pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Option<Vec<Drawn>> {
     let blocks = drawing.blocks.iter();
     let blocks: Blocks<'_> = blocks.map(|block| (block.head.text(2).unwrap_or_default(), block)).collect();
-    let mut found = Vec::new();
+    let mut unfolded = Unfolded { found: Vec::new(), n_left: MOST };
     let place = Place { map: scaling(unit_m, unit_m), layer: None };
     // Code 67 is 1 for what lies on the paper.
     for entity in drawing.entities.iter().filter(|entity| entity.number(67, 0.0) < 0.5) {
-        collect(entity, &blocks, &place, 0, &mut found);
+        collect(entity, &blocks, &place, 0, &mut unfolded)?;
     }
-    found
+    Some(unfolded.found)
+}
+
+/// What was found so far.
+struct Unfolded {
+    found: Vec<Drawn>,
+    /// What may still be looked at.
+    n_left: usize,
+}
+
+impl Unfolded {
+    fn count(&mut self) -> Option<()> {
+        self.n_left = self.n_left.checked_sub(1)?;
+        Some(())
+    }
 }
 
 type Blocks<'a> = HashMap<&'a str, &'a Block>;
@@ -50,17 +66,27 @@ fn scaling(x: f64, y: f64) -> Affine2<f64> {
     Affine2::from_matrix_unchecked(nalgebra::Matrix3::new_nonuniform_scaling(&Vector::new(x, y)))
 }
 
-fn collect(entity: &Entity, blocks: &Blocks<'_>, place: &Place, depth: usize, found: &mut Vec<Drawn>) {
+/// Adds an entity, or what is in the block that it inserts; none when there is too much.
+fn collect(
+    entity: &Entity,
+    blocks: &Blocks<'_>,
+    place: &Place,
+    depth: usize,
+    unfolded: &mut Unfolded,
+) -> Option<()> {
+    unfolded.count()?;
     let own = entity.text(8).unwrap_or("0");
     let layer = place.layer.as_deref().filter(|_| own == "0").unwrap_or(own).to_owned();
     let block = entity.text(2).filter(|_| entity.kind == "INSERT").and_then(|name| blocks.get(name));
     let Some(block) = block.filter(|_| depth < DEEPEST) else {
-        found.push(Drawn { layer, kind: entity.kind.clone(), outline: outline(entity, &place.map) });
-        return;
+        let outline = outline(entity, &place.map);
+        unfolded.found.push(Drawn { layer, kind: entity.kind.clone(), outline });
+        return Some(());
     };
     let at = Vector::new(entity.number(10, 0.0), entity.number(20, 0.0));
     let base = Vector::new(block.head.number(10, 0.0), block.head.number(20, 0.0));
     for shift in copies(entity) {
+        unfolded.count()?;
         let inner = mirroring(entity.number(230, 1.0))
             * Translation2::from(at)
             * Rotation2::new(entity.number(50, 0.0).to_radians())
@@ -69,17 +95,18 @@ fn collect(entity: &Entity, blocks: &Blocks<'_>, place: &Place, depth: usize, fo
             * Translation2::from(-base);
         let place = Place { map: place.map * inner, layer: Some(layer.clone()) };
         for entity in &block.entities {
-            collect(entity, blocks, &place, depth + 1, found);
+            collect(entity, blocks, &place, depth + 1, unfolded)?;
         }
     }
+    Some(())
 }
 
 /// Where the rows and columns of an insertion lie.
-fn copies(insert: &Entity) -> Vec<Vector> {
+fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     let count = |code: i32| insert.number(code, 1.0).clamp(1.0, 1000.0) as usize;
     let (columns, rows) = (count(70), count(71));
     let (dx, dy) = (insert.number(44, 0.0), insert.number(45, 0.0));
-    (0..columns * rows).map(|k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy)).collect()
+    (0..columns * rows).map(move |k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy))
 }
 
 fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
@@ -109,6 +136,18 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             let points =
                 arc(at(10, 20)?, entity.number(40, 0.0), entity.number(50, 0.0), entity.number(51, 360.0));
             Some(Outline::Chain { points: placed(points, &in_plane), is_closed: false, width_m: 0.0 })
+        }
+        // In the coordinates of the drawing: the centre, the long half axis from there, and the share of the short one.
+        "ELLIPSE" => {
+            let (center, long) = (at(10, 20)?, at(11, 21)?.coords);
+            let short = Vector::new(-long.y, long.x) * entity.number(40, 1.0);
+            let (from, to) = (entity.number(41, 0.0), entity.number(42, TAU));
+            let sweep = if to > from { (to - from).min(TAU) } else { (to - from).rem_euclid(TAU) };
+            let is_closed = sweep > TAU - 1e-6;
+            let on_unit = along_arc(Point::origin(), 1.0, from, sweep);
+            let points =
+                on_unit.iter().skip(usize::from(is_closed)).map(|p| center + long * p.x + short * p.y);
+            Some(Outline::Chain { points: placed(points.collect(), map), is_closed, width_m: 0.0 })
         }
         "LWPOLYLINE" | "POLYLINE" => {
             let corners = match entity.kind.as_str() {

@@ -72,7 +72,7 @@ impl Drawing {
     /// Reads a drawing.
     ///
     /// # Errors
-    /// It cannot be read, is binary, or has a line without a code where one must be.
+    /// It cannot be read, is binary, is cut off, or has a line without a code where one must be.
     pub(super) fn read(file: &Path) -> Result<Self, ImportError> {
         let bytes = read_file(file)?;
         if bytes.starts_with(b"AutoCAD Binary DXF") {
@@ -99,7 +99,7 @@ impl Drawing {
                 ))
             })?;
             match (code, value) {
-                (0, "EOF") => break,
+                (0, "EOF") => return Ok(drawing),
                 (0, "SECTION" | "ENDSEC") => section.clear(),
                 (2, _) if section.is_empty() => value.clone_into(&mut section),
                 (9, _) if section == "HEADER" => value.clone_into(&mut variable),
@@ -130,7 +130,8 @@ impl Drawing {
                 _ => {}
             }
         }
-        Ok(drawing)
+        // What is missing could be columns.
+        Err(ImportError::of_file(file, "the drawing is cut off: it does not end with EOF; save it again"))
     }
 }
 

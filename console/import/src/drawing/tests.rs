@@ -1,5 +1,5 @@
 use super::*;
-use std::fs;
+use std::{fmt::Write, fs};
 
 const METRES: Assumed = Assumed { unit_m: None, pipe_width_m: 0.1 };
 
@@ -132,4 +132,64 @@ fn the_scenario_holds_shell_obstacles_and_zones() {
     ] {
         assert!(text.contains(wanted), "{text}");
     }
+}
+
+#[test]
+fn blocks_that_insert_each_other_without_end_are_refused() {
+    let mut text =
+        String::from("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n");
+    for k in 0..12 {
+        let next = (k + 1) % 12;
+        let insert = format!("0\nINSERT\n8\nSHELL\n2\nB{next}\n70\n1000\n71\n1000\n");
+        write!(text, "0\nBLOCK\n2\nB{k}\n{insert}{insert}0\nENDBLK\n").unwrap();
+    }
+    text += "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nINSERT\n8\nSHELL\n2\nB0\n0\nENDSEC\n0\nEOF\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, text).unwrap();
+    let message = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap_err().to_string();
+    assert!(message.contains("more than 1000000 entities"), "{message}");
+}
+
+#[test]
+fn a_hundred_thousand_lines_are_joined_to_the_shell() {
+    let n = 100_000;
+    let mut text =
+        String::from("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+    let at = |k: usize| {
+        let angle = std::f64::consts::TAU * (k % n) as f64 / n as f64;
+        (100.0 * angle.cos(), 60.0 * angle.sin())
+    };
+    for k in 0..n {
+        let ((x, y), (u, v)) = (at(k * 7 % n), at(k * 7 % n + 1));
+        write!(text, "0\nLINE\n8\nSHELL\n10\n{x:.6}\n20\n{y:.6}\n11\n{u:.6}\n21\n{v:.6}\n").unwrap();
+    }
+    text += "0\nENDSEC\n0\nEOF\n";
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, text).unwrap();
+    let plan = read(&file, Assumed { unit_m: None, pipe_width_m: 0.1 }).unwrap();
+    assert!((plan.boundary.area_m2() - std::f64::consts::PI * 6000.0).abs() < 1.0);
+}
+
+#[test]
+fn an_ellipse_is_an_outline_turned_as_drawn() {
+    let shell = "0 CIRCLE,8 SHELL,10 0,20 0,40 10,";
+    let ellipse = "0 ELLIPSE,8 NOGO,10 3,20 0,11 0,21 2,40 0.5,41 0,42 6.283185307179586";
+    let plan = read_text(",9 $INSUNITS,70 6", "", &format!("{shell}{ellipse}"), METRES).unwrap();
+    let (low, high) = plan.no_go[0].shape.bounds();
+    let is_near = |at: Point, x: f64, y: f64| (at - Point::new(x, y)).norm() < 0.02;
+    assert!(is_near(low, 2.0, -2.0) && is_near(high, 4.0, 2.0), "{low} {high}");
+}
+
+#[test]
+fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("d.dxf");
+    fs::write(&file, "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\nSHELL\n10\n0\n20\n0\n40\n5\n").unwrap();
+    let message = read(&file, METRES).unwrap_err().to_string();
+    assert!(
+        message.ends_with("the drawing is cut off: it does not end with EOF; save it again"),
+        "{message}"
+    );
 }

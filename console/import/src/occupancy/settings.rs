@@ -18,6 +18,8 @@ struct Written {
     free_thresh: Option<Spanned<f64>>,
     #[serde(default)]
     mode: Mode,
+    /// Written by converters of ROS 1 maps, with the word occupancy; says nothing that the other keys do not.
+    map_type: Option<Spanned<String>>,
 }
 
 #[derive(Deserialize)]
@@ -59,6 +61,10 @@ impl Settings {
             let whole = error.without_snippet().to_string();
             // The place stands before the sentence, not after it.
             let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
+            let what = match error.without_snippet() {
+                serde_saphyr::Error::DuplicateMappingKey { key, .. } => twice(text, key.as_deref(), line),
+                _ => what,
+            };
             wrong(file, text, line, what)
         })?;
         let at = |line: u64, what: String| wrong(file, text, Some(line as usize), what);
@@ -82,6 +88,11 @@ impl Settings {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
             return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
+        }
+        if let Some(kind) = written.map_type.as_ref().filter(|kind| kind.value != "occupancy") {
+            let what =
+                format!("`{}` is not read; this must be an occupancy map, or have no such key", kind.value);
+            return Err(at(kind.referenced.line(), what));
         }
         let origin = match &written.origin {
             None => [0.0; 3],
@@ -111,6 +122,15 @@ impl Settings {
             Mode::Raw => f64::from(pixel.grey) / 100.0 <= self.free,
         }
     }
+}
+
+/// What is said of a key that is there a second time.
+fn twice(text: &str, key: Option<&str>, line: Option<usize>) -> String {
+    let is_it = |written: &&str| written.split_once(':').is_some_and(|(name, _)| Some(name.trim()) == key);
+    let lines = text.lines().take(line.unwrap_or_default().saturating_sub(1)).enumerate();
+    let first = lines.filter(|(_, written)| is_it(written)).map(|(k, _)| k + 1).next();
+    let first = first.map_or_else(String::new, |first| format!(", first in line {first}"));
+    format!("is there twice{first}; keep one of them")
 }
 
 /// x and y in metres and an angle in radians.

@@ -53,6 +53,12 @@ fn modes_thresholds_and_negation_are_those_of_the_map_server() {
 }
 
 #[test]
+fn a_key_that_other_tools_write_is_taken_where_it_says_nothing_new() {
+    let values = [255, 206, 205, 0];
+    assert_eq!(free(&format!("{YAML}map_type: occupancy\n"), &values), free(YAML, &values));
+}
+
+#[test]
 fn large_values_and_sixteen_bits_are_scaled() {
     let read = |pgm: &[u8]| map(YAML, pgm).unwrap().is_free;
     assert_eq!(read(b"P2 3 1 100 100 81 80"), [true, true, false]);
@@ -103,7 +109,7 @@ fn errors_name_file_line_and_key() {
         (
             with("occupied_thresh: 0.65", "ocupied_thresh: 0.65"),
             "m.yaml, line 5, ocupied_thresh: unknown field `ocupied_thresh`, expected one of image, resolution, origin, \
-             negate, occupied_thresh, free_thresh, mode",
+             negate, occupied_thresh, free_thresh, mode, map_type",
         ),
         (
             with("0.196", "0.7"),
@@ -115,8 +121,11 @@ fn errors_name_file_line_and_key() {
         ),
         (
             message(&format!("{YAML}negate: 1\n")),
-            "m.yaml, line 7, negate: duplicate mapping key: negate, set \
-             DuplicateKeyPolicy in Options if acceptable",
+            "m.yaml, line 7, negate: is there twice, first in line 4; keep one of them",
+        ),
+        (
+            message(&format!("{YAML}map_type: costmap\n")),
+            "m.yaml, line 7, map_type: `costmap` is not read; this must be an occupancy map, or have no such key",
         ),
     ];
     for (message, wanted) in cases {

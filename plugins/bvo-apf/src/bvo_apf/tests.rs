@@ -202,3 +202,61 @@ fn a_swap_in_the_middle_of_a_trap_is_survived() {
         assert!(flown.arrived && flown.clearance_m > 0.0, "{swap_at}");
     }
 }
+
+/// A cart that crosses the way to the goal at the pace of the robot, from a side, met by a robot without a plan.
+fn crossed(from_y_m: f64) -> (bool, f64) {
+    let (bench, open) = (Bench::new(), site(&[], Motion::Unicycle));
+    let mut planner: BvoApf = bench.configure(&[("rho_0_m", 1.0), ("k_rep", 1.0)], &open).unwrap();
+    let mut pose = Pose { position: START, heading_rad: 0.0 };
+    let velocity = Vector2::new(0.0, -0.35 * from_y_m.signum());
+    let mut clearance_m = f64::INFINITY;
+    for tick in 0..1200 {
+        if (pose.position - GOAL).norm() < 0.2 {
+            return (true, clearance_m);
+        }
+        let center = Point::new(-2.0, from_y_m) + velocity * (tick as f64 * TICK_S);
+        let distance_m = (center - pose.position).norm() - 0.4;
+        clearance_m = clearance_m.min(distance_m - open.limits.radius_m);
+        let outline = Outline::Disc { center, radius_m: 0.4 };
+        // The console knows a velocity only after the second sighting.
+        let seen_m = Vector2::zeros();
+        let known = if distance_m < open.limits.sensing_range_m - 0.05 { velocity } else { seen_m };
+        let cart = [Obstacle { id: 9, outline, discovered: true, velocity_m_per_s: known }];
+        let in_sight = distance_m < open.limits.sensing_range_m;
+        let estimate =
+            planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
+        let sensed = Sensed {
+            tick,
+            t_s: tick as f64 * TICK_S,
+            dt_s: TICK_S,
+            pose: estimate,
+            v_m_per_s: 0.0,
+            w_rad_per_s: 0.0,
+            target: GOAL,
+            targets_ahead: &[GOAL],
+            path_ahead: &[],
+            obstacles: if in_sight { &cart } else { &[] },
+        };
+        let command = planner.step(&sensed, &bench.ctx()).unwrap();
+        bench.clear();
+        pose = moved(&pose, command.drive, Motion::Unicycle);
+    }
+    (false, clearance_m)
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be() {
+    for from_y_m in [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0] {
+        let (arrived, clearance_m) = crossed(from_y_m);
+        assert!(arrived && clearance_m > 0.0, "{from_y_m} {arrived} {clearance_m}");
+    }
+}
+
+#[test]
+fn a_map_that_is_too_large_is_refused_before_it_plans_with_what_to_choose_instead() {
+    let refusal = check_size(PARTS_MOST + 1).unwrap_err();
+    assert_eq!(refusal.code, Code::Unsupported);
+    assert!(refusal.message.contains("4000 at most") && refusal.message.contains("this map has 4001"));
+    assert!(refusal.message.contains("choose shortest, navfn or apf-dwa"));
+    assert!(check_size(PARTS_MOST).is_ok());
+}

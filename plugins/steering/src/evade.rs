@@ -5,12 +5,12 @@
 //! preferred, for what moves may turn. After the velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of
 //! Fox et al. 1997.
 
+use crate::body::Body;
 use geometry::{
     Boundary, Drive, Limits, Point, Vector,
     motion::{TURN_FIRST_RAD, drive_for, heading_error_rad},
 };
-use planner_api::{Obstacle, PoseEstimate};
-use steering::Body;
+use planner_api::{Obstacle, PoseEstimate, Sensed};
 
 /// Slower than this an obstacle stands still, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
@@ -31,22 +31,35 @@ const DOUBT_M_PER_S: f64 = 0.04;
 const WORTH_PER_S: f64 = 0.25;
 
 /// Whether an obstacle moves.
-pub(crate) fn moves(obstacle: &Obstacle<'_>) -> bool {
+pub fn moves(obstacle: &Obstacle<'_>) -> bool {
     obstacle.velocity_m_per_s.norm() > STILL_M_PER_S
 }
 
 /// Something that moves.
 #[derive(Debug, Clone)]
-pub(crate) struct Mover {
+pub struct Mover {
     /// As it is now.
     pub body: Body,
     /// Its velocity, metres per second.
     pub velocity: Vector,
 }
 
+/// What is sensed, sorted: what moves, and what stands; `bodies` are those of what is sensed, and others that stand.
+pub fn sorted(sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
+    let mut movers = Vec::new();
+    let mut standing = Vec::new();
+    for body in bodies {
+        match sensed.obstacles.iter().find(|o| o.id == body.id && moves(o)) {
+            Some(obstacle) => movers.push(Mover { body, velocity: obstacle.velocity_m_per_s }),
+            None => standing.push(body),
+        }
+    }
+    (movers, standing)
+}
+
 /// What a robot has to keep clear of.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Around<'a> {
+pub struct Around<'a> {
     /// What moves.
     pub movers: &'a [Mover],
     /// What stands still.
@@ -68,8 +81,8 @@ struct Outlook {
     room_m: f64,
 }
 
-/// The velocity to take instead of the one wished for.
-pub(crate) fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
+/// The velocity to take instead of the one wished for, tank frame, metres per second.
+pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
     let v_max = around.limits.v_max_m_per_s;
     let headings = (0..HEADINGS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(HEADINGS));
     let grid =
@@ -138,7 +151,6 @@ mod tests {
     use super::*;
     use geometry::{Motion, wrap_angle_rad};
     use planner_api::Outline;
-    use steering::trial::exact_pose;
 
     const LIMITS: Limits = Limits {
         motion: Motion::Unicycle,
@@ -147,6 +159,10 @@ mod tests {
         radius_m: 0.25,
         sensing_range_m: 3.0,
     };
+
+    fn exact_pose(position: Point) -> PoseEstimate {
+        PoseEstimate { position, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() }
+    }
 
     fn disc(at: Point, radius_m: f64) -> Body {
         Body::new(1, &Outline::Disc { center: at, radius_m }).unwrap()
