@@ -2,6 +2,7 @@
 //! swept here, and what was missed is worth a detour only if it is large enough.
 
 mod bends;
+pub(crate) mod shell;
 mod shortcuts;
 mod ties;
 mod track;
@@ -26,7 +27,8 @@ pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: boo
         track.shorten(&careful)?;
     }
     bend(track, terms, &careful)?;
-    tie(track, terms, &careful)
+    tie(track, terms, &careful)?;
+    track.pass_along_shell(terms)
 }
 
 /// Bends the path, and shortens what is new, until nothing pays any more.

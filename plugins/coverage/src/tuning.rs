@@ -132,6 +132,23 @@ pub(crate) mod touch_ups {
     pub(crate) const LEAST_GAIN_M2: f64 = 0.01;
 }
 
+/// The pass along the shell.
+pub(crate) mod shell {
+    /// Width of the zone that is looked at, metres, and by how much less of it is scanned than could be where that does not
+    /// matter: lanes keep a little slack, and a robot does not drive to the millimetre.
+    pub(crate) const ZONE_M: f64 = 0.075;
+    pub(crate) const NEAR_M: f64 = 0.0101;
+    /// Path that is farther from the shell than it need be by less than this is put right, metres.
+    pub(crate) const PRESSED_M: f64 = 0.03;
+    /// Floor that may be lost for that, metres: square metres for each metre of path.
+    pub(crate) const MOST_LOST_M: f64 = 0.02;
+    /// Step along the shell, and the shortest lane that is worth its turns, metres.
+    pub(crate) const STEP_M: f64 = 0.15;
+    pub(crate) const LEAST_M: f64 = 0.1;
+    /// A turn of the bar is looked at in steps of this angle, radians.
+    pub(crate) const TURN_RAD: f64 = 0.1;
+}
+
 /// The choice among candidates.
 pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
