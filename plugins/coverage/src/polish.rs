@@ -27,6 +27,7 @@ pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: boo
         track.shorten(&careful)?;
     }
     bend(track, terms, &careful)?;
+    track.pass_along_shell(terms)?;
     tie(track, terms, &careful)?;
     track.pass_along_shell(terms)
 }

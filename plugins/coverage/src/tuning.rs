@@ -93,6 +93,8 @@ pub(crate) mod shortcuts {
     pub(crate) const SHORT_M: f64 = 2.7;
     pub(crate) const LONG_M: f64 = 9.0;
     pub(crate) const MUCH_TURN_RAD: f64 = 3.0;
+    /// What a metre along the shell is worth, metres: the critical zone must be scanned.
+    pub(crate) const SHELL: f64 = 2.0;
     /// Number of sides beyond which not every end of a shortcut is tried.
     pub(crate) const FINE: usize = 8;
     /// Sample positions across a side for a quick check, as shares of half the bar. It rules out a shortcut only if

@@ -70,6 +70,12 @@ fn over_m(workspace: &Workspace, at: Point) -> f64 {
     workspace.wall.wall_distance_m(at) - workspace.keep_m - SLACK_M
 }
 
+/// Length of a straight way along the shell, as close to it as matters, metres.
+pub(super) fn shell_m(workspace: &Workspace, a: Point, b: Point) -> f64 {
+    let is_close = |at: Point| over_m(workspace, at) < tuning::NEAR_M;
+    if is_close(a) && is_close(b) && is_close(a + (b - a) / 2.0) { (b - a).norm() } else { 0.0 }
+}
+
 /// The place before which the hull is as close to the wall as it may be.
 fn at_shell(workspace: &Workspace, at: Point) -> Point {
     at - inward(&workspace.wall, at) * over_m(workspace, at)
