@@ -147,8 +147,6 @@ pub(crate) mod shell {
     /// Step along the shell, and the shortest lane that is worth its turns, metres.
     pub(crate) const STEP_M: f64 = 0.15;
     pub(crate) const LEAST_M: f64 = 0.1;
-    /// A turn of the bar is looked at in steps of this angle, radians.
-    pub(crate) const TURN_RAD: f64 = 0.1;
 }
 
 /// The choice among candidates.

@@ -3,14 +3,12 @@
 use crate::tanks::{CLEARANCE_M, HULL_M, SWATH_M, Tank};
 use std::f64::consts::TAU;
 use world::{
-    Boundary, CoverageGrid, Floor, Point, Pose, Shape, ShellZone, SweptArea, Tool, Vector,
-    geometry::{unit_vector, wrap_angle_rad},
+    Boundary, CoverageGrid, Floor, Point, Shape, ShellZone, SweptArea, Tool, Vector,
+    geometry::unit_vector,
     polyline,
     tether::{Case, Certificate, Limits, TetherError, certify},
 };
 
-/// Angle by which the bar turns between two marks, at most, radians.
-const TURN_STEP_RAD: f64 = 0.1;
 /// The tool.
 const TOOL: Tool = Tool::Bar { swath_m: SWATH_M };
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
@@ -54,17 +52,12 @@ impl Tank {
         let mut grid = CoverageGrid::new(Floor::new(&world, cell_m, room_m, SWATH_M, self.anchor));
         let (mut area, mut zone) =
             (SweptArea::new(&self.boundary), ShellZone::new(&self.boundary, CRITICAL_ZONE_M));
-        passages(path, |from, to| {
+        Tool::along(path, |from, to| {
             grid.mark(TOOL, from, to);
             area.pass(TOOL, from, to);
             zone.pass(TOOL, from, to);
         });
         let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
-        if std::env::var("ZONE").is_ok() {
-            let profile = zone.profile(|point| shapes.iter().any(|shape| shape.distance_m(point) < 0.0));
-            let sum = |low: f64, high: f64| profile.iter().filter(|s| s.gap_m.is_some_and(|g| g > low && g <= high)).map(|s| s.length_m).sum::<f64>();
-            eprintln!("zone length {:.1}: gap 0: {:.1}, to 5 mm {:.1}, to 10 mm {:.1}, to 20 {:.1}, to 40 {:.1}, more {:.1}", profile.iter().map(|s| s.length_m).sum::<f64>(), sum(-1.0, 0.0), sum(0.0, 0.0051), sum(0.0051, 0.0101), sum(0.0101, 0.0201), sum(0.0201, 0.0401), sum(0.0401, 1.0));
-        }
         let scanned = |zone: &ShellZone| {
             zone.figures(|point| shapes.iter().any(|shape| shape.distance_m(point) < 0.0)).scanned
         };
@@ -130,30 +123,10 @@ impl Tank {
         };
         for lane in &lanes {
             for run in lane.split(|at| !is_free(*at)) {
-                passages(run, |from, to| zone.pass(TOOL, from, to));
+                Tool::along(run, |from, to| zone.pass(TOOL, from, to));
             }
         }
         zone
-    }
-}
-
-/// The passages of a bar across the heading along a path; it also scans when the robot turns in place.
-fn passages(path: &[Point], mut pass: impl FnMut(Pose, Pose)) {
-    let mut before: Option<f64> = None;
-    for pair in path.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
-        let way = pair[1] - pair[0];
-        let heading_rad = way.y.atan2(way.x);
-        let at = |position: Point, heading_rad: f64| Pose { position, heading_rad };
-        if let Some(from_rad) = before {
-            let turn = wrap_angle_rad(heading_rad - from_rad);
-            let n = (turn.abs() / TURN_STEP_RAD).ceil().max(1.0);
-            for k in 0..n as usize {
-                let heading = |k: f64| at(pair[0], from_rad + turn * k / n);
-                pass(heading(k as f64), heading(k as f64 + 1.0));
-            }
-        }
-        pass(at(pair[0], heading_rad), at(pair[1], heading_rad));
-        before = Some(heading_rad);
     }
 }
 

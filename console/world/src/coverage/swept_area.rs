@@ -13,7 +13,7 @@ use nalgebra::{Isometry2, Rotation2};
 /// Direction of the rows, radians from east: askew, so that neither walls nor lanes lie along them.
 const ASKEW_RAD: f64 = 0.345;
 /// Distance between rows, metres; more on a floor that would have too many.
-const ROW_M: f64 = 0.01;
+const ROW_M: f64 = 0.02;
 /// Most rows of a floor.
 const MOST_ROWS: f64 = 5_000.0;
 /// Spans of a row that are nearer than this are one, metres.
@@ -186,7 +186,7 @@ impl SweptArea {
     fn reachable(&self, spans: &[Span], floor: &Floor, y: f64) -> Vec<Span> {
         let mut reachable: Vec<Span> = Vec::new();
         for (from, to) in spans {
-            let count = ((to - from) / (floor.cell_m / 2.0)).ceil().max(1.0);
+            let count = ((to - from) / floor.cell_m).ceil().max(1.0);
             let at = |k: f64| from + (to - from) * (k / count);
             for k in 0..count as usize {
                 let (a, b) = (at(k as f64), at(k as f64 + 1.0));

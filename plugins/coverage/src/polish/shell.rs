@@ -12,7 +12,7 @@ use crate::tuning::shell as tuning;
 use crate::workspace::Workspace;
 use planner_api::Result;
 use std::ops::Range;
-use world::{Point, Pose, ShellStretch, ShellZone, Tool, Vector, geometry::wrap_angle_rad, polyline};
+use world::{Point, ShellStretch, ShellZone, Tool, polyline};
 
 impl Track<'_> {
     /// Leads the path along the shell wherever hull and clearance have room for that.
@@ -76,6 +76,11 @@ pub(super) fn shell_m(workspace: &Workspace, a: Point, b: Point) -> f64 {
     if is_close(a) && is_close(b) && is_close(a + (b - a) / 2.0) { (b - a).norm() } else { 0.0 }
 }
 
+/// Where the middle of the hull is when it is as close as it may be to a place on the wall.
+pub(crate) fn before_shell(workspace: &Workspace, on_wall: Point) -> Point {
+    on_wall + inward(&workspace.wall, on_wall) * (workspace.keep_m + SLACK_M)
+}
+
 /// The place before which the hull is as close to the wall as it may be.
 fn at_shell(workspace: &Workspace, at: Point) -> Point {
     at - inward(&workspace.wall, at) * over_m(workspace, at)
@@ -99,7 +104,7 @@ pub(crate) fn open_lanes(domain: &SlitDomain<'_>, path: &[Point]) -> Vec<Lane> {
     let mut lanes: Vec<Lane> = Vec::new();
     let mut before: Option<(Point, f64)> = None;
     for stretch in open_stretches(workspace, path) {
-        let at = stretch.at + inward(&workspace.wall, stretch.at) * (workspace.keep_m + SLACK_M);
+        let at = before_shell(workspace, stretch.at);
         let has_room = workspace.room.spare_m(at) >= SLACK_M / 2.0 && domain.contains(at);
         let is_next = before.is_some_and(|(last, end_m)| {
             stretch.along_m - end_m < tuning::STEP_M && domain.sees(last, at) && !domain.crosses_cut(last, at)
@@ -120,24 +125,7 @@ pub(crate) fn open_stretches(workspace: &Workspace, path: &[Point]) -> Vec<Shell
     let mut zone = ShellZone::new(&workspace.wall, tuning::ZONE_M);
     // A bar that reaches the wall when the hull is as close as it may be.
     let tool = Tool::Bar { swath_m: workspace.swath_m.max(2.0 * (workspace.keep_m + SLACK_M)) };
-    let near_m = workspace.keep_m + tuning::ZONE_M + tool.swath_m() / 2.0;
-    let mut heading_rad: Option<f64> = None;
-    for pair in path.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
-        let ahead: Vector = pair[1] - pair[0];
-        let to_rad = ahead.y.atan2(ahead.x);
-        let from_rad = heading_rad.replace(to_rad).unwrap_or(to_rad);
-        if workspace.wall.wall_distance_m(pair[0]) > near_m + ahead.norm() {
-            continue;
-        }
-        let pose = |position: Point, heading_rad: f64| Pose { position, heading_rad };
-        let turn_rad = wrap_angle_rad(to_rad - from_rad);
-        let n = (turn_rad.abs() / tuning::TURN_RAD).ceil();
-        for k in 0..n as usize {
-            let turned = |k: f64| pose(pair[0], from_rad + turn_rad * k / n);
-            zone.pass(tool, turned(k as f64), turned(k as f64 + 1.0));
-        }
-        zone.pass(tool, pose(pair[0], to_rad), pose(pair[1], to_rad));
-    }
+    Tool::along(path, |from, to| zone.pass(tool, from, to));
     let is_solid = |at: Point| workspace.room.is_solid(at);
     let mut stretches = zone.profile(is_solid);
     stretches.retain(|stretch| stretch.gap_m.is_some_and(|gap_m| gap_m > tuning::NEAR_M));
