@@ -12,8 +12,8 @@ pub use evidence::{Evidence, Solid};
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;
-pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 use zone::Rim;
+pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
 use crate::{accuracy::nearest_rank, scanned::Scanned};
 use areas::areas;

@@ -69,7 +69,20 @@ impl Workspace {
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
         let home = home(&room, anchor);
         let (triangulation, floor, ground) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        Ok(Self { wall, parts, hull_m, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor, ground })
+        Ok(Self {
+            wall,
+            parts,
+            hull_m,
+            keep_m,
+            swath_m,
+            anchor,
+            home,
+            room,
+            is_room,
+            triangulation,
+            floor,
+            ground,
+        })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.

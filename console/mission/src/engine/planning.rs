@@ -1,6 +1,11 @@
 //! Plans: whether one may be flown, and what flying it changes.
 
-use super::{Mission, rules::{CutsRule, Solids}, slot::AskedPlan, slot::PlanState};
+use super::{
+    Mission,
+    rules::{CutsRule, Solids},
+    slot::AskedPlan,
+    slot::PlanState,
+};
 use crate::{
     ask::{AskId, Said},
     event::EventKind,

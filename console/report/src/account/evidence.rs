@@ -4,8 +4,8 @@ use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, SweptArea, Tool,
-    tether::Reach,
+    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, SweptArea,
+    Tool, tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.

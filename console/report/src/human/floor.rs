@@ -17,9 +17,7 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
         ("floor", format!("reachable floor {}", shares(&account.reachable))),
     ];
     lines.extend(account.exact.map(|share| ("floor", exact(share))));
-    lines.extend([
-        ("floor", critical_zone(account)),
-    ]);
+    lines.extend([("floor", critical_zone(account))]);
     lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));
     lines.push(("floor", basis(account)));
     lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));

@@ -13,6 +13,9 @@ use world::{
 const TOOL: Tool = Tool::Bar { swath_m: SWATH_M };
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 const CRITICAL_ZONE_M: f64 = 0.075;
+/// Speeds of the robot by which a path is judged: 0.4 m/s and 60 degrees a second.
+const SPEED_M_PER_S: f64 = 0.4;
+const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
 /// Step along a lane that may touch something, metres.
 const LANE_STEP_M: f64 = 0.02;
 
@@ -37,6 +40,8 @@ pub struct Scan {
     pub turns: usize,
     /// Sum of the changes of heading, in whole turns.
     pub rotation_turns: f64,
+    /// Time of driving and turning one after the other at the robot's speeds, over that of driving the lower bound.
+    pub time_over_lower_bound: f64,
     /// What the tether says, without limits.
     pub certificate: Certificate,
 }
@@ -88,6 +93,8 @@ impl Tank {
             critical_zone_possible: scanned(&self.zone_in_reach(&shapes)),
             length_m,
             length_over_lower_bound: length_m / (area_m2 / SWATH_M),
+            time_over_lower_bound: (length_m / SPEED_M_PER_S + turns.iter().sum::<f64>() / TURN_RAD_PER_S)
+                / (area_m2 / (SWATH_M * SPEED_M_PER_S)),
             turns: turns.iter().filter(|turn| **turn > 30_f64.to_radians()).count(),
             rotation_turns: turns.iter().sum::<f64>() / TAU,
             certificate,
@@ -107,9 +114,7 @@ impl Tank {
         let lanes: Vec<Vec<Point>> = match &self.boundary {
             Boundary::Circle { radius_m } => {
                 let n = (TAU * radius_m / LANE_STEP_M).ceil();
-                let at = |k: usize| {
-                    Point::from(unit_vector(TAU * k as f64 / n) * (radius_m - room_m))
-                };
+                let at = |k: usize| Point::from(unit_vector(TAU * k as f64 / n) * (radius_m - room_m));
                 vec![(0..=n as usize).map(at).collect()]
             }
             Boundary::Polygon { vertices } => {

@@ -1,8 +1,6 @@
 //! The scanning tool and the floor that it passes.
 
-use geometry::{
-    Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad,
-};
+use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
 /// Angle by which the tool turns between two poses that are close together, at most, radians.

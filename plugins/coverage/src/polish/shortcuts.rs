@@ -4,7 +4,9 @@ use crate::plane::Course;
 use crate::polish::shell::shell_m;
 use crate::polish::track::{SIDE_M, Terms, Track};
 use crate::scan::Piece;
-use crate::tuning::shortcuts::{FINE, LEAST_SAVING_M, LONG_M, MUCH_TURN_RAD, QUICK_MARGIN, SAMPLES, SHELL, SHORT_M};
+use crate::tuning::shortcuts::{
+    FINE, LEAST_SAVING_M, LONG_M, MUCH_TURN_RAD, QUICK_MARGIN, SAMPLES, SHELL, SHORT_M,
+};
 use planner_api::Result;
 use std::ops::Range;
 use world::{Point, polyline};

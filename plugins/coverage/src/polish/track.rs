@@ -3,8 +3,8 @@
 use crate::buckets::Buckets;
 use crate::floor::{ReachableFloor, Run, SweptFloor};
 use crate::jobs::Job;
-use crate::polish::shell::shell_m;
 use crate::plane::{Course, angle_rad, left_of};
+use crate::polish::shell::shell_m;
 use crate::scan::Piece;
 use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;

@@ -72,7 +72,8 @@ impl Solids<'_> {
     /// Where the solid begins beside which a cut ends, a little inside.
     fn root(&self, end: Point) -> Option<Point> {
         let reach_m = ROOT_SHARE * self.room_m;
-        let of_obstacles = self.map.within(end, reach_m).into_iter().map(|near| (near.distance_m, near.closest));
+        let of_obstacles =
+            self.map.within(end, reach_m).into_iter().map(|near| (near.distance_m, near.closest));
         let nearest = of_obstacles.chain(self.wall_beside(end)).min_by(|a, b| a.0.total_cmp(&b.0));
         let (distance_m, closest) = nearest.filter(|(distance_m, _)| (0.0..=reach_m).contains(distance_m))?;
         let onward: Vector = (closest - end).try_normalize(1e-9)?;

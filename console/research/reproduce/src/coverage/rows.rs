@@ -48,6 +48,7 @@ const FIGURES: &[Figure] = &[
     figure("length_m", "m", Worst::Omitted, |scan, _| scan.length_m),
     figure("turns", "", Worst::Max, |scan, _| scan.turns as f64),
     figure("rotation_turns", "", Worst::Max, |scan, _| scan.rotation_turns),
+    figure("time_over_lower_bound", "", Worst::Max, |scan, _| scan.time_over_lower_bound),
     figure("tether_length_max_m", "m", Worst::Omitted, |scan, _| scan.certificate.tether_length_max_m),
     figure("max_cable_over_eccentricity", "", Worst::Max, |scan, _| {
         scan.certificate.tether_length_max_m / scan.certificate.eccentricity_m.max(1e-9)
