@@ -32,6 +32,16 @@ pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: boo
     track.pass_along_shell(terms)
 }
 
+/// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was
+/// scanned there already is not scanned again.
+pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<()> {
+    let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
+    terms.job.stage(SHORTENED);
+    track.shorten(terms)?;
+    bend(track, terms, &careful)?;
+    tie(track, terms, &careful)
+}
+
 /// Bends the path, and shortens what is new, until nothing pays any more.
 fn bend(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
     let mut at = SHORTENED;

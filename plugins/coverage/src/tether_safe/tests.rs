@@ -141,7 +141,7 @@ fn a_little_floor_far_away_is_scanned_if_nothing_else_is_asked_for() {
     let reason = planner_api::Reason::Start;
     let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
     let path = planner.plan(&request, &bench.ctx()).unwrap().path;
-    let nearest_m = world::polyline::distance_m(&path, farthest);
+    let nearest_m = polyline::distance_m(&path, farthest);
     assert!(nearest_m < site.swath_m / 2.0, "{nearest_m} m off, {} m from the anchor", off_m(&farthest));
 }
 
