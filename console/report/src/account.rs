@@ -12,7 +12,7 @@ pub use evidence::{Evidence, Solid};
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;
-use zone::Rim;
+use zone::rim;
 pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
 use crate::{accuracy::nearest_rank, scanned::Scanned};
@@ -188,7 +188,7 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
         exact: evidence.exact_share(floor),
-        critical_zone: CriticalZone::of(&evidence.shell(), Rim::of(&run.mission), plate_at),
+        critical_zone: CriticalZone::of(&evidence.shell(), &rim(&run.mission), plate_at),
         plates: plates
             .as_ref()
             .map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned, &covered)),

@@ -3,7 +3,6 @@
 use mission::MissionConfig;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt::{self, Display, Formatter};
 use world::{Point, ShellFigures, ShellStretch};
 
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
@@ -77,41 +76,22 @@ pub struct ZoneArc {
     pub gap_max_m: f64,
 }
 
-/// The distances that decide how near to the shell the tool comes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rim {
-    hull_m: f64,
-    clearance_m: f64,
-    swath_m: f64,
-}
-
-impl Rim {
-    /// Those of a mission.
-    pub(crate) fn of(mission: &MissionConfig) -> Self {
-        let hull_m = mission.limits.radius_m;
-        Self { hull_m, clearance_m: mission.room_m() - hull_m, swath_m: mission.swath_m }
+/// What a mission's tool cannot reach along the shell, and why, as the end of a sentence; nothing if it reaches all of it.
+pub(crate) fn rim(mission: &MissionConfig) -> String {
+    let (hull_m, room_m, swath_m) = (mission.limits.radius_m, mission.room_m(), mission.swath_m);
+    let rim_m = room_m - swath_m / 2.0;
+    if rim_m < LEAST_RIM_M {
+        return String::new();
     }
-}
-
-impl Display for Rim {
-    /// What cannot be reached along the shell, and why; nothing if all of it can.
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { hull_m, clearance_m, swath_m } = self;
-        let rim_m = hull_m + clearance_m - swath_m / 2.0;
-        if rim_m < LEAST_RIM_M {
-            return Ok(());
-        }
-        write!(
-            f,
-            "; {rim_m:.2} m not reachable: hull radius {hull_m:.2} m + clearance {clearance_m:.2} m - half of the swath of \
-             {swath_m:.2} m"
-        )
-    }
+    let clearance_m = room_m - hull_m;
+    format!(
+        "; {rim_m:.2} m not reachable: hull radius {hull_m:.2} m + clearance {clearance_m:.2} m - half of the swath of {swath_m:.2} m"
+    )
 }
 
 impl CriticalZone {
     /// The zone as the shell was scanned; `plate_of` names the plate of a place on the wall.
-    pub(crate) fn of(shell: &[ShellStretch], rim: Rim, plate_of: impl Fn(Point) -> Option<String>) -> Self {
+    pub(crate) fn of(shell: &[ShellStretch], rim: &str, plate_of: impl Fn(Point) -> Option<String>) -> Self {
         let ShellFigures { length_m, done_m, scanned, gap_m } = ShellFigures::of(shell);
         let has_floor = length_m > 0.0;
         let done = has_floor && done_m >= CRITICAL_DONE * length_m;
