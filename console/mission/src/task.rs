@@ -103,6 +103,14 @@ impl Task {
         }
     }
 
+    /// The areas to be scanned that hold no floor in reach; none unless the task is to cover some.
+    pub(crate) fn areas_out_of_reach(&self, coverage: &CoverageGrid) -> Vec<Vec<Point>> {
+        match self {
+            Self::Cover(cover) => cover.regions_out_of_reach(coverage).collect(),
+            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
+        }
+    }
+
     /// Whether only some of the floor is to be scanned.
     pub(crate) fn is_in_part(&self) -> bool {
         matches!(self, Self::Cover(cover) if cover.is_in_part())

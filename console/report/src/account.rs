@@ -12,6 +12,7 @@ pub use evidence::{Evidence, Solid};
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;
+use zone::rim;
 pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
 use crate::{accuracy::nearest_rank, scanned::Scanned};
@@ -37,6 +38,9 @@ pub struct Account {
     pub whole: Shares,
     /// The floor that the tool can reach: scanned and missed alone.
     pub reachable: Shares,
+    /// Scanned share of the reachable floor by the area that the tool swept instead of by cells, 0 to 1.
+    #[serde(default)]
+    pub exact: Option<f64>,
     /// The zone along the shell.
     pub critical_zone: CriticalZone,
     /// Every plate, also those of which nothing was scanned; empty if the layout of the plates is not known.
@@ -183,7 +187,8 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
         position_limit_m: run.mission.scan_limit_m(),
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
-        critical_zone: CriticalZone::of(&evidence.shell(), plate_at),
+        exact: evidence.exact_share(floor),
+        critical_zone: CriticalZone::of(&evidence.shell(), &rim(&run.mission), plate_at),
         plates: plates
             .as_ref()
             .map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned, &covered)),

@@ -8,7 +8,7 @@ use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start}
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
-    Cell, Floor, Point, Shape, World, polyline,
+    Cell, CoverageGrid, Floor, Point, Shape, SweptArea, Tool, World, polyline,
     tether::{Cable, Certificate},
 };
 
@@ -43,6 +43,10 @@ struct PlannedFloor {
     reachable_m2: f64,
     /// Floor along the shell that it cannot reach, square metres.
     shell_margin_m2: f64,
+    /// Share of the reachable floor that the path scans, counted in cells, 0 to 1.
+    scanned: f64,
+    /// The same by the area that the tool sweeps; absent if nothing is in reach.
+    scanned_exact: Option<f64>,
 }
 
 /// What a planner gave.
@@ -71,7 +75,7 @@ impl Planned {
             complete: plan.complete,
             reason,
             warnings,
-            floor: planned_floor(mission, drawing),
+            floor: planned_floor(mission, drawing, &plan.path),
             certificate: certificate(mission, drawing, &plan),
             cuts: plan.cuts,
             path: plan.path,
@@ -124,7 +128,7 @@ impl Planned {
     }
 }
 
-fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloor> {
+fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<PlannedFloor> {
     let TaskConfig::Cover { .. } = &mission.task else { return None };
     let (start, swath_m) = (mission.start.position, mission.swath_m);
     let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
@@ -132,7 +136,20 @@ fn planned_floor(mission: &MissionConfig, drawing: &World) -> Option<PlannedFloo
         (0..floor.len()).filter(|index| floor.kind(*index) == kind).count() as f64 * floor.cell_m2()
     };
     let (reachable_m2, shell_margin_m2) = (area_m2(Cell::Reachable), area_m2(Cell::Margin));
-    Some(PlannedFloor { swath_m, reachable_m2, shell_margin_m2 })
+    let (mut cells, mut area) = (CoverageGrid::new(floor), SweptArea::new(&drawing.boundary));
+    Tool::along(path, |from, to| {
+        cells.mark(mission.tool(), from, to);
+        area.pass(mission.tool(), from, to);
+    });
+    let shapes: Vec<Shape> = drawing.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+    let scanned_exact = area.share_of(cells.floor(), &drawing.boundary, &shapes);
+    Some(PlannedFloor {
+        swath_m,
+        reachable_m2,
+        shell_margin_m2,
+        scanned: cells.fraction_reachable(),
+        scanned_exact,
+    })
 }
 
 /// What the path does to the tether, certified independently of its planner; nothing without a tether.
@@ -170,9 +187,13 @@ fn warnings(planned: &Planned) -> String {
 
 /// The floor, for people.
 fn floor(floor: &PlannedFloor) -> String {
-    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2 } = floor;
+    let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, scanned, scanned_exact } = floor;
+    let exact =
+        scanned_exact.map(|share| format!(", {:.2} % by exact area", 100.0 * share)).unwrap_or_default();
     format!(
-        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n"
+        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n\
+         scanned   {:.2} % of it in cells of the report{exact}\n",
+        100.0 * scanned
     )
 }
 

@@ -5,6 +5,7 @@ mod floor_maker;
 mod percents;
 pub mod regions;
 mod shell;
+mod swept_area;
 mod tool;
 
 pub(crate) use floor::neighbours;
@@ -12,6 +13,7 @@ pub use floor::{Cell, CellRun, Floor, KindRun};
 pub use floor_maker::FloorMaker;
 pub use percents::{percent, percents};
 pub use shell::{ShellFigures, ShellStretch, ShellZone};
+pub use swept_area::SweptArea;
 pub use tool::Tool;
 
 use crate::tiles::Tiles;

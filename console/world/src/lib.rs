@@ -18,7 +18,7 @@ mod total;
 
 pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellStretch, ShellZone,
-    Tool,
+    SweptArea, Tool,
 };
 /// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
 pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};

@@ -1,7 +1,7 @@
 //! Plane geometry that several steps of planning share.
 
 use geometry::convex::crossing;
-use world::{Point, Vector};
+use world::{Boundary, Point, Vector};
 
 /// Unit vector of an angle, radians from east.
 pub(crate) fn direction(angle_rad: f64) -> Vector {
@@ -21,6 +21,17 @@ pub(crate) fn angle_rad(a: Vector, b: Vector) -> f64 {
 /// Least and greatest of some numbers; plus and minus infinity where there are none.
 pub(crate) fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)))
+}
+
+/// Direction in which the wall recedes fastest.
+pub(crate) fn inward(wall: &Boundary, at: Point) -> Vector {
+    let step = 1e-4;
+    let d = |offset: Vector| wall.wall_distance_m(at + offset);
+    let slope = Vector::new(
+        d(Vector::new(step, 0.0)) - d(Vector::new(-step, 0.0)),
+        d(Vector::new(0.0, step)) - d(Vector::new(0.0, -step)),
+    );
+    slope.try_normalize(1e-12).unwrap_or_else(Vector::x)
 }
 
 /// Whether the straight way between two places meets a line.

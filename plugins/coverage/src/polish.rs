@@ -2,6 +2,7 @@
 //! swept here, and what was missed is worth a detour only if it is large enough.
 
 mod bends;
+pub(crate) mod shell;
 mod shortcuts;
 mod ties;
 mod track;
@@ -25,6 +26,18 @@ pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: boo
         *track = whole;
         track.shorten(&careful)?;
     }
+    bend(track, terms, &careful)?;
+    track.pass_along_shell(terms)?;
+    tie(track, terms, &careful)?;
+    track.pass_along_shell(terms)
+}
+
+/// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was
+/// scanned there already is not scanned again.
+pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<()> {
+    let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
+    terms.job.stage(SHORTENED);
+    track.shorten(terms)?;
     bend(track, terms, &careful)?;
     tie(track, terms, &careful)
 }

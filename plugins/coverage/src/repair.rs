@@ -10,7 +10,7 @@ mod current;
 use crate::cuts::Extension;
 use crate::floor::ReachableFloor;
 use crate::jobs::Job;
-use crate::polish::{Terms, Track, polish};
+use crate::polish::{Terms, Track, polish_again};
 use crate::scan::{Piece, Scan};
 use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
@@ -67,7 +67,7 @@ impl<'a> Repair<'a, '_> {
         let is_wanted = |at| scope.is_in_reach(&domain, at);
         let terms = Terms::of(&scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
         let mut track = Track::new(&domain, &pieces, |piece| is_new[piece], floor);
-        polish(&mut track, &terms, true)?;
+        polish_again(&mut track, &terms)?;
         let (pieces, swept) = track.into_pieces();
         Ok(Some(Repaired { scan: Scan { pieces, domain, swept }, enough }))
     }

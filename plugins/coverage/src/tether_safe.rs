@@ -42,7 +42,7 @@ impl Planner for TetherSafe {
     const PARAMS: &'static [ParamSpec] = parameters::ALL;
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
-        let preferences = Preferences::of(config, site.seed);
+        let preferences = Preferences::of(config, site);
         Ok(Self { preferences, follow: Follow::new(config, site), current: None })
     }
 

@@ -3,10 +3,10 @@
 use crate::floor::SweptFloor;
 use crate::inflation::SLACK_M;
 use crate::lanes::{Lane, thinned};
-use crate::plane::{direction, extent, left_of};
+use crate::plane::{direction, extent, inward, left_of};
 use crate::slit_domain::SlitDomain;
 use crate::tuning::touch_ups::{CUT_M, LEAST_LANE_M};
-use world::{Boundary, Point, Vector, polyline};
+use world::{Point, Vector, polyline};
 
 /// Sampling step along touch-ups, metres.
 const STEP_M: f64 = 0.05;
@@ -96,17 +96,6 @@ fn beside_cuts(cuts: &[Vec<Point>], at: Point) -> Point {
     nearest + away.unwrap_or_else(Vector::zeros) * (1.1 * CUT_M)
 }
 
-/// Direction in which the wall recedes fastest.
-fn inward(wall: &Boundary, at: Point) -> Vector {
-    let step = 1e-4;
-    let d = |offset: Vector| wall.wall_distance_m(at + offset);
-    let slope = Vector::new(
-        d(Vector::new(step, 0.0)) - d(Vector::new(-step, 0.0)),
-        d(Vector::new(0.0, step)) - d(Vector::new(0.0, -step)),
-    );
-    slope.try_normalize(1e-12).unwrap_or_else(Vector::x)
-}
-
 /// The pieces of a line that can be driven straight.
 fn pieces(domain: &SlitDomain<'_>, points: impl Iterator<Item = Point>) -> Vec<Lane> {
     let mut lanes: Vec<Vec<Point>> = vec![Vec::new()];
@@ -133,6 +122,7 @@ mod tests {
     use crate::floor::ReachableFloor;
     use crate::workspace::Workspace;
     use trials::tanks::Tank;
+    use world::Boundary;
 
     #[test]
     fn a_strip_that_was_missed_along_a_cut_is_scanned_from_beside_it() {

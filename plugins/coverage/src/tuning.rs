@@ -93,6 +93,8 @@ pub(crate) mod shortcuts {
     pub(crate) const SHORT_M: f64 = 2.7;
     pub(crate) const LONG_M: f64 = 9.0;
     pub(crate) const MUCH_TURN_RAD: f64 = 3.0;
+    /// What a metre along the shell is worth, metres: the critical zone must be scanned.
+    pub(crate) const SHELL: f64 = 2.0;
     /// Number of sides beyond which not every end of a shortcut is tried.
     pub(crate) const FINE: usize = 8;
     /// Sample positions across a side for a quick check, as shares of half the bar. It rules out a shortcut only if
@@ -130,6 +132,21 @@ pub(crate) mod touch_ups {
     /// metres.
     pub(crate) const MOST_EXTRA_M: f64 = 8.0;
     pub(crate) const LEAST_GAIN_M2: f64 = 0.01;
+}
+
+/// The pass along the shell.
+pub(crate) mod shell {
+    /// Width of the zone that is looked at, metres, and by how much less of it is scanned than could be where that does not
+    /// matter: lanes keep a little slack, and a robot does not drive to the millimetre.
+    pub(crate) const ZONE_M: f64 = 0.075;
+    pub(crate) const NEAR_M: f64 = 0.0101;
+    /// Path that is farther from the shell than it need be by less than this is put right, metres.
+    pub(crate) const PRESSED_M: f64 = 0.03;
+    /// Floor that may be lost for that, metres: square metres for each metre of path.
+    pub(crate) const MOST_LOST_M: f64 = 0.02;
+    /// Step along the shell, and the shortest lane that is worth its turns, metres.
+    pub(crate) const STEP_M: f64 = 0.15;
+    pub(crate) const LEAST_M: f64 = 0.1;
 }
 
 /// The choice among candidates.

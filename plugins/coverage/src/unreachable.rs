@@ -2,15 +2,19 @@
 
 use crate::floor::ReachableFloor;
 use crate::plane::direction;
+use crate::polish::shell::{before_shell, open_stretches};
 use crate::scan::Scan;
 use crate::scope::Scope;
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel};
 use std::f64::consts::TAU;
-use world::{Point, shape::mean_of};
+use world::{Point, polyline, shape::mean_of};
 
 /// Floor out of reach below this is not worth a line, square metres.
 const LEAST_M2: f64 = 0.05;
+/// A rim along the shell, and open stretches of it, below which they are not worth a line, metres.
+const LEAST_RIM_M: f64 = 0.005;
+const LEAST_OPEN_M: f64 = 0.1;
 /// Places listed one by one.
 const MOST_PLACES: usize = 8;
 
@@ -40,10 +44,11 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
             && scan.domain.workspace.is_floor(raster.center(cell))
     };
     let is_margin = |cell: usize| is_shell_margin(scan, raster.center(cell));
-    let margin = format!(
-        "along the shell is beyond lanes of {swath_m:.2} m, the swath less the overlap, from where the hull fits"
-    );
+    let margin = format!("along the shell is beyond lanes of {swath_m:.2} m from where the hull fits");
     log(&margin, &|cell| is_closed(cell) && is_margin(cell));
+    for line in shell_left(scan, scope) {
+        ctx.log(LogLevel::Warn, &line);
+    }
     let gaps = "cannot be reached: gaps are narrower than hull and clearance need";
     log(gaps, &|cell| is_closed(cell) && !is_margin(cell));
     if scope.reel_length_m.is_finite() {
@@ -67,6 +72,51 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         ctx.log(LogLevel::Warn, &format!("{} more areas are left out for the same reason", n + 1));
     }
     closed.is_empty()
+}
+
+/// What a pass along the shell does not scan, and why: the rim that the tool cannot reach from anywhere, and where the path is
+/// farther from the shell than hull and clearance ask.
+fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
+    let workspace = scan.domain.workspace;
+    let Workspace { hull_m, keep_m, swath_m, .. } = *workspace;
+    let mut lines = Vec::new();
+    let rim_m = keep_m - swath_m / 2.0;
+    if rim_m > LEAST_RIM_M {
+        lines.push(format!(
+            "shell: {rim_m:.2} m along it not reachable: hull radius {hull_m:.2} m + clearance {:.2} m - half of lanes of {swath_m:.2} \
+             m, the swath less the overlap",
+            keep_m - hull_m
+        ));
+    }
+    if !scope.regions.is_empty() {
+        return lines;
+    }
+    let (mut no_room_m, mut cut_m, mut left_m) = (0.0, 0.0, 0.0);
+    for stretch in open_stretches(workspace, &scan.path()) {
+        let at = before_shell(workspace, stretch.at);
+        let is_cut = || scan.domain.cuts.iter().any(|cut| polyline::distance_m(cut, at) < swath_m / 2.0);
+        let sum_m = match () {
+            () if !workspace.is_free(at) => &mut no_room_m,
+            () if is_cut() => &mut cut_m,
+            () => &mut left_m,
+        };
+        *sum_m += stretch.length_m;
+    }
+    let causes = [
+        (no_room_m, "where hull and clearance have no room before it"),
+        (cut_m, "at cuts, which the tether must not cross"),
+        (left_m, "where no way leads along it"),
+    ];
+    let open_m: f64 = causes.iter().map(|(length_m, _)| length_m).sum();
+    if open_m > LEAST_OPEN_M {
+        let causes = causes.iter().filter(|(length_m, _)| *length_m >= 0.05);
+        let causes: Vec<String> = causes.map(|(length_m, why)| format!("{length_m:.1} m {why}")).collect();
+        lines.push(format!(
+            "shell: along {open_m:.1} m of it not scanned as near as elsewhere: {}",
+            causes.join(", ")
+        ));
+    }
+    lines
 }
 
 /// Whether floor that is not in reach lies along the wall, beside floor that is, with no gap between wall and obstacle.

@@ -28,6 +28,8 @@ pub(crate) struct Workspace {
     pub wall: Boundary,
     /// Convex parts of everything solid, no-go zones included.
     pub parts: Vec<Part>,
+    /// Radius of the hull, metres.
+    pub hull_m: f64,
     /// Distance between the middle of the hull and anything solid, metres.
     pub keep_m: f64,
     /// Width of the floor scanned in one pass, metres.
@@ -54,7 +56,7 @@ impl Workspace {
     /// An anchor outside the floor or in an obstacle, and a swath of no width.
     pub(crate) fn new(site: &Site<'_>, anchor: Point) -> Result<Self> {
         let (swath_m, keep_m) = (site.swath_m, site.limits.radius_m + site.clearance_m);
-        let wall = site.boundary.to_owned();
+        let (wall, hull_m) = (site.boundary.to_owned(), site.limits.radius_m);
         let parts: Vec<Part> = solids(site).flat_map(|(_, outline)| parts_of(&outline)).collect();
         let refusal = refused_figures(swath_m, keep_m, anchor);
         if let Some((code, why)) = refusal.or_else(|| refused_anchor(&wall, &parts, anchor)) {
@@ -67,7 +69,20 @@ impl Workspace {
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
         let home = home(&room, anchor);
         let (triangulation, floor, ground) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        Ok(Self { wall, parts, keep_m, swath_m, anchor, home, room, is_room, triangulation, floor, ground })
+        Ok(Self {
+            wall,
+            parts,
+            hull_m,
+            keep_m,
+            swath_m,
+            anchor,
+            home,
+            room,
+            is_room,
+            triangulation,
+            floor,
+            ground,
+        })
     }
 
     /// The floor for the middle of the hull in triangles; made when it is first asked for.

@@ -1,6 +1,11 @@
 //! Plans: whether one may be flown, and what flying it changes.
 
-use super::{Mission, rules::CutsRule, slot::AskedPlan, slot::PlanState};
+use super::{
+    Mission,
+    rules::{CutsRule, Solids},
+    slot::AskedPlan,
+    slot::PlanState,
+};
 use crate::{
     ask::{AskId, Said},
     event::EventKind,
@@ -141,9 +146,11 @@ impl Mission {
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
         let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
         let here = self.locator.position();
+        let boundary = &self.chart.world().boundary;
+        let solids = Solids { boundary, map: self.chart.map(), room_m: self.config.room_m() };
         let slot = &mut self.active;
         slot.plan = PlanState::Flying { is_whole: plan.complete };
-        slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here);
+        slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here, &solids);
         slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
         slot.outdate_step();
         self.doubt_fresh_plan();

@@ -14,7 +14,7 @@ mod tether;
 mod time_limit;
 
 pub(super) use blocked::BlockedRule;
-pub(super) use cuts::{CutsRule, HOME_M};
+pub(super) use cuts::{CutsRule, HOME_M, Solids};
 use fallback::FallbackRule;
 pub(super) use late_planner::LatePlannerRule;
 use lost_position::LostPositionRule;

@@ -3,10 +3,12 @@
 use super::Mission;
 use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
 use planner_api::Reason;
-use world::{CellRun, Pose, Readings, Shape, tether::Reach};
+use world::{Cell, CellRun, Pose, Readings, Shape, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
+/// Areas out of reach that are named at the end.
+const MOST_NAMED: usize = 4;
 
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
@@ -115,9 +117,37 @@ impl Mission {
                 } else {
                     String::new()
                 };
-                scanned + &asked + &self.left_beyond_reel().map(|why| format!("; {why}")).unwrap_or_default()
+                let left_out = [self.out_of_reach(), self.left_beyond_reel()];
+                let left_out = left_out.into_iter().flatten().map(|why| format!("; {why}"));
+                scanned + &asked + &left_out.collect::<String>()
             }
         }
+    }
+
+    /// The areas to be scanned, or in a mission for all of the floor the parts of it, to which no way leads, as a sentence.
+    fn out_of_reach(&self) -> Option<String> {
+        let named = |places: &[String]| {
+            let more = places.len().saturating_sub(MOST_NAMED);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            format!("{}{more}", places[..places.len().min(MOST_NAMED)].join(", "))
+        };
+        let coverage = &self.floor.coverage;
+        let areas: Vec<String> = self
+            .task
+            .areas_out_of_reach(coverage)
+            .iter()
+            .map(|ring| world::shape::mean_of(ring))
+            .map(|at| format!("({:.1}, {:.1})", at.x, at.y))
+            .collect();
+        if !areas.is_empty() {
+            let what = if areas.len() == 1 { "the area" } else { "the areas" };
+            return Some(format!("the tool cannot reach any floor in {what} about {}", named(&areas)));
+        }
+        let floor = coverage.floor();
+        let closed = (0..floor.len()).filter(|cell| floor.kind(*cell) == Cell::Unreachable).count();
+        let closed_m2 = closed as f64 * floor.cell_m2();
+        let is_worth = closed_m2 > WORTH_TELLING_M2 && !self.task.is_in_part();
+        is_worth.then(|| format!("no way leads to {closed_m2:.1} m² of floor"))
     }
 
     /// What the plan left out because the cable does not lead there, as a sentence.

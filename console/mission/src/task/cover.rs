@@ -165,7 +165,7 @@ impl Cover {
 
     /// Areas to be scanned that hold no floor in reach, as they were asked for: planners name them, and their plans are not
     /// complete.
-    fn regions_out_of_reach(&self, coverage: &CoverageGrid) -> impl Iterator<Item = Vec<Point>> {
+    pub(crate) fn regions_out_of_reach(&self, coverage: &CoverageGrid) -> impl Iterator<Item = Vec<Point>> {
         let floor = coverage.floor();
         let holds_floor = move |region: &Vec<Point>| {
             let within = regions::cells_within(floor, std::slice::from_ref(region));

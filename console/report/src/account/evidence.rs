@@ -4,8 +4,8 @@ use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, Tool,
-    tether::Reach,
+    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, SweptArea,
+    Tool, tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
@@ -38,6 +38,7 @@ pub struct Evidence {
     drawn: Vec<Solid>,
     boundary: Boundary,
     shell: ShellZone,
+    area: SweptArea,
     last: Pose,
 }
 
@@ -59,6 +60,7 @@ impl Evidence {
             drawn: run.world.obstacles.iter().filter(|o| o.known).map(Solid::of).collect(),
             boundary: run.world.boundary.clone(),
             shell: ShellZone::new(&run.world.boundary, CRITICAL_ZONE_M),
+            area: SweptArea::new(&run.world.boundary),
             last: run.mission.start,
         }
     }
@@ -120,6 +122,7 @@ impl Evidence {
         self.error_m = error_m;
         if error_m <= limit_m {
             self.shell.pass(self.tool, before, here);
+            self.area.pass(self.tool, before, here);
         }
     }
 
@@ -127,6 +130,12 @@ impl Evidence {
     pub fn shell(&self) -> Vec<ShellStretch> {
         let solid: Vec<&Solid> = self.solids().filter(|solid| self.shell.is_beside(&solid.shape)).collect();
         self.shell.profile(|point| solid.iter().any(|solid| solid.shape.distance_m(point) < 0.0))
+    }
+
+    /// The scanned share of the reachable floor by the area that the tool passed, 0 to 1; `None` if there is no such floor.
+    pub(crate) fn exact_share(&self, floor: &Floor) -> Option<f64> {
+        let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
+        self.area.share_of(floor, &self.boundary, &shapes)
     }
 
     /// Everything solid on the floor as it is known.
@@ -173,6 +182,7 @@ impl Evidence {
         };
         self.found.extend(other.found.iter().cloned());
         self.shell.join(&other.shell);
+        self.area.join(&other.area);
     }
 
     /// Gives what was found other names.

@@ -1,5 +1,6 @@
 //! The critical zone along the shell.
 
+use mission::MissionConfig;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use world::{Point, ShellFigures, ShellStretch};
@@ -8,6 +9,8 @@ use world::{Point, ShellFigures, ShellStretch};
 pub(crate) const CRITICAL_ZONE_M: f64 = 0.075;
 /// Share of the shell along which the whole zone is scanned when it counts as done.
 const CRITICAL_DONE: f64 = 0.995;
+/// A rim below this is none, metres.
+const LEAST_RIM_M: f64 = 0.005;
 /// Arcs that are not done are one if they are nearer than this, and are left out if they are shorter, metres.
 const ARC_M: f64 = 0.1;
 
@@ -73,9 +76,22 @@ pub struct ZoneArc {
     pub gap_max_m: f64,
 }
 
+/// What a mission's tool cannot reach along the shell, and why, as the end of a sentence; nothing if it reaches all of it.
+pub(crate) fn rim(mission: &MissionConfig) -> String {
+    let (hull_m, room_m, swath_m) = (mission.limits.radius_m, mission.room_m(), mission.swath_m);
+    let rim_m = room_m - swath_m / 2.0;
+    if rim_m < LEAST_RIM_M {
+        return String::new();
+    }
+    let clearance_m = room_m - hull_m;
+    format!(
+        "; {rim_m:.2} m not reachable: hull radius {hull_m:.2} m + clearance {clearance_m:.2} m - half of the swath of {swath_m:.2} m"
+    )
+}
+
 impl CriticalZone {
     /// The zone as the shell was scanned; `plate_of` names the plate of a place on the wall.
-    pub(crate) fn of(shell: &[ShellStretch], plate_of: impl Fn(Point) -> Option<String>) -> Self {
+    pub(crate) fn of(shell: &[ShellStretch], rim: &str, plate_of: impl Fn(Point) -> Option<String>) -> Self {
         let ShellFigures { length_m, done_m, scanned, gap_m } = ShellFigures::of(shell);
         let has_floor = length_m > 0.0;
         let done = has_floor && done_m >= CRITICAL_DONE * length_m;
@@ -89,7 +105,7 @@ impl CriticalZone {
                 } else {
                     format!("the rest from {:.0} mm off the shell (median)", 1000.0 * gap_m)
                 };
-                Some(format!("full width on {done_m:.1} of {length_m:.1} m, {rest}"))
+                Some(format!("full width on {done_m:.1} of {length_m:.1} m, {rest}{rim}"))
             }
         };
         let scanned = has_floor.then_some(scanned);

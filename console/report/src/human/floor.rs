@@ -15,8 +15,9 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("floor", format!("whole floor {}", shares(&account.whole))),
         ("floor", format!("reachable floor {}", shares(&account.reachable))),
-        ("floor", critical_zone(account)),
     ];
+    lines.extend(account.exact.map(|share| ("floor", exact(share))));
+    lines.extend([("floor", critical_zone(account))]);
     lines.extend(arcs(account).into_iter().map(|line| ("floor", line)));
     lines.push(("floor", basis(account)));
     lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));
@@ -62,6 +63,10 @@ fn shares(shares: &Shares) -> String {
         .filter(|(name, percent)| *percent > 0.0 || *name == "missed")
         .map(|(name, percent)| format!(", {percent:.1} % {name}"));
     format!("{:.1} m²: {scanned:.1} % scanned{guaranteed}{}", shares.area_m2, listed.collect::<String>())
+}
+
+fn exact(share: f64) -> String {
+    format!("reachable floor by exact area instead of cells: {:.2} % scanned", 100.0 * share)
 }
 
 fn critical_zone(account: &Account) -> String {

@@ -4,23 +4,35 @@ use crate::tanks::{CLEARANCE_M, HULL_M, SWATH_M, Tank};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{
-    CoverageGrid, Floor, Point, Pose, Vector,
-    coverage::Tool,
-    geometry::wrap_angle_rad,
+    Boundary, CoverageGrid, Floor, Point, Shape, ShellZone, SweptArea, Tool, Vector,
+    geometry::unit_vector,
     polyline,
     tether::{Case, Certificate, Limits, TetherError, certify},
 };
 
-/// Angle by which the bar turns between two marks, at most, radians.
-const TURN_STEP_RAD: f64 = 0.2;
+/// The tool.
+const TOOL: Tool = Tool::Bar { swath_m: SWATH_M };
+/// Width of the critical zone along the shell, metres (API 653: 3 inches).
+const CRITICAL_ZONE_M: f64 = 0.075;
+/// Speeds of the robot by which a path is judged: 0.4 m/s and 60 degrees a second.
+const SPEED_M_PER_S: f64 = 0.4;
+const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
+/// Step along a lane that may touch something, metres.
+const LANE_STEP_M: f64 = 0.02;
 
 /// How a path over a floor went.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scan {
     /// Scanned share of the floor that the tool can reach.
     pub coverage_reachable: f64,
+    /// The same by the area that the bar swept instead of by cells.
+    pub coverage_exact: f64,
     /// Scanned share of the whole floor.
     pub coverage_whole: f64,
+    /// Scanned share of the critical zone along the shell.
+    pub critical_zone: f64,
+    /// The share of it that one lane along the shell scans, wherever hull and clearance have room.
+    pub critical_zone_possible: f64,
     /// Length, metres.
     pub length_m: f64,
     /// Length over reachable area by swath.
@@ -29,6 +41,8 @@ pub struct Scan {
     pub turns: usize,
     /// Sum of the changes of heading, in whole turns.
     pub rotation_turns: f64,
+    /// Time of driving and turning one after the other at the robot's speeds, over that of driving the lower bound.
+    pub time_over_lower_bound: f64,
     /// What the tether says, without limits.
     pub certificate: Certificate,
 }
@@ -42,7 +56,17 @@ impl Tank {
         let world = self.world();
         let room_m = HULL_M + CLEARANCE_M;
         let mut grid = CoverageGrid::new(Floor::new(&world, cell_m, room_m, SWATH_M, self.anchor));
-        sweep(&mut grid, path);
+        let (mut area, mut zone) =
+            (SweptArea::new(&self.boundary), ShellZone::new(&self.boundary, CRITICAL_ZONE_M));
+        Tool::along(path, |from, to| {
+            grid.mark(TOOL, from, to);
+            area.pass(TOOL, from, to);
+            zone.pass(TOOL, from, to);
+        });
+        let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+        let scanned = |zone: &ShellZone| {
+            zone.figures(|point| shapes.iter().any(|shape| shape.distance_m(point) < 0.0)).scanned
+        };
         let unlimited = f64::INFINITY;
         let certificate = certify(&Case {
             path,
@@ -64,9 +88,14 @@ impl Tank {
         let turns = turns_rad(path);
         Ok(Scan {
             coverage_reachable: grid.fraction_reachable(),
+            coverage_exact: area.share_of(grid.floor(), &self.boundary, &shapes).unwrap_or(0.0),
             coverage_whole: grid.fraction_whole(),
+            critical_zone: scanned(&zone),
+            critical_zone_possible: scanned(&self.zone_in_reach(&shapes)),
             length_m,
             length_over_lower_bound: length_m / (area_m2 / SWATH_M),
+            time_over_lower_bound: (length_m / SPEED_M_PER_S + turns.iter().sum::<f64>() / TURN_RAD_PER_S)
+                / (area_m2 / (SWATH_M * SPEED_M_PER_S)),
             turns: turns.iter().filter(|turn| **turn > 30_f64.to_radians()).count(),
             rotation_turns: turns.iter().sum::<f64>() / TAU,
             certificate,
@@ -74,24 +103,36 @@ impl Tank {
     }
 }
 
-/// Marks what a bar across the heading scans along a path; it also scans when the robot turns in place.
-fn sweep(grid: &mut CoverageGrid, path: &[Point]) {
-    let tool = Tool::Bar { swath_m: SWATH_M };
-    let mut before: Option<f64> = None;
-    for pair in path.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
-        let way = pair[1] - pair[0];
-        let heading_rad = way.y.atan2(way.x);
-        let at = |position: Point, heading_rad: f64| Pose { position, heading_rad };
-        if let Some(from_rad) = before {
-            let turn = wrap_angle_rad(heading_rad - from_rad);
-            let n = (turn.abs() / TURN_STEP_RAD).ceil().max(1.0);
-            for k in 0..n as usize {
-                let heading = |k: f64| at(pair[0], from_rad + turn * k / n);
-                grid.mark(tool, heading(k as f64), heading(k as f64 + 1.0));
+impl Tank {
+    /// The critical zone as the bar scans it across a lane along the shell, wherever the hull has room for that.
+    fn zone_in_reach(&self, shapes: &[Shape]) -> ShellZone {
+        let mut zone = ShellZone::new(&self.boundary, CRITICAL_ZONE_M);
+        let room_m = HULL_M + CLEARANCE_M;
+        let is_free = |at: Point| {
+            self.boundary.wall_distance_m(at) >= room_m - 1e-9
+                && shapes.iter().all(|shape| shape.distance_m(at) >= room_m)
+        };
+        let lanes: Vec<Vec<Point>> = match &self.boundary {
+            Boundary::Circle { radius_m } => {
+                let n = (TAU * radius_m / LANE_STEP_M).ceil();
+                let at = |k: usize| Point::from(unit_vector(TAU * k as f64 / n) * (radius_m - room_m));
+                vec![(0..=n as usize).map(at).collect()]
+            }
+            Boundary::Polygon { vertices } => {
+                let lane = |(a, b): (Point, Point)| {
+                    let aside = (b - a).normalize() * room_m;
+                    let inward = Vector::new(-aside.y, aside.x);
+                    polyline::resampled(&[a + inward, b + inward], LANE_STEP_M)
+                };
+                polyline::edges(vertices).map(lane).collect()
+            }
+        };
+        for lane in &lanes {
+            for run in lane.split(|at| !is_free(*at)) {
+                Tool::along(run, |from, to| zone.pass(TOOL, from, to));
             }
         }
-        grid.mark(tool, at(pair[0], heading_rad), at(pair[1], heading_rad));
-        before = Some(heading_rad);
+        zone
     }
 }
 

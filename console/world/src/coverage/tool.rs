@@ -1,7 +1,10 @@
 //! The scanning tool and the floor that it passes.
 
-use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of};
+use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
+
+/// Angle by which the tool turns between two poses that are close together, at most, radians.
+const TURN_STEP_RAD: f64 = 0.1;
 
 /// What the robot scans with.
 ///
@@ -49,6 +52,34 @@ impl Tool {
             Self::Bar { .. } => Self::Bar { swath_m },
             Self::Disc { .. } => Self::Disc { swath_m },
         })
+    }
+
+    /// The passages along a path that is driven forward and turned on the spot at its corners: pairs of poses that are close
+    /// together.
+    ///
+    /// ```
+    /// use world::{Point, Tool};
+    /// let path = [Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(1.0, 1.0)];
+    /// let mut headings = Vec::new();
+    /// Tool::along(&path, |from, _| headings.push(from.heading_rad));
+    /// assert!(headings.len() > 10 && headings[0] == 0.0);
+    /// assert!((headings[headings.len() - 1] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    /// ```
+    pub fn along(path: &[Point], mut pass: impl FnMut(Pose, Pose)) {
+        let mut before: Option<f64> = None;
+        for pair in path.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-9) {
+            let way = pair[1] - pair[0];
+            let heading_rad = way.y.atan2(way.x);
+            let at = |position: Point, heading_rad: f64| Pose { position, heading_rad };
+            let from_rad = before.replace(heading_rad).unwrap_or(heading_rad);
+            let turn = wrap_angle_rad(heading_rad - from_rad);
+            let n = (turn.abs() / TURN_STEP_RAD).ceil();
+            for k in 0..n as usize {
+                let turned = |k: f64| at(pair[0], from_rad + turn * k / n);
+                pass(turned(k as f64), turned(k as f64 + 1.0));
+            }
+            pass(at(pair[0], heading_rad), at(pair[1], heading_rad));
+        }
     }
 
     /// The area that it sweeps between two poses that are close together.

@@ -1,12 +1,15 @@
 //! Shortcuts: a straighter way between two points of the path, wherever it saves more than the floor that it loses is worth.
 
 use crate::plane::Course;
-use crate::polish::track::{Terms, Track};
+use crate::polish::shell::shell_m;
+use crate::polish::track::{SIDE_M, Terms, Track};
 use crate::scan::Piece;
-use crate::tuning::shortcuts::{FINE, LEAST_SAVING_M, LONG_M, MUCH_TURN_RAD, QUICK_MARGIN, SAMPLES, SHORT_M};
+use crate::tuning::shortcuts::{
+    FINE, LEAST_SAVING_M, LONG_M, MUCH_TURN_RAD, QUICK_MARGIN, SAMPLES, SHELL, SHORT_M,
+};
 use planner_api::Result;
 use std::ops::Range;
-use world::Point;
+use world::{Point, polyline};
 
 /// A stretch of the path that a shortcut may replace.
 struct Stretch {
@@ -97,7 +100,8 @@ impl Track<'_> {
             return false;
         }
         let Some(way) = self.domain.path(a, b) else { return false };
-        let saving_m = course.excess_m(self.course(from, to, &way), terms.turn_m_per_rad);
+        let saving_m = course.excess_m(self.course(from, to, &way), terms.turn_m_per_rad)
+            - SHELL * self.shell_lost_m(from..to, &way);
         if saving_m < LEAST_SAVING_M
             || self.seems_to_lose_more(from..to, &way, QUICK_MARGIN * saving_m / terms.floor_m_per_m2)
         {
@@ -118,6 +122,17 @@ impl Track<'_> {
         }
         self.splice(from, to, &[Piece { points: way, is_lane: false }]);
         true
+    }
+
+    /// By how much less of a way runs along the shell than some sides do, metres.
+    fn shell_lost_m(&self, sides: Range<usize>, way: &[Point]) -> f64 {
+        let old_m: f64 = self.sides[sides].iter().map(|side| side.shell_m).sum();
+        if old_m <= 0.0 {
+            return 0.0;
+        }
+        let fine = polyline::resampled(way, SIDE_M);
+        let new_m = |pair: &[Point]| shell_m(self.domain.workspace, pair[0], pair[1]);
+        (old_m - fine.windows(2).map(new_m).sum::<f64>()).max(0.0)
     }
 
     /// Whether another way in place of some sides would lose more floor than this, from a few samples across every side.

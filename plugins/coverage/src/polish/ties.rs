@@ -17,7 +17,7 @@ struct Offer {
 }
 
 /// Where a lane is tied in.
-struct Tie {
+pub(super) struct Tie {
     cost_m: f64,
     side: usize,
     tied: Tied,
@@ -89,7 +89,7 @@ impl Track<'_> {
     }
 
     /// Where among some sides a lane is best tied in, either way round.
-    fn best_tie(
+    pub(super) fn best_tie(
         &self,
         lane: &Lane,
         terms: &Terms<'_>,
@@ -130,7 +130,7 @@ impl Track<'_> {
         Some(Tied { into, lane: lane.clone(), out })
     }
 
-    fn tie(&mut self, Tie { side, tied, .. }: Tie) {
+    pub(super) fn tie(&mut self, Tie { side, tied, .. }: Tie) {
         let way = tied.way();
         let (old, new) = (self.swept_by(self.around(side, side + 1)), self.swept_with(side, side + 1, &way));
         self.swept.exchange(&old, &new);

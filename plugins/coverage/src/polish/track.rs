@@ -4,6 +4,7 @@ use crate::buckets::Buckets;
 use crate::floor::{ReachableFloor, Run, SweptFloor};
 use crate::jobs::Job;
 use crate::plane::{Course, angle_rad, left_of};
+use crate::polish::shell::shell_m;
 use crate::scan::Piece;
 use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
@@ -14,7 +15,7 @@ use std::ops::Range;
 use world::{Point, Vector};
 
 /// Longest side, metres.
-const SIDE_M: f64 = 0.3;
+pub(super) const SIDE_M: f64 = 0.3;
 
 /// What a path is polished to, at which prices.
 #[derive(Clone, Copy)]
@@ -49,6 +50,8 @@ pub(super) struct Side {
     pub length_m: f64,
     /// Turning where it begins, radians.
     pub turn_rad: f64,
+    /// Length of it along the shell, metres.
+    pub shell_m: f64,
     /// Cells that the bar sweeps while it turns into the side, and those along it: needed again and again while the
     /// path around it changes.
     turn: Vec<Run>,
@@ -133,6 +136,7 @@ impl<'a> Track<'a> {
             self.sides[k].turn = turn;
             if k < sides.end {
                 self.sides[k].along = along;
+                self.sides[k].shell_m = shell_m(self.domain.workspace, self.point(k), self.point(k + 1));
             }
         }
     }
@@ -261,6 +265,7 @@ fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
         ahead: way / length_m,
         length_m: length_m / n,
         turn_rad: 0.0,
+        shell_m: 0.0,
         turn: Vec::new(),
         along: Vec::new(),
         alone: 0,

@@ -1,11 +1,13 @@
 //! What the operator sets of a tether-safe plan.
 
 use crate::tour::Effort;
-use planner_api::{Config, ParamSpec, TetherLimits, choice, float, int};
+use planner_api::{Config, ParamSpec, Site, TetherLimits, choice, float, int};
 use std::f64::consts::TAU;
 use steering::params as p;
 use world::tether::{Limits, Strain};
 
+/// The most that a whole turn counts, metres.
+const MOST_TURN_M: f64 = 20.0;
 const UNLIMITED: Limits =
     Limits { reel_length_m: f64::INFINITY, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
 
@@ -34,8 +36,9 @@ const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 
 const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.0)
     .help("While a path is sought it may get this much longer for every whole turn saved; more leaves more floor to touch-ups.")
     .group("Plan");
-const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 3.0)
-    .help("Among candidates one may be this much longer for every whole turn that it saves.")
+const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 0.0)
+    .help("Among candidates one may be this much longer for every whole turn that it saves; 0: what the robot drives in the time \
+           of a turn, so that the quickest is chosen.")
     .group("Plan");
 const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.58)
     .help("Touch-ups are added until this share of the floor in reach is scanned.")
@@ -43,7 +46,7 @@ const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
     .help("Edge of the cells in which floor is counted; in large tanks as much larger as keeps them below four million.")
     .group("Plan");
-const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 3.0)
+const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 12.0)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
     .group("Plan");
 /// How near the robot goes when it comes off its path.
@@ -103,8 +106,8 @@ pub(super) struct Preferences {
 }
 
 impl Preferences {
-    /// The preferences that parameters express, for a mission without a tether; `seed` is that of the site.
-    pub(super) fn of(config: &Config<'_>, seed: u64) -> Self {
+    /// The preferences that parameters express, for a mission without a tether.
+    pub(super) fn of(config: &Config<'_>, site: &Site<'_>) -> Self {
         let pattern = config.choice("pattern");
         Self {
             alpha_rad: config.float("alpha_deg").to_radians(),
@@ -120,7 +123,9 @@ impl Preferences {
                 "shortest-cable" => Choice::ShortestCable,
                 _ => Choice::Shortest,
             },
-            choice_turn_m: config.float("choice_turn_m"),
+            choice_turn_m: Some(config.float("choice_turn_m"))
+                .filter(|turn_m| *turn_m > 0.0)
+                .unwrap_or_else(|| driven_in_a_turn_m(site)),
             enough: config.float("coverage_pct") / 100.0,
             cell_m: config.float("cell_m"),
             directions: if pattern == "contours" { 0 } else { config.int("directions") as usize },
@@ -128,7 +133,7 @@ impl Preferences {
             effort: Effort {
                 turn_m_per_rad: config.float("turn_m") / TAU,
                 kicks_per_lane: config.float("kicks"),
-                seed,
+                seed: site.seed,
             },
         }
     }
@@ -169,4 +174,10 @@ impl Preferences {
         };
         Self { cable_share: self.cable_share * length, limits, ..*self }
     }
+}
+
+/// What the robot drives at full speed in the time of a whole turn, metres; a robot that need not turn pays nothing.
+fn driven_in_a_turn_m(site: &Site<'_>) -> f64 {
+    let turn_m = site.limits.v_max_m_per_s * TAU / site.limits.w_max_rad_per_s;
+    if turn_m.is_finite() { turn_m.clamp(0.0, MOST_TURN_M) } else { 0.0 }
 }

@@ -1,10 +1,12 @@
 use super::*;
 use crate::bench;
+use crate::polish::shell::open_lanes;
+use crate::slit_domain::SlitDomain;
 use planner_api::testing::Bench;
 use planner_api::{PoseEstimate, TetherLimits};
 use proptest::prelude::*;
 use trials::tanks::{CELL_M, Known, Tank};
-use world::Vector;
+use world::{Vector, polyline};
 
 fn plan(tank: &Tank, values: &[(&str, f64)], tether: Option<TetherLimits>) -> (Result<Plan>, Bench) {
     bench::plan::<TetherSafe>(tank, values, tether)
@@ -139,7 +141,7 @@ fn a_little_floor_far_away_is_scanned_if_nothing_else_is_asked_for() {
     let reason = planner_api::Reason::Start;
     let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[] };
     let path = planner.plan(&request, &bench.ctx()).unwrap().path;
-    let nearest_m = world::polyline::distance_m(&path, farthest);
+    let nearest_m = polyline::distance_m(&path, farthest);
     assert!(nearest_m < site.swath_m / 2.0, "{nearest_m} m off, {} m from the anchor", off_m(&farthest));
 }
 
@@ -162,6 +164,24 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
     let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
     assert!(said.iter().any(|said| said.contains("along the shell is beyond lanes of")), "{said:?}");
     assert!(!said.iter().any(|said| said.contains("gaps")), "{said:?}");
+    let shell = "shell: 0.09 m along it not reachable: hull radius 0.25 m + clearance 0.05 m - half of lanes of 0.42 m";
+    assert!(said.iter().any(|said| said.starts_with(shell)), "{said:?}");
+}
+
+#[test]
+fn the_shell_is_passed_as_near_as_hull_and_clearance_allow() {
+    for seed in 0..4 {
+        let tank = Known::ALL[seed as usize % 3].tank(seed);
+        let (plan, bench) = plan(&tank, &[], None);
+        let plan = plan.unwrap();
+        let obstacles = tank.obstacles();
+        let workspace = Workspace::new(&tank.site(&obstacles), tank.anchor).unwrap();
+        let domain = SlitDomain::new(&workspace, plan.cuts.clone()).unwrap();
+        let open_m: f64 = open_lanes(&domain, &plan.path).iter().map(|lane| polyline::length_m(lane)).sum();
+        assert!(open_m < 0.3, "seed {seed}: {open_m} m left: {:?}", bench.logs());
+        let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+        assert!(scan.critical_zone > 0.95, "seed {seed}: {}", scan.critical_zone);
+    }
 }
 
 #[test]

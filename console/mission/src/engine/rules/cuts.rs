@@ -1,9 +1,19 @@
 //! A robot that has come off its plan across a cut would wind the cable on its way back to it.
 
-use world::{Point, polyline, tether::crossings};
+use world::{
+    Boundary, ObstacleMap, Point, Vector,
+    polyline::{self, edges, nearest_on_segment},
+    tether::crossings,
+};
 
 /// Distance from the end of a return path within which the plan behind it has begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
+
+/// A cut is led on into something solid that is no further from its end than this multiple of the room for the hull: planners
+/// draw outlines around the exact ones.
+const ROOT_SHARE: f64 = 1.1;
+/// How far it is led into that, metres.
+const ROOT_M: f64 = 0.01;
 
 /// The lines that the plan never crosses, and whether the robot has.
 #[derive(Clone, Debug, Default)]
@@ -17,8 +27,8 @@ pub(in crate::engine) struct CutsRule {
 
 impl CutsRule {
     /// The cuts of a plan that is to be flown from here, bound to them from a point on.
-    pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point) -> Self {
-        Self { lines: lines.iter().map(|line| (line.clone(), false)).collect(), from, seen_at: here }
+    pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point, solids: &Solids<'_>) -> Self {
+        Self { lines: lines.iter().map(|line| (solids.rooted(line), false)).collect(), from, seen_at: here }
     }
 
     /// One tick with a position that can be relied on: whether the robot has strayed across a cut by more than its hull. On
@@ -38,5 +48,71 @@ impl CutsRule {
     /// The plan is given up, and its cuts with it.
     pub(crate) fn clear(&mut self) {
         self.lines.clear();
+    }
+}
+
+/// What is solid on the floor, as far as planners know it.
+#[derive(Clone, Copy)]
+pub(in crate::engine) struct Solids<'a> {
+    pub boundary: &'a Boundary,
+    pub map: &'a ObstacleMap,
+    /// Room that the hull needs, metres.
+    pub room_m: f64,
+}
+
+impl Solids<'_> {
+    /// A cut from solid to solid. Many begin where the room of a column or a wall does: a robot that scatters across one and
+    /// comes back round that end would count as beyond it for good.
+    fn rooted(&self, cut: &[Point]) -> Vec<Point> {
+        let before = cut.first().and_then(|end| self.root(*end));
+        let behind = cut.last().and_then(|end| self.root(*end));
+        before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
+    }
+
+    /// Where the solid begins beside which a cut ends, a little inside.
+    fn root(&self, end: Point) -> Option<Point> {
+        let reach_m = ROOT_SHARE * self.room_m;
+        let of_obstacles =
+            self.map.within(end, reach_m).into_iter().map(|near| (near.distance_m, near.closest));
+        let nearest = of_obstacles.chain(self.wall_beside(end)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (distance_m, closest) = nearest.filter(|(distance_m, _)| (0.0..=reach_m).contains(distance_m))?;
+        let onward: Vector = (closest - end).try_normalize(1e-9)?;
+        Some(end + onward * (distance_m + ROOT_M))
+    }
+
+    /// Distance from the nearest straight wall, metres, and the nearest place on it.
+    fn wall_beside(&self, at: Point) -> Option<(f64, Point)> {
+        let Boundary::Polygon { vertices } = self.boundary else { return None };
+        let places = edges(vertices).map(|(a, b)| nearest_on_segment(a, b, at));
+        places.map(|place| ((place - at).norm(), place)).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::{Obstacle, ObstacleId, Shape};
+
+    /// A column of radius 0.3 m in the middle, room for a hull of 0.3 m about it, and a cut from there to the east.
+    fn strays(ways: &[(f64, f64)]) -> bool {
+        let shape = Shape::Disc { center: Point::origin(), radius_m: 0.3 };
+        let column = Obstacle { id: ObstacleId(0), name: "C".into(), shape, known: true };
+        let boundary = Boundary::Circle { radius_m: 3.0 };
+        let map = ObstacleMap::new(&boundary, &[column]);
+        let solids = Solids { boundary: &boundary, map: &map, room_m: 0.3 };
+        let cut = vec![Point::new(0.605, 0.0), Point::new(3.0, 0.0)];
+        let mut rule = CutsRule::new(&[cut], None, Point::new(0.62, -0.02), &solids);
+        ways.iter().any(|(x, y)| rule.update(Point::new(*x, *y), 0.2))
+    }
+
+    #[test]
+    fn a_robot_that_scatters_across_a_cut_and_comes_back_round_its_end_has_not_strayed() {
+        assert!(!strays(&[(0.62, 0.01), (0.585, -0.01), (0.6, -1.0)]));
+    }
+
+    #[test]
+    fn a_robot_that_stays_beyond_a_cut_has_strayed_whichever_way_it_went() {
+        assert!(strays(&[(0.62, 0.01), (0.6, 1.0)]));
+        assert!(strays(&[(0.585, -0.01), (0.585, 0.01), (0.6, 1.0)]), "between the cut and the column");
     }
 }

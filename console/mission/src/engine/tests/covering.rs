@@ -121,6 +121,27 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
 }
 
 #[test]
+fn an_area_without_floor_in_reach_is_named_when_the_rest_is_done() {
+    let area = |x: f64, y: f64, half_m: f64| {
+        let half = world::Vector::new(half_m, half_m);
+        world::shape::rectangle(Point::new(x, y) - half, Point::new(x, y) + half)
+    };
+    let anchor = covering().start.position;
+    let regions = vec![area(0.0, -3.0, 0.5), area(3.6, 3.6, 0.02)];
+    let task = TaskConfig::Cover { anchor, regions, tolerance_m: 0.2 };
+    let mut flight = Flight::new(MissionConfig { task, ..covering() });
+    flight.tick(&[Order::Start]);
+    flight.fly(6000);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+    let reason = flight.events.iter().find_map(|event| match &event.kind {
+        EventKind::Ended { reason, .. } => Some(reason.clone()),
+        _ => None,
+    });
+    let named = "; the tool cannot reach any floor in the area about (3.6, 3.6)";
+    assert!(reason.as_ref().is_some_and(|reason| reason.ends_with(named)), "{reason:?}");
+}
+
+#[test]
 fn another_planner_goes_on_with_what_is_left() {
     let mut flight = Flight::new(covering());
     flight.tick(&[Order::Start]);

@@ -15,7 +15,14 @@ const MOST_ARCS: usize = 8;
 
 /// The coverage map.
 pub(super) fn map(document: &Document) -> Vec<Block> {
-    vec![Block::Wide(picture(&document.pictures.coverage))]
+    let exact = document.floor.exact.map(|share| {
+        Block::Text(format!(
+            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {:.2} %.",
+            per_cent(document.floor.reachable.scanned),
+            100.0 * share
+        ))
+    });
+    std::iter::once(Block::Wide(picture(&document.pictures.coverage))).chain(exact).collect()
 }
 
 /// Missed areas, and what is out of reach.

@@ -40,11 +40,15 @@ const fn figure(
 
 const FIGURES: &[Figure] = &[
     figure("coverage_reachable", "", Worst::Min, |scan, _| scan.coverage_reachable),
+    figure("coverage_exact", "", Worst::Min, |scan, _| scan.coverage_exact),
     figure("coverage_whole", "", Worst::Omitted, |scan, _| scan.coverage_whole),
+    figure("critical_zone", "", Worst::Min, |scan, _| scan.critical_zone),
+    figure("critical_zone_possible", "", Worst::Omitted, |scan, _| scan.critical_zone_possible),
     figure("length_over_lower_bound", "", Worst::Max, |scan, _| scan.length_over_lower_bound),
     figure("length_m", "m", Worst::Omitted, |scan, _| scan.length_m),
     figure("turns", "", Worst::Max, |scan, _| scan.turns as f64),
     figure("rotation_turns", "", Worst::Max, |scan, _| scan.rotation_turns),
+    figure("time_over_lower_bound", "", Worst::Max, |scan, _| scan.time_over_lower_bound),
     figure("tether_length_max_m", "m", Worst::Omitted, |scan, _| scan.certificate.tether_length_max_m),
     figure("max_cable_over_eccentricity", "", Worst::Max, |scan, _| {
         scan.certificate.tether_length_max_m / scan.certificate.eccentricity_m.max(1e-9)

@@ -1,0 +1,390 @@
+//! Which part of a floor a tool swept, by area: the check of what is counted in cells.
+
+use super::{
+    floor::{Cell, Floor},
+    tool::Tool,
+};
+use geometry::{
+    Boundary, Point, Pose, Shape,
+    convex::{Part, parts_of},
+};
+use nalgebra::{Isometry2, Rotation2};
+
+/// Direction of the rows, radians from east: askew, so that neither walls nor lanes lie along them.
+const ASKEW_RAD: f64 = 0.345;
+/// Distance between rows, metres; more on a floor that would have too many.
+const ROW_M: f64 = 0.02;
+/// Most rows of a floor.
+const MOST_ROWS: f64 = 5_000.0;
+/// Spans of a row that are nearer than this are one, metres.
+const SEAM_M: f64 = 1e-9;
+
+/// From where to where along a row, metres.
+type Span = (f64, f64);
+
+/// What a tool swept, as spans of rows across a floor: exact along each row. Of the floor only its outline and what stands on
+/// it are taken exactly, too; the border of floor beyond the reach of the tool is that of its cells.
+///
+/// ```
+/// use world::{Boundary, Pose, SweptArea, Tool};
+/// let mut area = SweptArea::new(&Boundary::Circle { radius_m: 5.0 });
+/// area.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(-2.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+/// assert!((area.swept_m2() - 2.4).abs() < 1e-3);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweptArea {
+    /// From the tank's frame to that of the rows.
+    askew: Rotation2<f64>,
+    first_m: f64,
+    row_m: f64,
+    /// Of every row what was swept, in order and apart.
+    rows: Vec<Vec<Span>>,
+}
+
+impl SweptArea {
+    /// The floor within a wall, of which nothing was swept.
+    ///
+    /// ```
+    /// use world::{Boundary, SweptArea};
+    /// assert_eq!(SweptArea::new(&Boundary::Circle { radius_m: 5.0 }).swept_m2(), 0.0);
+    /// ```
+    pub fn new(boundary: &Boundary) -> Self {
+        let askew = Rotation2::new(-ASKEW_RAD);
+        let (low, high) = match boundary {
+            Boundary::Circle { radius_m } => (-radius_m, *radius_m),
+            Boundary::Polygon { vertices } => vertices
+                .iter()
+                .map(|vertex| (askew * vertex).y)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y))),
+        };
+        let across_m = (high - low).max(0.0);
+        let row_m = ROW_M.max(across_m / MOST_ROWS);
+        let count = if across_m.is_finite() { (across_m / row_m).ceil() as usize } else { 0 };
+        Self { askew, first_m: low, row_m, rows: vec![Vec::new(); count] }
+    }
+
+    /// Adds what a tool passes between two poses that are close together.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, SweptArea, Tool};
+    /// let mut area = SweptArea::new(&Boundary::Circle { radius_m: 5.0 });
+    /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(1.0, 0.0, 0.0));
+    /// area.pass(Tool::Disc { swath_m: 0.6 }, a, b);
+    /// assert!((area.swept_m2() - 0.6 - 0.09 * std::f64::consts::PI).abs() < 1e-3);
+    /// ```
+    pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
+        match tool {
+            Tool::Bar { swath_m } => {
+                for triangle in tool_triangles(swath_m, a, b) {
+                    let corners = triangle.map(|corner| self.askew * corner);
+                    self.add(&corners, 0.0, |y| polygon_span(&corners, y));
+                }
+            }
+            Tool::Disc { swath_m } => {
+                let ends = [a.position, b.position].map(|end| self.askew * end);
+                self.add(&ends, swath_m / 2.0, |y| capsule_span(ends, swath_m / 2.0, y));
+            }
+        }
+    }
+
+    /// Adds what was swept in another record of the same floor.
+    ///
+    /// ```
+    /// use world::{Boundary, Pose, SweptArea, Tool};
+    /// let mut area = SweptArea::new(&Boundary::Circle { radius_m: 5.0 });
+    /// let mut other = area.clone();
+    /// other.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(-2.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// area.join(&other);
+    /// assert_eq!(area, other);
+    /// ```
+    pub fn join(&mut self, other: &Self) {
+        for (row, others) in self.rows.iter_mut().zip(&other.rows) {
+            for span in others {
+                insert(row, *span);
+            }
+        }
+    }
+
+    /// What was swept in all, floor or not, square metres.
+    ///
+    /// ```
+    /// use world::{Boundary, SweptArea};
+    /// assert_eq!(SweptArea::new(&Boundary::Circle { radius_m: 5.0 }).swept_m2(), 0.0);
+    /// ```
+    pub fn swept_m2(&self) -> f64 {
+        self.rows.iter().flatten().map(|(from, to)| to - from).sum::<f64>() * self.row_m
+    }
+
+    /// The swept share of the floor that the tool can reach, 0 to 1; `None` if there is no such floor.
+    ///
+    /// ```
+    /// use world::{Boundary, Floor, Point, Pose, SweptArea, Tool, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary: boundary.clone(), obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.1, 0.3, 0.6, Point::origin());
+    /// let mut area = SweptArea::new(&boundary);
+    /// area.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(-2.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
+    /// let share = area.share_of(&floor, &boundary, &[]).unwrap();
+    /// assert!((share - 2.4 / 78.54).abs() < 1e-3);
+    /// ```
+    pub fn share_of(&self, floor: &Floor, boundary: &Boundary, solids: &[Shape]) -> Option<f64> {
+        let turn = Isometry2::from_parts(nalgebra::Translation2::identity(), self.askew.into());
+        let solids: Vec<(Span, Part)> = solids
+            .iter()
+            .flat_map(|solid| parts_of(&solid.transformed(&turn)))
+            .map(|part| (extent(&part), part))
+            .collect();
+        let (mut swept_m, mut reachable_m) = (0.0, 0.0);
+        for (index, row) in self.rows.iter().enumerate() {
+            let y = self.height_m(index);
+            let mut free = self.wall_spans(boundary, y);
+            let beside = solids.iter().filter(|((low, high), _)| (*low..=*high).contains(&y));
+            for span in beside.filter_map(|(_, part)| part_span(part, y)) {
+                free = without(&free, span);
+            }
+            let reachable = self.reachable(&free, floor, y);
+            reachable_m += length_m(&reachable);
+            swept_m += common_m(row, &reachable);
+        }
+        (reachable_m > 0.0).then(|| swept_m / reachable_m)
+    }
+
+    fn height_m(&self, row: usize) -> f64 {
+        self.first_m + (row as f64 + 0.5) * self.row_m
+    }
+
+    /// Adds a convex shape around some corners to the rows that it meets.
+    fn add(&mut self, corners: &[Point], around_m: f64, span: impl Fn(f64) -> Option<Span>) {
+        let (low, high) = corners
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.y), high.max(p.y)));
+        let row = |y: f64| ((y - self.first_m) / self.row_m - 0.5).max(0.0);
+        let first = row(low - around_m).ceil() as usize;
+        let past = ((row(high + around_m).floor() + 1.0) as usize).min(self.rows.len());
+        for index in first..past {
+            if let Some(span) = span(self.height_m(index)) {
+                insert(&mut self.rows[index], span);
+            }
+        }
+    }
+
+    /// Where a row lies within the wall.
+    fn wall_spans(&self, boundary: &Boundary, y: f64) -> Vec<Span> {
+        match boundary {
+            Boundary::Circle { radius_m } => {
+                let half_m = (radius_m * radius_m - y * y).max(0.0).sqrt();
+                vec![(-half_m, half_m)]
+            }
+            Boundary::Polygon { vertices } => {
+                let corners: Vec<Point> = vertices.iter().map(|vertex| self.askew * vertex).collect();
+                let mut crossed = crossings(&corners, y);
+                crossed.sort_by(f64::total_cmp);
+                crossed.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
+            }
+        }
+    }
+
+    /// The parts of some spans in which the tool can reach the floor.
+    fn reachable(&self, spans: &[Span], floor: &Floor, y: f64) -> Vec<Span> {
+        let mut reachable: Vec<Span> = Vec::new();
+        for (from, to) in spans {
+            let count = ((to - from) / floor.cell_m).ceil().max(1.0);
+            let at = |k: f64| from + (to - from) * (k / count);
+            for k in 0..count as usize {
+                let (a, b) = (at(k as f64), at(k as f64 + 1.0));
+                let middle = self.askew.inverse() * Point::new(f64::midpoint(a, b), y);
+                match reachable.last_mut() {
+                    _ if !is_reachable_about(floor, middle) => {}
+                    Some(last) if a - last.1 <= SEAM_M => last.1 = b,
+                    _ => reachable.push((a, b)),
+                }
+            }
+        }
+        reachable
+    }
+}
+
+/// Whether floor is in reach. Floor in a cell whose centre is none counts as the nearest cell of floor does.
+fn is_reachable_about(floor: &Floor, at: Point) -> bool {
+    let Some(cell) = floor.cell_at(at) else { return false };
+    if floor.is_floor(cell) {
+        return floor.is_reachable(cell);
+    }
+    let off_m = |cell: &usize| (floor.center(*cell) - at).norm();
+    let near = floor.cells_near(at, at, 2.0 * floor.cell_m).into_iter().filter(|cell| floor.is_floor(*cell));
+    near.min_by(|a, b| off_m(a).total_cmp(&off_m(b))).is_some_and(|cell| floor.kind(cell) == Cell::Reachable)
+}
+
+/// The four triangles that a bar sweeps between two poses that are close together.
+fn tool_triangles(swath_m: f64, from: Pose, to: Pose) -> [[Point; 3]; 4] {
+    let half = |pose: Pose| {
+        let (sin, cos) = pose.heading_rad.sin_cos();
+        nalgebra::vector![-sin, cos] * (swath_m / 2.0)
+    };
+    let (a, b, from, to) = (from.position, to.position, half(from), half(to));
+    [[a, a + from, b + to], [a, b + to, b], [a, a - from, b - to], [a, b - to, b]]
+}
+
+/// Puts a span into a row: what it touches becomes one with it.
+fn insert(row: &mut Vec<Span>, (from, to): Span) {
+    if to - from <= SEAM_M {
+        return;
+    }
+    let first = row.partition_point(|span| span.1 < from - SEAM_M);
+    let past = first + row[first..].partition_point(|span| span.0 <= to + SEAM_M);
+    match &row[first..past] {
+        [] => row.insert(first, (from, to)),
+        [one] => row[first] = (one.0.min(from), one.1.max(to)),
+        [one, .., last] => {
+            row[first] = (one.0.min(from), last.1.max(to));
+            row.drain(first + 1..past);
+        }
+    }
+}
+
+/// Some spans without what lies in another.
+fn without(spans: &[Span], (from, to): Span) -> Vec<Span> {
+    let both = |(a, b): &Span| [(*a, b.min(from)), (a.max(to), *b)];
+    spans.iter().flat_map(both).filter(|(a, b)| b > a).collect()
+}
+
+fn length_m(spans: &[Span]) -> f64 {
+    spans.iter().map(|(from, to)| to - from).sum()
+}
+
+/// Length of what lies in both of two rows, metres.
+fn common_m(one: &[Span], other: &[Span]) -> f64 {
+    let (mut common_m, mut rest) = (0.0, other);
+    for (from, to) in one {
+        while let [(a, b), behind @ ..] = rest {
+            common_m += (b.min(*to) - a.max(*from)).max(0.0);
+            if b > to {
+                break;
+            }
+            rest = behind;
+        }
+    }
+    common_m
+}
+
+/// The heights between which a part lies.
+fn extent(part: &Part) -> Span {
+    let corners = part.corners().into_iter();
+    corners.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (at, round_m)| {
+        (low.min(at.y - round_m), high.max(at.y + round_m))
+    })
+}
+
+fn part_span(part: &Part, y: f64) -> Option<Span> {
+    match part {
+        Part::Polygon { vertices } => polygon_span(vertices, y),
+        Part::Capsule { a, b, half_width_m } => capsule_span([*a, *b], *half_width_m, y),
+    }
+}
+
+/// Where a convex polygon lies at a height.
+fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
+    span_of(crossings(corners, y))
+}
+
+/// Where everything within a distance of a segment lies at a height.
+fn capsule_span([a, b]: [Point; 2], reach_m: f64, y: f64) -> Option<Span> {
+    let disc = |center: Point| {
+        let half_m = (reach_m * reach_m - (y - center.y).powi(2)).max(-1.0);
+        (half_m >= 0.0).then(|| [center.x - half_m.sqrt(), center.x + half_m.sqrt()])
+    };
+    let aside = (b - a).try_normalize(1e-12).map(|ahead| nalgebra::vector![-ahead.y, ahead.x] * reach_m);
+    let sides = aside.map(|aside| crossings(&[a + aside, b + aside, b - aside, a - aside], y));
+    span_of([a, b].into_iter().filter_map(disc).flatten().chain(sides.into_iter().flatten()))
+}
+
+fn span_of(crossed: impl IntoIterator<Item = f64>) -> Option<Span> {
+    let ends = |(low, high): Span, x: f64| (low.min(x), high.max(x));
+    Some(crossed.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)).filter(|(low, high)| low <= high)
+}
+
+/// Where the outline of a polygon crosses a height.
+fn crossings(corners: &[Point], y: f64) -> Vec<f64> {
+    let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
+    let crossed = edges.filter(|(a, b)| (a.y <= y) != (b.y <= y));
+    crossed.map(|(a, b)| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CoverageGrid, Obstacle, ObstacleId, World};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    const BAR: Tool = Tool::Bar { swath_m: 0.6 };
+
+    fn column(x: f64, y: f64, radius_m: f64) -> Obstacle {
+        let shape = Shape::Disc { center: Point::new(x, y), radius_m };
+        Obstacle { id: ObstacleId(0), name: "column".into(), shape, known: true }
+    }
+
+    fn world(boundary: Boundary, obstacles: Vec<Obstacle>) -> World {
+        World { boundary, obstacles, stations: vec![], zones: vec![] }
+    }
+
+    #[test]
+    fn a_ring_and_a_turn_on_the_spot_are_as_large_as_they_are() {
+        let mut ring = SweptArea::new(&Boundary::Circle { radius_m: 5.0 });
+        let at = |k: u32| {
+            let angle = f64::from(k) * PI / 1000.0;
+            Pose::new(3.0 * angle.cos(), 3.0 * angle.sin(), angle + FRAC_PI_2)
+        };
+        (0..2000).for_each(|k| ring.pass(BAR, at(k), at(k + 1)));
+        let exact_m2 = PI * (3.3_f64.powi(2) - 2.7_f64.powi(2));
+        assert!((ring.swept_m2() / exact_m2 - 1.0).abs() < 1e-4, "{}", ring.swept_m2() / exact_m2);
+        let mut disc = SweptArea::new(&Boundary::Circle { radius_m: 5.0 });
+        let turned = |k: u32| Pose::new(0.3, 0.2, f64::from(k) * PI / 100.0);
+        (0..100).for_each(|k| disc.pass(BAR, turned(k), turned(k + 1)));
+        assert!((disc.swept_m2() / (PI * 0.09) - 1.0).abs() < 2e-3, "{}", disc.swept_m2());
+    }
+
+    #[test]
+    fn a_seam_too_narrow_for_cells_is_seen() {
+        let corners = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.202), (0.0, 1.202)];
+        let boundary = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
+        let floor = Floor::new(&world(boundary.clone(), vec![]), 0.1, 0.1, 0.6, Point::new(1.0, 0.6));
+        let (mut cells, mut area) = (CoverageGrid::new(floor.clone()), SweptArea::new(&boundary));
+        for y in [0.3, 0.902] {
+            for (a, b) in [(0.0, 3.0), (3.0, 6.0)] {
+                let (a, b) = (Pose::new(a, y, 0.0), Pose::new(b, y, 0.0));
+                cells.mark(BAR, a, b);
+                area.pass(BAR, a, b);
+            }
+        }
+        let share = area.share_of(&floor, &boundary, &[]).unwrap();
+        assert!((share - 1.2 / 1.202).abs() < 1e-4, "{share}");
+        assert!((cells.fraction_reachable() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_stands_on_the_floor_is_none_of_it() {
+        let boundary = Boundary::Circle { radius_m: 5.0 };
+        let world = world(boundary.clone(), vec![column(1.0, 0.5, 1.2)]);
+        let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+        // Hull and clearance are small, so that everything is in reach.
+        let floor = Floor::new(&world, 0.05, 0.05, 0.6, Point::new(-3.0, 0.0));
+        let mut area = SweptArea::new(&boundary);
+        area.pass(Tool::Bar { swath_m: 12.0 }, Pose::new(-6.0, 0.0, 0.0), Pose::new(-0.5, 0.0, 0.0));
+        let west_m2 = PI * 25.0 / 2.0 - (0.5 * (25.0_f64 - 0.25).sqrt() + 25.0 * 0.1_f64.asin());
+        let share = area.share_of(&floor, &boundary, &shapes).unwrap();
+        // The column stands to the east of x = -0.2.
+        let expected = west_m2 / (PI * (25.0 - 1.44));
+        assert!((share - expected).abs() < 2e-4, "{share} {expected}");
+    }
+
+    #[test]
+    fn spans_that_touch_become_one_and_others_stay_apart() {
+        let mut row = Vec::new();
+        for span in [(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (1.0, 2.5), (3.5, 3.6), (9.0, 9.0)] {
+            insert(&mut row, span);
+        }
+        assert_eq!(row, [(0.0, 3.0), (3.5, 3.6), (4.0, 5.0)]);
+        assert!((common_m(&row, &[(-1.0, 0.5), (2.9, 4.5)]) - 1.2).abs() < 1e-12);
+        assert_eq!(without(&row, (2.0, 4.5)), [(0.0, 2.0), (4.5, 5.0)]);
+    }
+}
