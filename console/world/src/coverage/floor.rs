@@ -286,7 +286,15 @@ impl Floor {
             let (west, east) = passage.ends_at(y);
             let (columns, _) = self.spans(Point::new(low.x.max(west), y), Point::new(high.x.min(east), y));
             let is_under = |column: &usize| passage.contains(self.center_of(*column, row));
-            cells.extend(columns.filter(is_under).map(|column| row * self.width + column));
+            let index = |column: usize| row * self.width + column;
+            if passage.is_convex() {
+                // One piece: only the cells beside its two ends are looked at.
+                let first = columns.clone().find(is_under).unwrap_or(columns.end);
+                let last = (first..columns.end).rev().find(is_under);
+                cells.extend(last.into_iter().flat_map(|last| first..=last).map(index));
+            } else {
+                cells.extend(columns.filter(is_under).map(index));
+            }
         }
         cells
     }

@@ -1,5 +1,6 @@
 //! The scanning tool and the floor that it passes.
 
+use super::swept_area::capsule_span;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
@@ -116,7 +117,18 @@ impl Passage {
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
-            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+            Self::Disc { from, to, reach_m } => capsule_span([*from, *to], *reach_m, y)
+                .map_or((f64::NEG_INFINITY, f64::INFINITY), |(west, east)| {
+                    (west - BESIDE_M, east + BESIDE_M)
+                }),
+        }
+    }
+
+    /// Whether all of it at any height is one piece.
+    pub(super) fn is_convex(&self) -> bool {
+        match self {
+            Self::Bar(swept) => swept.is_convex,
+            Self::Disc { .. } => true,
         }
     }
 
@@ -143,6 +155,7 @@ pub(super) struct Swept {
     /// The direction across the bar, and the band along it in which everything lies.
     ahead: Vector,
     band: (f64, f64),
+    is_convex: bool,
 }
 
 impl Swept {
@@ -160,7 +173,8 @@ impl Swept {
             along.into_iter().fold(f64::NEG_INFINITY, f64::max) + BESIDE_M,
         );
         let corners = [[a, a_left, b_left], [a, b_left, b], [a, a_right, b_right], [a, b_right, b]];
-        Self { low, high, triangles: corners.map(Triangle::new), ahead, band }
+        let is_convex = is_convex([a_left, b_left, b_right, a_right]);
+        Self { low, high, triangles: corners.map(Triangle::new), ahead, band, is_convex }
     }
 
     /// Where the band begins and ends at a height.
@@ -177,6 +191,16 @@ impl Swept {
     fn contains(&self, point: Point) -> bool {
         self.triangles.iter().any(|triangle| triangle.contains(point))
     }
+}
+
+/// Whether an outline bends the same way at each of its four corners, and at each of them by something.
+fn is_convex(corners: [Point; 4]) -> bool {
+    let bend = |k: usize| {
+        let [a, b, c] = [0, 1, 2].map(|next| corners[(k + next) % 4]);
+        (b - a).perp(&(c - b))
+    };
+    let bends = [0, 1, 2, 3].map(bend);
+    bends.iter().all(|bend| *bend > SEAM_M) || bends.iter().all(|bend| *bend < -SEAM_M)
 }
 
 /// A triangle: its corners, and from each the way to the next, counter-clockwise; `None` without an area.
@@ -249,16 +273,29 @@ mod tests {
     fn no_cell_is_overlooked_whatever_the_heading() {
         let grid = grid(0.05);
         let floor = grid.floor();
-        for (heading, turn, step_m) in (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5), 0.04))
-        {
-            let from = Pose::new(0.3, -1.2, heading);
-            let to = from.moved(step_m, 0.0, turn);
-            let passage = BAR.passage(from, to);
-            let all: Vec<usize> =
-                (0..floor.len()).filter(|cell| passage.contains(floor.center(*cell))).collect();
-            assert!(all.len() > 3);
-            assert_eq!(floor.cells_under(BAR, from, to), all, "{heading} {turn}");
+        let headings = (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5)));
+        let mut n_cells = 0;
+        // From standing still over steps as they are driven to a bar whose ends cross.
+        for (heading, turn) in headings {
+            for (tool, step_m, turn) in [
+                (BAR, 0.0, turn),
+                (BAR, 0.04, turn),
+                (BAR, 0.3, -turn),
+                (BAR, 0.01, 8.0 * turn),
+                (Tool::Disc { swath_m: 0.6 }, 0.0, 0.0),
+                (Tool::Disc { swath_m: 0.6 }, 0.04, turn),
+                (Tool::Disc { swath_m: 0.6 }, 1.3, turn),
+            ] {
+                let from = Pose::new(0.3, -1.2, heading);
+                let to = from.moved(step_m, 0.0, turn);
+                let passage = tool.passage(from, to);
+                let all: Vec<usize> =
+                    (0..floor.len()).filter(|cell| passage.contains(floor.center(*cell))).collect();
+                assert_eq!(floor.cells_under(tool, from, to), all, "{tool:?} {heading} {step_m} {turn}");
+                n_cells += all.len();
+            }
         }
+        assert!(n_cells > 48 * 7 * 10, "{n_cells}");
     }
 
     #[test]
