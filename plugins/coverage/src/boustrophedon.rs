@@ -14,7 +14,7 @@ use crate::untethered_paths::UntetheredPaths;
 use crate::workspace::Workspace;
 use planner_api::{
     Caps, Code, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, PlannerError, Result, Sensed,
-    Site, float,
+    Site, flag, float,
 };
 use steering::params as p;
 use world::Point;
@@ -25,10 +25,17 @@ const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg",
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
     .group("Plan");
+const SHELL_LAP: ParamSpec = flag("shell_lap", "Shell lap", false)
+    .help(
+        "After the lanes a lap along the shell as near as hull and clearance allow, for the critical zone. \
+           Rooms always get one, along every wall.",
+    )
+    .group("Plan");
 
 /// Lanes to and fro.
 pub struct Boustrophedon {
     direction_rad: f64,
+    has_shell_lap: bool,
     cell_m: f64,
     follow: Follow,
 }
@@ -40,11 +47,12 @@ impl Planner for Boustrophedon {
                                  side; it knows nothing of a tether.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
-        &[DIRECTION, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
+        &[DIRECTION, SHELL_LAP, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         Ok(Self {
             direction_rad: config.float("direction_deg").to_radians(),
+            has_shell_lap: config.flag("shell_lap"),
             cell_m: config.float("cell_m"),
             follow: Follow::new(config, site),
         })
@@ -85,7 +93,7 @@ impl Boustrophedon {
     ) -> Result<(Vec<Lane>, Vec<Lane>)> {
         let workspace = domain.workspace;
         let rows = Rows::even(workspace, self.direction_rad);
-        let pattern = Pattern::Straight { rows, laps: usize::from(workspace.is_room) };
+        let pattern = Pattern::Straight { rows, laps: usize::from(workspace.is_room || self.has_shell_lap) };
         let least_m = workspace.swath_m / LEAST_TO_AND_FRO_IN_SWATH;
         let within = floor.clone().within(regions);
         let wanted = |lanes: Vec<Lane>| -> Vec<Lane> {

@@ -14,6 +14,19 @@ fn the_traditional_way_covers_most_and_leaves_the_cable_entangled() {
 }
 
 #[test]
+fn a_shell_lap_scans_what_the_ends_of_lanes_leave_along_the_shell() {
+    let tank = Known::E1.tank(2);
+    let coverage = |set: &[(&str, f64)]| {
+        let plan = bench::plan::<Boustrophedon>(&tank, set, None).0.unwrap();
+        let scan = tank.score(&plan.path, &[], CELL_M).unwrap();
+        assert_eq!(scan.certificate.collisions, 0, "{:?}", scan.certificate.reasons);
+        scan.coverage_reachable
+    };
+    let (without, with) = (coverage(&[]), coverage(&[("shell_lap", 1.0)]));
+    assert!(with > 0.99 && with > without + 0.01, "{without} {with}");
+}
+
+#[test]
 fn the_reported_progress_never_goes_back() {
     bench::assert_progress_rises(&bench::plan::<Boustrophedon>(&Known::E1.tank(2), &[], None).1);
 }
