@@ -26,10 +26,7 @@ const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
     .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
     .group("Plan");
 const SHELL_LAP: ParamSpec = flag("shell_lap", "Shell lap", false)
-    .help(
-        "After the lanes a lap along the shell as near as hull and clearance allow, for the critical zone. \
-           Rooms always get one, along every wall.",
-    )
+    .help("A lap along the shell after the lanes, as near as hull and clearance allow. Rooms always get one.")
     .group("Plan");
 
 /// Lanes to and fro.

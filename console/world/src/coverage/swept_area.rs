@@ -288,7 +288,7 @@ fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
 }
 
 /// Where everything within a distance of a segment lies at a height.
-pub(super) fn capsule_span([a, b]: [Point; 2], reach_m: f64, y: f64) -> Option<Span> {
+fn capsule_span([a, b]: [Point; 2], reach_m: f64, y: f64) -> Option<Span> {
     let disc = |center: Point| {
         let half_m = (reach_m * reach_m - (y - center.y).powi(2)).max(-1.0);
         (half_m >= 0.0).then(|| [center.x - half_m.sqrt(), center.x + half_m.sqrt()])

@@ -1,6 +1,5 @@
 //! The scanning tool and the floor that it passes.
 
-use super::swept_area::capsule_span;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
@@ -117,14 +116,11 @@ impl Passage {
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
-            Self::Disc { from, to, reach_m } => capsule_span([*from, *to], *reach_m, y)
-                .map_or((f64::NEG_INFINITY, f64::INFINITY), |(west, east)| {
-                    (west - BESIDE_M, east + BESIDE_M)
-                }),
+            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
         }
     }
 
-    /// Whether all of it at any height is one piece.
+    /// Whether what lies of it at any height is one piece.
     pub(super) fn is_convex(&self) -> bool {
         match self {
             Self::Bar(swept) => swept.is_convex,
@@ -274,7 +270,6 @@ mod tests {
         let grid = grid(0.05);
         let floor = grid.floor();
         let headings = (0..48).map(|k| (0.131 * f64::from(k), 0.05 * f64::from(k % 5)));
-        let mut n_cells = 0;
         // From standing still over steps as they are driven to a bar whose ends cross.
         for (heading, turn) in headings {
             for (tool, step_m, turn) in [
@@ -291,11 +286,11 @@ mod tests {
                 let passage = tool.passage(from, to);
                 let all: Vec<usize> =
                     (0..floor.len()).filter(|cell| passage.contains(floor.center(*cell))).collect();
+                let is_driven = step_m >= 0.04;
+                assert!(all.len() > 3 || !is_driven, "{tool:?} {heading} {step_m} {turn}");
                 assert_eq!(floor.cells_under(tool, from, to), all, "{tool:?} {heading} {step_m} {turn}");
-                n_cells += all.len();
             }
         }
-        assert!(n_cells > 48 * 7 * 10, "{n_cells}");
     }
 
     #[test]
