@@ -190,3 +190,21 @@ fn a_run_that_lost_its_report_is_listed_from_its_journal() {
     let listed = bench.tankops(&["runs", "--json"]).json();
     assert_eq!(listed[0]["end"], "complete", "{listed}");
 }
+
+#[test]
+fn a_pipe_in_the_place_of_a_plan_or_a_configuration_is_refused_and_not_waited_for() {
+    let bench = Bench::new();
+    for name in ["plan.toml", "config.toml", "keys.toml"] {
+        let file = bench.path().join(name);
+        assert!(std::process::Command::new("mkfifo").arg(&file).status().unwrap().success());
+        let words: &[&str] = if name == "plan.toml" { &["campaign", "run"] } else { &["check"] };
+        let ended = bench.tankops(&[words, &[name]].concat());
+        assert_eq!(ended.code, Some(2), "{ended:?}");
+        assert!(ended.err.contains(&format!("{name}: it is not a regular file")), "{ended:?}");
+        std::fs::remove_file(&file).unwrap();
+    }
+    bench.file("plan.toml", [b'#', 0xff, 0xfe]);
+    let ended = bench.tankops(&["campaign", "run", "plan.toml"]);
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    assert!(ended.err.contains("plan.toml: no text: byte 2 is not UTF-8"), "{ended:?}");
+}

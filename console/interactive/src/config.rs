@@ -76,7 +76,7 @@ impl Config {
     }
 
     fn take(&mut self, file: &Path, read: Read) -> Vec<Attention> {
-        let text = match std::fs::read_to_string(file) {
+        let text = match recording::read_regular(file) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Vec::new(),
             Err(error) => return vec![point(Severity::Warn, format!("{}: {error}", file.display()))],
@@ -116,7 +116,7 @@ pub fn check(file: &Path) -> Option<Result<String, String>> {
         KEYS => keys::read,
         _ => return None,
     };
-    let text = match std::fs::read_to_string(file) {
+    let text = match recording::read_regular(file) {
         Ok(text) => text,
         Err(error) => return Some(Err(format!("error: {}: {error}", file.display()))),
     };

@@ -27,8 +27,13 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 /// # Errors
 /// It is no regular file, cannot be read, or is no UTF-8.
 pub fn read_regular(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    open_regular(path)?.read_to_string(&mut text).map(|_| text)
+    let mut bytes = Vec::new();
+    open_regular(path)?.read_to_end(&mut bytes)?;
+    let no_text = |error: std::string::FromUtf8Error| {
+        let at_byte = error.utf8_error().valid_up_to() + 1;
+        io::Error::new(io::ErrorKind::InvalidData, format!("no text: byte {at_byte} is not UTF-8"))
+    };
+    String::from_utf8(bytes).map_err(no_text)
 }
 
 /// SHA-256 of a file, hexadecimal.
