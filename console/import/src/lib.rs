@@ -16,6 +16,7 @@ mod occupancy;
 mod pieces;
 pub mod plan;
 mod simplify;
+mod text;
 
 pub use error::ImportError;
 pub use floor::MapFloor;

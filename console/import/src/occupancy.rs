@@ -6,7 +6,10 @@
 mod image;
 mod settings;
 
-use crate::error::{ImportError, read_text};
+use crate::{
+    error::{ImportError, read_file},
+    text::decoded,
+};
 use image::Image;
 use nalgebra::Isometry2;
 use settings::Settings;
@@ -32,7 +35,7 @@ impl OccupancyMap {
     /// # Errors
     /// File, line and key of what is wrong.
     pub fn read(yaml: &Path) -> Result<Self, ImportError> {
-        let settings = Settings::parse(yaml, &read_text(yaml)?)?;
+        let settings = Settings::parse(yaml, &decoded(&read_file(yaml)?, None))?;
         let image = Image::read(&yaml.parent().unwrap_or(Path::new("")).join(&settings.image))?;
         // Images begin at the upper left.
         let upward = image.pixels.chunks(image.columns).rev().flatten();

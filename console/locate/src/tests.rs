@@ -245,3 +245,45 @@ fn what_is_written_is_read_again() {
     assert_eq!((survey.has_motion, tally.emissions, estimates), (true, 10, 40));
     assert!(tally.track_error_m.unwrap()[1] < 0.02, "{:?}", tally.track_error_m);
 }
+
+#[test]
+fn tables_of_spreadsheets_with_units_in_brackets_are_readings() {
+    let tabs = "Station\tT [s]\tRange [mm]\r\nA\t0,0\t7000,5\r\nB\t0,0\t8889,0\r\nC\t0\t11787\r\n";
+    let (scenario, file) = (scenario(), Readable::new("r.csv", tabs));
+    let survey = file.task(&scenario).survey().unwrap();
+    assert_eq!((survey.rows, survey.bad, survey.ignored.len()), (3, 0, 0));
+}
+
+#[test]
+fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
+    let refused = |bytes: &[u8]| Readable::new("r.csv", bytes).refused();
+    assert_eq!(refused(&[0; 4096]), "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8");
+    assert_eq!(
+        refused(
+            "\u{feff}t_s,station".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>().as_slice()
+        ),
+        "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8"
+    );
+    let rows = "t_s,station,range_m\n0,A,7\n0,B,8.9\n1,A,7\n".to_owned() + &"1,B,8.9\n".repeat(20_000);
+    let (scenario, file) = (scenario(), Readable::new("r.csv", [rows.as_bytes(), &[0; 100_000]].concat()));
+    let task = Task { skips_bad_rows: true, ..file.task(&scenario) };
+    let message = task.survey().unwrap_err().to_string();
+    assert!(
+        message.contains("no text: a byte 0") && message.ends_with("export the readings again"),
+        "{message}"
+    );
+    let long = ["t_s,station,range_m\n".as_bytes(), &[b'1'; 200_000]].concat();
+    assert!(refused(&long).contains("a line of more than 65,536 bytes"), "{}", refused(&long));
+}
+
+#[test]
+fn folders_and_pipes_are_refused_and_not_waited_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let pipe = dir.path().join("pipe.csv");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for file in [dir.path(), &pipe] {
+        let (scenario, other) = (scenario(), Readable::new("r.csv", ""));
+        let error = Task { file, ..other.task(&scenario) }.survey().unwrap_err().to_string();
+        assert!(error.ends_with("it is not a regular file"), "{error}");
+    }
+}

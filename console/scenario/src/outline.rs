@@ -1,14 +1,12 @@
 //! Outlines of obstacles and zones, and the polygons in them.
 
 use super::{problem::Complaint, section::Section};
+use import::plan::MOST_CORNERS;
 use world::{Point, Shape, shape::ring_area_m2};
 
 /// Keys that belong to one outline or another.
 const KEYS: [&str; 7] =
     ["center_m", "radius_m", "size_m", "heading_deg", "vertices_m", "points_m", "width_m"];
-
-/// Corners that a polygon may have; sides are compared pair by pair.
-const MOST_CORNERS: usize = 200;
 
 /// Reads the outline whose kind the key `word_key` names.
 pub(crate) fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {

@@ -84,7 +84,8 @@ impl Settings {
         };
         let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
         let free = share(written.free_thresh.as_ref(), 0.196)?;
-        if free >= occupied {
+        // Equal ones leave nothing between them, as the map server has it; a scale needs something.
+        if free > occupied || (free >= occupied && written.mode == Mode::Scale) {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
             return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
@@ -114,7 +115,7 @@ impl Settings {
         let bright = f64::from(pixel.grey) / 255.0;
         let occupancy = if self.negate { bright } else { 1.0 - bright };
         match self.mode {
-            Mode::Trinary => pixel.is_opaque && occupancy <= self.free,
+            Mode::Trinary => pixel.is_opaque && occupancy <= self.free && occupancy < self.occupied,
             // What rounds to nothing of the hundred steps between the thresholds is free, too.
             Mode::Scale => {
                 pixel.is_opaque && (occupancy - self.free) / (self.occupied - self.free) * 100.0 < 0.5

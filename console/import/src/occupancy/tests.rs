@@ -134,5 +134,20 @@ fn errors_name_file_line_and_key() {
     assert!(with("m.pgm", "n.pgm").starts_with("n.pgm: cannot be read"));
     let image = |bytes: &[u8]| map(YAML, bytes).unwrap_err().to_string();
     assert_eq!(image(b"P5 3 3 255 \xfe"), "m.pgm: 1 of 9 pixels are there; the file is cut off");
-    assert_eq!(image(b"\xff\xd8\xff"), "m.pgm: neither PGM (P2, P5) nor PNG; save the map as one of them");
+    assert_eq!(image(b"GIF89a"), "m.pgm: neither PGM (P2, P5) nor PNG nor JPEG; save the map as PGM or PNG");
+    assert!(image(b"\xff\xd8\xff\xe0").starts_with("m.pgm: the image cannot be read: "));
+    assert_eq!(image(b""), "m.pgm: is empty");
+}
+
+#[test]
+fn jpeg_is_read_and_thresholds_may_meet() {
+    let mut jpeg = Vec::new();
+    let grey = ::image::GrayImage::from_fn(16, 8, |x, _| ::image::Luma([if x < 8 { 255 } else { 0 }]));
+    let encoder = ::image::codecs::jpeg::JpegEncoder::new_with_quality(&mut jpeg, 95);
+    grey.write_with_encoder(encoder).unwrap();
+    let same = YAML.replace("0.65", "0.5").replace("0.196", "0.5");
+    let read = map(&same, &jpeg).unwrap();
+    let expected: Vec<bool> = (0..128).map(|cell| cell % 16 < 8).collect();
+    assert_eq!((read.columns, read.is_free), (16, expected));
+    assert!(map(&(same + "mode: scale\n"), &jpeg).unwrap_err().what.contains("must be less than"));
 }

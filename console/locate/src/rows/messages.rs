@@ -64,7 +64,7 @@ impl Messages {
         match message.keys().find(|key| !self.header.iter().any(|name| name == *key)) {
             Some(new) => {
                 let what = format!("the first message had no `{new}`");
-                Err(Problem { line: self.count, column: None, what })
+                Err(Problem { line: self.count, column: None, what, is_end: false })
             }
             None => Ok(Some(self.count)),
         }
@@ -73,14 +73,16 @@ impl Messages {
     /// The next message.
     fn message(&mut self) -> Result<Option<Map<String, Value>>, Problem> {
         let Self { file, reader, channels, count, .. } = self;
-        let problem = |line: u64, what: String| Problem { line, column: None, what };
-        let damaged =
-            |line: u64, error: &dyn std::fmt::Display| problem(line, format!("damaged MCAP: {error}"));
+        let problem = |line: u64, what: String| Problem { line, column: None, what, is_end: false };
+        let damaged = |line: u64, error: &dyn std::fmt::Display| Problem {
+            is_end: true,
+            ..problem(line, format!("damaged MCAP: {error}"))
+        };
         while let Some(event) = reader.next_event() {
             match event.map_err(|error| damaged(*count + 1, &error))? {
                 LinearReadEvent::ReadRequest(length) => {
                     let read = file.read(reader.insert(length));
-                    reader.notify_read(read.map_err(|error| problem(*count, error.to_string()))?);
+                    reader.notify_read(read.map_err(|error| damaged(*count, &error))?);
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {
