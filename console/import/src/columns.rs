@@ -20,7 +20,8 @@ use world::{Boundary, Point, Shape};
 /// # Errors
 /// File, line and field of what is wrong.
 pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
-    let text = decoded(&read_file(file)?, None);
+    // Lines are counted by their line feeds.
+    let text = decoded(&read_file(file)?, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
     let wrong = |line: u64, key: &str, what: String| ImportError {
         file: file.display().to_string(),
         line: Some(line as usize),
@@ -37,8 +38,7 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let bad = |error: &csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
+    let bad = |error: &csv::Error, line: u64| {
         let what = match error.kind() {
             csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
                 format!("{len} cells, and the first line names {expected_len}")
@@ -47,13 +47,16 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
         };
         wrong(line, "", what)
     };
-    let header = reader.headers().map_err(|error| bad(&error))?.clone();
-    let first_line = header.position().map_or(1, csv::Position::line);
+    let header = match reader.headers() {
+        Ok(header) => header.clone(),
+        Err(error) => return Err(bad(&error, line_of(&reader))),
+    };
+    let first_line = line_of(&reader);
     let fields = Fields::new(&header).map_err(|(field, what)| wrong(first_line, &field, what))?;
     let (mut names, mut obstacles) = (HashSet::new(), Vec::new());
-    for record in reader.records() {
-        let record = record.map_err(|error| bad(&error))?;
-        let line = record.position().map_or(1, csv::Position::line);
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|error| bad(&error, line_of(&reader)))? {
+        let line = line_of(&reader);
         // Spreadsheets leave lines of empty cells behind a list.
         if record.iter().all(str::is_empty) {
             continue;
@@ -88,6 +91,11 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
     let boundary = Boundary::Circle { radius_m: tank_radius_m };
     let notes = fields.unused.iter().map(|field| format!("not used: field {field}")).collect();
     Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), notes })
+}
+
+/// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.
+fn line_of(reader: &csv::Reader<&[u8]>) -> u64 {
+    reader.position().line().saturating_sub(1).max(1)
 }
 
 /// What separates the cells of the line that names them.

@@ -45,7 +45,10 @@ impl Rows {
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
             .from_reader(BufReader::with_capacity(1 << 16, Text::new(file)));
-        let header = reader.headers().map_err(|error| of_csv(&error).to_string())?.clone();
+        let header = match reader.headers() {
+            Ok(header) => header.clone(),
+            Err(error) => return Err(of_csv(&error, line_of(&reader)).to_string()),
+        };
         if header.is_empty() {
             return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
         }
@@ -71,24 +74,27 @@ impl Rows {
     /// What is wrong with the row; the one after it can still be read.
     pub(crate) fn next(&mut self, cells: &mut StringRecord) -> Result<Option<u64>, Problem> {
         match self {
-            Self::Csv { reader, .. } => {
-                let before = reader.position().line();
-                match reader.read_record(cells) {
-                    Ok(true) => Ok(Some(cells.position().map_or(0, csv::Position::line))),
-                    Ok(false) => Ok(None),
-                    Err(error) => {
-                        let problem = of_csv(&error);
-                        Err(Problem { line: problem.line.max(before), ..problem })
-                    }
-                }
-            }
+            Self::Csv { reader, .. } => match reader.read_record(cells) {
+                Ok(true) => Ok(Some(line_of(reader) - lines_within(cells))),
+                Ok(false) => Ok(None),
+                Err(error) => Err(of_csv(&error, line_of(reader))),
+            },
             Self::Messages(messages) => messages.next(cells),
         }
     }
 }
 
-fn of_csv(error: &csv::Error) -> Problem {
-    let line = error.position().map_or(0, csv::Position::line);
+/// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.
+fn line_of(reader: &csv::Reader<BufReader<Text>>) -> u64 {
+    reader.position().line().saturating_sub(1).max(1)
+}
+
+/// Breaks of lines in quoted cells.
+fn lines_within(cells: &StringRecord) -> u64 {
+    cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
+}
+
+fn of_csv(error: &csv::Error, line: u64) -> Problem {
     let is_end = matches!(error.kind(), csv::ErrorKind::Io(_));
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

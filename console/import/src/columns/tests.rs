@@ -81,6 +81,10 @@ fn errors_name_line_and_field() {
         "c.csv, line 2, x_m: (11, 2) lies outside the tank of 10 m; x and y count from its centre"
     );
     assert_eq!(message(&format!("{header}1,2\n")), "c.csv, line 2: 2 cells, and the first line names 3");
+    let far = "# a\r\nx_m,y_m,radius_m\r\n1,1,0.2\r\n# b\r\n\r\n2,b,0.2";
+    for text in [far.to_owned(), far.replace('\r', ""), far.replace('\n', "")] {
+        assert!(message(&text).starts_with("c.csv, line 6, y_m: "), "{}", message(&text));
+    }
     assert_eq!(message(header), "c.csv: no columns: below the first line there are no rows");
     assert!(message("\u{0}\u{1}\u{2}").contains("line 1: no text"));
 }

@@ -4,7 +4,7 @@ use super::image::Pixel;
 use crate::error::ImportError;
 use serde::Deserialize;
 use serde_saphyr::Spanned;
-use std::path::Path;
+use std::{f64::consts::TAU, path::Path};
 
 /// The keys of the file, as they are written.
 #[derive(Deserialize)]
@@ -35,16 +35,21 @@ enum Negate {
 pub(super) enum Mode {
     /// Free, occupied or unknown.
     #[default]
+    #[serde(alias = "Trinary", alias = "TRINARY")]
     Trinary,
     /// Besides these a share between the thresholds.
+    #[serde(alias = "Scale", alias = "SCALE")]
     Scale,
     /// The value is the percentage; above 100 unknown.
+    #[serde(alias = "Raw", alias = "RAW")]
     Raw,
 }
 
 /// The keys of the file, checked.
 pub(super) struct Settings {
     pub image: String,
+    /// The line that names it, from 1.
+    pub image_line: usize,
     pub resolution_m: f64,
     /// Of the lower left corner, metres, and the rotation about it, radians.
     pub origin: [f64; 3],
@@ -61,11 +66,24 @@ impl Settings {
             let whole = error.without_snippet().to_string();
             // The place stands before the sentence, not after it.
             let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
-            let what = match error.without_snippet() {
-                serde_saphyr::Error::DuplicateMappingKey { key, .. } => twice(text, key.as_deref(), line),
-                _ => what,
-            };
-            wrong(file, text, line, what)
+            match error.without_snippet() {
+                serde_saphyr::Error::DuplicateMappingKey { key, .. } => {
+                    wrong(file, text, line, twice(text, key.as_deref(), line))
+                }
+                _ if what.starts_with("missing field") => {
+                    let what =
+                        format!("{what}; a map has at least image and resolution, as in image: map.pgm");
+                    ImportError::of_file(file, what)
+                }
+                _ => {
+                    let error = wrong(file, text, line, what);
+                    let says_it = error.what.contains("expected one of") || error.what.starts_with("must be");
+                    let right = error.key.as_deref().filter(|_| !says_it).and_then(right_value);
+                    let what =
+                        right.map_or_else(|| error.what.clone(), |right| format!("{}; {right}", error.what));
+                    ImportError { what, ..error }
+                }
+            }
         })?;
         let at = |line: u64, what: String| wrong(file, text, Some(line as usize), what);
         let image = &written.image;
@@ -101,6 +119,7 @@ impl Settings {
         };
         Ok(Self {
             image: image.value.clone(),
+            image_line: image.referenced.line() as usize,
             resolution_m: cell.value,
             origin,
             mode: written.mode,
@@ -125,6 +144,19 @@ impl Settings {
     }
 }
 
+/// What would be right for a key.
+fn right_value(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "image" => "it must be the image's file name, as map.pgm",
+        "resolution" => "it must be metres to the cell, as 0.05",
+        "origin" => "it must be [x, y, angle] in metres and radians, as [-10.0, -5.0, 0.0]",
+        "negate" => "it must be 0 or 1",
+        "occupied_thresh" | "free_thresh" => "it must be a number from 0 to 1",
+        "mode" => "it must be trinary, scale or raw",
+        _ => return None,
+    })
+}
+
 /// What is said of a key that is there a second time.
 fn twice(text: &str, key: Option<&str>, line: Option<usize>) -> String {
     let is_it = |written: &&str| written.split_once(':').is_some_and(|(name, _)| Some(name.trim()) == key);
@@ -139,8 +171,15 @@ fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
     let origin = <[f64; 3]>::try_from(numbers)
         .map_err(|_| format!("{numbers:?} is not [x, y, angle] in metres and radians"))?;
     let is_near = |v: &f64| v.abs() <= 10_000.0;
-    let fits = origin.iter().all(is_near);
-    fits.then_some(origin).ok_or_else(|| format!("{numbers:?}: x and y must be finite and within 10 km"))
+    if !origin.iter().all(is_near) {
+        return Err(format!("{numbers:?}: x and y must be finite and within 10 km"));
+    }
+    let [_, _, angle] = origin;
+    if angle.abs() > TAU {
+        let right = angle.to_radians();
+        return Err(format!("an angle of {angle} rad is more than a turn; {angle}° would be {right:.4}"));
+    }
+    Ok(origin)
 }
 
 /// An error at a line; its key is that of the line, or of the last one above that has one.
