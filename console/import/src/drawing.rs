@@ -15,6 +15,7 @@ mod sorted;
 
 use crate::{
     error::ImportError,
+    is_wholly_outside,
     plan::{FloorPlan, Named},
 };
 use groups::Drawing;
@@ -102,8 +103,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     no_go.extend(named("no-go area", sorted.areas(Role::NoGo, "no-go area", Vec::new(), &mut notes)));
     for all in [&mut obstacles, &mut no_go] {
         all.retain(|named| {
-            let (low, high) = named.shape.bounds();
-            let is_inside = boundary.meets_box(low, high);
+            let is_inside = !is_wholly_outside(&boundary, &named.shape);
             if !is_inside {
                 notes.push(format!("{} lies outside the shell and is left out", named.name));
             }
@@ -122,22 +122,17 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
 /// Metres to the unit: as stated, else as the header says.
 fn unit(header: Option<i32>, stated_m: Option<f64>, notes: &mut Vec<String>) -> Result<f64, String> {
     let header_m = header.and_then(metres);
-    match (header_m, stated_m) {
-        (None, None) => {
-            Err("the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm"
-                .into())
-        }
-        (Some(unit_m), None) => Ok(unit_m),
-        (Some(header_m), Some(unit_m)) if header_m != unit_m => {
+    let unit_m = stated_m
+        .or(header_m)
+        .ok_or("the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm")?;
+    match header_m {
+        None => notes.push(format!("the drawing names no unit; one unit was taken as {unit_m} m")),
+        Some(header_m) if (header_m / unit_m - 1.0).abs() > 1e-9 => {
             notes.push(format!("one unit was taken as {unit_m} m, as stated; the header says {header_m} m"));
-            Ok(unit_m)
         }
-        (None, Some(unit_m)) => {
-            notes.push(format!("the drawing names no unit; one unit was taken as {unit_m} m"));
-            Ok(unit_m)
-        }
-        (_, Some(unit_m)) => Ok(unit_m),
+        Some(_) => {}
     }
+    Ok(unit_m)
 }
 
 /// Whether a box is where scenarios have their tanks; a drawing in coordinates of a survey is not.

@@ -13,6 +13,9 @@ const N_PLACES: usize = 64;
 const SWATH_M: f64 = 0.6;
 const PACE_M_PER_S: f64 = 0.1;
 
+/// Time limit that a scenario is given at most, seconds: its ticks are counted.
+const LONGEST_S: f64 = 500_000.0;
+
 /// Something with a name, tank frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
@@ -72,7 +75,7 @@ impl FloorPlan {
         entries(&mut text, "obstacles", "kind", &self.obstacles);
         entries(&mut text, "zones", "kind = \"no_go\"\nshape", &self.no_go);
         let start = self.roomiest();
-        let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).max(600.0).ceil();
+        let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).clamp(600.0, LONGEST_S).ceil();
         let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
         let _ = write!(
             text,

@@ -116,26 +116,6 @@ fn dent(vertices: &[Point]) -> Option<Point> {
     })
 }
 
-/// Points along an outline, close enough together to see whether any of it lies on the floor, and how far the
-/// outline reaches beyond them, metres.
-pub(crate) fn samples(shape: &Shape) -> (Vec<Point>, f64) {
-    const PIECES: u32 = 16;
-    let along = |a: &Point, b: &Point| -> Vec<Point> {
-        let (a, b) = (*a, *b);
-        (0..=PIECES).map(|k| a + (b - a) * (f64::from(k) / f64::from(PIECES))).collect()
-    };
-    match shape {
-        Shape::Disc { center, radius_m } => (vec![*center], *radius_m),
-        Shape::Polygon { vertices } => {
-            let ring = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            (ring.flat_map(|(a, b)| along(a, b)).collect(), 0.0)
-        }
-        Shape::Polyline { points, half_width_m } => {
-            (points.windows(2).flat_map(|w| along(&w[0], &w[1])).collect(), *half_width_m)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

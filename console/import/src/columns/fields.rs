@@ -67,7 +67,7 @@ impl Fields {
         };
         let lengths =
             [found(Quantity::X, "x_m")?, found(Quantity::Y, "y_m")?, found(Quantity::Radius, "radius_m")?];
-        Ok(Self { lengths, name, unused, names })
+        Ok(Self { names, lengths, name, unused })
     }
 
     /// What the first line calls a length.

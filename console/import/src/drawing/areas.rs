@@ -11,6 +11,8 @@ const PLATE_M: f64 = 0.25;
 const TOLERANCES_M: [f64; 4] = [1e-3, 2e-3, 5e-3, 1e-2];
 /// Discs nearer to each other than this, in place and size, are one that is drawn twice, metres.
 const TWICE_M: f64 = 5e-3;
+/// Outlines of a smaller radius than this enclose nothing, metres.
+const SMALLEST_M: f64 = 1e-3;
 /// Corners of the polygon around the tip of a wide line.
 const N_TIP: usize = 16;
 
@@ -42,6 +44,8 @@ pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, usiz
     }
     let (rings, open) = rings::closed(chains);
     areas.extend(rings.into_iter().map(|ring| Area::new(ring, 0.0)));
+    // What encloses nothing is no outline.
+    areas.retain(|area| area.size_m() + area.half_width_m > SMALLEST_M);
     (areas, open.len())
 }
 
@@ -70,11 +74,30 @@ impl Area {
         let n_tip = if self.half_width_m > 0.0 { N_TIP } else { 1 };
         let wide: Vec<Point> =
             self.points.iter().flat_map(|at| (0..n_tip).map(move |k| at + tip(k))).collect();
-        let vertices = hull(&wide);
+        let vertices = of_few_corners(hull(&wide));
         let plain_m2 = ring_area_m2(&hull(&self.points));
         let grew = plain_m2 > ring_area_m2(&self.points).abs() * (1.0 + 1e-6);
         (Shape::Polygon { vertices }, grew)
     }
+}
+
+/// A convex polygon around another of many corners: its sides touch that one in evenly spread directions.
+fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
+    const N_SIDES: usize = 96;
+    if ring.len() <= MOST_CORNERS {
+        return ring;
+    }
+    let toward = |k: usize| {
+        let angle = TAU * k as f64 / N_SIDES as f64;
+        Vector::new(angle.cos(), angle.sin())
+    };
+    let reach = |way: &Vector| ring.iter().map(|at| at.coords.dot(way)).fold(f64::NEG_INFINITY, f64::max);
+    let corner = |k: usize| {
+        let (a, b) = (toward(k), toward(k + 1));
+        let (p, q) = (reach(&a), reach(&b));
+        Point::new(p * b.y - q * a.y, q * a.x - p * b.x) / a.perp(&b)
+    };
+    hull(&(0..N_SIDES).map(corner).collect::<Vec<_>>())
 }
 
 /// Convex shapes of all areas, each once, and the numbers, from 1, of those that were not convex.
@@ -216,6 +239,21 @@ mod tests {
         assert!((radius_m - 1.1).abs() < 1e-9);
         let (low, high) = shapes[1].bounds();
         assert!(low.x <= -0.1 && high.y >= 1.1 && high.x < 1.105, "{low} {high}");
+    }
+
+    #[test]
+    fn a_column_of_many_corners_gets_fewer_around_it() {
+        let (shape, grew) = Area::new(oval(3000), 0.0).convex();
+        let Shape::Polygon { vertices } = &shape else { panic!("{shape:?}") };
+        assert!(!grew && vertices.len() <= MOST_CORNERS, "{}", vertices.len());
+        assert!(oval(3000).iter().all(|at| shape.distance_m(*at) < 1e-9));
+        assert!(ring_area_m2(vertices) < 96.0 * PI * 1.002);
+        let line = Outline::Chain {
+            points: [0.0, 1.0, 2.0].map(|x| Point::new(x, x)).to_vec(),
+            is_closed: true,
+            width_m: 0.0,
+        };
+        assert_eq!(areas([line].into_iter()).0.len(), 0, "it encloses nothing");
     }
 
     #[test]

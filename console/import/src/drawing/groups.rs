@@ -230,15 +230,12 @@ fn unescaped(name: &str) -> String {
     for part in parts {
         let letter =
             part.get(..4).and_then(|digits| u32::from_str_radix(digits, 16).ok()).and_then(char::from_u32);
-        match letter {
-            Some(letter) => {
-                whole.push(letter);
-                whole.push_str(&part[4..]);
-            }
-            None => {
-                whole.push_str("\\U+");
-                whole.push_str(part);
-            }
+        if let Some(letter) = letter {
+            whole.push(letter);
+            whole.push_str(&part[4..]);
+        } else {
+            whole.push_str("\\U+");
+            whole.push_str(part);
         }
     }
     whole

@@ -16,8 +16,7 @@ struct Written {
     negate: Option<Negate>,
     occupied_thresh: Option<Spanned<f64>>,
     free_thresh: Option<Spanned<f64>>,
-    #[serde(default)]
-    mode: Mode,
+    mode: Option<Spanned<String>>,
     /// Written by converters of ROS 1 maps, with the word occupancy; says nothing that the other keys do not.
     map_type: Option<Spanned<String>>,
 }
@@ -30,19 +29,26 @@ enum Negate {
 }
 
 /// How the brightness of a pixel becomes an occupancy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mode {
     /// Free, occupied or unknown.
-    #[default]
-    #[serde(alias = "Trinary", alias = "TRINARY")]
     Trinary,
     /// Besides these a share between the thresholds.
-    #[serde(alias = "Scale", alias = "SCALE")]
     Scale,
     /// The value is the percentage; above 100 unknown.
-    #[serde(alias = "Raw", alias = "RAW")]
     Raw,
+}
+
+impl Mode {
+    /// By its name, in capitals or not, as the map server takes it.
+    fn named(name: &str) -> Option<Self> {
+        match name.to_lowercase().as_str() {
+            "trinary" => Some(Self::Trinary),
+            "scale" => Some(Self::Scale),
+            "raw" => Some(Self::Raw),
+            _ => None,
+        }
+    }
 }
 
 /// The keys of the file, checked.
@@ -95,6 +101,13 @@ impl Settings {
             let what = format!("{} m to the cell; 0.001 to 10 are taken", cell.value);
             return Err(at(cell.referenced.line(), what));
         }
+        let mode = match &written.mode {
+            None => Mode::Trinary,
+            Some(mode) => Mode::named(&mode.value).ok_or_else(|| {
+                let what = format!("`{}` is no mode; it must be trinary, scale or raw", mode.value);
+                at(mode.referenced.line(), what)
+            })?,
+        };
         let share = |share: Option<&Spanned<f64>>, default: f64| match share {
             None => Ok(default),
             Some(share) if (0.0..=1.0).contains(&share.value) => Ok(share.value),
@@ -103,7 +116,7 @@ impl Settings {
         let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
         let free = share(written.free_thresh.as_ref(), 0.196)?;
         // Equal ones leave nothing between them, as the map server has it; a scale needs something.
-        if free > occupied || (free >= occupied && written.mode == Mode::Scale) {
+        if free > occupied || (free >= occupied && mode == Mode::Scale) {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
             return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
@@ -122,7 +135,7 @@ impl Settings {
             image_line: image.referenced.line() as usize,
             resolution_m: cell.value,
             origin,
-            mode: written.mode,
+            mode,
             negate: matches!(written.negate, Some(Negate::Flag(true) | Negate::Number(1..))),
             occupied,
             free,
@@ -152,7 +165,6 @@ fn right_value(key: &str) -> Option<&'static str> {
         "origin" => "it must be [x, y, angle] in metres and radians, as [-10.0, -5.0, 0.0]",
         "negate" => "it must be 0 or 1",
         "occupied_thresh" | "free_thresh" => "it must be a number from 0 to 1",
-        "mode" => "it must be trinary, scale or raw",
         _ => return None,
     })
 }

@@ -132,7 +132,7 @@ fn errors_name_file_line_and_key() {
         ),
         (
             message(&format!("{YAML}mode: binary\n")),
-            "m.yaml, line 7, mode: unknown variant `binary`, expected one of trinary, scale, raw",
+            "m.yaml, line 7, mode: `binary` is no mode; it must be trinary, scale or raw",
         ),
         (
             message(&format!("{YAML}negate: 1\n")),
