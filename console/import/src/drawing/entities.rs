@@ -160,9 +160,10 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
         "LWPOLYLINE" | "POLYLINE" => polyline(entity, &in_plane, scale),
         "SPLINE" => {
             let by_controls = entity.spline();
-            let points = match by_controls.controls.is_empty() {
-                true => through(&entity.points(11, 21)),
-                false => spline(&by_controls)?,
+            let points = if by_controls.controls.is_empty() {
+                through(&entity.points(11, 21))
+            } else {
+                spline(&by_controls)?
             };
             chain_of(points, map, entity.has_flag(1))
         }
