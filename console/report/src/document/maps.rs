@@ -141,7 +141,12 @@ const INDICATION: &str = r##"fill="#fff" stroke-width=".5""##;
 /// Marks indications with their numbers; returns the boxes of the numbers.
 fn mark_indications(sheet: &mut Sheet, indications: &[Indication]) -> Vec<[Point; 2]> {
     let purple = colour::TETHER;
-    let mut boxes: Vec<[Point; 2]> = Vec::new();
+    // All marks first: a number keeps clear of those that come behind it, too.
+    let mark = |found: &Indication| {
+        let (at, half) = (sheet.at(found.at), world::Vector::new(1.2, 1.2));
+        [at - half, at + half]
+    };
+    let mut boxes: Vec<[Point; 2]> = indications.iter().map(mark).collect();
     for found in indications {
         let (at, name) = (sheet.at(found.at), format!("I{}", found.number));
         let half = world::Vector::new(0.75 * name.len() as f64, 1.2);
@@ -157,10 +162,7 @@ fn mark_indications(sheet: &mut Sheet, indications: &[Indication]) -> Vec<[Point
             !boxes.iter().any(covers)
         };
         let place = *beside.iter().find(is_free).unwrap_or(&beside[0]);
-        boxes.extend([
-            [at - world::Vector::new(1.2, 1.2), at + world::Vector::new(1.2, 1.2)],
-            [place - half, place + half],
-        ]);
+        boxes.push([place - half, place + half]);
         sheet.circle(found.at, 1.0, &format!("{INDICATION} stroke=\"{purple}\""));
         sheet.draw(format_args!(
             r#"<text class="st" x="{:.2}" y="{:.2}" dy=".35em" text-anchor="middle" font-size="2.3" font-weight="700" fill="{purple}">{name}</text>"#,
@@ -193,9 +195,12 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
         4 => format!("above {:.1} cm", cm(edges_m[3])),
         _ => format!("{:.1} to {:.1} cm", cm(edges_m[class - 1]), cm(edges_m[class])),
     };
+    let share = |class: usize| {
+        classes.iter().filter(|other| usize::from(**other) == class).count() as f64 / scanned as f64
+    };
+    let percents = world::coverage::percents([0, 1, 2, 3, 4].map(share));
     let entry = |(class, colour): (usize, &str)| {
-        let cells = classes.iter().filter(|other| usize::from(**other) == class).count();
-        legend(filled(colour), &text(class), format!("{:.0} %", 100.0 * cells as f64 / scanned as f64))
+        legend(filled(colour), &text(class), format!("{:.1} %", percents[class]))
     };
     Figure {
         caption:

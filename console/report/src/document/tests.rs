@@ -82,8 +82,7 @@ fn files_that_are_not_those_of_the_end_of_the_run_are_an_open_item() {
 #[test]
 fn every_format_has_the_gap_and_the_letters_of_revisions_go_on_after_z() {
     let (runs, document) = ([past()], document(Inspection::default()));
-    let tables = csv::tables(&document, &runs);
-    let missed = &tables.iter().find(|(suffix, _)| *suffix == "-missed").unwrap().1;
+    let [_, missed, ..] = csv::tables(&document, &runs);
     assert!(missed.lines().count() == 2 && missed.contains("not planned"), "{missed}");
     assert!(geojson::geojson(&document, &runs).contains(r#""layer":"missed""#));
     assert!(dxf::dxf(&document, &runs).contains("MISSED"));

@@ -55,7 +55,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
             number(area.at.x, 2).into(),
             number(area.at.y, 2).into(),
             format!("{:.2} × {:.2}", extent.x, extent.y).into(),
-            format!("{:.2}", area.area_m2).into(),
+            format!("{:.3}", area.area_m2).into(),
             plates_of(area).into(),
             area.why().into(),
         ]);
@@ -67,7 +67,7 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
     let listed_m2: f64 = floor.missed.iter().map(|area| area.area_m2).sum();
     let total = format!(
-        "All missed floor: {missed_m2:.2} m²; {}: {listed_m2:.2} m²; {} under 0.01 m² each: {:.2} m²{}.",
+        "All missed floor: {missed_m2:.3} m²; {}: {listed_m2:.3} m²; {} under 0.01 m² each: {:.3} m²{}.",
         counted(floor.missed.len() as u64, "area"),
         floor.slivers.count,
         floor.slivers.area_m2,
@@ -84,15 +84,17 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
 /// Why the whole floor is not the sum of the reachable floor and what is out of reach.
 fn balance(document: &Document) -> String {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
-    let m2 = |share: f64| share * whole.area_m2;
+    let thousandths = |m2: f64| (1000.0 * m2).round();
+    let all = thousandths(whole.area_m2 - reachable.area_m2);
+    let [unreachable, margin] =
+        [whole.unreachable, whole.margin].map(|share| thousandths(share * whole.area_m2));
+    // The rest of what is printed, so that the line adds up to its last digit.
+    let [all, unreachable, margin, scanned] =
+        [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
     format!(
-        "Whole floor minus reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² scanned although not \
-         counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, or the floor was \
-         reachable before an obstacle was found.",
-        whole.area_m2 - reachable.area_m2,
-        m2(whole.unreachable),
-        m2(whole.margin),
-        m2(whole.scanned) - reachable.scanned * reachable.area_m2
+        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin + {scanned:.3} m² \
+         scanned although not counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, \
+         or the floor was reachable before an obstacle was found."
     )
 }
 
@@ -122,7 +124,7 @@ fn unreachable(document: &Document) -> Table {
         table.row(vec![
             reason.plainly().into(),
             areas.len().to_string().into(),
-            format!("{:.2}", areas.iter().map(|area| area.area_m2).sum::<f64>()).into(),
+            format!("{:.3}", areas.iter().map(|area| area.area_m2).sum::<f64>()).into(),
             format!("{}, {}: {}", number(largest.at.x, 2), number(largest.at.y, 2), largest.why()).into(),
         ]);
     }
@@ -130,7 +132,7 @@ fn unreachable(document: &Document) -> Table {
     table.row(vec![
         "each smaller than 0.01 m²".into(),
         slivers.count.to_string().into(),
-        format!("{:.2}", slivers.area_m2).into(),
+        format!("{:.3}", slivers.area_m2).into(),
         slivers.why().into(),
     ]);
     table
