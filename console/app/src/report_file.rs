@@ -16,7 +16,6 @@ use report::{
     print::say_line,
 };
 use runs::{Past, find};
-use scenario::Scenario;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -120,11 +119,7 @@ fn may_write(
 
 /// The facts of the scenario, and those of the file in their place.
 fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspection> {
-    let of_run = last.map(|past| {
-        let text = scenario::with_todays_keys(&past.opened.scenario_toml);
-        Scenario::parse(&text, "the scenario in the journal").map_err(|errors| bad_input(errors.render()))
-    });
-    let known = of_run.transpose()?.map(|scenario| scenario.inspection).unwrap_or_default();
+    let known = last.map(review::inspection).transpose()?.unwrap_or_default();
     let Some(file) = &args.inspection else { return Ok(known) };
     let later = scenario::inspection(&read_text(file)?, &file.display().to_string());
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))

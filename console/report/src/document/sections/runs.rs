@@ -128,7 +128,7 @@ fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
             ("What", "", ""),
             ("Detail", "", ""),
             ("Until", "h:m:s", "r nw"),
-            ("Reviewed by", "", ""),
+            ("Reviewed by", "", "nw"),
         ],
     );
     let is_many = run.incidents.len() > MOST_INCIDENTS;
