@@ -10,11 +10,12 @@ pub mod geojson;
 mod indications;
 pub(crate) mod layers;
 mod maps;
+mod marks;
 mod page;
 mod run_part;
 mod sections;
 
-pub use facts::Inspection;
+pub use facts::{Inspection, unreadable};
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use maps::Figure;

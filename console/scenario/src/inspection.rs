@@ -7,7 +7,7 @@ use super::{
     source::Source,
     syntax_error,
 };
-use report::Inspection;
+use report::{Inspection, document::unreadable};
 use toml::de::DeTable;
 
 /// Longest fact, characters: more than a sheet of paper.
@@ -54,21 +54,13 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
 fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     // What is empty is not known.
     let text = section.text(key).filter(|text| !text.trim().is_empty())?;
-    if let Some(odd) = text.chars().find(|letter| is_unreadable(*letter)) {
-        let must_be = format!("text that can be read: U+{:04X} cannot", u32::from(odd));
-        section.complain(key, Complaint::OutOfRange(must_be));
+    if let Some(odd) = unreadable(&text) {
+        section.complain(key, Complaint::OutOfRange(format!("text that can be read: {odd} cannot")));
     }
     if text.chars().count() > MOST_LETTERS {
         section.complain(key, Complaint::OutOfRange(format!("at most {MOST_LETTERS} characters")));
     }
     Some(text)
-}
-
-/// Whether a character has no picture: control characters but line feed and tab, and those that change the direction of the text
-/// around them or have no width.
-fn is_unreadable(letter: char) -> bool {
-    letter.is_control() && !matches!(letter, '\n' | '\t')
-        || matches!(letter, '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
 }
 
 /// Reads a file with `[inspection]`: what is known only after the run.

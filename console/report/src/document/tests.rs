@@ -187,6 +187,16 @@ fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
     let places = ["I1", "I2", "I3"].map(place_of);
     assert!(places[0] != places[1] && places[1] != places[2] && places[0] != places[2], "{places:?}");
     assert!(map.legend.iter().any(|entry| entry.text.starts_with("indication") && entry.value == "3"));
+    // Where there is no room, a mark has no number rather than one over another, and the caption says so.
+    let crowd: String = (0..300).fold("t_s\n".into(), |csv, k| csv + &format!("{}\n", 0.03 * f64::from(k)));
+    let [run, _] = two_runs();
+    let context = Context { indications_csv: Some(("found.csv", &crowd)), ..Context::default() };
+    let map = Document::new(&[run], context).unwrap().pictures.coverage;
+    let numbers = map.svg.matches(">I").count();
+    assert!(
+        (1..300).contains(&numbers)
+            && map.caption.contains(&format!("{} indications have no room", 300 - numbers))
+    );
 }
 
 #[test]
