@@ -44,6 +44,9 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     if let Some(by) = &args.sign {
         refuse_other_signer(by, inspection.inspector.as_deref())?;
     }
+    let was_flown =
+        |(past, folder): (&Past, &PathBuf)| past.opened.measured.is_none().then(|| folder.clone());
+    let flown: Vec<PathBuf> = read.iter().zip(&folders).filter_map(was_flown).collect();
     let past: Vec<PastRun> = read.into_iter().map(|past| past.run).collect();
     chain.compare(&past);
     let signature = args.sign.as_deref().map(signature);
@@ -58,7 +61,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     if signature.is_some() {
         refuse_doubts(&chain)?;
         refuse_open_items(&document)?;
-        refuse_not_recomputed(&past, &folders, plugins)?;
+        refuse_not_recomputed(&flown, plugins)?;
     }
     for doubt in &chain.doubts {
         say_line(&format!("WARNING: {doubt}"))?;

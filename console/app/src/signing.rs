@@ -110,14 +110,10 @@ pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
 }
 
 /// Refuses runs whose journal does not come out again when it is recomputed: its digests prove nothing to whoever can write
-/// `report.json` anew. Readings that were located are no run of the simulator.
-pub(crate) fn refuse_not_recomputed(
-    past: &[PastRun],
-    folders: &[PathBuf],
-    plugins: &PluginDirs,
-) -> anyhow::Result<()> {
-    let was_flown = |past: &PastRun| past.fold.run.as_deref().is_some_and(|run| run.measured.is_none());
-    for (PastRun { name, .. }, folder) in past.iter().zip(folders).filter(|(past, _)| was_flown(past)) {
+/// `report.json` anew. `folders`: of the runs that were flown; readings that were located are not the simulator's.
+pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<()> {
+    for folder in folders {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
         warn_line(&format!("recomputing run {name} ..."));
         let verified = review::verify(folder, plugins, true)?;
         if !verified.is_equal {
