@@ -83,7 +83,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
     let mut names = sheet.plate_names(layers.plates.as_ref(), 2.1);
-    let marks = marks::draw(&mut sheet, indications);
+    let marks = marks::draw(&mut sheet, indications, &names);
     names.extend(marks.boxes);
     let numbered: Vec<Numbered<'_>> = layers
         .gaps

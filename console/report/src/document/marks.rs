@@ -21,15 +21,15 @@ pub(super) struct Marks {
     pub(super) unnumbered: u64,
 }
 
-/// Marks indications, each with its number where there is room beside it.
-pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication]) -> Marks {
+/// Marks indications, each with its number where there is room beside it. `names`: boxes of names that numbers keep clear of.
+pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Point; 2]]) -> Marks {
     let radius_mm = if indications.len() > MANY { SMALL_MM } else { RADIUS_MM };
     // All marks first: a number keeps clear of those that come behind it, too.
     let of_mark = |found: &Indication| {
         let (at, half) = (sheet.at(found.at), Vector::repeat(radius_mm + 0.2));
         [at - half, at + half]
     };
-    let mut boxes: Vec<[Point; 2]> = indications.iter().map(of_mark).collect();
+    let mut boxes: Vec<[Point; 2]> = indications.iter().map(of_mark).chain(names.iter().copied()).collect();
     let purple = colour::TETHER;
     for found in indications {
         sheet.circle(found.at, radius_mm, &format!("{STYLE} stroke=\"{purple}\""));

@@ -231,9 +231,12 @@ fn of_many_missed_areas_the_small_ones_are_said_in_few_words_each_with_its_reaso
     for number in 1..=60 {
         let entry =
             page.split_once(&format!("<li id=\"m{number}\">")).unwrap().1.split("</li>").next().unwrap();
-        let (letter, value) = entry.split_once("0.010 m²; ").unwrap().1.split_once(' ').unwrap();
+        let (letter, value) = entry.split_once("0.010\u{a0}m²; ").unwrap().1.split_once(' ').unwrap();
         let is_explained = page.contains(&format!("{letter}: not planned"));
-        assert!(is_explained && value.split(' ').next().unwrap().parse::<f64>().is_ok(), "{entry}");
+        assert!(
+            is_explained && value.split([' ', '\u{a0}']).next().unwrap().parse::<f64>().is_ok(),
+            "{entry}"
+        );
     }
     let few = Document::new(&[past_without(&places[..40])], Context::default()).unwrap();
     assert!(html(&few).contains("<tr id=\"m40\"") && !html(&few).contains("<li id=\"m"), "rows");

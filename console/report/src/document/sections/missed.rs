@@ -94,7 +94,8 @@ fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     let entry = |(no, area): (usize, &Area<MissReason>)| {
         let causes = area.causes.iter().map(cause).collect::<Vec<_>>().join(", ");
         let (x, y) = (number(area.at.x, 2), number(area.at.y, 2));
-        (no, format!("{x}, {y} m; {:.3} m²; {causes}", area.area_m2))
+        // No line ends between a number and its unit.
+        (no, format!("{x}, {y} m; {:.3} m²; {causes}", area.area_m2).replace(" m", "\u{a0}m"))
     };
     let key = letters.iter().map(|(reason, letter)| format!("{letter}: {}", reason.plainly()));
     vec![
