@@ -139,10 +139,9 @@ fn a_call_that_fails_once_costs_the_journal_nothing_whichever_it_is() {
 }
 
 #[test]
-fn a_call_that_fails_once_costs_the_recording_nothing() {
-    let events = events(30);
-    // Not every call as above: each recorder starts threads of the SDK.
-    for fails_at in (2..240).step_by(17) {
+fn a_call_that_fails_once_costs_the_recording_nothing_whichever_it_is() {
+    let events = events(3);
+    for fails_at in 1.. {
         let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
         let file =
             FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
@@ -156,7 +155,10 @@ fn a_call_that_fails_once_costs_the_recording_nothing() {
         let path = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(path.path(), disk.written()).expect("writable");
         assert!(recording::inspect(path.path()).expect("readable").is_complete(), "call {fails_at}");
-        assert_eq!(was_reached.load(Ordering::Relaxed), 1, "call {fails_at}");
+        if was_reached.load(Ordering::Relaxed) == 0 {
+            assert!(fails_at > 50, "so many calls are made: {fails_at}");
+            return;
+        }
     }
 }
 

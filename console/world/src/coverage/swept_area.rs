@@ -177,7 +177,7 @@ impl SweptArea {
             }
             Boundary::Polygon { vertices } => {
                 let corners: Vec<Point> = vertices.iter().map(|vertex| self.askew * vertex).collect();
-                let mut crossed = crossings(&corners, y);
+                let mut crossed: Vec<f64> = crossings(&corners, y).collect();
                 crossed.sort_by(f64::total_cmp);
                 crossed.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
             }
@@ -294,8 +294,9 @@ fn capsule_span([a, b]: [Point; 2], reach_m: f64, y: f64) -> Option<Span> {
         (half_m >= 0.0).then(|| [center.x - half_m.sqrt(), center.x + half_m.sqrt()])
     };
     let aside = (b - a).try_normalize(1e-12).map(|ahead| nalgebra::vector![-ahead.y, ahead.x] * reach_m);
-    let sides = aside.map(|aside| crossings(&[a + aside, b + aside, b - aside, a - aside], y));
-    span_of([a, b].into_iter().filter_map(disc).flatten().chain(sides.into_iter().flatten()))
+    let sides = aside.map(|aside| [a + aside, b + aside, b - aside, a - aside]);
+    let of_sides = sides.iter().flat_map(|sides| crossings(sides, y));
+    span_of([a, b].into_iter().filter_map(disc).flatten().chain(of_sides))
 }
 
 fn span_of(crossed: impl IntoIterator<Item = f64>) -> Option<Span> {
@@ -304,10 +305,10 @@ fn span_of(crossed: impl IntoIterator<Item = f64>) -> Option<Span> {
 }
 
 /// Where the outline of a polygon crosses a height.
-fn crossings(corners: &[Point], y: f64) -> Vec<f64> {
-    let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
-    let crossed = edges.filter(|(a, b)| (a.y <= y) != (b.y <= y));
-    crossed.map(|(a, b)| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y))).collect()
+fn crossings(corners: &[Point], y: f64) -> impl Iterator<Item = f64> {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossed = edges.filter(move |(a, b)| (a.y <= y) != (b.y <= y));
+    crossed.map(move |(a, b)| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)))
 }
 
 #[cfg(test)]
