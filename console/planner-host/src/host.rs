@@ -99,7 +99,10 @@ impl Host {
     }
 
     /// Puts a planner on the processor of this thread for a command, and away from it for everything else.
-    #[cfg_attr(not(target_os = "linux"), allow(unused_variables, clippy::unused_self, reason = "only Linux can"))]
+    #[cfg_attr(
+        not(target_os = "linux"),
+        allow(unused_variables, clippy::unused_self, reason = "only Linux can")
+    )]
     fn place(&mut self, wanted: Option<&Wanted<'_>>) {
         #[cfg(target_os = "linux")]
         if let Some(together) = &mut self.together {

@@ -41,7 +41,7 @@ use stream::Stream;
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
 /// Rows are sent to the file after this many ticks,
-const SEND_TICKS: u32 = 500;
+const SEND_TICKS: u32 = 2048;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 

@@ -1,5 +1,6 @@
 //! The scanning tool and the floor that it passes.
 
+use super::span::capsule_span;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
@@ -112,11 +113,15 @@ impl Passage {
         }
     }
 
-    /// West and east ends of all of it that lies at a height.
+    /// West and east ends of all of it that lies at a height, or a little further out.
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
-            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+            Self::Disc { from, to, reach_m } => {
+                let nowhere = (f64::INFINITY, f64::NEG_INFINITY);
+                let span = capsule_span([*from, *to], reach_m + BESIDE_M, y);
+                span.map_or(nowhere, |(west, east)| (west - BESIDE_M, east + BESIDE_M))
+            }
         }
     }
 
@@ -140,7 +145,7 @@ impl Passage {
 
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
-/// Everything lies at least this far within its band, metres.
+/// Everything lies at least this far within its band, or within the ends at a height, metres.
 const BESIDE_M: f64 = 1e-3;
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.
