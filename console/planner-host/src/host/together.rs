@@ -31,7 +31,7 @@ impl Together {
             Some(until) if now < until => {}
             // This command finds them apart, and each may wake up on another processor.
             Some(_) => self.part(std::iter::once(worker)),
-            None if self.all.is_some() => {
+            None if self.all.is_some() && sched_getcpu() < CpuSet::MAX_CPU => {
                 let mut here = CpuSet::new();
                 here.set(sched_getcpu());
                 if sched_setaffinity(None, &here).is_ok() {
