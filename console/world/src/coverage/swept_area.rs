@@ -2,7 +2,7 @@
 
 use super::{
     floor::{Cell, Floor},
-    span::{Span, capsule_span, crossings, polygon_span},
+    span::{Capsule, Span, crossings, polygon_span},
     tool::Tool,
 };
 use geometry::{
@@ -80,7 +80,8 @@ impl SweptArea {
             }
             Tool::Disc { swath_m } => {
                 let ends = [a.position, b.position].map(|end| self.askew * end);
-                self.add(&ends, swath_m / 2.0, |y| capsule_span(ends, swath_m / 2.0, y));
+                let capsule = Capsule::new(ends, swath_m / 2.0);
+                self.add(&ends, swath_m / 2.0, |y| capsule.span(y));
             }
         }
     }
@@ -276,7 +277,7 @@ fn extent(part: &Part) -> Span {
 fn part_span(part: &Part, y: f64) -> Option<Span> {
     match part {
         Part::Polygon { vertices } => polygon_span(vertices, y),
-        Part::Capsule { a, b, half_width_m } => capsule_span([*a, *b], *half_width_m, y),
+        Part::Capsule { a, b, half_width_m } => Capsule::new([*a, *b], *half_width_m).span(y),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The scanning tool and the floor that it passes.
 
-use super::span::capsule_span;
+use super::span::Capsule;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +88,8 @@ impl Tool {
         match self {
             Self::Bar { swath_m } => Passage::Bar(Swept::new(swath_m, from, to)),
             Self::Disc { swath_m } => {
-                Passage::Disc { from: from.position, to: to.position, reach_m: swath_m / 2.0 }
+                let (from, to, reach_m) = (from.position, to.position, swath_m / 2.0);
+                Passage::Disc { from, to, reach_m, around: Capsule::new([from, to], reach_m + BESIDE_M) }
             }
         }
     }
@@ -98,7 +99,13 @@ impl Tool {
 #[expect(clippy::large_enum_variant, reason = "made and dropped once a tick, never kept")]
 pub(super) enum Passage {
     Bar(Swept),
-    Disc { from: Point, to: Point, reach_m: f64 },
+    Disc {
+        from: Point,
+        to: Point,
+        reach_m: f64,
+        /// A little more than all of it.
+        around: Capsule,
+    },
 }
 
 impl Passage {
@@ -106,7 +113,7 @@ impl Passage {
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
             Self::Bar(swept) => (swept.low, swept.high),
-            Self::Disc { from, to, reach_m } => {
+            Self::Disc { from, to, reach_m, .. } => {
                 let reach = Vector::new(*reach_m, *reach_m);
                 (from.inf(to) - reach, from.sup(to) + reach)
             }
@@ -117,11 +124,7 @@ impl Passage {
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
-            Self::Disc { from, to, reach_m } => {
-                let nowhere = (f64::INFINITY, f64::NEG_INFINITY);
-                let span = capsule_span([*from, *to], reach_m + BESIDE_M, y);
-                span.map_or(nowhere, |(west, east)| (west - BESIDE_M, east + BESIDE_M))
-            }
+            Self::Disc { around, .. } => around.span(y).unwrap_or((f64::INFINITY, f64::NEG_INFINITY)),
         }
     }
 
@@ -136,7 +139,7 @@ impl Passage {
     pub(super) fn contains(&self, point: Point) -> bool {
         match self {
             Self::Bar(swept) => swept.contains(point),
-            Self::Disc { from, to, reach_m } => {
+            Self::Disc { from, to, reach_m, .. } => {
                 (point - nearest_on_segment(*from, *to, point)).norm() <= *reach_m
             }
         }
