@@ -1,6 +1,9 @@
 //! Shortest paths from the anchor to anywhere, whatever path the robot took: the shortest cable that would do.
 
-use super::cable_obstacles::{CableObstacles, Post, tangent_point};
+use super::{
+    cable::Cable,
+    cable_obstacles::{CableObstacles, Post, tangent_point},
+};
 use crate::total::Total;
 use geometry::{Point, unit_vector, wrap_angle_rad};
 use std::{
@@ -285,16 +288,39 @@ impl Geodesic {
     /// assert_eq!(Geodesic::farthest_m(Point::origin(), empty, &points), 5.0);
     /// ```
     pub fn farthest_m(anchor: Point, obstacles: Arc<CableObstacles>, points: &[(Point, f64)]) -> f64 {
-        // No point within a bound below the largest straight distance is the farthest.
+        // No point with a bound below the largest straight distance is the farthest.
         let straight_m = points.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
-        let mut points: Vec<(Point, f64)> =
-            points.iter().copied().filter(|(_, enough_m)| *enough_m >= straight_m).collect();
+        let mut points = bounded(anchor, &obstacles, points);
+        points.retain(|(_, enough_m)| *enough_m >= straight_m);
         let paths = Self::toward(anchor, obstacles, &points);
         points.sort_by(|a, b| b.1.total_cmp(&a.1));
         points.iter().fold(0.0, |most_m, (point, enough_m)| {
             if *enough_m <= most_m { most_m } else { most_m.max(paths.distance_m(*point).min(*enough_m)) }
         })
     }
+}
+
+/// The same points with bounds that are nearer to the distances where the points come from a path that winds its cable round
+/// much: there the way straight from the anchor and round what stands in it, or from there a little along the path.
+fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64)]) -> Vec<(Point, f64)> {
+    let straight_m = |point: Point| {
+        let mut cable = Cable::on(anchor, Arc::clone(obstacles)).ok()?;
+        cable.drag_to(point);
+        (!obstacles.sidestep.holds(point)).then(|| cable.length_m())
+    };
+    // The last point, its bound, and the way to it from where the bound is that of a cable.
+    let mut before: Option<(Point, f64, f64)> = None;
+    let bound = |(point, enough_m): &(Point, f64)| {
+        let on = before.and_then(|(from, most_m, way_m)| {
+            let step_m = (point - from).norm();
+            let is_short = way_m + step_m <= SQUARE_M;
+            (is_short && obstacles.is_open(from, *point)).then_some((most_m + step_m, way_m + step_m))
+        });
+        let found = on.or_else(|| Some((straight_m(*point)?, 0.0)));
+        before = found.map(|(most_m, way_m)| (*point, most_m, way_m));
+        (*point, found.map_or(*enough_m, |(most_m, _)| most_m.min(*enough_m)))
+    };
+    points.iter().map(bound).collect()
 }
 
 /// Places are taken together in squares of this edge, metres.
