@@ -192,6 +192,6 @@ fn a_study_is_shared_by_the_tasks_of_an_array_by_the_line_of_the_guide() {
     };
     let alone: Vec<&str> = asked.split_whitespace().collect();
     let alone = bench.tankops(&[&["reproduce"], &alone[..], &["--json"]].concat()).json();
-    let shared = std::fs::read(bench.path().join("DIR/result.json")).unwrap();
+    let shared = fs::read(bench.path().join("DIR/result.json")).unwrap();
     assert_eq!(rows(serde_json::from_slice(&shared).unwrap()), rows(alone));
 }

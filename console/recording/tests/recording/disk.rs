@@ -59,6 +59,8 @@ impl Write for SmallDisk {
 struct FaultyFile {
     calls: usize,
     fails_at: usize,
+    /// Of how many bytes it takes one, as a disk does that is nearly full.
+    takes_one_of: usize,
     disk: SmallDisk,
     was_reached: Arc<AtomicUsize>,
 }
@@ -77,8 +79,7 @@ impl FaultyFile {
 impl Write for FaultyFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.fault()?;
-        // Half of it, as a disk that is nearly full does.
-        self.disk.write(&bytes[..bytes.len().div_ceil(2)])
+        self.disk.write(&bytes[..bytes.len().div_ceil(self.takes_one_of)])
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -116,8 +117,13 @@ fn a_call_that_fails_once_costs_the_journal_nothing_whichever_it_is() {
     let whole = lines(&events);
     for fails_at in 1.. {
         let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
-        let file =
-            FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
+        let file = FaultyFile {
+            calls: 0,
+            fails_at,
+            takes_one_of: 2,
+            disk: disk.clone(),
+            was_reached: Arc::clone(&was_reached),
+        };
         let begin = Instant::now();
         let mut journal = packed_to(Box::new(file), begin);
         let reported = append_slowly(&mut journal, &events, begin);
@@ -143,8 +149,14 @@ fn a_call_that_fails_once_costs_the_recording_nothing_whichever_it_is() {
     let events = events(3);
     for fails_at in 1.. {
         let (disk, was_reached) = (SmallDisk::new(usize::MAX), Arc::new(AtomicUsize::new(0)));
-        let file =
-            FaultyFile { calls: 0, fails_at, disk: disk.clone(), was_reached: Arc::clone(&was_reached) };
+        // Whole messages at once: what is left of a message waits as in the journal, and every call costs a recorder.
+        let file = FaultyFile {
+            calls: 0,
+            fails_at,
+            takes_one_of: 1,
+            disk: disk.clone(),
+            was_reached: Arc::clone(&was_reached),
+        };
         let begin = Instant::now();
         let mut recorder =
             Recorder::writing_to(Box::new(file), &Identity::of_run("test"), begin).expect("opens");
