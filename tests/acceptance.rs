@@ -22,6 +22,8 @@ mod command_line;
 mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
+#[path = "acceptance/imported.rs"]
+mod imported;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
