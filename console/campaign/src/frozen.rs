@@ -110,9 +110,9 @@ impl Campaign {
         let counts = [points.len() as u64, self.scenarios.len() as u64, seeds.count, self.block];
         let planners = self.design.planners.len().max(1) as u64;
         let cases = counts[..3].iter().fold(planners, |product, count| product.saturating_mul(*count));
-        let are_possible = counts.iter().all(|count| *count > 0) && cases <= MOST_CASES;
-        (!are_possible || !SEEDS.contains(&seeds.first))
-            .then(|| "there are no missions, or more than any plan can have".to_owned())
+        let is_possible =
+            counts.iter().all(|count| *count > 0) && cases <= MOST_CASES && SEEDS.contains(&seeds.first);
+        (!is_possible).then(|| "there are no missions, or more than any plan can have".to_owned())
     }
 
     /// Whether another campaign flies the same missions by the same program, in whatever blocks.
