@@ -17,6 +17,9 @@ mod bench;
 mod campaign;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
+#[cfg(unix)]
+#[path = "acceptance/engines.rs"]
+mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
 #[path = "acceptance/imported.rs"]

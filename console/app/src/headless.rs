@@ -22,7 +22,7 @@ use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
-use std::{io::IsTerminal, process::ExitCode};
+use std::{io::IsTerminal, process::ExitCode, sync::Arc};
 use world::Station;
 
 /// Options of a headless run.
@@ -75,7 +75,8 @@ fn fly_beside(
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
     let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
-        log.keep(&events);
+        let events: Arc<[Event]> = events.into();
+        log.keep(Arc::clone(&events));
         if let Some(host) = host {
             remains::keep(
                 host,

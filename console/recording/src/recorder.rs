@@ -34,14 +34,14 @@ use std::{
     io::Write,
     path::Path,
     sync::Arc,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
 /// Rows are sent to the file after this many ticks,
-const SEND_TICKS: u32 = 500;
+const SEND_TICKS: u32 = 2048;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
@@ -82,6 +82,7 @@ impl Recorder {
     }
 
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
+        check_clock(SystemTime::now())?;
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
         Ok(Self { fold: Fold::default(), stream, health, watch: None, ticks_waiting: 0, sent_at: now })
@@ -180,5 +181,22 @@ impl Recorder {
     fn stop(&mut self, error: RecordingError) -> Result<(), RecordingError> {
         self.stream = None;
         Err(error)
+    }
+}
+
+/// Makes sure that the recording SDK can say when it began.
+fn check_clock(now: SystemTime) -> Result<(), RecordingError> {
+    if now < SystemTime::UNIX_EPOCH { Err(RecordingError::Clock) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_before_1970_is_an_error_and_no_panic() {
+        let epoch = SystemTime::UNIX_EPOCH;
+        assert!(matches!(check_clock(epoch - Duration::from_secs(1)), Err(RecordingError::Clock)));
+        assert!(check_clock(epoch).is_ok() && check_clock(SystemTime::now()).is_ok());
     }
 }
