@@ -40,8 +40,10 @@ use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
-/// Rows are sent to the file after this many ticks,
+/// Rows are sent to the file after this many ticks, the first after more: a short run that was flown fast is written in one
+/// piece, and has nothing to merge,
 const SEND_TICKS: u32 = 500;
+const FIRST_SEND_TICKS: u32 = 2000;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
@@ -57,6 +59,7 @@ pub struct Recorder {
     watch: Option<FileWatch>,
     ticks_waiting: u32,
     sent_at: Instant,
+    has_sent: bool,
 }
 
 impl Recorder {
@@ -84,7 +87,15 @@ impl Recorder {
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self { fold: Fold::default(), stream, health, watch: None, ticks_waiting: 0, sent_at: now })
+        Ok(Self {
+            fold: Fold::default(),
+            stream,
+            health,
+            watch: None,
+            ticks_waiting: 0,
+            sent_at: now,
+            has_sent: false,
+        })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -127,7 +138,8 @@ impl Recorder {
         }
         // Whoever looks at a robot that stands still wants to see how it came to that.
         let held = matches!(event.kind, EventKind::Held { .. });
-        if held || self.ticks_waiting >= SEND_TICKS { self.send(now) } else { self.idle(now) }
+        let most = if self.has_sent { SEND_TICKS } else { FIRST_SEND_TICKS };
+        if held || self.ticks_waiting >= most { self.send(now) } else { self.idle(now) }
     }
 
     /// Sends waiting rows if it is time; to be called now and then while nothing happens.
@@ -143,7 +155,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
-    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
+    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length or content.
     pub fn finish(mut self, summary: &Summary, until: Option<Instant>) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(summary, stream)?;
@@ -155,8 +167,10 @@ impl Recorder {
             return Err(RecordingError::Write { why });
         }
         let Some(watch) = &self.watch else { return Ok(()) };
-        watch.check_closed(self.health.bytes())?;
-        if let Err(error) = merge::merge(watch.path(), until) {
+        watch.check_content(self.health.bytes(), &self.health.sha256())?;
+        if self.has_sent
+            && let Err(error) = merge::merge(watch.path(), until)
+        {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
         }
@@ -167,6 +181,7 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         self.ticks_waiting = 0;
+        self.has_sent = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }

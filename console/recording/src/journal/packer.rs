@@ -7,8 +7,12 @@
 use std::io;
 use zstd::stream::raw::{CParameter, Encoder, InBuffer, Operation, OutBuffer};
 
-/// On journals level 9 takes a sixth less space than the default of 3, for 30 microseconds a tick instead of 15.
+/// On journals level 9 takes a sixth less space than the default of 3.
 const LEVEL: i32 = 9;
+/// What repeats in lines is long: only matches of so many bytes are looked for, and at few places (a power of two). That takes
+/// two thirds of the level's own time, and 2 % less space.
+const LEAST_MATCH: u32 = 6;
+const SEARCH_LOG: u32 = 1;
 /// Bytes of lines in a frame, at least: a reader decompresses as much to get to a place.
 const FRAME_BYTES: usize = 1 << 20;
 /// Nothing in a frame lies further back than this power of two, bytes. The level's own choice takes 15 MB more memory.
@@ -33,6 +37,8 @@ impl Packer {
         encoder.set_parameter(CParameter::ChecksumFlag(true))?;
         encoder.set_parameter(CParameter::WindowLog(WINDOW_LOG))?;
         encoder.set_parameter(CParameter::HashLog(HASH_LOG))?;
+        encoder.set_parameter(CParameter::MinMatch(LEAST_MATCH))?;
+        encoder.set_parameter(CParameter::SearchLog(SEARCH_LOG))?;
         Ok(Self { encoder, in_frame: 0, holds_back: false })
     }
 
