@@ -19,6 +19,8 @@ mod campaign;
 mod command_line;
 #[path = "acceptance/faults.rs"]
 mod faults;
+#[path = "acceptance/imported.rs"]
+mod imported;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
