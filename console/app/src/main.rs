@@ -132,10 +132,11 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Locate(args)) => locate::locate(&args),
         Some(Command::Report(args)) => past_runs::report(&args, &plugins),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
-        Some(Command::ReplayWorker { bundle, gdb }) => replay_worker::replay(&bundle, gdb),
+        Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man { command }) => manual::man(command.as_deref()),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
+        Some(Command::TakeTerminal) => Ok(interactive::take_terminal()),
     }
 }
 
