@@ -17,8 +17,13 @@ mod bench;
 mod campaign;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
+#[cfg(unix)]
+#[path = "acceptance/engines.rs"]
+mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
+#[path = "acceptance/imported.rs"]
+mod imported;
 #[cfg(unix)]
 #[path = "acceptance/killed.rs"]
 mod killed;
@@ -52,6 +57,8 @@ mod script;
 mod session;
 #[path = "acceptance/shadow.rs"]
 mod shadow;
+#[path = "acceptance/signing.rs"]
+mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;

@@ -43,7 +43,11 @@ fn read(args: &ImportArgs) -> anyhow::Result<FloorPlan> {
         }
         "dxf" => {
             let unit_m = args.units.map(Into::into);
-            read(drawing::read(&args.file, drawing::Assumed { unit_m, pipe_width_m: args.pipe_width }))
+            let layers = drawing::Layers::new(args.layer.clone());
+            read(drawing::read(
+                &args.file,
+                &drawing::Assumed { unit_m, pipe_width_m: args.pipe_width, layers },
+            ))
         }
         _ => Err(bad_input(format!("{}: import reads .dxf and .csv files", args.file.display()))),
     }

@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// A larger file is not taken, bytes.
-const LARGEST_BYTES: u64 = 64_000_000;
+const LARGEST_BYTES: u64 = 100_000_000;
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -29,18 +29,22 @@ impl ImportError {
 
 /// The bytes of a plain file that is not too large.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, ImportError> {
-    let unreadable = |error: std::io::Error| ImportError::of_file(path, format!("cannot be read: {error}"));
+    let of_file = |what: String| ImportError::of_file(path, what);
+    let unreadable = |error: std::io::Error| of_file(format!("cannot be read: {error}"));
+    // Looked at before it is opened, since opening a pipe waits for a writer.
     let about = fs::metadata(path).map_err(unreadable)?;
-    if !about.is_file() || about.len() > LARGEST_BYTES {
-        let what = format!("no plain file of at most {} MB", LARGEST_BYTES / 1_000_000);
-        return Err(ImportError::of_file(path, what));
+    if about.is_dir() {
+        return Err(of_file("is a folder; name a file in it".into()));
+    }
+    if !about.is_file() {
+        return Err(of_file("is no regular file; save what it gives to a file first".into()));
+    }
+    if about.len() > LARGEST_BYTES {
+        let (size, most) = (about.len() / 1_000_000, LARGEST_BYTES / 1_000_000);
+        return Err(of_file(format!("{size} MB; files of at most {most} MB are read")));
+    }
+    if about.len() == 0 {
+        return Err(of_file("is empty".into()));
     }
     fs::read(path).map_err(unreadable)
-}
-
-/// The text of a plain file that is not too large.
-pub(crate) fn read_text(path: &Path) -> Result<String, ImportError> {
-    String::from_utf8(read_file(path)?).map_err(|error| {
-        ImportError::of_file(path, format!("no UTF-8 text at byte {}", error.utf8_error().valid_up_to()))
-    })
 }

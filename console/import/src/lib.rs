@@ -13,11 +13,14 @@ pub mod drawing;
 mod error;
 mod floor;
 mod occupancy;
+mod outside;
 mod pieces;
 pub mod plan;
 mod simplify;
+mod text;
 
 pub use error::ImportError;
 pub use floor::MapFloor;
 pub use occupancy::OccupancyMap;
+pub use outside::is_wholly_outside;
 pub use plan::{FloorPlan, Named};

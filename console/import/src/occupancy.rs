@@ -6,7 +6,10 @@
 mod image;
 mod settings;
 
-use crate::error::{ImportError, read_text};
+use crate::{
+    error::{ImportError, read_file},
+    text::decoded,
+};
 use image::Image;
 use nalgebra::Isometry2;
 use settings::Settings;
@@ -32,8 +35,22 @@ impl OccupancyMap {
     /// # Errors
     /// File, line and key of what is wrong.
     pub fn read(yaml: &Path) -> Result<Self, ImportError> {
-        let settings = Settings::parse(yaml, &read_text(yaml)?)?;
-        let image = Image::read(&yaml.parent().unwrap_or(Path::new("")).join(&settings.image))?;
+        let settings = Settings::parse(yaml, &decoded(&read_file(yaml)?, None))?;
+        let file = yaml.parent().unwrap_or(Path::new("")).join(&settings.image);
+        if !file.exists() {
+            return Err(ImportError {
+                line: Some(settings.image_line),
+                key: Some("image".into()),
+                ..ImportError::of_file(
+                    yaml,
+                    format!(
+                        "there is no file {}; a path counts from the folder of this file",
+                        file.display()
+                    ),
+                )
+            });
+        }
+        let image = Image::read(&file)?;
         // Images begin at the upper left.
         let upward = image.pixels.chunks(image.columns).rev().flatten();
         let [x, y, turn_rad] = settings.origin;

@@ -1,8 +1,10 @@
 //! A floor as another program's file states it, and the scenario made of it.
 
 use std::{f64::consts::TAU, fmt::Write};
-use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World, shape::ring_area_m2};
+use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
 
+/// Corners that a polygon of a scenario may have; its sides are compared pair by pair.
+pub const MOST_CORNERS: usize = 200;
 /// Stations of a scenario whose file names none.
 const N_STATIONS: usize = 5;
 /// Places along a side of the floor among which the start is chosen.
@@ -10,6 +12,9 @@ const N_PLACES: usize = 64;
 /// Width of floor scanned in one pass, metres, and the pace by which the time limit is estimated, metres per second.
 const SWATH_M: f64 = 0.6;
 const PACE_M_PER_S: f64 = 0.1;
+
+/// Time limit that a scenario is given at most, seconds: its ticks are counted.
+const LONGEST_S: f64 = 500_000.0;
 
 /// Something with a name, tank frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +75,7 @@ impl FloorPlan {
         entries(&mut text, "obstacles", "kind", &self.obstacles);
         entries(&mut text, "zones", "kind = \"no_go\"\nshape", &self.no_go);
         let start = self.roomiest();
-        let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).max(600.0).ceil();
+        let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).clamp(600.0, LONGEST_S).ceil();
         let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
         let _ = write!(
             text,
@@ -167,16 +172,6 @@ pub fn points(points: &[Point]) -> String {
     format!("[{}]", all.join(", "))
 }
 
-/// A closed outline as a convex shape: a disc if it is drawn as one, else its convex hull; and whether that added anything.
-pub(crate) fn convex(ring: &[Point]) -> (Shape, bool) {
-    if let Some((center, _, radius_m)) = round(ring) {
-        return (Shape::Disc { center, radius_m }, false);
-    }
-    let hull = hull(ring);
-    let grew = ring_area_m2(&hull) > ring_area_m2(ring).abs() * (1.0 + 1e-6);
-    (Shape::Polygon { vertices: hull }, grew)
-}
-
 /// Centre, least and largest radius of a ring of many corners that is a circle to within half a per cent.
 pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
     const MANY: usize = 16;
@@ -187,7 +182,7 @@ pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
 }
 
 /// The convex hull of some points, counter-clockwise, without collinear corners (Andrew's monotone chain).
-fn hull(points: &[Point]) -> Vec<Point> {
+pub(crate) fn hull(points: &[Point]) -> Vec<Point> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |points: &mut dyn Iterator<Item = &Point>| {

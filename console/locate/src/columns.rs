@@ -258,12 +258,16 @@ impl Columns {
 
     fn problem(&self, line: u64, column: usize, what: String) -> Problem {
         let name = self.at[column].map_or(COLUMNS[column].0, |(index, _)| self.names[index].as_str());
-        Problem { line, column: Some(name.to_owned()), what }
+        Problem { line, column: Some(name.to_owned()), what, is_end: false }
     }
 }
 
-/// Which of [`COLUMNS`] a name means, and its factor.
+/// Which of [`COLUMNS`] a name means, as `range_mm` or `Range [mm]`, and its factor.
 fn known(name: &str) -> Option<(usize, f64)> {
+    let lower = name.to_lowercase().replace('µ', "u").replace('μ', "u");
+    let words: Vec<&str> =
+        lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let name = words.join("_");
     COLUMNS.iter().enumerate().find_map(|(index, (base, units))| {
         let suffix = name.strip_prefix(base)?;
         let (_, factor) = units.iter().find(|(unit, _)| *unit == suffix)?;

@@ -87,13 +87,14 @@ impl Task<'_> {
                 }
                 Err(problem) => {
                     bad += 1;
-                    if problems.len() < LISTED {
+                    if problems.len() < LISTED || problem.is_end {
                         problems.push(problem);
                     }
                 }
             }
         }
-        if bad > 0 && !self.skips_bad_rows {
+        let is_cut = problems.iter().any(|problem| problem.is_end);
+        if bad > 0 && (is_cut || !self.skips_bad_rows) {
             return Err(bad_input(self.listed(&problems, bad)));
         }
         let first_s = first_s.ok_or_else(|| bad_input(format!("{}: no rows", self.file.display())))?;
@@ -115,7 +116,12 @@ impl Task<'_> {
         let mut lines: Vec<String> = problems.iter().map(|problem| format!("{file}, {problem}")).collect();
         let more = bad - problems.len() as u64;
         lines.extend((more > 0).then(|| format!("and {more} more")));
-        lines.push("correct the rows, or leave them out with --skip-bad-rows".into());
+        let is_cut = problems.iter().any(|problem| problem.is_end);
+        lines.push(if is_cut {
+            "what follows cannot be read; export the readings again".into()
+        } else {
+            "correct the rows, or leave them out with --skip-bad-rows".into()
+        });
         lines.join("\n")
     }
 

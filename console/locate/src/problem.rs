@@ -11,11 +11,13 @@ pub struct Problem {
     pub column: Option<String>,
     /// What is wrong, and what would be right.
     pub what: String,
+    /// Whether what follows it cannot be read.
+    pub is_end: bool,
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { line, column, what } = self;
+        let Self { line, column, what, .. } = self;
         match column {
             Some(column) => write!(f, "line {line}, {column}: {what}"),
             None => write!(f, "line {line}: {what}"),

@@ -1,20 +1,23 @@
 //! Rows of cells out of a file, one at a time.
 
 mod messages;
+mod text;
 
 use crate::problem::Problem;
 use csv::StringRecord;
 use messages::Messages;
+use recording::open_regular;
 use std::{
     fs::File,
     io::{self, BufRead, BufReader, Seek},
     path::Path,
 };
+use text::Text;
 
 /// A file that gives rows.
 pub(crate) enum Rows {
     /// Text with a line of names first.
-    Csv { reader: csv::Reader<BufReader<File>>, header: StringRecord, has_commas: bool },
+    Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool },
     /// Messages as JSON objects, whose keys are the names.
     Messages(Box<Messages>),
 }
@@ -25,7 +28,7 @@ impl Rows {
     /// # Errors
     /// It cannot be read, or has no names.
     pub(crate) fn open(file: &Path) -> Result<Self, String> {
-        let opened = File::open(file).map_err(|error| error.to_string())?;
+        let opened = open_regular(file).map_err(|error| error.to_string())?;
         if file.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("mcap")) {
             return Ok(Self::Messages(Box::new(Messages::open(opened)?)));
         }
@@ -33,19 +36,23 @@ impl Rows {
     }
 
     fn text(file: File) -> Result<Self, String> {
-        let mut text = BufReader::with_capacity(1 << 16, file);
+        let mut text = BufReader::with_capacity(1 << 16, Text::new(file));
         let (delimiter, skip) = delimiter(&mut text).map_err(|error| error.to_string())?;
-        text.seek(io::SeekFrom::Start(skip)).map_err(|error| error.to_string())?;
+        let mut file = text.into_inner().into_file();
+        file.seek(io::SeekFrom::Start(skip)).map_err(|error| error.to_string())?;
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter)
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
-            .from_reader(text);
-        let header = reader.headers().map_err(|error| format!("not a CSV file: {error}"))?.clone();
+            .from_reader(BufReader::with_capacity(1 << 16, Text::new(file)));
+        let header = match reader.headers() {
+            Ok(header) => header.clone(),
+            Err(error) => return Err(of_csv(&error, line_of(&reader)).to_string()),
+        };
         if header.is_empty() {
             return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
         }
-        Ok(Self::Csv { reader, header, has_commas: delimiter == b';' })
+        Ok(Self::Csv { reader, header, has_commas: delimiter != b',' })
     }
 
     /// The names of the columns.
@@ -68,29 +75,40 @@ impl Rows {
     pub(crate) fn next(&mut self, cells: &mut StringRecord) -> Result<Option<u64>, Problem> {
         match self {
             Self::Csv { reader, .. } => match reader.read_record(cells) {
-                Ok(true) => Ok(Some(cells.position().map_or(0, csv::Position::line))),
+                Ok(true) => Ok(Some(line_of(reader) - lines_within(cells))),
                 Ok(false) => Ok(None),
-                Err(error) => Err(of_csv(&error)),
+                Err(error) => Err(of_csv(&error, line_of(reader))),
             },
             Self::Messages(messages) => messages.next(cells),
         }
     }
 }
 
-fn of_csv(error: &csv::Error) -> Problem {
-    let line = error.position().map_or(0, csv::Position::line);
+/// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.
+fn line_of(reader: &csv::Reader<BufReader<Text>>) -> u64 {
+    reader.position().line().saturating_sub(1).max(1)
+}
+
+/// Breaks of lines in quoted cells.
+fn lines_within(cells: &StringRecord) -> u64 {
+    cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
+}
+
+fn of_csv(error: &csv::Error, line: u64) -> Problem {
+    let is_end = matches!(error.kind(), csv::ErrorKind::Io(_));
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("{len} cells, and the first line has {expected_len}")
         }
-        csv::ErrorKind::Utf8 { .. } => "no UTF-8 text".into(),
+        csv::ErrorKind::Utf8 { .. } => "no UTF-8 text; save the readings in UTF-8".into(),
+        csv::ErrorKind::Io(error) => error.to_string(),
         _ => error.to_string(),
     };
-    Problem { line, column: None, what }
+    Problem { line, column: None, what, is_end }
 }
 
 /// What separates the cells, and how many bytes of a mark come before the first.
-fn delimiter(text: &mut BufReader<File>) -> io::Result<(u8, u64)> {
+fn delimiter(text: &mut BufReader<Text>) -> io::Result<(u8, u64)> {
     let bytes = text.fill_buf()?;
     let skip = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut lines = bytes[skip..].split(|byte| *byte == b'\n');

@@ -198,6 +198,10 @@ fn arrivals_without_the_time_of_emission_are_located_by_their_differences() {
 fn messages_of_json_are_rows() {
     let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
     let channel = writer.add_channel(0, "/ranges", "json", &BTreeMap::new()).unwrap();
+    let other = writer.add_channel(0, "/map", "cdr", &BTreeMap::new()).unwrap();
+    let header =
+        mcap::records::MessageHeader { channel_id: other, sequence: 0, log_time: 0, publish_time: 0 };
+    writer.write_to_known_channel(&header, &[0, 1, 0, 0]).unwrap();
     let mut text = String::from("t_s,station,range_m\n");
     for (sequence, (t_s, station, range_m, _)) in (0..).zip(walk(30)) {
         let _ = writeln!(text, "{t_s},{station},{range_m}");
@@ -244,4 +248,76 @@ fn what_is_written_is_read_again() {
     let estimates = events.iter().filter(|event| matches!(event.kind, EventKind::Estimated { .. })).count();
     assert_eq!((survey.has_motion, tally.emissions, estimates), (true, 10, 40));
     assert!(tally.track_error_m.unwrap()[1] < 0.02, "{:?}", tally.track_error_m);
+}
+
+#[test]
+fn tables_of_spreadsheets_with_units_in_brackets_are_readings() {
+    let tabs = "Station\tT [s]\tRange [mm]\r\nA\t0,0\t7000,5\r\nB\t0,0\t8889,0\r\nC\t0\t11787\r\n";
+    let (scenario, file) = (scenario(), Readable::new("r.csv", tabs));
+    let survey = file.task(&scenario).survey().unwrap();
+    assert_eq!((survey.rows, survey.bad, survey.ignored.len()), (3, 0, 0));
+}
+
+#[test]
+fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
+    let refused = |bytes: &[u8]| Readable::new("r.csv", bytes).refused();
+    assert_eq!(refused(&[0; 4096]), "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8");
+    assert_eq!(
+        refused(
+            "\u{feff}t_s,station".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>().as_slice()
+        ),
+        "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8"
+    );
+    let rows = "t_s,station,range_m\n0,A,7\n0,B,8.9\n1,A,7\n".to_owned() + &"1,B,8.9\n".repeat(20_000);
+    let (scenario, file) = (scenario(), Readable::new("r.csv", [rows.as_bytes(), &[0; 100_000]].concat()));
+    let task = Task { skips_bad_rows: true, ..file.task(&scenario) };
+    let message = task.survey().unwrap_err().to_string();
+    assert!(
+        message.contains("no text: a byte 0") && message.ends_with("export the readings again"),
+        "{message}"
+    );
+    let long = ["t_s,station,range_m\n".as_bytes(), &[b'1'; 200_000]].concat();
+    assert!(refused(&long).contains("a line of more than 65,536 bytes"), "{}", refused(&long));
+}
+
+#[test]
+fn folders_and_pipes_are_refused_and_not_waited_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let pipe = dir.path().join("pipe.csv");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for file in [dir.path(), &pipe] {
+        let (scenario, other) = (scenario(), Readable::new("r.csv", ""));
+        let error = Task { file, ..other.task(&scenario) }.survey().unwrap_err().to_string();
+        assert!(error.ends_with("it is not a regular file"), "{error}");
+    }
+}
+
+#[test]
+fn damaged_messages_are_refused_without_asking_for_their_length() {
+    let magic = b"\x89MCAP0\r\n";
+    let long = [&magic[..], &[5], &u64::MAX.to_le_bytes(), &[7; 64]].concat();
+    let zeros = [&magic[..], &[0; 100_000]].concat();
+    for bytes in [long, zeros, magic.to_vec()] {
+        let (scenario, file) = (scenario(), Readable::new("r.mcap", bytes));
+        let task = Task { skips_bad_rows: true, ..file.task(&scenario) };
+        let message = task.survey().unwrap_err().to_string();
+        assert!(message.contains("damaged MCAP"), "{message}");
+    }
+}
+
+#[test]
+fn lines_are_counted_behind_comments_and_empty_lines_and_however_they_end() {
+    let text = "# a\r\nt_s,station,range_m\r\n0,A,4\r\n# b\r\n\r\n0,B,x\r\n0,C\r\n0,D,y";
+    for text in [text.to_owned(), text.replace('\r', ""), text.replace('\n', "")] {
+        let refused = Readable::new("r.csv", &text).refused();
+        let lines: Vec<&str> = refused.lines().filter_map(|line| line.strip_prefix("r.csv, line ")).collect();
+        assert_eq!(
+            lines,
+            [
+                "6, range_m: `x` is not a number",
+                "7: 2 cells, and the first line has 3",
+                "8, range_m: `y` is not a number"
+            ]
+        );
+    }
 }

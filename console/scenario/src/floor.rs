@@ -1,13 +1,14 @@
 //! What stands on the floor: `[tank]`, `[[obstacles]]`, `[[zones]]`.
 
 use super::{
-    outline::{counter_clockwise, outline, samples},
+    outline::{counter_clockwise, outline},
     problem::Complaint,
     section::{Place, Section},
 };
+use import::is_wholly_outside;
 use sim::{Mover, Track};
 use std::collections::BTreeMap;
-use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Vector, Zone, ZoneKind};
+use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Vector, Zone, ZoneKind};
 
 /// Reads `[tank]`.
 pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
@@ -118,43 +119,5 @@ impl Names {
             self.0.insert(name.clone(), section.place("name"));
         }
         Some(name)
-    }
-}
-
-/// Whether no part of an outline lies in the tank.
-fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
-    if let Boundary::Circle { radius_m } = boundary {
-        return shape.distance_m(world::Point::origin()) >= *radius_m;
-    }
-    let ((low, high), (tank_low, tank_high)) = (shape.bounds(), boundary.bounds());
-    if low.x > tank_high.x || low.y > tank_high.y || high.x < tank_low.x || high.y < tank_low.y {
-        return true;
-    }
-    let (points, reach_m) = samples(shape);
-    let corner_inside = match boundary {
-        Boundary::Polygon { vertices } => vertices.iter().any(|corner| shape.distance_m(*corner) < 0.0),
-        Boundary::Circle { .. } => false,
-    };
-    !corner_inside && points.iter().all(|point| boundary.wall_distance_m(*point) <= -reach_m)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use world::Point;
-
-    #[test]
-    fn an_obstacle_in_the_wall_is_not_wholly_outside() {
-        let round = Boundary::Circle { radius_m: 5.0 };
-        let square = Boundary::Polygon {
-            vertices: [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)]
-                .map(|(x, y)| Point::new(x, y))
-                .to_vec(),
-        };
-        for boundary in [round, square] {
-            let disc = |x_m| Shape::Disc { center: Point::new(x_m, 0.0), radius_m: 0.5 };
-            assert!(!is_wholly_outside(&boundary, &disc(5.4)));
-            assert!(is_wholly_outside(&boundary, &disc(5.6)));
-        }
     }
 }

@@ -1,14 +1,12 @@
 //! Outlines of obstacles and zones, and the polygons in them.
 
 use super::{problem::Complaint, section::Section};
+use import::plan::MOST_CORNERS;
 use world::{Point, Shape, shape::ring_area_m2};
 
 /// Keys that belong to one outline or another.
 const KEYS: [&str; 7] =
     ["center_m", "radius_m", "size_m", "heading_deg", "vertices_m", "points_m", "width_m"];
-
-/// Corners that a polygon may have; sides are compared pair by pair.
-const MOST_CORNERS: usize = 200;
 
 /// Reads the outline whose kind the key `word_key` names.
 pub(crate) fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {
@@ -116,26 +114,6 @@ fn dent(vertices: &[Point]) -> Option<Point> {
         let (arriving, leaving) = (at - before, after - at);
         (arriving.perp(&leaving) < -1e-9 * arriving.norm() * leaving.norm()).then_some(at)
     })
-}
-
-/// Points along an outline, close enough together to see whether any of it lies on the floor, and how far the
-/// outline reaches beyond them, metres.
-pub(crate) fn samples(shape: &Shape) -> (Vec<Point>, f64) {
-    const PIECES: u32 = 16;
-    let along = |a: &Point, b: &Point| -> Vec<Point> {
-        let (a, b) = (*a, *b);
-        (0..=PIECES).map(|k| a + (b - a) * (f64::from(k) / f64::from(PIECES))).collect()
-    };
-    match shape {
-        Shape::Disc { center, radius_m } => (vec![*center], *radius_m),
-        Shape::Polygon { vertices } => {
-            let ring = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            (ring.flat_map(|(a, b)| along(a, b)).collect(), 0.0)
-        }
-        Shape::Polyline { points, half_width_m } => {
-            (points.windows(2).flat_map(|w| along(&w[0], &w[1])).collect(), *half_width_m)
-        }
-    }
 }
 
 #[cfg(test)]

@@ -30,6 +30,9 @@ const AIM_MOVED_M: f64 = 1.0;
 const MOVING_STEPS: usize = 5;
 /// A way counts as free with this much less room than the window keeps, metres.
 const SLACK_M: f64 = 0.03;
+/// On a map of many parts a push is at most this share of the pull: against the way, and across it.
+const BACK_SHARE: f64 = 0.5;
+const ACROSS_SHARE: f64 = 1.0;
 
 /// Where virtual goals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,7 +122,9 @@ impl Guide {
             GuideBy::Square => self.toward_square(field, around, trip, forces.repulsion, step_m),
             GuideBy::Corners => self.toward_corner(field, around, trip),
         };
-        Forces { attraction: pull, ..forces }
+        let is_found = field.by == GuideBy::Corners && !around.is_everything();
+        let repulsion = if is_found { beside_way(forces.repulsion, pull) } else { forces.repulsion };
+        Forces { attraction: pull, repulsion, ..forces }
     }
 
     fn toward_square(
@@ -190,6 +195,19 @@ impl Guide {
     }
 }
 
+/// What is left of a push beside a way that is known to be free, along which a pull points.
+///
+/// A wall of a map is many parts, each of which pushes: together they would close every door. So the push may bend the way and
+/// not turn it back; what is too near is left to the window.
+fn beside_way(push: Vector, pull: Vector) -> Vector {
+    let Some(ahead) = pull.try_normalize(1e-9) else { return push };
+    let along = push.dot(&ahead);
+    let across = push - ahead * along;
+    let most_across = ACROSS_SHARE * pull.norm();
+    let across = across * (most_across / across.norm().max(most_across));
+    ahead * along.max(-BACK_SHARE * pull.norm()) + across
+}
+
 /// The corners of the shortest way from a place, the goal last; none if there is none, or if `keep_going` ends the search.
 pub fn shortest_way(
     around: &Surroundings,
@@ -244,6 +262,27 @@ mod tests {
         assert_eq!(way(&[], Point::origin(), goal), [goal]);
         let way = way(&[(3.0, 0.1, 0.5)], Point::origin(), goal);
         assert!(way.len() > 1 && way[0].y < -0.2 && way[way.len() - 1] == goal);
+    }
+
+    #[test]
+    fn the_many_parts_of_a_wall_do_not_close_a_door() {
+        // Two walls, west to east, of parts 10 cm apart, with a door of 1.1 m.
+        let part = |k: u32| {
+            let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            (side * 0.65 + side * 0.1 * f64::from(k / 2), 3.0, 0.1)
+        };
+        let parts: Vec<_> = (0..160).map(part).collect();
+        let square = SquareLaw { k_att: 15.0, d_0_m: 3.0, square_m: 4.0, improved: true, hold_steps: 300 };
+        let field = Field { square, push: square.push(5.0, 1.0, 0.0), by: GuideBy::Corners, keep_m: 0.32 };
+        let goal = Point::new(0.0, 5.0);
+        for y in [2.0, 2.3, 2.6, 2.9] {
+            let at = Point::new(0.05, y);
+            let around = around(&parts, at);
+            assert!(!around.is_everything());
+            let trip = Trip { at, goal, aim: goal };
+            let forces = Guide::new(&field, 0.2).forces(&field, &around, &trip, 0.01);
+            assert!(forces.resultant().y > 0.0, "at {y}: {forces:?}");
+        }
     }
 
     #[test]

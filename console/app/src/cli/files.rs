@@ -2,6 +2,7 @@
 
 use super::{Changes, LogsArg};
 use clap::Args;
+use import::drawing::Role;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -64,7 +65,7 @@ pub(crate) struct MapArgs {
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
     /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP and NOGO, or list of columns (.csv) with the fields `x_m`, `y_m`,
-    /// `radius_m` or `diameter_m`, and name.
+    /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name.
     pub file: PathBuf,
     /// Scenario file to write; must not exist.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
@@ -72,9 +73,13 @@ pub(crate) struct ImportArgs {
     /// Inner radius of the tank of a list of columns, in metres.
     #[arg(long, value_name = "M", value_parser = length)]
     pub tank_radius: Option<f64>,
-    /// Unit of a drawing whose header names none.
+    /// Unit of the drawing; needed if its header names none, and counts more than the header.
     #[arg(long, value_name = "UNIT")]
     pub units: Option<UnitArg>,
+    /// What a layer of the drawing holds: SHELL, COLUMNS, PIPES, SUMP, NOGO or IGNORE, as in COLUMNS=Posts; repeatable. A
+    /// layer named for SHELL and COLUMNS holds the shell and what stands within.
+    #[arg(long, value_name = "WHAT=LAYER", value_parser = layer)]
+    pub layer: Vec<(Role, String)>,
     /// Width of pipes that are drawn as lines without one, in metres.
     #[arg(long, value_name = "M", value_parser = length, default_value_t = import::drawing::PIPE_WIDTH_M)]
     pub pipe_width: f64,
@@ -124,6 +129,15 @@ fn place(text: &str) -> Result<[f64; 2], String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     let place = <[f64; 2]>::try_from(numbers).ok().filter(|place| place.iter().all(|v| v.is_finite()));
     place.ok_or_else(|| "write two numbers with a comma, as 1.5,-2".into())
+}
+
+fn layer(text: &str) -> Result<(Role, String), String> {
+    let (what, name) = text.split_once('=').unwrap_or((text, ""));
+    let role = Role::named(what.trim()).filter(|role| *role != Role::Plates && !name.trim().is_empty());
+    role.map(|role| (role, name.trim().to_owned())).ok_or_else(|| {
+        "write SHELL, COLUMNS, PIPES, SUMP, NOGO or IGNORE, =, and the layer's name, as in COLUMNS=Posts"
+            .into()
+    })
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

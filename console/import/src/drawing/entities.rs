@@ -1,6 +1,10 @@
 //! What a drawing holds, in metres and with its blocks taken apart.
 
-use super::groups::{Block, Drawing, Entity};
+use super::{
+    curves::{along_arc, arc, chain, ellipse, spline, through},
+    groups::{Block, Drawing, Entity},
+    hatch,
+};
 use nalgebra::{Affine2, Rotation2, Translation2};
 use std::{collections::HashMap, f64::consts::TAU};
 use world::{Point, Vector};
@@ -9,8 +13,6 @@ use world::{Point, Vector};
 const DEEPEST: usize = 16;
 /// Entities and insertions that are looked at, at most: a small file can insert blocks within blocks without end.
 pub(super) const MOST: usize = 1_000_000;
-/// Longest arc between two points of a curve, radians.
-const STEP_RAD: f64 = 0.1;
 
 /// An outline, metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,18 +21,20 @@ pub(super) enum Outline {
     Chain { points: Vec<Point>, is_closed: bool, width_m: f64 },
 }
 
-/// An entity, with its outline if it has one that can be used.
+/// An entity, with its outlines: none if it has none that can be used.
 pub(super) struct Drawn {
     pub layer: String,
     /// What programs call it.
     pub kind: String,
-    pub outline: Option<Outline>,
+    pub outlines: Vec<Outline>,
 }
 
 /// Everything in the model space of a drawing with some metres to the unit; none if that is more than [`MOST`].
 pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Option<Vec<Drawn>> {
     let blocks = drawing.blocks.iter();
-    let blocks: Blocks<'_> = blocks.map(|block| (block.head.text(2).unwrap_or_default(), block)).collect();
+    // Drawings tell names apart without regard to capitals.
+    let blocks: Blocks<'_> =
+        blocks.map(|block| (block.head.text(2).unwrap_or_default().to_uppercase(), block)).collect();
     let mut unfolded = Unfolded { found: Vec::new(), n_left: MOST };
     let place = Place { map: scaling(unit_m, unit_m), layer: None };
     // Code 67 is 1 for what lies on the paper.
@@ -54,7 +58,7 @@ impl Unfolded {
     }
 }
 
-type Blocks<'a> = HashMap<&'a str, &'a Block>;
+type Blocks<'a> = HashMap<String, &'a Block>;
 
 /// Where a block is put.
 struct Place {
@@ -77,10 +81,11 @@ fn collect(
     unfolded.count()?;
     let own = entity.text(8).unwrap_or("0");
     let layer = place.layer.as_deref().filter(|_| own == "0").unwrap_or(own).to_owned();
-    let block = entity.text(2).filter(|_| entity.kind == "INSERT").and_then(|name| blocks.get(name));
+    let block = entity.text(2).filter(|_| entity.kind == "INSERT");
+    let block = block.and_then(|name| blocks.get(&name.to_uppercase()));
     let Some(block) = block.filter(|_| depth < DEEPEST) else {
-        let outline = outline(entity, &place.map);
-        unfolded.found.push(Drawn { layer, kind: entity.kind.clone(), outline });
+        let outlines = outlines(entity, &place.map);
+        unfolded.found.push(Drawn { layer, kind: entity.kind.clone(), outlines });
         return Some(());
     };
     let at = Vector::new(entity.number(10, 0.0), entity.number(20, 0.0));
@@ -109,18 +114,29 @@ fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     (0..columns * rows).map(move |k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy))
 }
 
+fn outlines(entity: &Entity, map: &Affine2<f64>) -> Vec<Outline> {
+    if entity.kind == "HATCH" {
+        let in_plane = *map * mirroring(entity.number(230, 1.0));
+        let placed = |ring: Vec<Point>| ring.into_iter().map(|point| in_plane * point).collect();
+        let rings = hatch::rings(entity.groups()).into_iter();
+        return rings
+            .map(|ring| Outline::Chain { points: placed(ring), is_closed: true, width_m: 0.0 })
+            .collect();
+    }
+    outline(entity, map).into_iter().collect()
+}
+
 fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
     let at = |x: i32, y: i32| Some(Point::new(entity.numbers(x).next()?, entity.numbers(y).next()?));
-    let placed =
-        |points: Vec<Point>, map: &Affine2<f64>| points.into_iter().map(|point| map * point).collect();
     // Lines are in the coordinates of the drawing, all others in those of their own plane.
     let in_plane = *map * mirroring(entity.number(230, 1.0));
     let scale = map.matrix().fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+    let chain_of = |points: Vec<Point>, map: &Affine2<f64>, is_closed: bool| {
+        let points: Vec<Point> = points.into_iter().map(|point| map * point).collect();
+        (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: 0.0 })
+    };
     match entity.kind.as_str() {
-        "LINE" => {
-            let points = placed(vec![at(10, 20)?, at(11, 21)?], map);
-            Some(Outline::Chain { points, is_closed: false, width_m: 0.0 })
-        }
+        "LINE" => chain_of(vec![at(10, 20)?, at(11, 21)?], map, false),
         "CIRCLE" => {
             let (center, radius) = (at(10, 20)?, entity.number(40, 0.0));
             if radius <= 0.0 {
@@ -129,45 +145,51 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             if is_even(map) {
                 return Some(Outline::Circle { center: in_plane * center, radius_m: radius * scale });
             }
-            let points = along_arc(center, radius, 0.0, TAU).split_off(1);
-            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: true, width_m: 0.0 })
+            chain_of(along_arc(center, radius, 0.0, TAU).split_off(1), &in_plane, true)
         }
         "ARC" => {
-            let points =
-                arc(at(10, 20)?, entity.number(40, 0.0), entity.number(50, 0.0), entity.number(51, 360.0));
-            Some(Outline::Chain { points: placed(points, &in_plane), is_closed: false, width_m: 0.0 })
+            let angles_deg = [entity.number(50, 0.0), entity.number(51, 360.0)];
+            chain_of(arc(at(10, 20)?, entity.number(40, 0.0), angles_deg), &in_plane, false)
         }
         // In the coordinates of the drawing: the centre, the long half axis from there, and the share of the short one.
         "ELLIPSE" => {
-            let (center, long) = (at(10, 20)?, at(11, 21)?.coords);
-            let short = Vector::new(-long.y, long.x) * entity.number(40, 1.0);
-            let (from, to) = (entity.number(41, 0.0), entity.number(42, TAU));
-            let sweep = if to > from { (to - from).min(TAU) } else { (to - from).rem_euclid(TAU) };
-            let is_closed = sweep > TAU - 1e-6;
-            let on_unit = along_arc(Point::origin(), 1.0, from, sweep);
-            let points =
-                on_unit.iter().skip(usize::from(is_closed)).map(|p| center + long * p.x + short * p.y);
-            Some(Outline::Chain { points: placed(points.collect(), map), is_closed, width_m: 0.0 })
+            let ends = [entity.number(41, 0.0), entity.number(42, TAU)];
+            let (points, is_closed) = ellipse(at(10, 20)?, at(11, 21)?.coords, entity.number(40, 1.0), ends);
+            chain_of(points, map, is_closed)
         }
-        "LWPOLYLINE" | "POLYLINE" => {
-            let corners = match entity.kind.as_str() {
-                "POLYLINE" => entity
-                    .vertices
-                    .iter()
-                    .map(|v| [v.number(10, 0.0), v.number(20, 0.0), v.number(42, 0.0)])
-                    .collect(),
-                _ => entity.corners(),
+        "LWPOLYLINE" | "POLYLINE" => polyline(entity, &in_plane, scale),
+        "SPLINE" => {
+            let by_controls = entity.spline();
+            let points = if by_controls.controls.is_empty() {
+                through(&entity.points(11, 21))
+            } else {
+                spline(&by_controls)?
             };
-            let corners: Vec<(Point, f64)> =
-                corners.iter().map(|[x, y, bulge]| (Point::new(*x, *y), *bulge)).collect();
-            let is_closed = entity.has_flag(1);
-            // A width for all, or that at the beginning of every stretch.
-            let width = entity.numbers(43).chain(entity.numbers(40)).fold(0.0, f64::max);
-            let points = placed(chain(&corners, is_closed), &in_plane);
-            (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
+            chain_of(points, map, entity.has_flag(1))
+        }
+        // Corners of a filled area; the last two come crosswise.
+        "SOLID" | "TRACE" => {
+            let mut corners = vec![at(10, 20)?, at(11, 21)?];
+            corners.extend([at(13, 23), at(12, 22)].into_iter().flatten());
+            chain_of(corners, &in_plane, true)
         }
         _ => None,
     }
+}
+
+fn polyline(entity: &Entity, in_plane: &Affine2<f64>, scale: f64) -> Option<Outline> {
+    let of_vertex = |v: &Entity| [v.number(10, 0.0), v.number(20, 0.0), v.number(42, 0.0)];
+    let corners = match entity.kind.as_str() {
+        "POLYLINE" => entity.vertices.iter().map(of_vertex).collect(),
+        _ => entity.corners(),
+    };
+    let corners: Vec<(Point, f64)> =
+        corners.iter().map(|[x, y, bulge]| (Point::new(*x, *y), *bulge)).collect();
+    let is_closed = entity.has_flag(1);
+    // A width for all, or that at the beginning of every stretch.
+    let width = entity.numbers(43).chain(entity.numbers(40)).fold(0.0, f64::max);
+    let points: Vec<Point> = chain(&corners, is_closed).iter().map(|point| in_plane * point).collect();
+    (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
 }
 
 /// Planes that are looked at from below have x to the other side.
@@ -180,43 +202,4 @@ fn is_even(map: &Affine2<f64>) -> bool {
     let linear = map.matrix().fixed_view::<2, 2>(0, 0).into_owned();
     let (x, y) = (linear.column(0).norm(), linear.column(1).norm());
     (x - y).abs() < 1e-9 * x.max(y) && linear.column(0).dot(&linear.column(1)).abs() < 1e-9 * x * y
-}
-
-/// Points of an arc counter-clockwise, angles in degrees.
-fn arc(center: Point, radius: f64, from_deg: f64, to_deg: f64) -> Vec<Point> {
-    let from = from_deg.to_radians();
-    let sweep = (to_deg - from_deg).rem_euclid(360.0).to_radians();
-    let sweep = if sweep < 1e-9 { TAU } else { sweep };
-    along_arc(center, radius, from, sweep)
-}
-
-fn along_arc(center: Point, radius: f64, from: f64, sweep: f64) -> Vec<Point> {
-    let n = (sweep.abs() / STEP_RAD).ceil().max(1.0) as usize;
-    let point = |k: usize| {
-        let angle = from + sweep * k as f64 / n as f64;
-        center + Vector::new(angle.cos(), angle.sin()) * radius
-    };
-    (0..=n).map(point).collect()
-}
-
-/// Points of a polyline; a bulge is the tangent of a quarter of the arc to the next vertex.
-fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
-    let n = vertices.len();
-    let mut points = Vec::new();
-    for (k, (here, bulge)) in vertices.iter().enumerate() {
-        points.push(*here);
-        let is_last = k + 1 == n;
-        if bulge.abs() < 1e-9 || (is_last && !is_closed) {
-            continue;
-        }
-        let next = vertices[(k + 1) % n].0;
-        let (chord, sweep) = (next - here, 4.0 * bulge.atan());
-        let apothem = chord.norm() / 2.0 / (sweep / 2.0).tan();
-        let across = Vector::new(-chord.y, chord.x).try_normalize(1e-12).unwrap_or_else(Vector::zeros);
-        let center = nalgebra::center(here, &next) + across * apothem;
-        let off = here - center;
-        let arc = along_arc(center, off.norm(), off.y.atan2(off.x), sweep);
-        points.extend(&arc[1..arc.len() - 1]);
-    }
-    points
 }

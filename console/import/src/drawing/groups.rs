@@ -1,7 +1,12 @@
 //! The text of a DXF file: pairs of lines, a code and a value, in sections.
 
-use crate::error::{ImportError, read_file};
+use super::curves::Spline;
+use crate::{
+    error::{ImportError, read_file},
+    text::{code_page, decoded},
+};
 use std::path::Path;
+use world::Point;
 
 /// What a drawing holds, by its codes.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,11 +31,18 @@ pub(super) struct Block {
 pub(super) struct Drawing {
     /// `$INSUNITS` of the header.
     pub units: Option<i32>,
+    /// Layers that are switched off or frozen.
+    pub hidden: Vec<String>,
     pub blocks: Vec<Block>,
     pub entities: Vec<Entity>,
 }
 
 impl Entity {
+    /// Codes and values, in their order.
+    pub(super) fn groups(&self) -> &[(i32, String)] {
+        &self.groups
+    }
+
     /// The first value of a code.
     pub(super) fn text(&self, code: i32) -> Option<&str> {
         self.groups.iter().find(|(known, _)| *known == code).map(|(_, value)| value.as_str())
@@ -50,6 +62,21 @@ impl Entity {
     /// Whether a bit of the flags (code 70) is set.
     pub(super) fn has_flag(&self, bit: i32) -> bool {
         self.number(70, 0.0) as i32 & bit != 0
+    }
+
+    /// Points by the codes of their coordinates.
+    pub(super) fn points(&self, x: i32, y: i32) -> Vec<Point> {
+        self.numbers(x).zip(self.numbers(y)).map(|(x, y)| Point::new(x, y)).collect()
+    }
+
+    /// The numbers of a `SPLINE`; without controls if it is stated by the points that it passes through.
+    pub(super) fn spline(&self) -> Spline {
+        Spline {
+            degree: self.number(71, 3.0).max(0.0) as usize,
+            knots: self.numbers(40).collect(),
+            controls: self.points(10, 20),
+            weights: self.numbers(41).collect(),
+        }
     }
 
     /// The vertices of an `LWPOLYLINE`: x, y and bulge.
@@ -78,10 +105,10 @@ impl Drawing {
         if bytes.starts_with(b"AutoCAD Binary DXF") {
             return Err(ImportError::of_file(file, "a binary DXF; save it as ASCII (text) DXF"));
         }
-        // Old drawings have texts in other encodings; no key or number does.
-        let text = String::from_utf8_lossy(&bytes);
+        let text = decoded(&bytes, code_page_of(&bytes).and_then(code_page));
         let mut drawing = Self::default();
         let (mut section, mut variable, mut block) = (String::new(), String::new(), None::<Block>);
+        let mut record = Entity::new("");
         let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
         while let Some((line, code)) = lines.next() {
             let wrong = |what: String| ImportError {
@@ -92,6 +119,13 @@ impl Drawing {
             };
             let Some((_, value)) = lines.next() else { break };
             let value = value.trim();
+            let named;
+            let value = if value.contains("\\U+") {
+                named = unescaped(value);
+                named.as_str()
+            } else {
+                value
+            };
             let code: i32 = code.trim().parse().map_err(|_| {
                 wrong(format!(
                     "no DXF drawing: `{}` is no group code",
@@ -100,12 +134,21 @@ impl Drawing {
             })?;
             match (code, value) {
                 (0, "EOF") => return Ok(drawing),
-                (0, "SECTION" | "ENDSEC") => section.clear(),
+                (0, "SECTION" | "ENDSEC") => {
+                    drawing.take_record(&record);
+                    record = Entity::new("");
+                    section.clear();
+                }
                 (2, _) if section.is_empty() => value.clone_into(&mut section),
                 (9, _) if section == "HEADER" => value.clone_into(&mut variable),
                 (70, _) if section == "HEADER" && variable == "$INSUNITS" => {
                     drawing.units = value.parse().ok();
                 }
+                (0, _) if section == "TABLES" => {
+                    drawing.take_record(&record);
+                    record = Entity::new(value);
+                }
+                (_, _) if section == "TABLES" => record.groups.push((code, value.to_owned())),
                 (0, "BLOCK") if section == "BLOCKS" => {
                     block = Some(Block { head: Entity::new("BLOCK"), entities: Vec::new() });
                 }
@@ -133,6 +176,16 @@ impl Drawing {
         // What is missing could be columns.
         Err(ImportError::of_file(file, "the drawing is cut off: it does not end with EOF; save it again"))
     }
+
+    /// Takes what a record of a table says.
+    fn take_record(&mut self, record: &Entity) {
+        const FROZEN: i32 = 1;
+        // Layers that are off have a negative colour.
+        let is_hidden = || record.has_flag(FROZEN) || record.number(62, 7.0) < 0.0;
+        if record.kind == "LAYER" && is_hidden() {
+            self.hidden.extend(record.text(2).map(str::to_owned));
+        }
+    }
 }
 
 impl Entity {
@@ -153,4 +206,30 @@ fn begin(entities: &mut Vec<Entity>, kind: &str) {
         ("SEQEND", _) => {}
         _ => entities.push(Entity::new(kind)),
     }
+}
+
+/// What the header says of the encoding.
+fn code_page_of(bytes: &[u8]) -> Option<&str> {
+    const KEY: &[u8] = b"$DWGCODEPAGE";
+    let at = bytes.windows(KEY.len()).position(|window| window == KEY)?;
+    let value = bytes[at..].split(|byte| *byte == b'\n').nth(2)?;
+    std::str::from_utf8(value).ok()
+}
+
+/// A name in which letters stand as `\U+00FC`.
+fn unescaped(name: &str) -> String {
+    let mut parts = name.split("\\U+");
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let letter =
+            part.get(..4).and_then(|digits| u32::from_str_radix(digits, 16).ok()).and_then(char::from_u32);
+        if let Some(letter) = letter {
+            whole.push(letter);
+            whole.push_str(&part[4..]);
+        } else {
+            whole.push_str("\\U+");
+            whole.push_str(part);
+        }
+    }
+    whole
 }

@@ -1,4 +1,4 @@
-//! The image of a map: PGM (P2, P5) or PNG.
+//! The image of a map: PGM (P2, P5), PNG or JPEG.
 
 use crate::error::{ImportError, read_file};
 use image::{DynamicImage, ImageFormat, ImageReader};
@@ -29,11 +29,17 @@ impl Image {
         if bytes.starts_with(b"P5") || bytes.starts_with(b"P2") {
             return grey_map(&bytes).map_err(of_file);
         }
-        if !bytes.starts_with(b"\x89PNG") {
-            return Err(of_file("neither PGM (P2, P5) nor PNG; save the map as one of them".into()));
-        }
-        let bad = |error: image::ImageError| of_file(format!("no PNG that can be read: {error}"));
-        let reader = || ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Png);
+        let format = match &bytes[..] {
+            [0x89, b'P', b'N', b'G', ..] => ImageFormat::Png,
+            [0xff, 0xd8, 0xff, ..] => ImageFormat::Jpeg,
+            _ => {
+                return Err(of_file(
+                    "neither PGM (P2, P5) nor PNG nor JPEG; save the map as PGM or PNG".into(),
+                ));
+            }
+        };
+        let bad = |error: image::ImageError| of_file(format!("the image cannot be read: {error}"));
+        let reader = || ImageReader::with_format(Cursor::new(&bytes), format);
         let (columns, rows) = reader().into_dimensions().map_err(bad)?;
         check_size(columns as usize, rows as usize).map_err(of_file)?;
         let pixels = portable(reader().decode().map_err(bad)?);

@@ -4,7 +4,7 @@ use super::image::Pixel;
 use crate::error::ImportError;
 use serde::Deserialize;
 use serde_saphyr::Spanned;
-use std::path::Path;
+use std::{f64::consts::TAU, path::Path};
 
 /// The keys of the file, as they are written.
 #[derive(Deserialize)]
@@ -16,8 +16,7 @@ struct Written {
     negate: Option<Negate>,
     occupied_thresh: Option<Spanned<f64>>,
     free_thresh: Option<Spanned<f64>>,
-    #[serde(default)]
-    mode: Mode,
+    mode: Option<Spanned<String>>,
     /// Written by converters of ROS 1 maps, with the word occupancy; says nothing that the other keys do not.
     map_type: Option<Spanned<String>>,
 }
@@ -30,11 +29,9 @@ enum Negate {
 }
 
 /// How the brightness of a pixel becomes an occupancy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mode {
     /// Free, occupied or unknown.
-    #[default]
     Trinary,
     /// Besides these a share between the thresholds.
     Scale,
@@ -42,9 +39,23 @@ pub(super) enum Mode {
     Raw,
 }
 
+impl Mode {
+    /// By its name, in capitals or not, as the map server takes it.
+    fn named(name: &str) -> Option<Self> {
+        match name.to_lowercase().as_str() {
+            "trinary" => Some(Self::Trinary),
+            "scale" => Some(Self::Scale),
+            "raw" => Some(Self::Raw),
+            _ => None,
+        }
+    }
+}
+
 /// The keys of the file, checked.
 pub(super) struct Settings {
     pub image: String,
+    /// The line that names it, from 1.
+    pub image_line: usize,
     pub resolution_m: f64,
     /// Of the lower left corner, metres, and the rotation about it, radians.
     pub origin: [f64; 3],
@@ -61,11 +72,24 @@ impl Settings {
             let whole = error.without_snippet().to_string();
             // The place stands before the sentence, not after it.
             let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
-            let what = match error.without_snippet() {
-                serde_saphyr::Error::DuplicateMappingKey { key, .. } => twice(text, key.as_deref(), line),
-                _ => what,
-            };
-            wrong(file, text, line, what)
+            match error.without_snippet() {
+                serde_saphyr::Error::DuplicateMappingKey { key, .. } => {
+                    wrong(file, text, line, twice(text, key.as_deref(), line))
+                }
+                _ if what.starts_with("missing field") => {
+                    let what =
+                        format!("{what}; a map has at least image and resolution, as in image: map.pgm");
+                    ImportError::of_file(file, what)
+                }
+                _ => {
+                    let error = wrong(file, text, line, what);
+                    let says_it = error.what.contains("expected one of") || error.what.starts_with("must be");
+                    let right = error.key.as_deref().filter(|_| !says_it).and_then(right_value);
+                    let what =
+                        right.map_or_else(|| error.what.clone(), |right| format!("{}; {right}", error.what));
+                    ImportError { what, ..error }
+                }
+            }
         })?;
         let at = |line: u64, what: String| wrong(file, text, Some(line as usize), what);
         let image = &written.image;
@@ -77,6 +101,13 @@ impl Settings {
             let what = format!("{} m to the cell; 0.001 to 10 are taken", cell.value);
             return Err(at(cell.referenced.line(), what));
         }
+        let mode = match &written.mode {
+            None => Mode::Trinary,
+            Some(mode) => Mode::named(&mode.value).ok_or_else(|| {
+                let what = format!("`{}` is no mode; it must be trinary, scale or raw", mode.value);
+                at(mode.referenced.line(), what)
+            })?,
+        };
         let share = |share: Option<&Spanned<f64>>, default: f64| match share {
             None => Ok(default),
             Some(share) if (0.0..=1.0).contains(&share.value) => Ok(share.value),
@@ -84,7 +115,8 @@ impl Settings {
         };
         let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
         let free = share(written.free_thresh.as_ref(), 0.196)?;
-        if free >= occupied {
+        // Equal ones leave nothing between them, as the map server has it; a scale needs something.
+        if free > occupied || (free >= occupied && mode == Mode::Scale) {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
             return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
@@ -100,9 +132,10 @@ impl Settings {
         };
         Ok(Self {
             image: image.value.clone(),
+            image_line: image.referenced.line() as usize,
             resolution_m: cell.value,
             origin,
-            mode: written.mode,
+            mode,
             negate: matches!(written.negate, Some(Negate::Flag(true) | Negate::Number(1..))),
             occupied,
             free,
@@ -114,7 +147,7 @@ impl Settings {
         let bright = f64::from(pixel.grey) / 255.0;
         let occupancy = if self.negate { bright } else { 1.0 - bright };
         match self.mode {
-            Mode::Trinary => pixel.is_opaque && occupancy <= self.free,
+            Mode::Trinary => pixel.is_opaque && occupancy <= self.free && occupancy < self.occupied,
             // What rounds to nothing of the hundred steps between the thresholds is free, too.
             Mode::Scale => {
                 pixel.is_opaque && (occupancy - self.free) / (self.occupied - self.free) * 100.0 < 0.5
@@ -122,6 +155,18 @@ impl Settings {
             Mode::Raw => f64::from(pixel.grey) / 100.0 <= self.free,
         }
     }
+}
+
+/// What would be right for a key.
+fn right_value(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "image" => "it must be the image's file name, as map.pgm",
+        "resolution" => "it must be metres to the cell, as 0.05",
+        "origin" => "it must be [x, y, angle] in metres and radians, as [-10.0, -5.0, 0.0]",
+        "negate" => "it must be 0 or 1",
+        "occupied_thresh" | "free_thresh" => "it must be a number from 0 to 1",
+        _ => return None,
+    })
 }
 
 /// What is said of a key that is there a second time.
@@ -138,8 +183,15 @@ fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
     let origin = <[f64; 3]>::try_from(numbers)
         .map_err(|_| format!("{numbers:?} is not [x, y, angle] in metres and radians"))?;
     let is_near = |v: &f64| v.abs() <= 10_000.0;
-    let fits = origin.iter().all(is_near);
-    fits.then_some(origin).ok_or_else(|| format!("{numbers:?}: x and y must be finite and within 10 km"))
+    if !origin.iter().all(is_near) {
+        return Err(format!("{numbers:?}: x and y must be finite and within 10 km"));
+    }
+    let [_, _, angle] = origin;
+    if angle.abs() > TAU {
+        let right = angle.to_radians();
+        return Err(format!("an angle of {angle} rad is more than a turn; {angle}° would be {right:.4}"));
+    }
+    Ok(origin)
 }
 
 /// An error at a line; its key is that of the line, or of the last one above that has one.

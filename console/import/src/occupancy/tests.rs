@@ -98,8 +98,23 @@ fn errors_name_file_line_and_key() {
     let message = |yaml: &str| map(yaml, b"P5 1 1 255 \xfe").unwrap_err().to_string();
     let with = |from: &str, to: &str| message(&YAML.replace(from, to));
     let cases = [
-        (message("negate: 0\n"), "m.yaml, line 1, negate: missing field `image`"),
-        (with("0.5", "fine"), "m.yaml, line 2, resolution: invalid floating point"),
+        (
+            message("negate: 0\n"),
+            "m.yaml: missing field `image`; a map has at least image and resolution, as in image: map.pgm",
+        ),
+        (
+            with("0.5", "fine"),
+            "m.yaml, line 2, resolution: invalid floating point; it must be metres to the cell, as 0.05",
+        ),
+        (
+            with("[1.0, -2.0, 0.0]", "1.0 -2.0 0.0"),
+            "m.yaml, line 3, origin: expected sequence start; it must be [x, y, angle] in metres and radians, as \
+             [-10.0, -5.0, 0.0]",
+        ),
+        (
+            with("[1.0, -2.0, 0.0]", "[1.0, -2.0, 90]"),
+            "m.yaml, line 3, origin: an angle of 90 rad is more than a turn; 90° would be 1.5708",
+        ),
         (with("0.5", ".nan"), "m.yaml, line 2, resolution: NaN m to the cell; 0.001 to 10 are taken"),
         (
             with("[1.0, -2.0, 0.0]", "[1.0, 2.0]"),
@@ -117,7 +132,7 @@ fn errors_name_file_line_and_key() {
         ),
         (
             message(&format!("{YAML}mode: binary\n")),
-            "m.yaml, line 7, mode: unknown variant `binary`, expected one of trinary, scale, raw",
+            "m.yaml, line 7, mode: `binary` is no mode; it must be trinary, scale or raw",
         ),
         (
             message(&format!("{YAML}negate: 1\n")),
@@ -131,8 +146,29 @@ fn errors_name_file_line_and_key() {
     for (message, wanted) in cases {
         assert_eq!(message, wanted);
     }
-    assert!(with("m.pgm", "n.pgm").starts_with("n.pgm: cannot be read"));
+    let missing = with("m.pgm", "n.pgm");
+    assert!(
+        missing.starts_with("m.yaml, line 1, image: there is no file ") && missing.contains("n.pgm"),
+        "{missing}"
+    );
     let image = |bytes: &[u8]| map(YAML, bytes).unwrap_err().to_string();
     assert_eq!(image(b"P5 3 3 255 \xfe"), "m.pgm: 1 of 9 pixels are there; the file is cut off");
-    assert_eq!(image(b"\xff\xd8\xff"), "m.pgm: neither PGM (P2, P5) nor PNG; save the map as one of them");
+    assert_eq!(image(b"GIF89a"), "m.pgm: neither PGM (P2, P5) nor PNG nor JPEG; save the map as PGM or PNG");
+    assert!(image(b"\xff\xd8\xff\xe0").starts_with("m.pgm: the image cannot be read: "));
+    assert_eq!(image(b""), "m.pgm: is empty");
+}
+
+#[test]
+fn jpeg_is_read_and_thresholds_may_meet() {
+    let mut jpeg = Vec::new();
+    let grey = ::image::GrayImage::from_fn(16, 8, |x, _| ::image::Luma([if x < 8 { 255 } else { 0 }]));
+    let encoder = ::image::codecs::jpeg::JpegEncoder::new_with_quality(&mut jpeg, 95);
+    grey.write_with_encoder(encoder).unwrap();
+    let same = YAML.replace("0.65", "0.5").replace("0.196", "0.5");
+    let read = map(&same, &jpeg).unwrap();
+    let expected: Vec<bool> = (0..128).map(|cell| cell % 16 < 8).collect();
+    assert_eq!((read.columns, read.is_free), (16, expected));
+    let read = map(&format!("{YAML}mode: Trinary\n"), &jpeg).unwrap();
+    assert_eq!(read.columns, 16, "the map server takes capitals");
+    assert!(map(&(same + "mode: scale\n"), &jpeg).unwrap_err().what.contains("must be less than"));
 }

@@ -5,10 +5,13 @@ use csv::StringRecord;
 use mcap::{
     parse_record,
     records::Record,
-    sans_io::linear_reader::{LinearReadEvent, LinearReader},
+    sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
 use serde_json::{Map, Value};
 use std::{collections::HashMap, fs::File, io::Read};
+
+/// Longest record that is read, bytes: a damaged length is not what memory is asked for.
+const LONGEST_RECORD: usize = 64_000_000;
 
 /// The messages of a file, in the order of the file.
 pub(crate) struct Messages {
@@ -27,18 +30,32 @@ impl Messages {
     pub(crate) fn open(file: File) -> Result<Self, String> {
         let mut messages = Self {
             file,
-            reader: LinearReader::new(),
+            reader: LinearReader::new_with_options(
+                LinearReaderOptions::default().with_record_length_limit(LONGEST_RECORD),
+            ),
             channels: HashMap::new(),
             header: StringRecord::new(),
             first: None,
             count: 0,
         };
         let first = messages.message().map_err(|problem| problem.to_string())?;
-        let first =
-            first.ok_or("no messages; each is to be a JSON object, as {\"t_s\": 0.5, \"station\": \"A\"}")?;
+        let first = first.ok_or_else(|| {
+            format!(
+                "no readings; each is to be a message that is a JSON object, as {{\"t_s\": 0.5, \"station\": \"A\"}}; topics: {}",
+                messages.topics()
+            )
+        })?;
         messages.header = first.keys().map(String::as_str).collect();
         messages.first = Some(first);
         Ok(messages)
+    }
+
+    /// The topics, each with its encoding, for people.
+    fn topics(&self) -> String {
+        let mut topics: Vec<String> =
+            self.channels.values().map(|(topic, encoding)| format!("{topic} ({encoding})")).collect();
+        topics.sort();
+        if topics.is_empty() { "none".into() } else { topics.join(", ") }
     }
 
     pub(crate) fn header(&self) -> &StringRecord {
@@ -64,7 +81,7 @@ impl Messages {
         match message.keys().find(|key| !self.header.iter().any(|name| name == *key)) {
             Some(new) => {
                 let what = format!("the first message had no `{new}`");
-                Err(Problem { line: self.count, column: None, what })
+                Err(Problem { line: self.count, column: None, what, is_end: false })
             }
             None => Ok(Some(self.count)),
         }
@@ -73,14 +90,20 @@ impl Messages {
     /// The next message.
     fn message(&mut self) -> Result<Option<Map<String, Value>>, Problem> {
         let Self { file, reader, channels, count, .. } = self;
-        let problem = |line: u64, what: String| Problem { line, column: None, what };
-        let damaged =
-            |line: u64, error: &dyn std::fmt::Display| problem(line, format!("damaged MCAP: {error}"));
+        let problem = |line: u64, what: String| Problem { line, column: None, what, is_end: false };
+        let damaged = |line: u64, error: &dyn std::fmt::Display| Problem {
+            is_end: true,
+            ..problem(line, format!("damaged MCAP: {error}"))
+        };
         while let Some(event) = reader.next_event() {
             match event.map_err(|error| damaged(*count + 1, &error))? {
                 LinearReadEvent::ReadRequest(length) => {
                     let read = file.read(reader.insert(length));
-                    reader.notify_read(read.map_err(|error| problem(*count, error.to_string()))?);
+                    reader.notify_read(read.map_err(|error| damaged(*count, &error))?);
+                }
+                // No record has this number; zeros are what a file that was never written holds.
+                LinearReadEvent::Record { opcode: 0, .. } => {
+                    return Err(damaged(*count + 1, &"a record of kind 0"));
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {
@@ -88,8 +111,16 @@ impl Messages {
                     }
                     Ok(Record::Message { header, data }) => {
                         *count += 1;
-                        let row = object(channels.get(&header.channel_id), &data);
-                        return row.map(Some).map_err(|what| problem(*count, what));
+                        let Some((topic, encoding)) = channels.get(&header.channel_id) else {
+                            return Err(damaged(*count, &"a message without a channel"));
+                        };
+                        // Other topics of a recording are none of our business.
+                        if encoding == "json" {
+                            let row = serde_json::from_slice(&data);
+                            let bad =
+                                |error| problem(*count, format!("topic {topic}: no JSON object: {error}"));
+                            return row.map(Some).map_err(bad);
+                        }
                     }
                     Ok(_) => {}
                     Err(error) => return Err(damaged(*count, &error)),
@@ -98,13 +129,4 @@ impl Messages {
         }
         Ok(None)
     }
-}
-
-/// The object that a message holds.
-fn object(channel: Option<&(String, String)>, data: &[u8]) -> Result<Map<String, Value>, String> {
-    let (topic, encoding) = channel.ok_or("damaged MCAP: a message without a channel")?;
-    if encoding != "json" {
-        return Err(format!("topic {topic} is encoded as `{encoding}`; readings are JSON objects"));
-    }
-    serde_json::from_slice(data).map_err(|error| format!("topic {topic}: no JSON object: {error}"))
 }

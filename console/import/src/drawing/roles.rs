@@ -1,0 +1,116 @@
+//! What the layers of a drawing hold.
+
+use super::entities::Drawn;
+use std::collections::BTreeMap;
+
+/// Layers that a message lists at most.
+const LISTED: usize = 20;
+
+/// What a layer holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// The inner side of the shell.
+    Shell,
+    /// Columns, or other things that stand on the floor.
+    Columns,
+    /// Pipes, as lines.
+    Pipes,
+    /// Sumps, which become no-go zones.
+    Sump,
+    /// No-go zones.
+    NoGo,
+    /// Plates of the floor, which are not read.
+    Plates,
+    /// Nothing of the floor.
+    Ignored,
+}
+
+impl Role {
+    /// The role that a word names, in the singular or the plural.
+    pub fn named(word: &str) -> Option<Self> {
+        let upper = word.to_uppercase();
+        match upper.strip_suffix('S').unwrap_or(&upper) {
+            "SHELL" => Some(Self::Shell),
+            "COLUMN" => Some(Self::Columns),
+            "PIPE" => Some(Self::Pipes),
+            "SUMP" => Some(Self::Sump),
+            "NOGO" => Some(Self::NoGo),
+            "PLATE" => Some(Self::Plates),
+            "IGNORE" => Some(Self::Ignored),
+            _ => None,
+        }
+    }
+}
+
+/// Which layer holds what: what somebody says of a layer, else one word of its name.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layers(Vec<(Role, String)>);
+
+impl Layers {
+    /// Layers with what they hold, besides those whose names say it.
+    pub fn new(named: Vec<(Role, String)>) -> Self {
+        Self(named)
+    }
+
+    /// What a layer holds.
+    pub(super) fn roles(&self, layer: &str) -> Vec<Role> {
+        let is_named = |(_, name): &&(Role, String)| is_same(name, layer);
+        let named: Vec<Role> = self.0.iter().filter(is_named).map(|(role, _)| *role).collect();
+        if named.is_empty() { by_name(layer).into_iter().collect() } else { named }
+    }
+
+    /// A layer of these on which nothing lies.
+    pub(super) fn missing(&self, all: &[Drawn]) -> Option<&str> {
+        let is_there = |name: &str| all.iter().any(|drawn| is_same(&drawn.layer, name));
+        self.0.iter().map(|(_, name)| name.as_str()).find(|name| !is_there(name))
+    }
+}
+
+fn is_same(one: &str, other: &str) -> bool {
+    one.trim().to_uppercase() == other.trim().to_uppercase()
+}
+
+/// The role of a layer by one word of its name.
+fn by_name(layer: &str) -> Option<Role> {
+    let whole = layer.replace(['-', '_', ' '], "");
+    let mut words = layer.split(|c: char| !c.is_alphanumeric()).chain([whole.as_str()]);
+    words.find_map(Role::named).filter(|role| *role != Role::Ignored)
+}
+
+/// The layers of a drawing with what lies on each, for people.
+pub(super) fn list(all: &[Drawn]) -> String {
+    let mut layers: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
+    for drawn in all {
+        *layers.entry(&drawn.layer).or_default().entry(&drawn.kind).or_default() += 1;
+    }
+    let kinds = |kinds: &BTreeMap<&str, usize>| {
+        kinds.iter().map(|(kind, n)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
+    };
+    let mut lines: Vec<String> =
+        layers.iter().take(LISTED).map(|(layer, all)| format!("`{layer}` ({})", kinds(all))).collect();
+    let more = layers.len().saturating_sub(LISTED);
+    lines.extend((more > 0).then(|| format!("and {more} more")));
+    if lines.is_empty() { "none: the drawing is empty".into() } else { lines.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_of_the_name_counts_unless_somebody_says_otherwise() {
+        let layers = Layers::new(vec![
+            (Role::Columns, "Stützen".into()),
+            (Role::Ignored, "column-text".into()),
+            (Role::Shell, "0".into()),
+            (Role::Columns, "0".into()),
+        ]);
+        let roles = |layer: &str| layers.roles(layer);
+        assert_eq!(roles("STÜTZEN"), [Role::Columns]);
+        assert_eq!(roles("COLUMN-TEXT"), [Role::Ignored]);
+        assert_eq!(roles("T-01 column"), [Role::Columns]);
+        assert_eq!(roles("no go"), [Role::NoGo]);
+        assert_eq!(roles("0"), [Role::Shell, Role::Columns]);
+        assert_eq!(roles("ignore"), []);
+    }
+}

@@ -1,0 +1,113 @@
+//! What a drawing holds, by what its layers are.
+
+use super::{
+    Assumed, areas,
+    entities::{Drawn, Outline},
+    roles::Role,
+};
+use std::collections::{BTreeMap, BTreeSet};
+use world::Shape;
+
+/// What lies on the layers of each role.
+pub(super) struct Sorted {
+    by_role: BTreeMap<Role, Vec<Outline>>,
+    /// Whether a layer holds columns besides the shell.
+    is_shared: bool,
+}
+
+impl Sorted {
+    pub(super) fn new(
+        all: Vec<Drawn>,
+        assumed: &Assumed,
+        hidden: &[String],
+        notes: &mut Vec<String>,
+    ) -> Self {
+        let mut sorted = Self { by_role: BTreeMap::new(), is_shared: false };
+        let mut unused: BTreeMap<String, usize> = BTreeMap::new();
+        let mut in_the_dark = BTreeSet::new();
+        for drawn in all {
+            let roles = assumed.layers.roles(&drawn.layer);
+            let role = roles.iter().min().copied().filter(|role| *role < Role::Plates);
+            if role.is_none() || drawn.outlines.is_empty() {
+                let is_ignored = roles.contains(&Role::Ignored);
+                let what = format!("layer {}: {}", drawn.layer, drawn.kind);
+                *unused.entry(what).or_default() += usize::from(!is_ignored);
+                continue;
+            }
+            if hidden.contains(&drawn.layer) {
+                in_the_dark.insert(drawn.layer.clone());
+            }
+            let role = role.expect("it was looked at");
+            sorted.is_shared |= role == Role::Shell && roles.contains(&Role::Columns);
+            sorted.by_role.entry(role).or_default().extend(drawn.outlines);
+        }
+        let unused = unused.into_iter().filter(|(_, n)| *n > 0);
+        notes.extend(unused.map(|(what, n)| format!("not used: {what}, {n} of them")));
+        let used = |layer| {
+            format!("layer {layer} is off or frozen in the drawing; what lies on it was used all the same")
+        };
+        notes.extend(in_the_dark.into_iter().map(used));
+        sorted
+    }
+
+    fn take(&mut self, role: Role) -> impl Iterator<Item = Outline> + use<> {
+        self.by_role.remove(&role).unwrap_or_default().into_iter()
+    }
+
+    /// The shell, and what else on its layer is a column.
+    pub(super) fn shell(&mut self, notes: &mut Vec<String>) -> Option<(areas::Area, Vec<areas::Area>)> {
+        let (all, n_open) = areas::areas(self.take(Role::Shell));
+        note_open(Role::Shell, n_open, notes);
+        let n = all.len();
+        let (shell, rest) = areas::shell(all, notes)?;
+        if self.is_shared {
+            return Some((shell, rest));
+        }
+        if !rest.is_empty() {
+            notes.push(format!("SHELL: {n} closed outlines; the largest is the shell"));
+        }
+        Some((shell, Vec::new()))
+    }
+
+    /// Closed outlines as convex shapes.
+    pub(super) fn areas(
+        &mut self,
+        role: Role,
+        name: &str,
+        more: Vec<areas::Area>,
+        notes: &mut Vec<String>,
+    ) -> Vec<Shape> {
+        let (mut all, n_open) = areas::areas(self.take(role));
+        note_open(role, n_open, notes);
+        all.extend(more);
+        let (shapes, grown) = areas::shapes(&all);
+        notes.extend(grown.iter().map(|k| format!("{name} {k} is not convex; its convex hull was taken")));
+        shapes
+    }
+
+    pub(super) fn pipes(&mut self, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
+        let mut n_thin = 0;
+        let mut shape = |outline: Outline| match outline {
+            Outline::Circle { center, radius_m } => Some(Shape::Disc { center, radius_m }),
+            Outline::Chain { mut points, is_closed, width_m } => {
+                if is_closed {
+                    points.extend(points.first().copied());
+                }
+                n_thin += usize::from(width_m <= 0.0);
+                let width_m = if width_m > 0.0 { width_m } else { assumed_m };
+                (points.len() > 1).then_some(Shape::Polyline { points, half_width_m: width_m / 2.0 })
+            }
+        };
+        let shapes: Vec<Shape> = self.take(Role::Pipes).filter_map(&mut shape).collect();
+        if n_thin > 0 {
+            notes.push(format!("PIPES: {n_thin} lines without a width were taken as {assumed_m} m wide"));
+        }
+        shapes
+    }
+}
+
+fn note_open(role: Role, n_open: usize, notes: &mut Vec<String>) {
+    if n_open > 0 {
+        notes.push(format!("{role:?}: {n_open} lines that close no outline are left out"));
+    }
+}

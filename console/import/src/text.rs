@@ -1,0 +1,50 @@
+//! Text in the encodings that drawing programs and spreadsheets write.
+
+use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
+
+/// A text: UTF-8, with a byte order mark also UTF-16; else in the encoding that the file is said to have, by default that of
+/// Western European Windows.
+pub(crate) fn decoded(bytes: &[u8], said: Option<&'static Encoding>) -> String {
+    let marked = Encoding::for_bom(bytes).map(|(encoding, _)| encoding);
+    let is_utf8 = || std::str::from_utf8(bytes).is_ok();
+    let encoding = marked.unwrap_or_else(|| if is_utf8() { UTF_8 } else { said.unwrap_or(WINDOWS_1252) });
+    encoding.decode(bytes).0.into_owned()
+}
+
+/// The encoding that a drawing names as its code page (`$DWGCODEPAGE`), as `ANSI_1252`.
+pub(crate) fn code_page(name: &str) -> Option<&'static Encoding> {
+    let number = name.trim().rsplit('_').next()?;
+    let label = match number {
+        "874" => "windows-874",
+        "932" => "shift_jis",
+        "936" => "gbk",
+        "949" => "euc-kr",
+        "950" => "big5",
+        _ => return Encoding::for_label(format!("windows-{number}").as_bytes()),
+    };
+    Encoding::for_label(label.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_usual_encoding_of_a_name_is_read() {
+        let wide = |bytes: fn(u16) -> [u8; 2], mark: [u8; 2]| -> Vec<u8> {
+            mark.into_iter().chain("Stütze".encode_utf16().flat_map(bytes)).collect()
+        };
+        let all: [&[u8]; 5] = [
+            "Stütze".as_bytes(),
+            "\u{feff}Stütze".as_bytes(),
+            b"St\xfctze",
+            &wide(u16::to_le_bytes, [0xff, 0xfe]),
+            &wide(u16::to_be_bytes, [0xfe, 0xff]),
+        ];
+        for bytes in all {
+            assert_eq!(decoded(bytes, None), "Stütze");
+        }
+        assert_eq!(decoded(b"\xca\xee\xeb", code_page("ANSI_1251")), "Кол");
+        assert_eq!(decoded(b"\x92\x8c", code_page("ANSI_932")), "柱");
+    }
+}

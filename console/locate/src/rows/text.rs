@@ -1,0 +1,71 @@
+//! A text file, byte by byte checked to be one.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+};
+
+/// A line with more bytes than this is none.
+const LONGEST_LINE: usize = 1 << 16;
+
+/// A file whose bytes are refused where they are no text, so that no reader collects an endless line; every line ends with
+/// a line feed, so that lines can be counted.
+pub(crate) struct Text {
+    file: File,
+    in_line: usize,
+    last: u8,
+}
+
+impl Text {
+    pub(crate) fn new(file: File) -> Self {
+        Self { file, in_line: 0, last: b'\n' }
+    }
+
+    pub(crate) fn into_file(self) -> File {
+        self.file
+    }
+
+    /// What a byte becomes, if anything: a carriage return ends a line, and a line feed behind it says nothing more.
+    fn checked(&mut self, byte: u8) -> io::Result<Option<u8>> {
+        let before = std::mem::replace(&mut self.last, byte);
+        self.in_line += 1;
+        match byte {
+            b'\n' if before == b'\r' => Ok(None),
+            b'\n' | b'\r' => {
+                self.in_line = 0;
+                Ok(Some(b'\n'))
+            }
+            0 => Err(no_text("no text: a byte 0; save the readings as CSV, in UTF-8")),
+            _ if self.in_line > LONGEST_LINE => Err(no_text("no text: a line of more than 65,536 bytes")),
+            _ => Ok(Some(byte)),
+        }
+    }
+}
+
+impl Read for Text {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let n = self.file.read(buffer)?;
+            if n == 0 {
+                let is_open = !matches!(self.last, b'\n' | b'\r') && !buffer.is_empty();
+                self.last = b'\n';
+                buffer.iter_mut().take(1).filter(|_| is_open).for_each(|byte| *byte = b'\n');
+                return Ok(usize::from(is_open));
+            }
+            let mut kept = 0;
+            for k in 0..n {
+                if let Some(byte) = self.checked(buffer[k])? {
+                    buffer[kept] = byte;
+                    kept += 1;
+                }
+            }
+            if kept > 0 {
+                return Ok(kept);
+            }
+        }
+    }
+}
+
+fn no_text(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
+}
