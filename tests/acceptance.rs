@@ -57,6 +57,8 @@ mod script;
 mod session;
 #[path = "acceptance/shadow.rs"]
 mod shadow;
+#[path = "acceptance/signing.rs"]
+mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;

@@ -22,7 +22,7 @@ use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
-use std::{io::IsTerminal, process::ExitCode, sync::Arc};
+use std::{io::IsTerminal, process::ExitCode};
 use world::Station;
 
 /// Options of a headless run.
@@ -75,16 +75,12 @@ fn fly_beside(
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
     let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
-        let events: Arc<[Event]> = events.into();
-        log.keep(Arc::clone(&events));
-        if let Some(host) = host {
-            remains::keep(
-                host,
-                Some(&mut log),
-                events.last().map_or((0, 0.0), |event| (event.tick, event.t_s)),
-            );
-        }
+        let now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
         show_progress(&bar, &events, &scenario.sim.world.stations);
+        log.keep(events);
+        if let Some(host) = host {
+            remains::keep(host, Some(&mut log), now);
+        }
         report_trouble(&mut trouble, log.health().error);
     };
     take(vec![flight.opened()], None);

@@ -3,9 +3,9 @@
 mod config;
 mod fault;
 mod find;
-mod log_limit;
 mod opening;
 mod planner;
+mod said_limit;
 mod saved;
 mod spare;
 #[cfg(target_os = "linux")]
@@ -18,7 +18,7 @@ pub(crate) use planner::Wanted;
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
 use crate::remains::{Crash, Printed, is_crash};
-use crate::stats::{Durations, HostStats};
+use crate::stats::{Durations, HostStats, Memory};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
 use find::Catalog;
 use mission::{Answer, Ask, AskId, Fault, Given, Said, What, WorkerId};
@@ -136,6 +136,11 @@ impl Host {
     /// Calls, wall times and faults so far.
     pub fn stats(&self) -> HostStats {
         HostStats { plan: self.plan_times.stats(), step: self.step_times.stats(), faults: self.n_faults }
+    }
+
+    /// Memory of a planner's process; none where it has ended, or the system does not say.
+    pub fn memory(&self, id: WorkerId) -> Option<Memory> {
+        self.planners.iter().find(|planner| planner.id == id)?.worker.as_ref()?.memory()
     }
 
     /// Makes [`Self::next`] return from any thread.

@@ -57,6 +57,8 @@ pub struct Recorder {
     watch: Option<FileWatch>,
     ticks_waiting: u32,
     sent_at: Instant,
+    /// Rows were sent before the end: what was sent at once has nothing to merge.
+    has_sent: bool,
 }
 
 impl Recorder {
@@ -85,7 +87,15 @@ impl Recorder {
         check_clock(SystemTime::now())?;
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self { fold: Fold::default(), stream, health, watch: None, ticks_waiting: 0, sent_at: now })
+        Ok(Self {
+            fold: Fold::default(),
+            stream,
+            health,
+            watch: None,
+            ticks_waiting: 0,
+            sent_at: now,
+            has_sent: false,
+        })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -144,7 +154,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
-    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
+    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length or content.
     pub fn finish(mut self, summary: &Summary, until: Option<Instant>) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(summary, stream)?;
@@ -156,8 +166,10 @@ impl Recorder {
             return Err(RecordingError::Write { why });
         }
         let Some(watch) = &self.watch else { return Ok(()) };
-        watch.check_closed(self.health.bytes())?;
-        if let Err(error) = merge::merge(watch.path(), until) {
+        watch.check_content(self.health.bytes(), &self.health.sha256())?;
+        if self.has_sent
+            && let Err(error) = merge::merge(watch.path(), until)
+        {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
         }
@@ -168,6 +180,7 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         self.ticks_waiting = 0;
+        self.has_sent = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }
