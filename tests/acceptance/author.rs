@@ -98,6 +98,8 @@ fn a_planner_that_uses_a_clock_or_crashes_fails_its_checks() {
     );
     let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \
                  (double)(size_t)&noise, (tp_str)TP_STR(\"\"));";
+    let hoards = with("if (!memset(malloc(4096), 1, 4096)) abort();");
+    assert!(hoards.code == Some(1) && hoards.out.contains("FAIL  keeps no memory for ever"), "{hoards:?}");
     let random = with(clock);
     assert!(random.code == Some(1) && random.out.contains("FAIL  flies the same flight twice"), "{random:?}");
 }
@@ -135,6 +137,72 @@ fn what_a_planner_prints_and_its_crash_are_kept_and_the_crash_can_be_replayed() 
     rebuilt(&plugin);
     let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
     assert!(replayed.code == Some(0) && replayed.out.contains("every request was answered"), "{replayed:?}");
+}
+
+#[test]
+fn a_panic_leaves_the_calls_by_which_it_came_if_that_is_asked() {
+    let bench = Bench::new();
+    built(&bench, "rust");
+    let source = bench.path().join("my-own/src/lib.rs");
+    let good = std::fs::read_to_string(&source).unwrap();
+    let step = "let way = sensed.target";
+    let by = "if sensed.tick == 7 {\n            look_up_nothing();\n        }\n        ";
+    let bad = good.replacen(step, &format!("{by}{step}"), 1);
+    let helper =
+        "#[inline(never)]\nfn look_up_nothing() {\n    std::hint::black_box(Vec::<u8>::new())[3];\n}\n";
+    std::fs::write(&source, format!("{bad}\n{helper}")).unwrap();
+    let plugin = rebuilt_in_rust(&bench);
+    for (asked, is_there) in [("1", true), ("0", false)] {
+        let bench = Bench::new();
+        let scenario = source.parent().unwrap().with_file_name("scenario.toml");
+        let mut command = bench.command();
+        command.env("RUST_BACKTRACE", asked).arg("run").arg(scenario).arg("--json");
+        let flown = Ended::from(command.arg("--plugin-dir").arg(plugin.parent().unwrap()).output().unwrap());
+        assert!(flown.out.contains("panicked at src/lib.rs:"), "{flown:?}");
+        let run = &bench.runs()[0];
+        let kept = |file: &str| std::fs::read_to_string(run.join(file)).unwrap_or_default();
+        for text in [kept("planner.log"), kept("crash-1/output.txt")] {
+            assert_eq!(text.contains("planner_my_own::look_up_nothing"), is_there, "{asked}: {text}");
+        }
+        assert!(!journal_text(run).contains("look_up_nothing"));
+    }
+}
+
+fn rebuilt_in_rust(bench: &Bench) -> PathBuf {
+    let made = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--offline"])
+        .current_dir(bench.path().join("my-own"))
+        .env("CARGO_TARGET_DIR", author_target())
+        .env_remove("RUSTFLAGS")
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    author_target().join("release/libplanner_my_own.so")
+}
+
+#[test]
+fn gdb_knows_the_functions_of_a_plugin_and_leaves_a_core_if_it_is_there() {
+    if Command::new("gdb").arg("--version").output().is_err() {
+        return;
+    }
+    let bench = Bench::new();
+    let plugin = built(&bench, "c");
+    let source = bench.path().join("my-own/my_own.c");
+    let good = std::fs::read_to_string(&source).unwrap();
+    let step = "const direct *self = instance;";
+    let bad = good.replacen(step, &format!("{step}\n  if (in->tick == 7) give_up();"), 1).replacen(
+        "#include <math.h>",
+        "#include <math.h>\n#include <stdlib.h>\n__attribute__((noinline)) static void give_up(void) { abort(); }",
+        1,
+    );
+    std::fs::write(&source, bad).unwrap();
+    fly_first(&bench, &rebuilt(&plugin));
+    let bundle = bench.runs()[0].join("crash-1");
+    let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap(), "--core"]);
+    assert_eq!(replayed.code, Some(1), "{replayed:?}");
+    let trace = std::fs::read_to_string(bundle.join("backtrace.txt")).unwrap();
+    assert!(trace.contains("give_up"), "{trace}");
+    assert!(bundle.join("core").metadata().unwrap().len() > 100_000, "{trace}");
 }
 
 #[test]

@@ -34,13 +34,18 @@ fn screen_of(width: u16, height: u16) -> vt100::Parser {
 
 impl Session {
     pub(crate) fn open(arguments: &str, width: u16, height: u16) -> Self {
+        Self::open_after("", arguments, width, height)
+    }
+
+    /// The same, after something else in the shell, which knows the program as `$TANKOPS`.
+    pub(crate) fn open_after(before: &str, arguments: &str, width: u16, height: u16) -> Self {
         let bench = Bench::new();
         let size = PtySize { rows: height, cols: width, pixel_width: 0, pixel_height: 0 };
         let pair = native_pty_system().openpty(size).unwrap();
         let program = PathBuf::from(env!("CARGO_BIN_EXE_tankops"));
         let deps = program.parent().unwrap().join("deps");
         let script = format!(
-            "stty -a > before; {} --plugin-dir {} {arguments}; echo \"code=$?\" > code; stty -a > after; echo SHELL-AGAIN",
+            "{before} stty -a > before; {} --plugin-dir {} {arguments}; echo \"code=$?\" > code; stty -a > after; echo SHELL-AGAIN",
             program.display(),
             deps.display()
         );
@@ -50,6 +55,7 @@ impl Session {
         command.env("XDG_CONFIG_HOME", bench.path());
         command.env("XDG_STATE_HOME", bench.path());
         command.env("TERM", "xterm-256color");
+        command.env("TANKOPS", &program);
         command.env("LANG", "C.UTF-8");
         command.env_remove("NO_COLOR");
         let child = pair.slave.spawn_command(command).unwrap();

@@ -53,6 +53,25 @@ fn a_panic_of_the_screen_gives_the_terminal_back_and_closes_the_run() {
 }
 
 #[test]
+fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard() {
+    // A job of its own, as every other process of the session might be.
+    let thief = "set -m; (until [ -e steal ]; do sleep 0.1; done; trap '' TTOU; $TANKOPS take-terminal && touch stolen; \
+                 sleep 100) & set +m;";
+    let mut session = Session::open_after(thief, &goto(), 80, 24);
+    session.see("IDLE");
+    session.press("S\r");
+    session.see("RUN");
+    session.bench.file("steal", "");
+    session.until("the terminal to be stolen", |session| session.bench.path().join("stolen").exists());
+    session.press(" ");
+    session.see("HOLD");
+    session.press("1q");
+    session.see("Enter");
+    session.press("\r");
+    assert_eq!(session.back_in_the_shell(), "code=1");
+}
+
+#[test]
 fn a_closed_terminal_ends_the_console_and_closes_the_run() {
     let mut session = Session::open(&goto(), 80, 24);
     session.see("IDLE");

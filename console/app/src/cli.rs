@@ -10,7 +10,7 @@ mod logs;
 mod past;
 mod research;
 
-pub(crate) use author::{Lang, NewPlannerArgs};
+pub(crate) use author::{Lang, NewPlannerArgs, ReplayWorkerArgs};
 pub(crate) use campaign::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs};
 pub(crate) use changes::Changes;
 pub(crate) use console::{ConsoleArgs, ReplayArgs};
@@ -134,17 +134,13 @@ pub(crate) enum Command {
         command: Option<String>,
     },
     /// Ask a plugin once more what it was asked before it failed, and show each answer.
-    ReplayWorker {
-        /// Folder `crash-N` in the folder of a run.
-        #[arg(value_name = "BUNDLE")]
-        bundle: PathBuf,
-        /// Run the plugin's process in gdb, without deadlines.
-        #[arg(long)]
-        gdb: bool,
-    },
+    ReplayWorker(ReplayWorkerArgs),
     /// A planner's own process; started by the console.
     #[command(hide = true)]
     Worker,
+    /// Gives the terminal to this process's group; started by a console that has lost it.
+    #[command(hide = true)]
+    TakeTerminal,
 }
 
 #[cfg(test)]

@@ -75,15 +75,12 @@ fn fly_beside(
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
     let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
-        log.keep(&events);
-        if let Some(host) = host {
-            remains::keep(
-                host,
-                Some(&mut log),
-                events.last().map_or((0, 0.0), |event| (event.tick, event.t_s)),
-            );
-        }
+        let now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
         show_progress(&bar, &events, &scenario.sim.world.stations);
+        log.keep(events);
+        if let Some(host) = host {
+            remains::keep(host, Some(&mut log), now);
+        }
         report_trouble(&mut trouble, log.health().error);
     };
     take(vec![flight.opened()], None);

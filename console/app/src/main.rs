@@ -22,6 +22,7 @@ mod reproduce;
 mod rescan;
 mod shadowing;
 mod shared_folder;
+mod signing;
 mod stop_signal;
 mod study_folder;
 mod trial;
@@ -129,12 +130,13 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
-        Some(Command::Report(args)) => past_runs::report(&args),
+        Some(Command::Report(args)) => past_runs::report(&args, &plugins),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
-        Some(Command::ReplayWorker { bundle, gdb }) => replay_worker::replay(&bundle, gdb),
+        Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
         Some(Command::Completions { shell }) => manual::completions(shell),
         Some(Command::Man { command }) => manual::man(command.as_deref()),
         Some(Command::Worker) => Ok(planner_host::worker_main()),
+        Some(Command::TakeTerminal) => Ok(interactive::take_terminal()),
     }
 }
 

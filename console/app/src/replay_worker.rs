@@ -1,39 +1,111 @@
 //! `tankops replay-worker`: a plugin alone, asked once more what it was asked before it failed.
 
+use crate::cli::ReplayWorkerArgs;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
-use planner_host::{Replayed, WorkerCommand};
+use planner_host::{Replayed, WorkerCommand, plugin_of};
 use report::print::{say, say_line};
-use std::{env, fs, path::Path, process::ExitCode};
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+    process::{self, ExitCode},
+};
+
+/// The worker's own bytes of the plugin are at this descriptor, and gdb knows the plugin by its number.
+const KNOWN_TO_GDB_AS: &str = "201";
+/// The files of a bundle in which gdb leaves what it found.
+const CORE: &str = "core";
+const TRACE: &str = "backtrace.txt";
 
 /// `tankops replay-worker BUNDLE`.
-pub(crate) fn replay(bundle: &Path, gdb: bool) -> anyhow::Result<ExitCode> {
+pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
+    let bundle = &args.bundle;
     let file = bundle.join("frames.bin");
     let frames = fs::read(&file)
         .map_err(|error| bad_input(format!("{}: {error}; name a folder crash-N of a run", file.display())))?;
     if let Ok(about) = fs::read_to_string(bundle.join("crash.txt")) {
         say(&about)?;
     }
-    let worker = if gdb { in_gdb()? } else { WorkerCommand::default() };
+    let gdb = (args.gdb || args.core).then(|| Gdb::for_plugin(plugin_of(&frames).as_deref())).transpose()?;
+    let worker = match &gdb {
+        Some(gdb) if args.core => gdb.leaving_core(bundle)?,
+        Some(gdb) => gdb.at_terminal()?,
+        None => WorkerCommand::default(),
+    };
     let mut say_each = |line: &str| {
         let _ = say_line(line);
     };
-    let replayed = planner_host::replay(&frames, &worker, gdb, &mut say_each);
-    let replayed = replayed.map_err(|why| bad_input(format!("{}: {why}", file.display())))?;
-    let (code, end) = match replayed {
+    let replayed = planner_host::replay(&frames, &worker, gdb.is_some(), &mut say_each);
+    let (code, end) = match replayed.map_err(|why| bad_input(format!("{}: {why}", file.display())))? {
         Replayed::ToTheEnd => (COMPLETE, "every request was answered: it does not fail again".to_owned()),
         Replayed::Failed(how) => (ENDED_OTHERWISE, format!("failed again at {how}")),
     };
     say_line(&end)?;
+    if args.core {
+        say_line(&left_in(bundle))?;
+    }
     Ok(ExitCode::from(code))
 }
 
-/// A worker inside gdb, which has the terminal; the worker's socket is kept at descriptor 3 for it.
-fn in_gdb() -> anyhow::Result<WorkerCommand> {
-    let program = env::current_exe()?;
-    let script = "exec 3<&0 </dev/tty >/dev/tty 2>&1; export TERM=xterm HOME=/nonexistent; \
-                  exec gdb -q -nx -ex 'set confirm off' -ex 'run worker <&3' \"$0\"";
-    Ok(WorkerCommand {
-        program: "/bin/sh".into(),
-        arguments: vec!["-c".into(), script.into(), program.into()],
-    })
+fn left_in(bundle: &Path) -> String {
+    let is_there = |name: &&str| bundle.join(name).is_file();
+    let left: Vec<String> = [CORE, TRACE]
+        .iter()
+        .filter(|name| is_there(name))
+        .map(|name| bundle.join(name).display().to_string())
+        .collect();
+    if left.is_empty() {
+        "gdb left neither core nor backtrace: is it installed?".to_owned()
+    } else {
+        left.join("\n")
+    }
+}
+
+/// gdb around a worker, whose socket is kept at descriptor 3 for it. The worker loads the plugin from memory; where gdb
+/// looks for it, there is a link to the file.
+struct Gdb {
+    /// The folder with that link; removed in the end.
+    libraries: PathBuf,
+}
+
+impl Gdb {
+    fn for_plugin(plugin: Option<&Path>) -> io::Result<Self> {
+        let libraries = env::temp_dir().join(format!("tankops-gdb-{}", process::id()));
+        fs::create_dir(&libraries)?;
+        let gdb = Self { libraries };
+        if let Some(plugin) = plugin {
+            std::os::unix::fs::symlink(std::path::absolute(plugin)?, gdb.libraries.join(KNOWN_TO_GDB_AS))?;
+        }
+        Ok(gdb)
+    }
+
+    /// With the terminal for its author.
+    fn at_terminal(&self) -> io::Result<WorkerCommand> {
+        let then = r#"-ex 'echo Set breakpoints in your planner if you like, then type: run\n'"#;
+        self.command("</dev/tty >/dev/tty 2>&1", then, Path::new(""))
+    }
+
+    /// Without anybody: leaves core and backtrace in a folder.
+    fn leaving_core(&self, folder: &Path) -> io::Result<WorkerCommand> {
+        let then = format!(
+            "-batch -ex run -ex \"generate-core-file $2/{CORE}\" -ex 'thread apply all backtrace full'"
+        );
+        self.command(&format!("</dev/null >\"$2/{TRACE}\" 2>&1"), &then, folder)
+    }
+
+    fn command(&self, streams: &str, then: &str, folder: &Path) -> io::Result<WorkerCommand> {
+        let script = format!(
+            "exec 3<&0 {streams}; export TERM=xterm HOME=/nonexistent; \
+             exec gdb -q -nx -ex 'set confirm off' -ex \"set solib-search-path $1\" -ex 'set breakpoint pending on' \
+             -ex 'set args worker <&3' {then} \"$0\""
+        );
+        let (program, libraries) = (env::current_exe()?, self.libraries.clone());
+        let arguments = ["-c".into(), script.into(), program.into(), libraries.into(), folder.into()];
+        Ok(WorkerCommand { program: "/bin/sh".into(), arguments: arguments.into() })
+    }
+}
+
+impl Drop for Gdb {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.libraries);
+    }
 }

@@ -15,6 +15,11 @@ use std::time::Duration;
 const STEP_WITHIN_MS: f64 = 60.0;
 /// Ticks at which the planner takes over from another.
 const SWAPS_AT: [u64; 3] = [5, 40, 120];
+/// A planner's memory is looked at after it has warmed up for so many steps, and again after so many more.
+const WARM_UP: usize = 300;
+const STEPS: usize = 3000;
+/// It may grow by so much meanwhile, bytes: at 0.7 kB per step a mission of eight hours takes 200 MB.
+const MAY_GROW: u64 = 2 << 20;
 /// So many ticks a planner is looked at after something was done to it.
 const LOOK_FOR: u64 = 30;
 
@@ -57,6 +62,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown]) -> Vec<Check> {
         check("stops planning when it is asked to", subject.stops()),
         check("takes over under way", subject.takes_over()),
         check("goes on from its saved state", subject.restores()),
+        check("keeps no memory for ever", subject.hoards()),
     ]
 }
 
@@ -121,6 +127,23 @@ impl Subject<'_> {
         hung.map(|_| {
             "it ignored the request for 0.1 s and was killed; call ctx.check()? in every loop".to_owned()
         })
+    }
+
+    fn hoards(&self) -> Option<String> {
+        let mut player = self.player(hosts::config(&self.tank.mission));
+        let (steps, others): (Vec<What>, Vec<What>) =
+            self.tape().into_iter().partition(|what| matches!(what, What::Step(_)));
+        if others.into_iter().any(|what| player.ask(0, what).1.is_err()) {
+            return None;
+        }
+        let mut after = |n| {
+            let mut asked = steps.iter().cycle().take(n);
+            asked.all(|step| player.ask(0, step.clone()).1.is_ok()).then(|| player.memory_bytes(0))?
+        };
+        let (before, after) = (after(WARM_UP)?, after(STEPS)?);
+        let grown = after.saturating_sub(before);
+        (grown > MAY_GROW)
+            .then(|| format!("{STEPS} steps took {:.1} MB that were not given back", grown as f64 / 1e6))
     }
 
     fn takes_over(&self) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use crate::tape::Taping;
 use flight::{Flight, hosts};
-use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice};
+use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice, WorkerId};
 use planner_api::Code;
 use planner_host::{Host, PluginDirs};
 use report::{Fold, Summary};
@@ -16,17 +16,23 @@ pub(crate) struct Flown {
     pub(crate) p50_ms: Option<f64>,
     /// Time that 99 of 100 steps do not exceed.
     pub(crate) p99_ms: Option<f64>,
+    /// Memory that its process had at most, bytes; absent where the system does not say.
+    pub(crate) memory_bytes: Option<u64>,
     /// First fault that no good planner has.
     pub(crate) misbehaved: Option<String>,
     /// It said that it does not fly such missions.
     pub(crate) unsupported: bool,
 }
 
+/// The memory of planners is looked at every so many ticks.
+const LOOK_AT_MEMORY_EVERY: u64 = 16;
+
 /// A flight that goes on until its mission ends, or somebody stops looking.
 pub(crate) struct Pilot {
     flight: Flight,
     answers: Taping,
     fold: Fold,
+    memory_bytes: Option<u64>,
     misbehaved: Option<String>,
     unsupported: bool,
     tick: u64,
@@ -53,7 +59,15 @@ impl Pilot {
         let host = Host::new(plugins, hosts::config(&scenario.mission));
         let mut fold = Fold::new();
         fold.apply(&flight.opened());
-        Self { flight, answers: Taping::new(host), fold, misbehaved: None, unsupported: false, tick: 0 }
+        Self {
+            flight,
+            answers: Taping::new(host),
+            fold,
+            memory_bytes: None,
+            misbehaved: None,
+            unsupported: false,
+            tick: 0,
+        }
     }
 
     /// Flies one tick with these orders; its events, or none when the mission has ended.
@@ -63,6 +77,10 @@ impl Pilot {
         }
         let start = [Order::Start];
         let events = self.flight.tick(if self.tick == 0 { &start } else { orders }, &mut self.answers);
+        if self.tick.is_multiple_of(LOOK_AT_MEMORY_EVERY) {
+            let memory = self.answers.host().memory(WorkerId(0));
+            self.memory_bytes = memory.map(|memory| memory.most_bytes).max(self.memory_bytes);
+        }
         self.tick += 1;
         for event in &events {
             self.fold.apply(event);
@@ -92,6 +110,7 @@ impl Pilot {
             summary: self.fold.summary(),
             p50_ms: calls.p50_us.map(|us| us / 1000.0),
             p99_ms: calls.p99_us.map(|us| us / 1000.0),
+            memory_bytes: self.memory_bytes,
             misbehaved: self.misbehaved,
             unsupported: self.unsupported,
         }

@@ -29,11 +29,13 @@ pub struct Row {
     pub clearance_m: Option<f64>,
     /// Time for a step that 99 of 100 do not exceed, median, milliseconds by the wall clock.
     pub step_p99_ms: Option<f64>,
+    /// Memory of the planner's process at most in any of them, libraries among it, megabytes; absent where the system does
+    /// not say.
+    pub memory_mb: Option<f64>,
 }
 
 impl Row {
-    pub(crate) const HEADINGS: &'static str =
-        "planner             complete  collided  stuck  faults  time s   way m  clearance m  step p99 ms\n";
+    pub(crate) const HEADINGS: &'static str = "planner             complete  collided  stuck  faults  time s   way m  clearance m  step p99 ms  memory MB\n";
 
     pub(crate) fn of(planner: &str, flown: &[Flown]) -> Self {
         let ended = |outcome| flown.iter().filter(move |flown| flown.summary.outcome == Some(outcome));
@@ -51,6 +53,11 @@ impl Row {
             way_m: of_complete(|flown| flown.summary.path_length_m),
             clearance_m: of_complete(|flown| flown.summary.clearance_min_m),
             step_p99_ms: median(flown.iter().filter_map(|flown| flown.p99_ms)),
+            memory_mb: flown
+                .iter()
+                .filter_map(|flown| flown.memory_bytes)
+                .max()
+                .map(|bytes| bytes as f64 / 1e6),
         }
     }
 
@@ -59,7 +66,7 @@ impl Row {
             value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
         };
         format!(
-            "{:<18}  {:>8}  {:>8}  {:>5}  {:>6}  {:>6}  {:>6}  {:>11}  {:>11}\n",
+            "{:<18}  {:>8}  {:>8}  {:>5}  {:>6}  {:>6}  {:>6}  {:>11}  {:>11}  {:>9}\n",
             self.planner,
             format!("{}/{}", self.complete, self.tanks),
             self.collided,
@@ -69,6 +76,7 @@ impl Row {
             figure(self.way_m, 2),
             figure(self.clearance_m, 2),
             figure(self.step_p99_ms, 2),
+            figure(self.memory_mb, 1),
         )
     }
 }

@@ -52,6 +52,11 @@ impl Player {
         Self { host, n: 0 }
     }
 
+    /// Memory of a worker's process now, bytes.
+    pub(crate) fn memory_bytes(&self, worker: u16) -> Option<u64> {
+        self.host.memory(WorkerId(worker)).map(|memory| memory.now_bytes)
+    }
+
     /// Asks a worker; the name of the ask with its answer.
     pub(crate) fn ask(&mut self, worker: u16, what: What) -> (AskId, Result<Given, Fault>) {
         self.n += 1;

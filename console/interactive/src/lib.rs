@@ -8,6 +8,7 @@ mod crash;
 mod desk;
 mod engine;
 mod forecasting;
+mod foreground;
 mod history;
 mod inbox;
 mod jobs;
@@ -24,6 +25,8 @@ mod session;
 mod survey;
 mod viewing;
 mod watch;
+
+pub use foreground::take_terminal;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};

@@ -1,6 +1,7 @@
 //! The threads that only listen: keys, signals, a terminal that is closed.
 
 use super::{
+    foreground::{self, Foreground},
     inbox::Outbox,
     line::{Current, EngineHandle},
 };
@@ -9,7 +10,7 @@ use crossterm::event::{self, Event};
 use mission::Order;
 use rustix::event::{PollFd, PollFlags, poll};
 use signal_hook::{
-    consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP},
+    consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN},
     iterator::Signals,
 };
 use std::{
@@ -68,7 +69,13 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
     let outbox = outbox.clone();
     spawn("keys", move || {
         let mut pointer = Pointer::default();
-        while let Ok(event) = event::read() {
+        loop {
+            let event = match event::read() {
+                Ok(event) => event,
+                // A process without a shell above it gets an error instead of a signal.
+                Err(_) if foreground::take_back() => continue,
+                Err(_) => return,
+            };
             let msg = match event {
                 Event::Key(key) => terminal::key_from_crossterm(&key).map(Msg::Key),
                 Event::Paste(text) => Some(Msg::Paste(text)),
@@ -89,9 +96,18 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
 pub(super) fn signals(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let mut signals =
-        Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT]).context("listening to signals")?;
+        Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN]).context("listening to signals")?;
     spawn("signals", move || {
+        let mut foreground = Foreground::new();
         for number in signals.forever() {
+            match number {
+                SIGTTIN => {
+                    foreground.missed_key();
+                    continue;
+                }
+                SIGCONT => foreground.continued(),
+                _ => {}
+            }
             let signal = match number {
                 SIGTERM => Signal::Terminate,
                 SIGHUP => Signal::Hangup,

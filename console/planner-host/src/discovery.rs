@@ -7,9 +7,13 @@ pub use stamps::{FileStamp, Stamps};
 use crate::stamp::{self, Abi};
 use crate::survey::Cache;
 use crate::user_folder::user_folder;
+use rustix::fs::OFlags;
 use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 /// Folders with plugins, and on which condition these are loaded.
@@ -145,16 +149,24 @@ impl PluginFile {
     }
 }
 
-/// The bytes of a plain file of sensible size; a device or a pipe might never end.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let about = std::fs::metadata(path).map_err(|error| format!("cannot be read: {error}"))?;
+/// The bytes of a plain file of sensible size, whatever becomes of its path meanwhile; a device or a pipe might never end.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let unreadable = |error: std::io::Error| format!("cannot be read: {error}");
+    // Opening a pipe would wait for somebody who writes.
+    let at_once = OFlags::NONBLOCK.bits().cast_signed();
+    let file = File::options().read(true).custom_flags(at_once).open(path).map_err(unreadable)?;
+    let about = file.metadata().map_err(unreadable)?;
     if !about.is_file() {
         return Err("not a plain file".into());
     }
+    let too_large = |length: u64| format!("{length} bytes: no plugin is larger than {MOST_BYTES}");
     if about.len() > MOST_BYTES {
-        return Err(format!("{} bytes: no plugin is larger than {MOST_BYTES}", about.len()));
+        return Err(too_large(about.len()));
     }
-    std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))
+    let mut bytes = Vec::with_capacity(about.len() as usize);
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    // It may have grown.
+    if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
 /// SHA-256 in hexadecimal.
@@ -189,6 +201,21 @@ mod tests {
         let dirs = PluginDirs::of(vec![first.path().into(), second.path().into()]);
         let names: Vec<PathBuf> = dirs.plugins().into_iter().map(|plugin| plugin.path).collect();
         assert_eq!(names, [first.path().join("libplanner_b.so"), second.path().join("libplanner_a.so")]);
+    }
+
+    #[test]
+    fn what_is_no_plain_file_is_not_waited_for() {
+        let folder = tempfile::tempdir().expect("dir");
+        let place = |name: &str| folder.path().join(name);
+        rustix::fs::mkfifoat(rustix::fs::CWD, place("pipe"), rustix::fs::Mode::RWXU).expect("a pipe");
+        assert_eq!(read_bytes(&place("pipe")), Err("not a plain file".into()));
+        assert_eq!(read_bytes(folder.path()), Err("not a plain file".into()));
+        let sparse = File::create(place("sparse")).expect("a file");
+        sparse.set_len(10 << 30).expect("a length");
+        let why = read_bytes(&place("sparse")).expect_err("too large");
+        assert_eq!(why, "10737418240 bytes: no plugin is larger than 536870912");
+        std::os::unix::fs::symlink(place("pipe"), place("link")).expect("a link");
+        assert_eq!(read_bytes(&place("link")), Err("not a plain file".into()));
     }
 
     #[test]

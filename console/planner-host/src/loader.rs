@@ -10,24 +10,14 @@ use sink::{LONGEST_TEXT, plain};
 pub(crate) use sink::{Sink, Watch};
 use stage::Staged;
 
-use crate::discovery::sha256_hex;
+use crate::discovery::{read_bytes, sha256_hex};
+use crate::parameters;
 use crate::stamp::{self, Abi, CONSOLE_ABI};
-use crate::wire::answer::{Described, Refusal};
+use crate::wire::answer::{Described, MOST_PLANNERS, Refusal};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-use mission::{ParamInfo, ParamKind};
 use planner_api::abi;
 use std::error::Error;
 use std::path::Path;
-
-/// Most planners in a library.
-const MOST_PLANNERS: u32 = 64;
-
-/// A library that was loaded; it stays loaded until the process ends.
-pub(crate) struct Plugin {
-    pub(crate) sha256: String,
-    pub(crate) abi: Abi,
-    pub(crate) tables: Vec<Table>,
-}
 
 /// One planner's table, checked.
 pub(crate) struct Table {
@@ -43,16 +33,13 @@ pub(crate) struct Table {
 /// A plugin's file, checked and set aside; nothing of it has run.
 pub(crate) struct File {
     name: String,
-    sha256: String,
-    abi: Abi,
+    pub(crate) sha256: String,
+    pub(crate) abi: Abi,
     staged: Staged,
 }
 
-/// A library whose constructors have run.
-pub(crate) struct Loaded {
-    file: File,
-    entry: abi::Entry,
-}
+/// A library whose constructors have run; it stays loaded until the process ends.
+pub(crate) struct Loaded(abi::Entry);
 
 impl File {
     /// Reads and checks a file.
@@ -60,7 +47,7 @@ impl File {
     /// # Errors
     /// Why it is refused; reads on after "refused:". So below.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let bytes = read_bytes(path)?;
         let abi = stamp::read(&bytes).map_err(|error| error.to_string())?;
         let staged =
             stage::stage(&bytes).map_err(|error| format!("cannot be set aside for loading: {error}"))?;
@@ -86,14 +73,15 @@ impl File {
         let entry = *entry;
         // Code with thread-local destructors must not be unloaded; the end of the process unloads it.
         std::mem::forget(library);
-        Ok(Loaded { file: self, entry })
+        self.staged.keep();
+        Ok(Loaded(entry))
     }
 }
 
 impl Loaded {
-    /// Checks its table.
-    pub(crate) fn plugin(self) -> Result<Plugin, String> {
-        let Self { file, entry } = self;
+    /// Checks its planners' tables.
+    pub(crate) fn tables(self) -> Result<Vec<Table>, String> {
+        let Self(entry) = self;
         check_entry(&entry)?;
         let tables = (0..entry.n_planners as usize)
             .map(|index| read_table(&entry, index))
@@ -103,7 +91,7 @@ impl Loaded {
         {
             return Err(format!("exports the planner `{}` twice", twice.id));
         }
-        Ok(Plugin { sha256: file.sha256, abi: file.abi, tables })
+        Ok(tables)
     }
 }
 
@@ -114,7 +102,7 @@ fn check_entry(entry: &abi::Entry) -> Result<(), String> {
     let theirs = Abi { major: entry.abi_major, minor: entry.abi_minor };
     stamp::accept(theirs).map_err(|error| error.to_string())?;
     check_size("its entry", entry.size, size_of::<abi::Entry>())?;
-    if entry.n_planners == 0 || entry.n_planners > MOST_PLANNERS || entry.planners.is_null() {
+    if !(1..=MOST_PLANNERS).contains(&(entry.n_planners as usize)) || entry.planners.is_null() {
         return Err(format!("exports {} planners, 1 to {MOST_PLANNERS} are allowed", entry.n_planners));
     }
     Ok(())
@@ -172,7 +160,7 @@ impl Table {
             return Err(format!("planner `{}` does not describe itself: {}", self.id, sink.take_error()));
         }
         let parameters = std::mem::take(&mut sink.params);
-        check_parameters(&parameters).map_err(|why| format!("planner `{}`: {why}", self.id))?;
+        parameters::check(&parameters).map_err(|why| format!("planner `{}`: {why}", self.id))?;
         let [id, name, version, about] = [&self.id, &self.name, &self.version, &self.about].map(Clone::clone);
         Ok(Described {
             id,
@@ -194,25 +182,4 @@ impl Table {
     ) -> Result<Instance, Refusal> {
         Instance::create(&self.raw, site, values, sink)
     }
-}
-
-fn check_parameters(parameters: &[ParamInfo]) -> Result<(), String> {
-    for (index, param) in parameters.iter().enumerate() {
-        let key = &param.key;
-        if key.is_empty() || parameters[..index].iter().any(|earlier| earlier.key == *key) {
-            return Err(format!("parameter number {index} has the key `{key}`, which is empty or taken"));
-        }
-        let is_sound = match &param.kind {
-            ParamKind::Float { min, max, default } => {
-                min <= default && default <= max && (max - min).is_finite()
-            }
-            ParamKind::Int { min, max, default } => min <= default && default <= max,
-            ParamKind::Flag { .. } => true,
-            ParamKind::Choice { options, default } => options.contains(default),
-        };
-        if !is_sound {
-            return Err(format!("the default of parameter `{key}` lies outside its range"));
-        }
-    }
-    Ok(())
 }

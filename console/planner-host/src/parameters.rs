@@ -20,6 +20,28 @@ pub fn parameter_problems(planner: &PlannerInfo, parameters: &Parameters) -> Vec
     parameters.iter().filter_map(|(key, value)| Some((key.clone(), problem(key, value)?))).collect()
 }
 
+/// Checks what a planner says of its parameters: keys, ranges, defaults.
+pub(crate) fn check(parameters: &[ParamInfo]) -> Result<(), String> {
+    for (index, param) in parameters.iter().enumerate() {
+        let key = &param.key;
+        if key.is_empty() || parameters[..index].iter().any(|earlier| earlier.key == *key) {
+            return Err(format!("parameter number {index} has the key `{key}`, which is empty or taken"));
+        }
+        let is_sound = match &param.kind {
+            ParamKind::Float { min, max, default } => {
+                min <= default && default <= max && (max - min).is_finite()
+            }
+            ParamKind::Int { min, max, default } => min <= default && default <= max,
+            ParamKind::Flag { .. } => true,
+            ParamKind::Choice { options, default } => options.contains(default),
+        };
+        if !is_sound {
+            return Err(format!("the default of parameter `{key}` lies outside its range"));
+        }
+    }
+    Ok(())
+}
+
 /// All parameters of a planner as numbers: those set by hand, the others by their defaults.
 pub(crate) fn numbers(planner: &PlannerInfo, parameters: &Parameters) -> Result<Vec<(String, f64)>, String> {
     for key in parameters.keys() {

@@ -1,10 +1,11 @@
 //! Asks a plugin once more what it was asked before it failed, alone in a worker.
 
 use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
-use crate::survey::refusal_text;
-use crate::wire::answer::{loaded_of, said_of};
+use crate::survey::{load_of, refusal_text};
+use crate::wire::answer::said_of;
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::kind;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// How a replay ended.
@@ -47,13 +48,28 @@ pub fn replay(
                 say(&format!("{n:>4}  {what:<11} gave up: {}", refusal.message));
             }
             Err(failure) => {
-                let how = sentence(&failure);
+                let how = match failure {
+                    // Only gdb knows how.
+                    Failure::Died { .. } if patient => "its process ended in the debugger".to_owned(),
+                    failure => sentence(&failure),
+                };
                 say(&format!("{n:>4}  {what:<11} {how}"));
                 return Ok(Replayed::Failed(format!("request {n} ({what}): {how}")));
             }
         }
     }
     Ok(Replayed::ToTheEnd)
+}
+
+/// The plugin's file that is named in recorded requests.
+pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
+    let (mut stream, mut incoming) = (frames, Incoming::default());
+    while incoming.receive(&mut stream) == Received::Frame {
+        if incoming.kind() == kind::LOAD {
+            return load_of(&mut incoming.body()).ok().flatten().map(|load| load.path.to_owned());
+        }
+    }
+    None
 }
 
 fn name(kind: u8) -> &'static str {
@@ -78,7 +94,7 @@ fn answered(worker: &mut Worker, kind: u8) -> Result<String, Failure> {
     };
     outcome?;
     match kind {
-        kind::LOAD => worker.take_answer(|body| Ok(format!("sha256 {}", loaded_of(body)?.sha256))),
+        kind::LOAD => worker.take_planners().map(|(sealed, _)| format!("sha256 {}", sealed.sha256)),
         kind::PLAN => worker.take_answer(|body| {
             let plan = body.plan()?;
             said_of(body)?;

@@ -7,6 +7,8 @@
 //! reports the call, over a descriptor that the plugin never sees.
 
 #[cfg(target_os = "linux")]
+mod about;
+#[cfg(target_os = "linux")]
 mod calls;
 #[cfg(not(target_os = "linux"))]
 mod elsewhere;
@@ -29,8 +31,27 @@ pub(crate) use {
 use mission::Sandbox;
 use std::os::fd::OwnedFd;
 
+/// The bytes of a worker's plugin are at this descriptor, above the numbers that careless plugins close.
+#[cfg(target_os = "linux")]
+pub(crate) const PLUGIN_AT: i32 = 201;
+/// The same as a path; what it is opened for again are names of functions.
+#[cfg(target_os = "linux")]
+const PLUGIN: &str = "/proc/self/fd/201";
+
+/// How far a worker is with its plugin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// Its libraries are being read.
+    Loading,
+    /// It is loaded.
+    Loaded {
+        /// Landlock is in force.
+        no_file_can_be_opened: bool,
+    },
+}
+
 /// A process that was closed off.
-pub(crate) struct Sealed {
+pub(crate) struct ClosedOff {
     /// How far.
     pub(crate) sandbox: Sandbox,
     /// Where the console learns what the process wants to do beyond computing.
@@ -41,7 +62,7 @@ pub(crate) struct Sealed {
 
 /// Closes this process off. It must have one thread: what others do would not be covered.
 #[cfg(target_os = "linux")]
-pub(crate) fn seal() -> Sealed {
+pub(crate) fn seal() -> ClosedOff {
     let files = files::only_libraries();
     let calls = calls::install();
     let sandbox = match (&files, &calls) {
@@ -50,5 +71,5 @@ pub(crate) fn seal() -> Sealed {
         (Ok(()), Err(calls)) => Sandbox::Partial(format!("seccomp: {calls}")),
         (Err(files), Err(calls)) => Sandbox::None(format!("Landlock: {files}; seccomp: {calls}")),
     };
-    Sealed { sandbox, reads_libraries: files.is_ok(), listener: calls.ok() }
+    ClosedOff { sandbox, reads_libraries: files.is_ok(), listener: calls.ok() }
 }

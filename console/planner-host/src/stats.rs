@@ -24,6 +24,15 @@ pub struct HostStats {
     pub faults: u64,
 }
 
+/// Memory of a worker: what it has touched, its libraries among it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Memory {
+    /// Now, bytes.
+    pub now_bytes: u64,
+    /// At most so far, bytes.
+    pub most_bytes: u64,
+}
+
 /// Wall times of the calls of one kind, microseconds: a million of them in four megabytes, each exact to a ten-millionth.
 #[derive(Debug, Default)]
 pub(crate) struct Durations(Vec<f32>);

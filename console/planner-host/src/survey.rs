@@ -5,13 +5,14 @@ mod cache;
 pub(crate) use cache::Cache;
 
 use crate::discovery::{PluginDirs, PluginFile};
-use crate::stamp::Abi;
 use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
-use crate::wire::answer::{Described, Loaded, loaded_of};
-use crate::wire::body::Writer;
+use crate::wire::answer::{Described, Sealed};
+use crate::wire::body::{Body, Read, Writer};
 use crate::wire::{self, kind};
-use mission::{PlannerInfo, Sandbox};
+use mission::PlannerInfo;
 use planner_api::Caps;
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -128,9 +129,8 @@ fn probe(plugin: &PluginFile, probing: &Probing<'_>) -> Result<Vec<PlannerInfo>,
         write_load(w, &plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
     })?;
     finished(&mut worker)?;
-    let loaded = worker.take_answer(loaded_of)?;
-    let sandbox = worker.sandbox();
-    Ok(loaded.planners.iter().map(|planner| info(planner, &loaded, &plugin.name(), sandbox)).collect())
+    let (sealed, planners) = worker.take_planners()?;
+    Ok(planners.iter().map(|planner| info(planner, &sealed, &plugin.name())).collect())
 }
 
 /// Waits until a worker has answered.
@@ -155,24 +155,40 @@ pub(crate) fn write_load(
     w.bytes(path.as_os_str().as_encoded_bytes()).text(id);
 }
 
+/// A request to load a library.
+pub(crate) struct Load<'a> {
+    pub(crate) memory_limit_bytes: u64,
+    pub(crate) requires_sandbox: bool,
+    pub(crate) path: &'a Path,
+    /// The planner that is wanted; empty for all.
+    pub(crate) id: String,
+}
+
+/// Reads such a request; none if it is of another build.
+pub(crate) fn load_of<'a>(body: &mut Body<'a>) -> Read<Option<Load<'a>>> {
+    if body.u32()? != wire::VERSION {
+        return Ok(None);
+    }
+    let (memory_limit_bytes, requires_sandbox) = (body.u64()?, body.flag()?);
+    let path = Path::new(OsStr::from_bytes(body.bytes()?));
+    let load = Load { memory_limit_bytes, requires_sandbox, path, id: body.text()? };
+    body.end()?;
+    Ok(Some(load))
+}
+
 /// A planner as the mission knows it.
-pub(crate) fn info(
-    planner: &Described,
-    loaded: &Loaded,
-    plugin: &str,
-    sandbox: Option<&Sandbox>,
-) -> PlannerInfo {
+pub(crate) fn info(planner: &Described, sealed: &Sealed, plugin: &str) -> PlannerInfo {
     PlannerInfo {
         id: planner.id.clone(),
         name: planner.name.clone(),
         version: planner.version.clone(),
         about: planner.about.clone(),
         plugin: plugin.to_owned(),
-        sha256: loaded.sha256.clone(),
-        abi: Abi { major: loaded.abi_major, minor: loaded.abi_minor }.to_string(),
+        sha256: sealed.sha256.clone(),
+        abi: sealed.abi.to_string(),
         covers: Caps(planner.caps).has(Caps::COVERAGE),
         snapshots: Caps(planner.caps).has(Caps::SNAPSHOT),
-        sandbox: sandbox.cloned(),
+        sandbox: Some(sealed.sandbox.clone()),
         parameters: planner.parameters.clone(),
     }
 }

@@ -17,7 +17,7 @@ use rustix::process::Signal;
 use std::time::Duration;
 
 /// Raised whenever a frame changes its form: console and worker must be of one build.
-pub(crate) const VERSION: u32 = 4;
+pub(crate) const VERSION: u32 = 5;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
 /// The signal by which a worker ends itself that cannot talk to its console any more. No exit code: those are the planner's.
@@ -43,6 +43,6 @@ pub(crate) mod kind {
     pub(crate) const REFUSED: u8 = 0x82;
     /// How far a plan is; the answer follows.
     pub(crate) const PROGRESS: u8 = 0x83;
-    /// The worker is closed off, and how far; the descriptor that reports its calls comes along.
+    /// The worker is closed off, how far, and for which file; the descriptor that reports its calls comes along.
     pub(crate) const SEALED: u8 = 0x84;
 }

@@ -7,10 +7,12 @@ mod session;
 
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{CHANNEL_LOST, answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
+pub use confine::check_descriptors;
 use deadline::Deadline;
+use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{getpid, kill_process};
 use session::{Session, Trouble};
-use std::io::Write;
+use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -27,17 +29,28 @@ pub fn worker_main() -> ExitCode {
     ExitCode::FAILURE
 }
 
-fn serve(socket: &Socket) -> std::io::Result<()> {
+/// Reads from a socket when something is there. A read that waits by itself is also woken when the other side has taken
+/// what was written: at every step, for nothing.
+struct Patient<'a>(&'a UnixStream);
+
+impl Read for Patient<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        poll(&mut [PollFd::new(self.0, PollFlags::IN)], None)?;
+        self.0.read(bytes)
+    }
+}
+
+fn serve(socket: &Socket) -> io::Result<()> {
     confine::confine();
     let mut stream = &**socket;
     let deadline = Deadline::new(socket);
     let (mut incoming, mut writer, mut session) =
         (Incoming::default(), Writer::default(), Session::new(&deadline, socket));
     loop {
-        match incoming.receive(&mut stream) {
+        match incoming.receive(&mut Patient(socket)) {
             Received::Frame => {}
             Received::Closed => return Ok(()),
-            Received::Broken => return Err(std::io::ErrorKind::InvalidData.into()),
+            Received::Broken => return Err(io::ErrorKind::InvalidData.into()),
         }
         if incoming.kind() != kind::CANCEL {
             deadline.begin(&incoming);
@@ -47,7 +60,7 @@ fn serve(socket: &Socket) -> std::io::Result<()> {
     }
 }
 
-fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -> std::io::Result<()> {
+fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -> io::Result<()> {
     let sequence = incoming.sequence();
     writer.begin(kind::DONE, sequence, 0);
     match session.obey(incoming, writer) {
@@ -59,7 +72,7 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
             writer.begin(kind::REFUSED, sequence, 0).text(&why);
         }
         // The console sent something that its own build does not send.
-        Err(Trouble::Malformed) => return Err(std::io::ErrorKind::InvalidData.into()),
+        Err(Trouble::Malformed) => return Err(io::ErrorKind::InvalidData.into()),
     }
     Ok(())
 }

@@ -34,14 +34,14 @@ use std::{
     io::Write,
     path::Path,
     sync::Arc,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
 /// Rows are sent to the file after this many ticks,
-const SEND_TICKS: u32 = 500;
+const SEND_TICKS: u32 = 2048;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
@@ -57,6 +57,8 @@ pub struct Recorder {
     watch: Option<FileWatch>,
     ticks_waiting: u32,
     sent_at: Instant,
+    /// Rows were sent before the end: what was sent at once has nothing to merge.
+    has_sent: bool,
 }
 
 impl Recorder {
@@ -82,9 +84,18 @@ impl Recorder {
     }
 
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
+        check_clock(SystemTime::now())?;
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
-        Ok(Self { fold: Fold::default(), stream, health, watch: None, ticks_waiting: 0, sent_at: now })
+        Ok(Self {
+            fold: Fold::default(),
+            stream,
+            health,
+            watch: None,
+            ticks_waiting: 0,
+            sent_at: now,
+            has_sent: false,
+        })
     }
 
     /// How the file is doing; stays readable after the recorder is gone.
@@ -143,7 +154,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
-    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length.
+    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length or content.
     pub fn finish(mut self, summary: &Summary, until: Option<Instant>) -> Result<(), RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(summary, stream)?;
@@ -155,8 +166,10 @@ impl Recorder {
             return Err(RecordingError::Write { why });
         }
         let Some(watch) = &self.watch else { return Ok(()) };
-        watch.check_closed(self.health.bytes())?;
-        if let Err(error) = merge::merge(watch.path(), until) {
+        watch.check_content(self.health.bytes(), &self.health.sha256())?;
+        if self.has_sent
+            && let Err(error) = merge::merge(watch.path(), until)
+        {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
         }
@@ -167,6 +180,7 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         self.ticks_waiting = 0;
+        self.has_sent = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }
@@ -180,5 +194,22 @@ impl Recorder {
     fn stop(&mut self, error: RecordingError) -> Result<(), RecordingError> {
         self.stream = None;
         Err(error)
+    }
+}
+
+/// Makes sure that the recording SDK can say when it began.
+fn check_clock(now: SystemTime) -> Result<(), RecordingError> {
+    if now < SystemTime::UNIX_EPOCH { Err(RecordingError::Clock) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_before_1970_is_an_error_and_no_panic() {
+        let epoch = SystemTime::UNIX_EPOCH;
+        assert!(matches!(check_clock(epoch - Duration::from_secs(1)), Err(RecordingError::Clock)));
+        assert!(check_clock(epoch).is_ok() && check_clock(SystemTime::now()).is_ok());
     }
 }

@@ -4,7 +4,8 @@
 //! the stream is dropped afterwards. This one never writes over a file, never blocks the SDK after an error, keeps
 //! what could not be written, and counts the bytes that reached the system.
 
-use crate::{backlog::Backlog, error::RecordingError, file::FileWatch, rr};
+use crate::{backlog::Backlog, error::RecordingError, file::FileWatch, identity::hexadecimal, rr};
+use sha2::{Digest, Sha256};
 use std::{
     io::{self, Write},
     path::Path,
@@ -24,6 +25,8 @@ pub struct SinkHealth {
     bytes: AtomicU64,
     has_ended: AtomicBool,
     error: Mutex<Option<String>>,
+    /// Of everything that was to be written.
+    hasher: Mutex<Sha256>,
 }
 
 impl SinkHealth {
@@ -40,6 +43,15 @@ impl SinkHealth {
     /// Whether data is lost, so that nothing is written any more.
     pub fn has_ended(&self) -> bool {
         self.has_ended.load(Ordering::Relaxed)
+    }
+
+    /// SHA-256 of what was written, if all of it was, hexadecimal.
+    pub(crate) fn sha256(&self) -> String {
+        hexadecimal(&self.hasher().clone().finalize())
+    }
+
+    fn hasher(&self) -> MutexGuard<'_, Sha256> {
+        self.hasher.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<String>> {
@@ -79,6 +91,7 @@ impl Guarded {
 impl Write for Guarded {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if !self.health.has_ended() {
+            self.health.hasher().update(bytes);
             self.backlog.waiting().extend_from_slice(bytes);
             self.drain();
         }

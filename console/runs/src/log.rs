@@ -6,6 +6,7 @@ use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
 use report::{Expect, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
+    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -60,12 +61,13 @@ impl RunLog {
         Ok(Self { folder: None, beside: None, recorder, least: Summary::default(), began })
     }
 
-    /// Takes the events of a tick; waits while the recorder's queue is full.
-    pub fn keep(&mut self, events: &[Event]) {
+    /// Takes the events of a tick, which are copied unless they are shared; waits while the recorder's queue is full.
+    pub fn keep(&mut self, events: impl Into<Arc<[Event]>>) {
+        let events = events.into();
         if let Some(event) = events.last() {
             (self.least.ticks, self.least.mission_time_s) = (Some(event.tick), Some(event.t_s));
         }
-        for event in events {
+        for event in &*events {
             if let EventKind::Ended { outcome, reason } = &event.kind {
                 (self.least.outcome, self.least.reason) = (Some(*outcome), Some(reason.clone()));
             }
@@ -141,7 +143,7 @@ mod tests {
     fn a_run_whose_recorder_is_not_done_in_time_still_says_how_it_ended() {
         let mut log = RunLog::unwritten().unwrap();
         let kind = EventKind::Ended { outcome: Outcome::Aborted, reason: "the operator ended it".into() };
-        log.keep(&[Event { tick: 7, t_s: 0.7, kind }]);
+        log.keep([Event { tick: 7, t_s: 0.7, kind }]);
         let calls = PlannerCalls { plan: 0, step: 0, p50_us: None, p99_us: None, faults: 0 };
         let closed = log.close(Duration::ZERO, calls, None, &Expect::default());
         let Summary { ticks, outcome, reason, .. } = closed.summary;

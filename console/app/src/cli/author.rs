@@ -29,3 +29,16 @@ pub(crate) enum Lang {
     /// C++17, with the same header.
     Cpp,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayWorkerArgs {
+    /// Folder `crash-N` in the folder of a run.
+    #[arg(value_name = "BUNDLE")]
+    pub bundle: PathBuf,
+    /// Run the plugin's process in gdb, without deadlines.
+    #[arg(long, conflicts_with = "core")]
+    pub gdb: bool,
+    /// Have gdb leave a core dump and the calls of all threads in the bundle where the plugin crashes again.
+    #[arg(long)]
+    pub core: bool,
+}

@@ -9,7 +9,7 @@ use crate::supervisor::Failure;
 use crate::survey::info;
 use crate::wire::answer::{self, Said};
 use crate::wire::body::Writer;
-use mission::{AskId, Fault, Parameters, PlannerInfo, Sandbox};
+use mission::{AskId, Fault, Parameters, PlannerInfo};
 use planner_api::{Limits, Site};
 use std::collections::VecDeque;
 
@@ -97,13 +97,8 @@ impl Opening {
 }
 
 impl Loaded {
-    fn new(
-        planner: &answer::Described,
-        loaded: &answer::Loaded,
-        plugin: &str,
-        sandbox: Option<&Sandbox>,
-    ) -> Self {
-        Self { info: info(planner, loaded, plugin, sandbox), state_version: planner.state_version }
+    fn new(planner: &answer::Described, sealed: &answer::Sealed, plugin: &str) -> Self {
+        Self { info: info(planner, sealed, plugin), state_version: planner.state_version }
     }
 
     /// Its private state, under the number of the ask that it was saved for.

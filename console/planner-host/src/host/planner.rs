@@ -1,7 +1,7 @@
 //! A planner in its worker: what it is asked, and what it gives.
 
-use super::log_limit::LogLimit;
 use super::opening::{Loaded, Opening, Stage};
+use super::said_limit::SaidLimit;
 use super::{HostConfig, fault, fault::Phase};
 use crate::supervisor::{Failure, Worker};
 use crate::wire::answer::{Said, said_of};
@@ -78,7 +78,7 @@ pub(super) struct Ready {
     pub(super) loaded: Loaded,
     parameters: Parameters,
     limits: Limits,
-    log_limit: LogLimit,
+    said_limit: SaidLimit,
 }
 
 /// The outcome of an ask: the planner's answer with its log lines, or its fault.
@@ -86,7 +86,7 @@ pub(super) type Outcome = Result<(Given, Said), Fault>;
 
 impl Ready {
     pub(super) fn new(loaded: Loaded, parameters: Parameters, limits: Limits) -> Self {
-        Self { loaded, parameters, limits, log_limit: LogLimit::default() }
+        Self { loaded, parameters, limits, said_limit: SaidLimit::default() }
     }
 
     /// Refuses new values of parameters that are unknown or not live; all values with the new ones.
@@ -232,7 +232,7 @@ impl Planner {
         let checked = self.ready.as_ref().map_or(Ok(()), |ready| checks::command(&command, &ready.limits));
         checked.map_err(|what| self.bad_output(phase, &what))?;
         if let Some(ready) = &mut self.ready {
-            ready.log_limit.take(&mut said.logs);
+            ready.said_limit.take(&mut said);
         }
         Ok((Given::Command(command), said))
     }

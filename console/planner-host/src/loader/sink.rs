@@ -1,22 +1,19 @@
 //! The console's services in the worker: copies what a planner hands over, up to a limit.
 
 use crate::Progress;
-use crate::wire::answer::{Said, log_level};
+use crate::wire::answer::{
+    MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS, Said, log_level,
+};
+use crate::wire::body;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::LogLevel;
 use planner_api::abi::{self, Draw, Host, Leg, Param, Str, Vec2, output};
 use std::ffi::c_void;
 
-/// Most of everything that one call may hand over. Surplus drawings, figures and messages are counted and dropped; a plan
-/// or a state that is too large is refused.
-const MOST_DRAWINGS: usize = 4096;
-const MOST_POINTS: usize = 1_000_000;
-const MOST_CUTS: usize = 10_000;
+/// Largest private state, bytes. As of a plan, what is larger is refused; surplus drawings, figures and messages are
+/// counted and dropped.
 const MOST_STATE_BYTES: usize = 1 << 20;
-const MOST_PARAMS: usize = 256;
-const MOST_SCALARS: usize = 256;
-const MOST_LOGS: usize = 64;
 const LONGEST_MESSAGE: usize = 1024;
 /// Longest text of a table, bytes.
 pub(super) const LONGEST_TEXT: usize = 4096;
@@ -113,8 +110,7 @@ impl<'a> Sink<'a> {
 /// A text of the plugin for people: at most so many bytes, nothing that moves a cursor.
 pub(super) fn plain(raw: Str, most: usize) -> String {
     // SAFETY: the plugin promises that its texts are as long as they say.
-    let text = unsafe { raw.to_text(most) };
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    body::plain(&unsafe { raw.to_text(most) })
 }
 
 /// Takes the first of some things as long as there is room.

@@ -1,5 +1,7 @@
 //! What was checked is what runs: the bytes are set aside where nobody can change them while they are loaded.
 
+#[cfg(target_os = "linux")]
+use crate::sandbox::PLUGIN_AT;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -19,6 +21,12 @@ enum Place {
 impl Staged {
     pub(super) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Keeps the bytes where they are until the process ends: the traces of panics look up names of functions in them.
+    pub(super) fn keep(self) {
+        #[cfg(target_os = "linux")]
+        std::mem::forget(self);
     }
 }
 
@@ -56,8 +64,8 @@ fn seal(bytes: &[u8]) -> io::Result<Staged> {
     let fd = memfd_create("planner", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
     let mut file = std::fs::File::from(fd);
     file.write_all(bytes)?;
-    let fd = OwnedFd::from(file);
-    fcntl_add_seals(&fd, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+    fcntl_add_seals(&file, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
+    let fd: OwnedFd = rustix::io::fcntl_dupfd_cloexec(&file, PLUGIN_AT)?;
     let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
     // Without /proc the loader has no way to it.
     std::fs::metadata(&path)?;

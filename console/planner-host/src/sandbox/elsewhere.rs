@@ -1,12 +1,12 @@
 //! Systems without Landlock and seccomp: nothing is closed off, and this is reported everywhere.
 
-use super::Sealed;
+use super::ClosedOff;
 use mission::Sandbox;
 use std::os::fd::{BorrowedFd, OwnedFd};
 
-pub(crate) fn seal() -> Sealed {
+pub(crate) fn seal() -> ClosedOff {
     let sandbox = Sandbox::None("only Linux has Landlock and seccomp".to_owned());
-    Sealed { sandbox, listener: None, reads_libraries: false }
+    ClosedOff { sandbox, listener: None, reads_libraries: false }
 }
 
 pub(crate) fn close_files() -> Result<(), String> {
@@ -43,7 +43,7 @@ impl std::os::fd::AsFd for Listener {
     }
 }
 
-pub(crate) fn verdict(call: &Call, _: bool) -> Verdict {
+pub(crate) fn verdict(call: &Call, _: super::Stage) -> Verdict {
     match *call {}
 }
 

@@ -1,13 +1,16 @@
 //! The kernel's reports of calls that wait for a decision.
 //!
-//! The calls that this takes are offered by no safe crate: installing a filter with a listener, receiving a report,
-//! answering it. All of them only pass a structure of the kernel. A fourth closes what was inherited.
+//! The calls that this takes are offered by no safe crate: installing a filter with a listener, receiving a report, asking
+//! whether it still waits, answering it. All of them only pass a structure of the kernel. A fifth closes what was inherited.
 #![expect(unsafe_code, reason = "calls of the kernel that no safe crate offers")]
 
 use super::Verdict;
+use super::about::About;
 use seccompiler::BpfProgram;
+use std::fs::File;
 use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, FromRawFd, OwnedFd};
+use std::os::unix::fs::FileExt;
 
 /// Installs a filter in this process, whose threads to come inherit it; what it leaves open is reported to this
 /// descriptor.
@@ -71,6 +74,8 @@ const fn request(number: u64, size: usize) -> u64 {
 }
 const RECEIVE: u64 = request(0, size_of::<libc::seccomp_notif>());
 const ANSWER: u64 = request(1, size_of::<libc::seccomp_notif_resp>());
+/// `_IOW`: the caller only writes.
+const IS_WAITING: u64 = request(2, size_of::<u64>()) & !(2 << 30);
 
 impl Listener {
     pub(crate) fn new(descriptor: OwnedFd) -> Self {
@@ -87,16 +92,31 @@ impl Listener {
         (received == 0).then(|| Call { id, thread: pid, number: data.nr.into(), arguments: data.args })
     }
 
-    /// Lets a call go on or fail. A forbidden one never returns: its process is to be killed.
+    /// Lets a call go on, succeed or fail. A forbidden one never returns: its process is to be killed.
     pub(crate) fn answer(&self, call: &Call, verdict: &Verdict) {
         let (error, flags) = match verdict {
             Verdict::Allow => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
+            Verdict::Tell(about) if self.tell(call, about).is_ok() => (0, 0),
+            Verdict::Tell(_) => (-libc::EFAULT, 0),
             Verdict::Refuse(error) => (-error, 0),
             Verdict::Forbid(_) => return,
         };
         let mut answer = libc::seccomp_notif_resp { id: call.id, val: 0, error, flags };
         // SAFETY: the kernel reads exactly this structure. It refuses the answer if the thread has ended meanwhile.
         unsafe { libc::ioctl(self.0.as_raw_fd(), ANSWER as libc::Ioctl, &raw mut answer) };
+    }
+}
+
+impl Listener {
+    /// Writes into the memory of the thread that asked.
+    fn tell(&self, call: &Call, about: &About) -> io::Result<()> {
+        let memory = File::options().write(true).open(format!("/proc/{}/mem", call.thread))?;
+        // As long as the call waits, its thread has not ended and its number is not another one's: what was opened is its memory.
+        // SAFETY: the kernel only reads the number.
+        if unsafe { libc::ioctl(self.0.as_raw_fd(), IS_WAITING as libc::Ioctl, &raw const call.id) } != 0 {
+            return Err(io::Error::last_os_error());
+        }
+        memory.write_all_at(&about.bytes, about.to)
     }
 }
 

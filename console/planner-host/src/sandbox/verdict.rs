@@ -1,10 +1,14 @@
 //! What the console decides about a call that is not free.
 //!
 //! What a call points at can be changed by another thread while the console looks at it. So a path decides only how a
-//! planner is refused, and while its plugin is loaded, when Landlock decides what can be read.
+//! planner is refused, never that a file may be reached: what may be opened is decided by Landlock, and what is to be known
+//! about a file is looked up by the console itself.
 
+use super::about::{self, About};
 use super::files::{LIBRARIES, LIBRARY_CACHE};
 use super::listener::Call;
+use super::{PLUGIN, Stage};
+use crate::wire::body::is_plain;
 use std::fs::File;
 use std::os::unix::fs::FileExt;
 
@@ -32,29 +36,33 @@ const CURIOUS: [&str; 10] = [
 pub(crate) enum Verdict {
     /// It may be made.
     Allow,
+    /// It is not made, and succeeds: this is what the planner is told about a file.
+    Tell(About),
     /// It fails with this error of the system, and the planner goes on.
     Refuse(i32),
     /// It is never made, and the process is killed; what was tried.
     Forbid(String),
 }
 
-/// Decides about a call, before and after its plugin is loaded.
-pub(crate) fn verdict(call: &Call, is_loading: bool) -> Verdict {
+/// Decides about a call.
+pub(crate) fn verdict(call: &Call, stage: Stage) -> Verdict {
     let Call { number, arguments, .. } = *call;
     match number {
         libc::SYS_clone => on_clone(call),
         libc::SYS_openat if arguments[2] as i32 & !READING != 0 => written(call, 1),
-        libc::SYS_openat => on_path(call, 1, is_loading && arguments[2] as i32 == LOADER_FLAGS),
-        libc::SYS_newfstatat | libc::SYS_statx | libc::SYS_readlinkat | libc::SYS_faccessat => {
-            on_path(call, 1, is_loading && number == libc::SYS_newfstatat)
-        }
+        libc::SYS_openat => opened(call, 1, stage, arguments[2] as i32),
+        libc::SYS_newfstatat => asked_about(call, stage),
+        libc::SYS_readlinkat | libc::SYS_faccessat => on_path(call, 1),
         #[cfg(target_arch = "x86_64")]
         libc::SYS_open if arguments[1] as i32 & !READING != 0 => written(call, 0),
         #[cfg(target_arch = "x86_64")]
-        libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0, false),
-        // Terminals are asked for their size and kind by libraries that print.
+        libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0),
+        // Everybody falls back to `newfstatat`.
+        libc::SYS_statx => Verdict::Refuse(libc::ENOSYS),
+        // Terminals are asked for their size and kind by libraries that print; a trace of calls shortens its paths.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
-        libc::SYS_landlock_restrict_self if is_loading => Verdict::Allow,
+        libc::SYS_getcwd => Verdict::Refuse(libc::ENOENT),
+        libc::SYS_landlock_restrict_self if stage == Stage::Loading => Verdict::Allow,
         number => Verdict::Forbid(name(number)),
     }
 }
@@ -87,17 +95,20 @@ fn on_clone(call: &Call) -> Verdict {
     }
 }
 
-fn on_path(call: &Call, index: usize, may_load: bool) -> Verdict {
+/// A file that is opened to be read: libraries while the plugin is loaded, afterwards the plugin's own bytes, in which
+/// the names of its functions are. Landlock lets nothing else be opened then, whatever the path has become by then.
+fn opened(call: &Call, index: usize, stage: Stage, flags: i32) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));
     };
-    let is_library = LIBRARIES.iter().any(|folder| is_below(folder, &path)) || path == LIBRARY_CACHE;
-    let is_own = path.is_empty() || path.starts_with("/proc/self/fd/");
-    if may_load && (is_library || is_own) {
+    let may_be_opened = flags == LOADER_FLAGS
+        && match stage {
+            Stage::Loading => is_library(&path) || path == PLUGIN,
+            Stage::Loaded { no_file_can_be_opened } => no_file_can_be_opened && path == PLUGIN,
+        };
+    if may_be_opened {
         Verdict::Allow
-    } else if path.is_empty() || is_library || CURIOUS.iter().any(|known| path.starts_with(known)) {
-        Verdict::Refuse(libc::EACCES)
-    } else if may_load && is_library_name(&path) {
+    } else if stage == Stage::Loading && is_library_name(&path) {
         // The loader tries where a library was when the plugin was built.
         Verdict::Refuse(libc::ENOENT)
     } else {
@@ -105,23 +116,67 @@ fn on_path(call: &Call, index: usize, may_load: bool) -> Verdict {
     }
 }
 
-/// A file that is opened to be changed is forbidden whatever it is.
-fn written(call: &Call, index: usize) -> Verdict {
+/// A question about a file: it is answered for an open one, and for libraries while the plugin is loaded.
+fn asked_about(call: &Call, stage: Stage) -> Verdict {
+    let [descriptor, path, to, flags, ..] = call.arguments;
+    let Some(path) = path_at(call.thread, path) else { return Verdict::Forbid(name(call.number)) };
+    let about = match path.as_str() {
+        "" if flags as i32 & libc::AT_EMPTY_PATH != 0 => about::descriptor(call.thread, descriptor as i32),
+        path if stage == Stage::Loading && is_library(path) => about::file(path, flags as i32),
+        _ if stage == Stage::Loading && is_library_name(&path) => return Verdict::Refuse(libc::ENOENT),
+        path => return of_path(call, path),
+    };
+    match about {
+        Ok(bytes) => Verdict::Tell(About { to, bytes }),
+        Err(error) => Verdict::Refuse(error),
+    }
+}
+
+fn on_path(call: &Call, index: usize) -> Verdict {
     path_at(call.thread, call.arguments[index])
         .map_or_else(|| Verdict::Forbid(name(call.number)), |path| of_path(call, &path))
 }
 
+/// A file that is opened to be changed is forbidden whatever it is; but the C library gives names to threads so, and does
+/// without.
+fn written(call: &Call, index: usize) -> Verdict {
+    let Some(path) = path_at(call.thread, call.arguments[index]) else {
+        return Verdict::Forbid(name(call.number));
+    };
+    let is_name = path.starts_with("/proc/self/task/") && path.ends_with("/comm") && !leads_back(&path);
+    if is_name { Verdict::Refuse(libc::EACCES) } else { forbidden(call, &path) }
+}
+
+/// What honest libraries ask for is refused, and anything else is forbidden.
 fn of_path(call: &Call, path: &str) -> Verdict {
+    let is_harmless =
+        path.is_empty() || is_library(path) || CURIOUS.iter().any(|known| path.starts_with(known));
+    if is_harmless && !leads_back(path) { Verdict::Refuse(libc::EACCES) } else { forbidden(call, path) }
+}
+
+fn forbidden(call: &Call, path: &str) -> Verdict {
     Verdict::Forbid(format!("{} of {}", name(call.number), for_people(path)))
 }
 
-/// What a thread's memory holds at an address, up to its first zero.
+/// What a thread's memory holds at an address, up to its first zero; nothing if it is no path of usual length.
 fn path_at(thread: u32, address: u64) -> Option<String> {
     let mut bytes = [0; LONGEST_PATH];
     let read = File::open(format!("/proc/{thread}/mem")).and_then(|mem| mem.read_at(&mut bytes, address));
     let bytes = &bytes[..read.ok()?];
-    let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    let length = bytes.iter().position(|byte| *byte == 0)?;
     Some(String::from_utf8_lossy(&bytes[..length]).into_owned())
+}
+
+/// Whether this is a library of the system, or the index of them.
+fn is_library(path: &str) -> bool {
+    // The loader also looks whether the folder itself is there.
+    let is_there = LIBRARIES.iter().any(|folder| path == *folder || is_below(folder, path));
+    path == LIBRARY_CACHE || (is_there && !leads_back(path))
+}
+
+/// Whether a path goes up again, to somewhere else than its beginning says.
+fn leads_back(path: &str) -> bool {
+    path.split('/').any(|part| part == "..")
 }
 
 fn is_below(folder: &str, path: &str) -> bool {
@@ -134,7 +189,7 @@ fn is_library_name(path: &str) -> bool {
 
 /// A path without what moves a cursor, and without numbers of processes, which differ from run to run.
 fn for_people(path: &str) -> String {
-    let plain = path.replace(char::is_control, "?");
+    let plain = path.replace(|c| !is_plain(c), "?");
     match plain.strip_prefix("/proc/").and_then(|rest| rest.split_once('/')) {
         Some((process, rest)) if process.bytes().all(|byte| byte.is_ascii_digit()) => {
             format!("/proc/PID/{rest}")
@@ -152,59 +207,99 @@ fn name(number: i64) -> String {
 mod tests {
     use super::*;
 
-    fn with_path(number: i64, path: &str, flags: i32, is_loading: bool) -> Verdict {
+    const LOADED: Stage = Stage::Loaded { no_file_can_be_opened: true };
+
+    fn open(path: &str, flags: i32, stage: Stage) -> Verdict {
         let path = format!("{path}\0");
-        verdict(&Call::of(number, [0, path.as_ptr() as u64, flags as u64, 0, 0, 0]), is_loading)
+        verdict(&Call::of(libc::SYS_openat, [0, path.as_ptr() as u64, flags as u64, 0, 0, 0]), stage)
     }
 
-    fn open(path: &str, flags: i32, is_loading: bool) -> Verdict {
-        with_path(libc::SYS_openat, path, flags, is_loading)
+    fn ask_about(path: &str, flags: i32, stage: Stage) -> Verdict {
+        let path = format!("{path}\0");
+        verdict(&Call::of(libc::SYS_newfstatat, [1, path.as_ptr() as u64, 0x1000, flags as u64, 0, 0]), stage)
+    }
+
+    fn forbidden(what: &str) -> Verdict {
+        Verdict::Forbid(what.to_owned())
     }
 
     #[test]
     fn libraries_are_read_only_while_the_plugin_is_loaded() {
         let library = "/usr/lib/x86_64-linux-gnu/libm.so.6";
-        assert_eq!(open(library, LOADER_FLAGS, true), Verdict::Allow);
-        assert_eq!(open(library, LOADER_FLAGS, false), Verdict::Refuse(libc::EACCES));
-        assert_eq!(open("/home/author/target/libm.so.6", LOADER_FLAGS, true), Verdict::Refuse(libc::ENOENT));
+        assert_eq!(open(library, LOADER_FLAGS, Stage::Loading), Verdict::Allow);
+        assert_eq!(open(library, LOADER_FLAGS, LOADED), Verdict::Refuse(libc::EACCES));
+        let elsewhere = open("/home/author/target/libm.so.6", LOADER_FLAGS, Stage::Loading);
+        assert_eq!(elsewhere, Verdict::Refuse(libc::ENOENT));
+    }
+
+    #[test]
+    fn its_own_bytes_are_all_that_a_loaded_plugin_can_open() {
+        assert_eq!(open(PLUGIN, LOADER_FLAGS, LOADED), Verdict::Allow);
+        assert_eq!(open(PLUGIN, libc::O_RDONLY, LOADED), Verdict::Refuse(libc::EACCES), "not as it is done");
+        let without_landlock = Stage::Loaded { no_file_can_be_opened: false };
+        assert_eq!(open(PLUGIN, LOADER_FLAGS, without_landlock), Verdict::Refuse(libc::EACCES));
+        assert_eq!(open(PLUGIN, libc::O_RDWR, LOADED), forbidden("openat of /proc/self/fd/201"));
     }
 
     #[test]
     fn what_is_opened_is_named() {
-        let forbidden = |what: &str| Verdict::Forbid(what.to_owned());
-        for is_loading in [true, false] {
-            assert_eq!(open("/etc/shadow", LOADER_FLAGS, is_loading), forbidden("openat of /etc/shadow"));
-            assert_eq!(open("/dev/tty", libc::O_RDWR, is_loading), forbidden("openat of /dev/tty"));
-            let memory = open("/proc/4711/mem", libc::O_RDWR, is_loading);
+        for stage in [Stage::Loading, LOADED] {
+            assert_eq!(open("/etc/shadow", LOADER_FLAGS, stage), forbidden("openat of /etc/shadow"));
+            assert_eq!(open("/dev/tty", libc::O_RDWR, stage), forbidden("openat of /dev/tty"));
+            let memory = open("/proc/4711/mem", libc::O_RDWR, stage);
             assert_eq!(
                 memory,
                 forbidden("openat of /proc/PID/mem"),
                 "no process id: it goes into the journal"
             );
+            let long = open(&format!("/usr/lib/{}", "x/../".repeat(100)), LOADER_FLAGS, stage);
+            assert_eq!(long, forbidden("openat"), "its end is not known");
         }
-        assert_eq!(open("/a/\u{1b}[2J", libc::O_RDWR, false), forbidden("openat of /a/?[2J"));
-        assert_eq!(verdict(&Call::of(libc::SYS_openat, [0; 6]), false), forbidden("openat"));
-        assert_eq!(verdict(&Call::of(libc::SYS_socket, [0; 6]), true), forbidden("socket"));
-        assert_eq!(verdict(&Call::of(9999, [0; 6]), true), forbidden("call 9999"));
+        assert_eq!(open("/a/\u{1b}[2J", libc::O_RDWR, LOADED), forbidden("openat of /a/?[2J"));
+        assert_eq!(verdict(&Call::of(libc::SYS_openat, [0; 6]), LOADED), forbidden("openat"));
+        assert_eq!(verdict(&Call::of(libc::SYS_socket, [0; 6]), Stage::Loading), forbidden("socket"));
+        assert_eq!(verdict(&Call::of(9999, [0; 6]), Stage::Loading), forbidden("call 9999"));
+    }
+
+    #[test]
+    fn a_way_that_leads_back_is_named_however_it_begins() {
+        for path in ["/usr/lib/../../etc/shadow", "/proc/self/../1/mem", "/proc/self/fd/../../../etc/shadow"]
+        {
+            for stage in [Stage::Loading, LOADED] {
+                assert_eq!(open(path, LOADER_FLAGS, stage), forbidden(&format!("openat of {path}")));
+                assert_eq!(ask_about(path, 0, stage), forbidden(&format!("newfstatat of {path}")));
+            }
+        }
     }
 
     #[test]
     fn what_libraries_ask_for_on_the_way_is_refused_and_survived() {
         for path in ["/proc/self/cgroup", "/proc/sys/vm/overcommit_memory"] {
-            assert_eq!(open(path, LOADER_FLAGS, false), Verdict::Refuse(libc::EACCES));
+            assert_eq!(open(path, LOADER_FLAGS, LOADED), Verdict::Refuse(libc::EACCES));
         }
-        let memory = open("/proc/self/mem", libc::O_RDWR, false);
-        assert_eq!(memory, Verdict::Forbid("openat of /proc/self/mem".into()), "nothing is written");
-        assert_eq!(with_path(libc::SYS_newfstatat, "", 0x1000, false), Verdict::Refuse(libc::EACCES));
+        let memory = open("/proc/self/mem", libc::O_RDWR, LOADED);
+        assert_eq!(memory, forbidden("openat of /proc/self/mem"), "nothing is written");
         let terminal = Call::of(libc::SYS_ioctl, [1, libc::TCGETS, 0, 0, 0, 0]);
-        assert_eq!(verdict(&terminal, false), Verdict::Refuse(libc::ENOTTY));
+        assert_eq!(verdict(&terminal, LOADED), Verdict::Refuse(libc::ENOTTY));
         let typed = Call::of(libc::SYS_ioctl, [0, libc::TIOCSTI, 0, 0, 0, 0]);
-        assert_eq!(verdict(&typed, false), Verdict::Forbid("ioctl".into()));
+        assert_eq!(verdict(&typed, LOADED), forbidden("ioctl"));
+    }
+
+    #[test]
+    fn open_files_are_told_about_and_others_are_not() {
+        for stage in [Stage::Loading, LOADED] {
+            assert!(matches!(ask_about("", libc::AT_EMPTY_PATH, stage), Verdict::Tell(_)));
+            assert_eq!(ask_about("/etc/shadow", 0, stage), forbidden("newfstatat of /etc/shadow"));
+            assert_eq!(ask_about("", 0, stage), Verdict::Refuse(libc::EACCES));
+        }
+        assert!(matches!(ask_about("/usr/lib/os-release", 0, Stage::Loading), Verdict::Tell(_)));
+        assert_eq!(ask_about("/usr/lib/nothing", 0, Stage::Loading), Verdict::Refuse(libc::ENOENT));
+        assert_eq!(ask_about("/usr/lib/os-release", 0, LOADED), Verdict::Refuse(libc::EACCES));
     }
 
     #[test]
     fn threads_are_no_processes() {
-        let clone = |flags| verdict(&Call::of(libc::SYS_clone, [flags, 0, 0, 0, 0, 0]), false);
+        let clone = |flags| verdict(&Call::of(libc::SYS_clone, [flags, 0, 0, 0, 0, 0]), LOADED);
         assert_eq!(clone(0x003d_0f00), Verdict::Allow, "as the C library starts a thread");
         assert_eq!(clone(libc::SIGCHLD as u64), Verdict::Forbid("fork".into()));
         let with_namespace = 0x003d_0f00 | libc::CLONE_NEWUSER as u64;

@@ -1,6 +1,7 @@
 //! How a process ended, in words that are the same in every run.
 
 use crate::wire::CHANNEL_LOST;
+use crate::wire::body::is_plain;
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
@@ -34,6 +35,12 @@ fn signal_text(number: i32) -> String {
         Some(Signal::HUP) => ("SIGHUP", "hung up"),
         Some(Signal::SYS) => ("SIGSYS", "a call of the system that no planner may make"),
         Some(Signal::PIPE) => ("SIGPIPE", "wrote to a closed channel"),
+        Some(Signal::ALARM) => ("SIGALRM", "an alarm that it had set"),
+        Some(Signal::VTALARM) => ("SIGVTALRM", "an alarm that it had set"),
+        Some(Signal::PROF) => ("SIGPROF", "an alarm that it had set"),
+        Some(Signal::TRAP) => ("SIGTRAP", "a breakpoint"),
+        Some(Signal::QUIT) => ("SIGQUIT", "asked to end"),
+        Some(Signal::XCPU) => ("SIGXCPU", "used up its processor time"),
         _ => return format!("signal {number}"),
     };
     format!("{name} ({meaning})")
@@ -42,10 +49,18 @@ fn signal_text(number: i32) -> String {
 /// The last line with anything in it, without what moves a cursor or differs from run to run.
 pub(super) fn last_line(output: &[u8]) -> String {
     let text = String::from_utf8_lossy(output);
-    let is_informative = |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ");
+    let is_informative =
+        |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ") && !is_of_trace(line);
     let line = text.lines().rfind(is_informative).unwrap_or_default();
-    let visible: String = line.chars().filter(|c| !c.is_control()).collect();
+    let visible: String = line.chars().filter(|c| is_plain(*c)).collect();
     without_ids(&visible).trim().chars().take(LONGEST_LINE).collect()
+}
+
+/// Whether a line is one of a trace of calls, as `12: main` and `at src/lib.rs:3`: whether there is one is the user's choice.
+fn is_of_trace(line: &str) -> bool {
+    let line = line.trim_start();
+    let is_numbered = line.split_once(": ").is_some_and(|(number, _)| number.chars().all(is_digit));
+    is_numbered || line.starts_with("at ") || line == "stack backtrace:"
 }
 
 /// Drops process and thread ids, as in `thread 'main' (4711) panicked`, and the digits of addresses.
@@ -85,7 +100,8 @@ mod tests {
         assert_eq!(signalled(CHANNEL_LOST.as_raw()), "lost its channel to the console");
         assert_eq!(signalled(2), "was killed by SIGINT (interrupted)");
         assert_eq!(signalled(31), "was killed by SIGSYS (a call of the system that no planner may make)");
-        assert_eq!(signalled(14), "was killed by signal 14");
+        assert_eq!(signalled(14), "was killed by SIGALRM (an alarm that it had set)");
+        assert_eq!(signalled(40), "was killed by signal 40");
         assert_eq!(how_it_ended(None), "lost its channel to the console");
     }
 
@@ -99,5 +115,8 @@ mod tests {
         );
         assert_eq!(last_line(b""), "");
         assert_eq!(last_line(b"f(x) (a)"), "f(x) (a)");
+        let with_trace =
+            b"no memory\nstack backtrace:\n   0: alloc\n             at src/lib.rs:3\n  12: main\n";
+        assert_eq!(last_line(with_trace), "no memory");
     }
 }

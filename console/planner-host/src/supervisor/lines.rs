@@ -1,7 +1,9 @@
 //! What a process prints, line by line, for people.
 
-/// So many lines are kept until somebody takes them; of more only the number is known.
-const MOST: usize = 64;
+use crate::wire::body::plain;
+
+/// So many lines are kept until somebody takes them, enough for the trace of a panic; of more only the number is known.
+const MOST: usize = 256;
 /// Longest line, bytes.
 const LONGEST: usize = 400;
 
@@ -26,7 +28,7 @@ impl Lines {
     }
 
     fn end_line(&mut self) {
-        let text = String::from_utf8_lossy(&self.partial).chars().filter(|c| !c.is_control()).collect();
+        let text = plain(&String::from_utf8_lossy(&self.partial));
         self.partial.clear();
         if self.whole.len() < MOST {
             self.whole.push(text);
@@ -64,7 +66,7 @@ mod tests {
         lines.extend(b"one\ntw\x1b[31mo");
         assert_eq!(lines.take(), ["one"]);
         lines.extend(b"\nthr");
-        assert_eq!(lines.take(), ["tw[31mo"]);
+        assert_eq!(lines.take(), ["tw [31mo"]);
         assert_eq!((lines.take_rest(), lines.take_rest()), (vec!["thr".to_owned()], vec![]));
     }
 

@@ -1,6 +1,7 @@
-//! The load of a busy process, read from `/proc`.
+//! Load and memory of a process, read from `/proc`.
 
 use super::clock::Load;
+use crate::stats::Memory;
 use rustix::process::Pid;
 use std::fs::{read_dir, read_to_string};
 use std::time::Duration;
@@ -16,6 +17,19 @@ pub(super) fn load_of(pid: Pid) -> Option<Load> {
     });
     let cpu = Duration::from_secs(ticks).checked_div(ticks_per_second())?;
     Some(Load { cpu, is_running: stats.any(|stat| matches!(stat.state, 'R' | 'D')) })
+}
+
+/// What a process has of memory; nothing where there is no `/proc`.
+pub(super) fn memory_of(pid: Pid) -> Option<Memory> {
+    memory_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
+}
+
+fn memory_in(status: &str) -> Option<Memory> {
+    let bytes = |key: &str| {
+        let value = status.lines().find_map(|line| line.strip_prefix(key))?;
+        Some(value.strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+    };
+    Some(Memory { now_bytes: bytes("VmRSS:")?, most_bytes: bytes("VmHWM:")? })
 }
 
 fn ticks_per_second() -> u32 {
@@ -50,6 +64,13 @@ mod tests {
         assert_eq!(Stat::of(line), Some(Stat { state: 'S', ticks: 42 }));
         assert_eq!(Stat::of("7 (cut off"), None);
         assert_eq!(Stat::of("7 (a) R 1 2"), None);
+    }
+
+    #[test]
+    fn memory_is_found_by_its_names() {
+        let status = "Name:\tworker\nVmHWM:\t    5600 kB\nVmRSS:\t    5000 kB\n";
+        let memory = Memory { now_bytes: 5000 << 10, most_bytes: 5600 << 10 };
+        assert_eq!((memory_in(status), memory_in("Name:\tworker\n")), (Some(memory), None));
     }
 
     #[cfg(target_os = "linux")]

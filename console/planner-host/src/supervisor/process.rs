@@ -9,8 +9,10 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-/// So much of the output is kept, bytes.
-const TAIL: usize = 4096;
+/// So much of the output is kept, bytes: the trace of a panic is some kilobytes.
+const TAIL: usize = 16 << 10;
+/// What a worker is given of the console's environment: whether a panic says by which calls it came.
+const ENVIRONMENT: [&str; 2] = ["RUST_BACKTRACE", "RUST_LIB_BACKTRACE"];
 /// So many reads of the output in a row, so that a planner that prints without end holds nobody up.
 const MOST_READS: usize = 16;
 
@@ -27,8 +29,8 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts a worker with this socket as its standard input and without environment. It leaves the console's session by
-    /// itself.
+    /// Starts a worker with this socket as its standard input and hardly any environment. It leaves the console's session
+    /// by itself.
     pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
         let (reader, writer) = io::pipe()?;
         rustix::io::ioctl_fionbio(&reader, true)?;
@@ -36,6 +38,7 @@ impl Process {
         start
             .args(&command.arguments)
             .env_clear()
+            .envs(ENVIRONMENT.into_iter().filter_map(|name| Some((name, std::env::var_os(name)?))))
             .stdin(Stdio::from(OwnedFd::from(socket)))
             .stdout(writer.try_clone()?)
             .stderr(writer);

@@ -5,15 +5,17 @@ mod exchange;
 mod guard;
 mod state;
 
+use super::load::memory_of;
 use super::process::Process;
 use super::ready::{Ready, Source, Watched};
 use super::tape::Tape;
 use super::{Failure, WorkerCommand, soft};
 use crate::Progress;
+use crate::stats::Memory;
+use crate::wire::answer::{Described, Sealed, planners_of};
 use crate::wire::body::Writer;
 use crate::wire::frame::Incoming;
 use guard::Guard;
-use mission::Sandbox;
 use rustix::event::PollFlags;
 use state::{Request, State};
 use std::io::{ErrorKind, Write};
@@ -61,9 +63,21 @@ impl Worker {
         matches!(self.state, State::Gone)
     }
 
-    /// How far its process is closed off; none before it has been asked to load a plugin.
-    pub(crate) fn sandbox(&self) -> Option<&Sandbox> {
-        self.guard.sandbox()
+    /// Reads which planners the plugin has that it was asked to load, beside what it said of itself before.
+    pub(crate) fn take_planners(&mut self) -> Result<(Sealed, Vec<Described>), Failure> {
+        let planners = self.take_answer(planners_of)?;
+        // Who answers without that has not closed itself off.
+        let sealed = self.guard.sealed().cloned();
+        sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
+    }
+
+    /// Has its first thread, which answers, run on these processors alone; threads that it starts from then on do so, too. Where
+    /// the system refuses, it runs where it ran.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn stay_on(&self, processors: &rustix::thread::CpuSet) {
+        if !self.process.is_reaped() {
+            let _ = rustix::thread::sched_setaffinity(Some(self.process.pid()), processors);
+        }
     }
 
     /// The lines that it printed since the last time.
@@ -75,6 +89,11 @@ impl Worker {
     pub(crate) fn remains(&mut self) -> (Vec<u8>, String) {
         self.process.read_output();
         (self.tape.bytes(), String::from_utf8_lossy(self.process.tail()).into_owned())
+    }
+
+    /// Memory of its process, where the system says so.
+    pub(crate) fn memory(&self) -> Option<Memory> {
+        memory_of(self.process.pid()).filter(|_| !self.process.is_reaped())
     }
 
     /// Whether it can be asked.

@@ -63,9 +63,11 @@ impl Cache {
         Some(planners.into_iter().map(named).collect())
     }
 
-    /// Keeps the planners of a plugin, as a probe described them.
+    /// Keeps the planners of a plugin, as a probe described them; it may have found another file than was read before.
     pub(crate) fn put(&self, plugin: &PluginFile, planners: &[PlannerInfo]) {
-        if planners.iter().all(|info| info.sandbox == Some(Sandbox::Full)) {
+        let is_sure =
+            |info: &PlannerInfo| info.sandbox == Some(Sandbox::Full) && info.sha256 == plugin.sha256;
+        if planners.iter().all(is_sure) {
             self.write(&plugin.sha256, planners);
         }
     }
@@ -173,8 +175,10 @@ mod tests {
         PluginFile::read(file)
     }
 
+    /// What a probe says of the plugin `1`.
     fn planners() -> Vec<PlannerInfo> {
-        vec![PlannerInfo { plugin: "libplanner_it.so".into(), sandbox: Some(Sandbox::Full), ..info() }]
+        let (plugin_name, sha256) = ("libplanner_it.so".into(), plugin("1").sha256);
+        vec![PlannerInfo { plugin: plugin_name, sha256, sandbox: Some(Sandbox::Full), ..info() }]
     }
 
     #[test]
@@ -226,6 +230,14 @@ mod tests {
             cache.put(&plugin("1"), &planners);
             assert_eq!(cache.get(&plugin("1")), None);
         }
+    }
+
+    #[test]
+    fn what_a_probe_found_in_another_file_than_was_read_before_is_not_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let cache = Cache::new(Some(folder.path()));
+        cache.put(&plugin("2"), &planners());
+        assert_eq!(cache.get(&plugin("2")), None);
     }
 
     #[test]

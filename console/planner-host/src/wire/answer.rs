@@ -1,10 +1,16 @@
 //! Answers: what a library holds, what a planner said, a plan, how far it is, a command, a refusal.
+//!
+//! Whoever wrote the plugin can write to the socket, too. So the console believes of an answer only what it has checked
+//! itself: the readers here keep the limits of what a worker would send, and texts are made plain by [`Body::text`].
 
 use super::body::{Body, Malformed, Read, Writer};
 use crate::Progress;
+use crate::parameters::check;
+use crate::stamp::Abi;
 pub(crate) use mission::Said;
 use mission::{ParamInfo, ParamKind, Sandbox};
 use nalgebra::Point2;
+use planner_api::export::is_id;
 use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, Plan, abi};
 
 /// A planner's refusal as it crosses: the number of its code, its sentence, the part of the way that it found.
@@ -18,6 +24,29 @@ pub(crate) struct Refusal {
 /// Code of a refusal that the worker itself makes: the planner's answer is none.
 pub(crate) const BAD_OUTPUT: i32 = 100;
 
+/// Most planners in a library.
+pub(crate) const MOST_PLANNERS: usize = 64;
+/// Most of everything that one answer may hold.
+pub(crate) const MOST_PARAMS: usize = 256;
+pub(crate) const MOST_DRAWINGS: usize = 4096;
+pub(crate) const MOST_SCALARS: usize = 256;
+/// Of the planner; the worker may add one.
+pub(crate) const MOST_LOGS: usize = 64;
+pub(crate) const MOST_POINTS: usize = 1_000_000;
+pub(crate) const MOST_CUTS: usize = 10_000;
+
+/// A worker that is closed off, and what it is about to load. It says so before anything of the plugin runs: this is
+/// believed of it, and what it says later is the plugin's.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Sealed {
+    /// How far it is closed off.
+    pub(crate) sandbox: Sandbox,
+    /// Of the file, hexadecimal.
+    pub(crate) sha256: String,
+    /// Of the file's stamp.
+    pub(crate) abi: Abi,
+}
+
 /// One planner of a library.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Described {
@@ -30,19 +59,9 @@ pub(crate) struct Described {
     pub(crate) parameters: Vec<ParamInfo>,
 }
 
-/// A library that was loaded.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Loaded {
-    pub(crate) sha256: String,
-    pub(crate) abi_major: u32,
-    pub(crate) abi_minor: u32,
-    pub(crate) planners: Vec<Described>,
-}
-
 impl Writer {
-    pub(crate) fn loaded(&mut self, loaded: &Loaded) -> &mut Self {
-        self.text(&loaded.sha256).u32(loaded.abi_major).u32(loaded.abi_minor);
-        self.all(&loaded.planners, |w, planner| {
+    pub(crate) fn planners(&mut self, planners: &[Described]) -> &mut Self {
+        self.all(planners, |w, planner| {
             w.text(&planner.id).text(&planner.name).text(&planner.version).text(&planner.about);
             w.u32(planner.caps).u32(planner.state_version);
             w.all(&planner.parameters, Self::parameter);
@@ -96,12 +115,13 @@ impl Writer {
         })
     }
 
-    pub(crate) fn sandbox(&mut self, sandbox: &Sandbox) -> &mut Self {
-        match sandbox {
+    pub(crate) fn sealed(&mut self, sealed: &Sealed) -> &mut Self {
+        match &sealed.sandbox {
             Sandbox::Full => self.u8(0),
             Sandbox::Partial(why) => self.u8(1).text(why),
             Sandbox::None(why) => self.u8(2).text(why),
-        }
+        };
+        self.text(&sealed.sha256).u32(sealed.abi.major).u32(sealed.abi.minor)
     }
 
     pub(crate) fn progress(&mut self, progress: &Progress) -> &mut Self {
@@ -115,36 +135,39 @@ impl Writer {
     }
 }
 
-/// Reads what a library holds.
-pub(crate) fn loaded_of(body: &mut Body<'_>) -> Read<Loaded> {
-    Ok(Loaded {
-        sha256: body.text()?,
-        abi_major: body.u32()?,
-        abi_minor: body.u32()?,
-        planners: body.all(|body| {
-            Ok(Described {
-                id: body.text()?,
-                name: body.text()?,
-                version: body.text()?,
-                about: body.text()?,
-                caps: body.u32()?,
-                state_version: body.u32()?,
-                parameters: body.all(Body::parameter)?,
-            })
-        })?,
-    })
+/// Reads which planners a library has.
+pub(crate) fn planners_of(body: &mut Body<'_>) -> Read<Vec<Described>> {
+    let planners = body.at_most(MOST_PLANNERS, Body::described)?;
+    let is_new = |i: usize, id: &String| planners[..i].iter().all(|earlier| earlier.id != *id);
+    let are_sound = planners.iter().enumerate().all(|(i, planner)| {
+        is_id(&planner.id) && is_new(i, &planner.id) && check(&planner.parameters).is_ok()
+    });
+    if are_sound { Ok(planners) } else { Err(Malformed) }
 }
 
 /// Reads what a planner drew, reported and said.
 pub(crate) fn said_of(body: &mut Body<'_>) -> Read<Said> {
-    Ok(Said {
-        drawings: body.all(Body::drawing)?,
-        scalars: body.all(|body| Ok((body.text()?, body.f64()?, body.text()?)))?,
-        logs: body.all(|body| Ok((log_level(body.u8()?.into()), body.text()?)))?,
-    })
+    let said = Said {
+        drawings: body.at_most(MOST_DRAWINGS, Body::drawing)?,
+        scalars: body.at_most(MOST_SCALARS, |body| Ok((body.text()?, body.f64()?, body.text()?)))?,
+        logs: body.at_most(MOST_LOGS + 1, |body| Ok((log_level(body.u8()?.into()), body.text()?)))?,
+    };
+    if said.scalars.iter().all(|(_, value, _)| value.is_finite()) { Ok(said) } else { Err(Malformed) }
 }
 
 impl Body<'_> {
+    fn described(&mut self) -> Read<Described> {
+        Ok(Described {
+            id: self.text()?,
+            name: self.text()?,
+            version: self.text()?,
+            about: self.text()?,
+            caps: self.u32()?,
+            state_version: self.u32()?,
+            parameters: self.at_most(MOST_PARAMS, Body::parameter)?,
+        })
+    }
+
     fn parameter(&mut self) -> Read<ParamInfo> {
         Ok(ParamInfo {
             key: self.text()?,
@@ -186,7 +209,7 @@ impl Body<'_> {
             cost: self.f64()?,
             complete: self.flag()?,
             legs: self.all(Self::leg)?,
-            cuts: self.all(Self::points)?,
+            cuts: self.at_most(MOST_CUTS, Self::points)?,
         })
     }
 
@@ -195,21 +218,20 @@ impl Body<'_> {
         Ok(Leg { tag, first: self.u32()? as usize, last: self.u32()? as usize })
     }
 
-    pub(crate) fn sandbox(&mut self) -> Read<Sandbox> {
-        match self.u8()? {
-            0 => Ok(Sandbox::Full),
-            1 => self.text().map(Sandbox::Partial),
-            2 => self.text().map(Sandbox::None),
-            _ => Err(Malformed),
-        }
+    pub(crate) fn sealed(&mut self) -> Read<Sealed> {
+        let sandbox = match self.u8()? {
+            0 => Sandbox::Full,
+            1 => Sandbox::Partial(self.text()?),
+            2 => Sandbox::None(self.text()?),
+            _ => return Err(Malformed),
+        };
+        Ok(Sealed { sandbox, sha256: self.text()?, abi: Abi { major: self.u32()?, minor: self.u32()? } })
     }
 
-    /// A worker sends only text that can be displayed unchanged.
     pub(crate) fn progress(&mut self) -> Read<Progress> {
         let progress = Progress { share: self.f64()?, what: self.text()? };
         let is_short = progress.what.chars().count() <= Progress::LONGEST;
-        let is_plain = is_short && !progress.what.contains(char::is_control);
-        if is_plain && (0.0..=1.0).contains(&progress.share) { Ok(progress) } else { Err(Malformed) }
+        if is_short && (0.0..=1.0).contains(&progress.share) { Ok(progress) } else { Err(Malformed) }
     }
 
     pub(crate) fn command(&mut self) -> Read<Command> {
@@ -253,8 +275,9 @@ mod tests {
             ParamKind::Flag { default: true },
             ParamKind::Choice { options: vec!["a".into(), "b".into()], default: "b".into() },
         ];
-        let parameters = kinds.map(|kind| ParamInfo {
-            key: "k".into(),
+        let keys = ["f", "i", "b", "c"].into_iter();
+        let parameters = kinds.into_iter().zip(keys).map(|(kind, key)| ParamInfo {
+            key: key.into(),
             label: "L".into(),
             unit: "m".into(),
             help: "h".into(),
@@ -270,13 +293,53 @@ mod tests {
             about,
             caps: 9,
             state_version: 2,
-            parameters: parameters.into(),
+            parameters: parameters.collect(),
         }];
-        let loaded = Loaded { sha256: "ab".into(), abi_major: 1, abi_minor: 0, planners };
         let write = |w: &mut Writer| {
-            w.loaded(&loaded);
+            w.planners(&planners);
         };
-        assert_eq!(carried(write, loaded_of), loaded);
+        assert_eq!(carried(write, planners_of), planners);
+    }
+
+    #[test]
+    fn a_description_that_no_worker_sends_is_refused() {
+        let planner = |id: &str, default: f64| {
+            let [name, version, about] = ["X", "1", "?"].map(str::to_owned);
+            let [key, label, unit, help, group] = ["k", "L", "m", "h", "g"].map(str::to_owned);
+            let kind = ParamKind::Float { min: 0.0, max: 1.0, default };
+            let parameters = vec![ParamInfo { key, label, unit, help, group, live: true, kind }];
+            Described { id: id.to_owned(), name, version, about, caps: 0, state_version: 1, parameters }
+        };
+        let read = |planners: &[Described]| {
+            let mut writer = Writer::default();
+            writer.planners(planners);
+            planners_of(&mut Body(&writer.into_bytes())).map(|planners| planners.len())
+        };
+        assert_eq!(read(&[planner("x", 0.5), planner("y", 0.5)]), Ok(2));
+        for bad in [vec![planner("a b", 0.5)], vec![planner("x", f64::NAN)], vec![planner("x", 2.0)]] {
+            assert_eq!(read(&bad), Err(Malformed), "{bad:?}");
+        }
+        assert_eq!(read(&[planner("x", 0.5), planner("x", 0.5)]), Err(Malformed));
+    }
+
+    #[test]
+    fn a_text_moves_no_cursor_and_turns_no_line_round() {
+        let mut writer = Writer::default();
+        writer.text("a\u{1b}[2Jb\u{202e}c\u{9b}d\u{200b}");
+        assert_eq!(Body(&writer.into_bytes()).text(), Ok("a [2Jb c d ".to_owned()));
+    }
+
+    #[test]
+    fn more_than_a_worker_sends_is_refused() {
+        let reads = |said: &Said| {
+            let mut writer = Writer::default();
+            writer.said(said);
+            said_of(&mut Body(&writer.into_bytes())).is_ok()
+        };
+        let logs = |n| Said { logs: vec![(LogLevel::Info, String::new()); n], ..Said::default() };
+        let scalar = |value| Said { scalars: vec![("u".into(), value, String::new())], ..Said::default() };
+        assert!(reads(&logs(MOST_LOGS + 1)) && !reads(&logs(MOST_LOGS + 2)));
+        assert!(reads(&scalar(1.0)) && !reads(&scalar(f64::NAN)));
     }
 
     #[test]

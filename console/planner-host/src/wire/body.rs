@@ -3,6 +3,9 @@
 use nalgebra::{Matrix3, Point2};
 use planner_api::PoseEstimate;
 
+/// Longest text, bytes; what a worker sends is shorter.
+const LONGEST_TEXT: usize = 16 << 10;
+
 /// A frame under construction.
 #[derive(Debug, Default)]
 pub(crate) struct Writer(Vec<u8>);
@@ -111,6 +114,18 @@ impl Writer {
     }
 }
 
+/// A text of strangers for people.
+pub(crate) fn plain(text: &str) -> String {
+    text.chars().map(|c| if is_plain(c) { c } else { ' ' }).collect()
+}
+
+/// Whether a character of strangers moves no cursor, turns no line round and is not there without being seen.
+pub(crate) fn is_plain(c: char) -> bool {
+    let is_unseen =
+        matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
+    !c.is_control() && !is_unseen
+}
+
 /// A body that is not what its kind says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Malformed;
@@ -168,8 +183,13 @@ impl<'a> Body<'a> {
         self.take(n)
     }
 
+    /// A text that can be shown as it is.
     pub(crate) fn text(&mut self) -> Read<String> {
-        String::from_utf8(self.bytes()?.to_vec()).map_err(|_| Malformed)
+        let bytes = self.bytes()?;
+        if bytes.len() > LONGEST_TEXT {
+            return Err(Malformed);
+        }
+        std::str::from_utf8(bytes).map(plain).map_err(|_| Malformed)
     }
 
     pub(crate) fn point(&mut self) -> Read<Point2<f64>> {
@@ -188,6 +208,12 @@ impl<'a> Body<'a> {
             return Err(Malformed);
         }
         (0..n).map(|_| read(self)).collect()
+    }
+
+    /// A count that is not larger than this, and then every item.
+    pub(crate) fn at_most<T>(&mut self, most: usize, read: impl FnMut(&mut Self) -> Read<T>) -> Read<Vec<T>> {
+        let n = Self(self.0).u32()? as usize;
+        if n > most { Err(Malformed) } else { self.all(read) }
     }
 
     pub(crate) fn pose(&mut self) -> Read<PoseEstimate> {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::answer::{Described, Loaded, Refusal, Said, loaded_of, said_of};
+use super::answer::{Described, Refusal, Said, planners_of, said_of};
 use super::body::{Body, Writer};
 use mission::{ParamInfo, ParamKind};
 use mutations::{mutated, mutations};
@@ -16,14 +16,13 @@ fn plan() -> Plan {
     Plan { path, cost: 3.0, complete: true, legs: vec![Leg { tag: LegTag::Swath, first: 0, last: 9 }], cuts }
 }
 
-fn loaded() -> Loaded {
+fn planners() -> Vec<Described> {
     let text = |text: &str| text.to_owned();
     let kind = ParamKind::Choice { options: vec![text("a"), text("b")], default: text("b") };
     let [key, label, unit, help, group] = ["k", "L", "m", "h", "g"].map(text);
     let parameters = vec![ParamInfo { key, label, unit, help, group, live: true, kind }];
     let [id, name, version, about] = ["x", "X", "1", "?"].map(text);
-    let planners = vec![Described { id, name, version, about, caps: 9, state_version: 2, parameters }];
-    Loaded { sha256: text("ab"), abi_major: 1, abi_minor: 0, planners }
+    vec![Described { id, name, version, about, caps: 9, state_version: 2, parameters }]
 }
 
 fn said() -> Said {
@@ -36,7 +35,12 @@ fn said() -> Said {
 fn answers() -> Vec<u8> {
     let mut writer = Writer::default();
     let refusal = Refusal { code: -7, message: "no".into(), partial: plan().path };
-    writer.loaded(&loaded()).said(&said()).plan(&plan()).command(Command::twist(0.1, -0.2)).refusal(&refusal);
+    writer
+        .planners(&planners())
+        .said(&said())
+        .plan(&plan())
+        .command(Command::twist(0.1, -0.2))
+        .refusal(&refusal);
     writer.into_bytes()
 }
 
@@ -56,8 +60,8 @@ proptest! {
         if let Ok(plan) = body().plan() {
             prop_assert!(plan.path.len() + plan.legs.len() + plan.cuts.len() <= most);
         }
-        if let Ok(loaded) = loaded_of(&mut body()) {
-            prop_assert!(loaded.planners.len() <= most);
+        if let Ok(planners) = planners_of(&mut body()) {
+            prop_assert!(planners.len() <= most);
         }
         if let Ok(said) = said_of(&mut body()) {
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
@@ -74,7 +78,7 @@ proptest! {
 fn what_is_damaged_above_is_good_before() {
     let bytes = answers();
     let mut body = Body(&bytes);
-    assert_eq!(loaded_of(&mut body).unwrap(), loaded());
+    assert_eq!(planners_of(&mut body).unwrap(), planners());
     assert_eq!(said_of(&mut body).unwrap(), said());
     assert_eq!(body.plan().unwrap(), plan());
     assert!(body.command().is_ok() && body.refusal().is_ok());

@@ -157,7 +157,7 @@ mod tests {
     use std::os::unix::net::UnixStream;
 
     fn frame(sequence: u32, text: &str) -> Vec<u8> {
-        Writer::default().begin(5, sequence, 250).text(text).finish().expect("short").to_vec()
+        Writer::default().begin(5, sequence, 250).bytes(text.as_bytes()).finish().expect("short").to_vec()
     }
 
     #[test]
@@ -212,7 +212,7 @@ mod tests {
         let writer = std::thread::spawn(move || theirs.write_all(&bytes));
         let mut incoming = Incoming::default();
         assert_eq!(incoming.receive(&mut ours), Received::Frame);
-        assert_eq!(incoming.body().text(), Ok(text));
+        assert_eq!(incoming.body().bytes(), Ok(text.as_bytes()));
         writer.join().expect("no panic").expect("written");
     }
 }

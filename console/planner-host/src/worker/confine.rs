@@ -1,7 +1,9 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
 use super::Socket;
-use crate::sandbox::{Sealed, close_all_but, seal};
+use crate::loader::File;
+use crate::sandbox::{ClosedOff, close_all_but, seal};
+use crate::wire::answer::Sealed;
 use crate::wire::body::Writer;
 use crate::wire::{SHUT_DOWN_WITHIN, kind};
 use mission::Sandbox;
@@ -17,6 +19,19 @@ use std::os::unix::net::UnixStream;
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
 const LARGEST_FILE: u64 = 64 << 20;
+
+/// Makes sure that a worker can have its socket where it belongs, before one is started.
+///
+/// # Errors
+/// A sentence about the limit that is too low.
+pub fn check_descriptors() -> Result<(), String> {
+    match getrlimit(Resource::Nofile).current {
+        Some(limit) if limit <= SOCKET_AT as u64 => Err(format!(
+            "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
+        )),
+        _ => Ok(()),
+    }
+}
 
 /// Takes the socket that came as standard input and puts nothing in its place.
 pub(super) fn take_socket() -> io::Result<UnixStream> {
@@ -42,14 +57,15 @@ pub(super) fn confine() {
     }
 }
 
-/// Closes the process off, and reports to the console how far, before anything of a plugin runs.
+/// Closes the process off, and reports to the console how far and for which file, before anything of that plugin runs.
 ///
 /// # Errors
 /// The console cannot be informed; then nothing may be loaded.
-pub(super) fn close_off(socket: &Socket, sequence: u32) -> io::Result<(Sandbox, bool)> {
-    let Sealed { sandbox, listener, reads_libraries } = seal();
+pub(super) fn close_off(socket: &Socket, sequence: u32, file: &File) -> io::Result<(Sandbox, bool)> {
+    let ClosedOff { sandbox, listener, reads_libraries } = seal();
+    let sealed = Sealed { sandbox, sha256: file.sha256.clone(), abi: file.abi };
     let mut frame = Writer::default();
-    let frame = frame.begin(kind::SEALED, sequence, 0).sandbox(&sandbox).finish().expect("a few words");
+    let frame = frame.begin(kind::SEALED, sequence, 0).sealed(&sealed).finish().expect("a few words");
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut descriptors = SendAncillaryBuffer::new(&mut space);
     let listener = listener.as_ref().map(AsFd::as_fd);
@@ -60,7 +76,7 @@ pub(super) fn close_off(socket: &Socket, sequence: u32) -> io::Result<(Sandbox, 
     if sent < frame.len() {
         return Err(io::ErrorKind::WriteZero.into());
     }
-    Ok((sandbox, reads_libraries))
+    Ok((sealed.sandbox, reads_libraries))
 }
 
 /// Limits the address space.

@@ -3,15 +3,13 @@
 use super::Socket;
 use super::confine::{close_off, die_with_the_console, limit_memory};
 use super::deadline::Deadline;
-use crate::loader::{File, Instance, Plugin, Sink, Table};
+use crate::loader::{File, Instance, Sink, Table};
 use crate::sandbox::close_files;
-use crate::wire::answer::{Loaded, Refusal};
+use crate::survey::{Load, load_of};
+use crate::wire::answer::Refusal;
 use crate::wire::body::{Body, Malformed, Writer};
-use crate::wire::{self, frame::Incoming, kind};
+use crate::wire::{frame::Incoming, kind};
 use mission::Sandbox;
-use std::ffi::OsStr;
-use std::os::unix::ffi::OsStrExt;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Why there is no answer.
@@ -71,37 +69,34 @@ impl<'a> Session<'a> {
 
     /// Loads a library once; describes one planner of it and keeps that, or all of them when none is named.
     fn load(&mut self, mut body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
-        if body.u32()? != wire::VERSION {
+        let Some(Load { memory_limit_bytes, requires_sandbox, path, id: wanted }) = load_of(&mut body)?
+        else {
             return Err(Trouble::Refused(
                 "the worker is of another build than the console; restart tankops".into(),
             ));
-        }
-        limit_memory(body.u64()?);
-        let requires_sandbox = body.flag()?;
-        let path = Path::new(OsStr::from_bytes(body.bytes()?));
-        let wanted = body.text()?;
-        body.end()?;
+        };
+        limit_memory(memory_limit_bytes);
         let file = File::read(path).map_err(Trouble::Refused)?;
-        let reads_libraries = self.close_off(sequence, requires_sandbox)?;
+        let reads_libraries = self.close_off(sequence, &file, requires_sandbox)?;
         let library = file.load().map_err(Trouble::Refused)?;
         if reads_libraries {
             close_files()
                 .map_err(|why| Trouble::Refused(format!("its files cannot be closed off: {why}")))?;
         }
-        let Plugin { sha256, abi, mut tables } = library.plugin().map_err(Trouble::Refused)?;
+        let mut tables = library.tables().map_err(Trouble::Refused)?;
         tables.retain(|table| wanted.is_empty() || table.id == wanted);
         let planners =
             tables.iter().map(|table| table.describe(&mut self.sink())).collect::<Result<Vec<_>, _>>();
         let planners = planners.map_err(Trouble::Refused)?;
         self.table = tables.into_iter().next();
-        out.loaded(&Loaded { sha256, abi_major: abi.major, abi_minor: abi.minor, planners });
+        out.planners(&planners);
         Ok(())
     }
 
     /// From here on the process can only compute. Whether files are still to be closed.
-    fn close_off(&self, sequence: u32, requires_sandbox: bool) -> Result<bool, Trouble> {
+    fn close_off(&self, sequence: u32, file: &File, requires_sandbox: bool) -> Result<bool, Trouble> {
         let lost = |error| Trouble::Refused(format!("the worker cannot be closed off: {error}"));
-        let (sandbox, reads_libraries) = close_off(self.socket, sequence).map_err(lost)?;
+        let (sandbox, reads_libraries) = close_off(self.socket, sequence, file).map_err(lost)?;
         if requires_sandbox && sandbox != Sandbox::Full {
             return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));
         }

@@ -112,6 +112,6 @@ fn a_worker_that_died_between_asks_is_reported_at_the_next_ask() {
     let fault = desk.ask(ONE, step(1)).unwrap_err();
     assert_eq!(
         (fault.cause, fault.message.as_str()),
-        (Cause::Died, "planner counter was killed by signal 14 during step 1")
+        (Cause::Died, "planner counter was killed by SIGALRM (an alarm that it had set) during step 1")
     );
 }

@@ -99,6 +99,42 @@ const ATTACKS: &[(&str, &str)] = &[
     ("syscall(434, getppid(), 0)", "pidfd_open"),
     ("syscall(SYS_bpf, 0, NULL, 0)", "bpf"),
     ("unshare(CLONE_NEWUSER)", "unshare"),
+    // Ways that begin where libraries are, and lead elsewhere.
+    (r#"open("/usr/lib/../../etc/shadow", O_RDONLY | O_CLOEXEC)"#, "openat of /usr/lib/../../etc/shadow"),
+    (r#"open("/proc/self/../1/environ", O_RDONLY)"#, "openat of /proc/self/../1/environ"),
+    (r#"open("/proc/self/fd/../../../etc/shadow", O_RDONLY)"#, "openat of /proc/self/fd/../../../etc/shadow"),
+    (r#"open("/proc/self/mem", O_RDWR)"#, "openat of /proc/self/mem"),
+    (r#"struct stat about; stat("/etc/shadow", &about)"#, "newfstatat of /etc/shadow"),
+    // The channel, and other descriptors.
+    ("shutdown(200, SHUT_RDWR)", "shutdown"),
+    ("dup2(1, 200)", "dup2"),
+    ("fcntl(200, F_DUPFD, 3)", "fcntl"),
+    ("fcntl(200, F_SETFL, 0)", "fcntl"),
+    ("ioctl(200, FIONREAD, NULL)", "ioctl"),
+    ("setsockopt(200, SOL_SOCKET, SO_RCVBUF, NULL, 0)", "setsockopt"),
+    ("syscall(SYS_splice, 200, NULL, 1, NULL, 1, 0)", "splice"),
+    // Other ways to watch, to change and to last.
+    ("syscall(SYS_userfaultfd, 0)", "userfaultfd"),
+    ("syscall(SYS_perf_event_open, NULL, 0, -1, -1, 0)", "perf_event_open"),
+    ("syscall(SYS_keyctl, 0, -3, 0)", "keyctl"),
+    (r#"syscall(SYS_mount, "none", "/mnt", "tmpfs", 0, NULL)"#, "mount"),
+    ("syscall(SYS_setns, 0, 0)", "setns"),
+    (r#"chroot("/")"#, "chroot"),
+    ("syscall(SYS_personality, 0x0040000)", "personality"),
+    ("syscall(SYS_seccomp, 1, 0, NULL)", "seccomp"),
+    ("syscall(SYS_prctl, 4, 0, 0, 0, 0)", "prctl"),
+    ("mlockall(MCL_CURRENT)", "mlockall"),
+    ("syscall(SYS_timer_create, 0, NULL, NULL)", "timer_create"),
+    ("syscall(SYS_sched_setscheduler, 0, 1, NULL)", "sched_setscheduler"),
+    ("syscall(SYS_sched_setaffinity, getppid(), 8, NULL)", "sched_setaffinity"),
+    ("syscall(SYS_rt_sigqueueinfo, getppid(), SIGCONT, NULL)", "rt_sigqueueinfo"),
+    ("syscall(438, 0, 0, 0)", "pidfd_getfd"),
+    ("syscall(SYS_shmget, 0, 4096, 0)", "shmget"),
+    (r#"syscall(SYS_mq_open, "/q", O_CREAT, 0600, NULL)"#, "mq_open"),
+    ("syscall(SYS_inotify_init1, 0)", "inotify_init1"),
+    ("syscall(SYS_vfork)", "vfork"),
+    ("kill(0, 0)", "kill"),
+    ("syscall(SYS_tkill, getppid(), SIGSTOP)", "tkill"),
     // What a filter of its own process could be caught with does not help: the kernel reports elsewhere.
     (
         "sigset_t all; sigfillset(&all); sigprocmask(SIG_BLOCK, &all, NULL); signal(SIGSYS, SIG_IGN); \
@@ -160,11 +196,91 @@ fn a_call_of_another_kind_of_processor_ends_the_process_without_a_name() {
 }
 
 #[test]
+fn a_call_by_the_numbers_of_another_interface_is_never_made() {
+    if cfg!(target_arch = "x86_64") {
+        let fault = fault_of("IN_STEP", "syscall(0x40000000 | SYS_getpid)");
+        assert_eq!(fault.cause, Cause::Forbidden, "{fault}");
+    }
+}
+
+#[test]
+fn descriptors_that_a_planner_sends_reach_nobody() {
+    let send = "char space[CMSG_SPACE(4)] = {0}, bytes[4] = {-1, -1, -1, -1}; struct iovec one = {bytes, 4}; \
+                struct msghdr message = {.msg_iov = &one, .msg_iovlen = 1, .msg_control = space, .msg_controllen = sizeof space}; \
+                struct cmsghdr *part = CMSG_FIRSTHDR(&message); part->cmsg_level = SOL_SOCKET; part->cmsg_type = SCM_RIGHTS; \
+                part->cmsg_len = CMSG_LEN(4); *(int *)(void *)CMSG_DATA(part) = 1; sendmsg(200, &message, 0)";
+    let open = || std::fs::read_dir("/proc/self/fd").unwrap().count();
+    let before = open();
+    let fault = fault_of("IN_STEP", send);
+    assert_eq!(fault.cause, Cause::Protocol, "{fault}");
+    // Other tests of this process open files, too, but no thousand of them.
+    assert!(open() < before + 200);
+}
+
+#[test]
+fn the_end_of_the_main_thread_is_silence_and_its_process_is_killed() {
+    let fault = fault_of("IN_STEP", "syscall(SYS_exit, 0)");
+    assert_eq!(fault.cause, Cause::Hung, "{fault}");
+    let fault = fault_of("IN_STEP", "pthread_exit(NULL)");
+    assert_eq!(fault.cause, Cause::Died, "the console's own code is on that stack, too: {fault}");
+}
+
+#[test]
+fn ways_to_end_are_told_apart() {
+    let ends = [
+        ("exit(3)", "planner hostile ended its own process with exit code 3 during step 3"),
+        ("quick_exit(4)", "planner hostile ended its own process with exit code 4 during step 3"),
+        ("raise(SIGALRM)", "planner hostile was killed by SIGALRM (an alarm that it had set) during step 3"),
+        (
+            "struct itimerval soon = {{0, 0}, {0, 1}}; setitimer(ITIMER_REAL, &soon, NULL); rest(1000)",
+            "planner hostile was killed by SIGALRM (an alarm that it had set) during step 3",
+        ),
+        ("raise(SIGTRAP)", "planner hostile was killed by SIGTRAP (a breakpoint) during step 3"),
+    ];
+    for (how, sentence) in ends {
+        let fault = fault_of("IN_STEP", how);
+        assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Died), "{how}");
+    }
+}
+
+#[test]
+fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
+    let honest = {
+        let (_folder, dirs) = hostile("IN_STEP", "");
+        survey(&dirs, &worker()).plugins[0].planners[0].sha256.clone()
+    };
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    // Full, another hash, ABI 1.0.
+    let sealed = [vec![0], text("ab"), vec![1, 0, 0, 0, 0, 0, 0, 0]].concat();
+    assert_eq!(
+        refusal_of(&sending(0x84, 1, &sealed)),
+        "sent something that is no answer while it was loaded"
+    );
+    // One planner: id, name, version, about; no abilities, state 1, no parameters.
+    let named = |id: &str| [vec![1, 0, 0, 0], text(id), vec![0; 16], vec![1, 0, 0, 0], vec![0; 4]].concat();
+    let surveyed = |done: &str| {
+        let (_folder, dirs) = hostile("IN_CONSTRUCTOR", &format!("{done}; rest(200)"));
+        survey(&dirs, &worker()).plugins.remove(0)
+    };
+    let lying = surveyed(&sending(0x80, 1, &named("spiral")));
+    assert_eq!((lying.planners[0].id.as_str(), &lying.planners[0].sha256), ("spiral", &lying.sha256));
+    assert_ne!(lying.sha256, honest, "the hash of this very file");
+    let unsound = surveyed(&sending(0x80, 1, &named("two words")));
+    assert_eq!(unsound.refused.as_deref(), Some("sent something that is no answer while it was loaded"));
+}
+
+/// Writes a frame to the console, in C.
+fn sending(kind: u8, sequence: u32, body: &[u8]) -> String {
+    let rest = [&[kind], &sequence.to_le_bytes()[..], &[0; 4], body].concat();
+    let frame = [&(rest.len() as u32).to_le_bytes()[..], &rest].concat();
+    let octal: String = frame.iter().map(|byte| format!("\\{byte:03o}")).collect();
+    format!("write(200, \"{octal}\", {})", frame.len())
+}
+
+#[test]
 fn frames_that_nobody_asked_for_are_no_answers() {
-    // The length, DONE or SEALED, another sequence number, no deadline.
-    for kind in ["x80", "x84"] {
-        let forged = format!(r#"write(200, "\x09\0\0\0\{kind}\xff\xff\xff\xff\0\0\0\0", 13)"#);
-        let fault = fault_of("IN_STEP", &forged);
+    for kind in [0x80, 0x84] {
+        let fault = fault_of("IN_STEP", &sending(kind, u32::MAX, &[]));
         let sentence =
             "planner hostile sent something that is no answer during step 3; its process was killed";
         assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Protocol));
@@ -224,7 +340,9 @@ fn honest_work_is_not_disturbed() {
                 if (!memory || pthread_create(&thread, NULL, sum, memory) || pthread_join(thread, NULL)) abort(); \
                 free(memory); if (getentropy(bytes, 16)) abort(); rest(1); time(NULL); fstat(1, &about); \
                 printf(\"%ld processors, %d\\n\", sysconf(_SC_NPROCESSORS_ONLN), isatty(1)); fflush(stdout); \
-                localtime(&(time_t){0}); qsort(calloc(9999, 8), 9999, 8, order)";
+                localtime(&(time_t){0}); qsort(calloc(9999, 8), 9999, 8, order); \
+                struct stat printed; if (fstat(1, &printed) || !S_ISFIFO(printed.st_mode)) abort(); \
+                if (!pthread_create(&thread, NULL, sum, NULL)) { pthread_setname_np(thread, \"theirs\"); pthread_join(thread, NULL); } char place[64]; getcwd(place, 64)";
     let helpers = "static void *sum(void *memory) { return memory; }\n\
                    static int order(const void *a, const void *b) { return a < b; }\nstatic void attack";
     let source = HOSTILE.replacen("static void attack", helpers, 1);

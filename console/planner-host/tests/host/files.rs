@@ -42,6 +42,20 @@ fn a_library_without_a_stamp_is_no_plugin() {
 }
 
 #[test]
+fn a_library_that_it_needs_and_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let nothing = folder.path().join("libgone.so");
+    let mut cc = std::process::Command::new("cc");
+    cc.args(["-shared", "-Wl,-soname,libgone.so", "-o"]).arg(&nothing).args(["-x", "c", "/dev/null"]);
+    assert!(cc.status().unwrap().success());
+    let (source, needed) = (direct_c(), ["-Wl,--no-as-needed".as_ref(), nothing.as_os_str()]);
+    crate::stand::compile_with(&source, folder.path(), "needs", &[], &needed);
+    std::fs::remove_file(&nothing).unwrap();
+    let why = refusal(&PluginDirs::of(vec![folder.path().to_owned()]));
+    assert!(why.starts_with("the loader refused it: ") && why.contains("libgone.so"), "{why}");
+}
+
+#[test]
 fn another_abi_is_refused_before_anything_of_it_runs() {
     // Its constructor would crash the worker: the message shows that it was not loaded.
     let source = "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\n\

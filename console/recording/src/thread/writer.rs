@@ -21,6 +21,9 @@ use std::{
 
 /// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
 const IDLE: Duration = Duration::from_millis(100);
+/// How long the thread lets batches gather once one has come: whoever flies thousands of ticks a second does not wake it for
+/// each of them.
+const GATHER: Duration = Duration::from_millis(2);
 /// How often the files on disk are compared with those that are being written; with [`IDLE`] and the 400 ms
 /// after which a screen asks, an operator knows within a second.
 const WATCH_PERIOD: Duration = Duration::from_millis(300);
@@ -56,6 +59,8 @@ impl Writer {
                 Err(RecvTimeoutError::Timeout) => self.idle(),
                 Err(RecvTimeoutError::Disconnected) => return self.close(),
             }
+            batches.try_iter().for_each(|events| self.write(&events));
+            std::thread::sleep(GATHER);
         }
     }
 

@@ -287,6 +287,23 @@ fn a_closed_recording_has_few_chunks() {
 }
 
 #[test]
+fn a_recording_that_somebody_writes_into_is_not_whole() {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("recording.rrd");
+    let now = Instant::now();
+    let mut recorder = Recorder::create(&path, &Identity::of_run("test"), now).expect("a new file");
+    let mut account = Fold::new();
+    for event in events(TICKS) {
+        recorder.push(&event, &account, now).expect("room on the disk");
+        account.apply(&event);
+    }
+    let file = std::fs::File::options().write(true).open(&path).expect("ours");
+    std::os::unix::fs::FileExt::write_all_at(&file, b"other", 200).expect("within the file");
+    let error = recorder.finish(&account.summary(), None).expect_err("changed");
+    assert!(error.to_string().contains("the file was changed by somebody else"), "{error}");
+}
+
+#[test]
 fn a_recording_that_cannot_be_merged_in_time_stays_as_it_was_written() {
     let folder = tempdir().expect("a folder");
     let (whole, long) = (folder.path().join("whole.rrd"), folder.path().join("long.rrd"));

@@ -13,8 +13,12 @@ use geometry::{Point, Vector};
 /// assert_eq!(crossings(&path, &[cut]), 1);
 /// ```
 pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
-    let segments: Vec<(Point, Point)> =
-        cuts.iter().flat_map(|cut| cut.windows(2).map(|pair| (pair[0], pair[1]))).collect();
+    let segments = cuts.iter().flat_map(|cut| cut.windows(2).map(|pair| (pair[0], pair[1])));
+    if let [a, b] = *path {
+        // A tree takes longer to make than one segment takes without it.
+        return segments.filter(|(p, q)| cross(a, b, *p, *q)).count();
+    }
+    let segments: Vec<(Point, Point)> = segments.collect();
     let boxes = Boxes::new(segments.iter().map(|(p, q)| (p.inf(q), p.sup(q))));
     let crossed = |a: Point, b: Point| {
         let near = boxes.near(a, b, 0.0).map(|k| segments[k]);

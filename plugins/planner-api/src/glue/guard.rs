@@ -3,6 +3,7 @@
 use super::services::HostServices;
 use crate::{Code, PlannerError, Result};
 use std::any::Any;
+use std::backtrace::{Backtrace, BacktraceStatus};
 use std::cell::RefCell;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -77,9 +78,12 @@ fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, Stri
 
 fn note(info: &PanicHookInfo<'_>) {
     let place = info.location().map(|at| format!("{}:{}", short(at.file()), at.line())).unwrap_or_default();
-    if cfg!(panic = "abort") {
+    let what = info.payload_as_str().unwrap_or_default();
+    let trace = Backtrace::capture();
+    if trace.status() == BacktraceStatus::Captured {
+        let _ = writeln!(std::io::stderr(), "by these calls:\n{trace}panicked at {place}: {what}");
+    } else if cfg!(panic = "abort") {
         // Nothing will be caught, and the console shows the last line of what a dead worker wrote.
-        let what = info.payload_as_str().unwrap_or_default();
         let _ = writeln!(std::io::stderr(), "panicked at {place}: {what}");
     }
     // A thread that is being torn down has no such place any more; then the place stays unknown.

@@ -8,7 +8,7 @@ use crate::host::{Host, fault, fault::Phase};
 use crate::parameters;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
-use crate::wire::answer::{self, Said, loaded_of, said_of};
+use crate::wire::answer::{Described, Said, Sealed, said_of};
 use crate::wire::body::Writer;
 use crate::wire::kind;
 use mission::planner::{Cause, During};
@@ -98,7 +98,7 @@ impl Host {
         let Some(mut worker) = planner.and_then(|planner| planner.worker.take()) else { return };
         let begun = match stage {
             Stage::Load(candidate) => {
-                let answer = outcome.and_then(|()| worker.take_answer(loaded_of));
+                let answer = outcome.and_then(|()| worker.take_planners());
                 self.configure(id, worker, opening, candidate, answer)
             }
             Stage::Configure(loaded) => {
@@ -133,13 +133,11 @@ impl Host {
         mut worker: Worker,
         mut opening: Opening,
         candidate: Candidate,
-        answer: Result<answer::Loaded, Failure>,
+        answer: Result<(Sealed, Vec<Described>), Failure>,
     ) -> Result<(), Fault> {
-        let found = answer.map(|answer| {
-            answer
-                .planners
-                .first()
-                .map(|planner| Loaded::new(planner, &answer, &candidate.name, worker.sandbox()))
+        let found = answer.map(|(sealed, planners)| {
+            let planner = planners.iter().find(|planner| planner.id == opening.planner);
+            planner.map(|planner| Loaded::new(planner, &sealed, &candidate.name))
         });
         let loaded = match found {
             Ok(Some(loaded)) => loaded,

@@ -71,7 +71,7 @@ impl Worker {
                 },
                 Some(Ok(())) if self.incoming.sequence() != self.sequence => return Arrived::Broken,
                 Some(Ok(())) if self.incoming.kind() == kind::SEALED => {
-                    if self.take_sandbox().is_err() {
+                    if self.take_sealed().is_err() {
                         return Arrived::Broken;
                     }
                 }
@@ -82,12 +82,12 @@ impl Worker {
         }
     }
 
-    /// Takes the report of how far the worker is closed off, which it gives once.
-    fn take_sandbox(&mut self) -> Read<()> {
+    /// Takes the report of how far the worker is closed off, and for which file, which it gives once.
+    fn take_sealed(&mut self) -> Read<()> {
         let mut body = self.incoming.body();
-        let sandbox = body.sandbox()?;
+        let sealed = body.sealed()?;
         body.end()?;
-        if self.guard.begin(sandbox) { Ok(()) } else { Err(Malformed) }
+        if self.guard.begin(sealed) { Ok(()) } else { Err(Malformed) }
     }
 
     /// Forwards a progress message, unless the rate limit is reached.

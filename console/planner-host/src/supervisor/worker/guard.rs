@@ -1,6 +1,7 @@
 //! The console's side of a worker's sandbox: how far it reaches, and decisions about calls of the system.
 
-use crate::sandbox::{Listener, Verdict, ends_loading, verdict};
+use crate::sandbox::{Listener, Stage, Verdict, ends_loading, verdict};
+use crate::wire::answer::Sealed;
 use mission::Sandbox;
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
 use std::io::{self, IoSliceMut, Read};
@@ -12,7 +13,7 @@ use std::os::unix::net::UnixStream;
 #[derive(Default)]
 pub(super) struct Guard {
     /// None before the worker has reported it.
-    sandbox: Option<Sandbox>,
+    sealed: Option<Sealed>,
     /// The last descriptor that came over the socket.
     received: Option<OwnedFd>,
     listener: Option<Listener>,
@@ -20,15 +21,27 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// How far the worker is closed off.
-    pub(super) fn sandbox(&self) -> Option<&Sandbox> {
-        self.sandbox.as_ref()
+    /// How far the worker is closed off, and for which file.
+    pub(super) fn sealed(&self) -> Option<&Sealed> {
+        self.sealed.as_ref()
     }
 
     /// Takes the worker's report; false if there was one before. It comes before anything of the plugin has run.
-    pub(super) fn begin(&mut self, sandbox: Sandbox) -> bool {
+    pub(super) fn begin(&mut self, sealed: Sealed) -> bool {
+        if self.sealed.is_some() {
+            return false;
+        }
         self.listener = self.received.take().map(Listener::new);
-        self.sandbox.replace(sandbox).is_none()
+        self.sealed = Some(sealed);
+        true
+    }
+
+    fn stage(&self) -> Stage {
+        let is_full = self.sealed.as_ref().is_some_and(|sealed| sealed.sandbox == Sandbox::Full);
+        match self.has_loaded {
+            false => Stage::Loading,
+            true => Stage::Loaded { no_file_can_be_opened: is_full },
+        }
     }
 
     /// The plugin is loaded.
@@ -45,7 +58,7 @@ impl Guard {
     pub(super) fn decide(&mut self) -> Option<String> {
         let listener = self.listener.as_ref()?;
         let call = listener.next()?;
-        let verdict = verdict(&call, !self.has_loaded);
+        let verdict = verdict(&call, self.stage());
         self.has_loaded |= ends_loading(&call);
         listener.answer(&call, &verdict);
         match verdict {
@@ -56,7 +69,7 @@ impl Guard {
 
     /// Reads from the socket; as long as the worker has not reported, a descriptor may come along.
     pub(super) fn read<'a>(&'a mut self, socket: &'a UnixStream) -> impl Read + 'a {
-        Reader { socket, received: self.sandbox.is_none().then_some(&mut self.received) }
+        Reader { socket, received: self.sealed.is_none().then_some(&mut self.received) }
     }
 }
 

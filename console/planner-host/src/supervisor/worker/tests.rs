@@ -112,7 +112,6 @@ fn progress_that_nobody_asked_for_is_no_answer() {
         (kind::PLAN, progress(0, 0.5, "")),
         (kind::PLAN, progress(1, 1.5, "")),
         (kind::PLAN, progress(1, f64::NAN, "")),
-        (kind::PLAN, progress(1, 0.5, "\u{1b}[2J")),
         (kind::PLAN, progress(1, 0.5, &long)),
         (kind::PLAN, trailing),
     ] {
