@@ -17,6 +17,9 @@ mod bench;
 mod campaign;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
+#[cfg(unix)]
+#[path = "acceptance/engines.rs"]
+mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
 #[path = "acceptance/imported.rs"]
@@ -54,6 +57,8 @@ mod script;
 mod session;
 #[path = "acceptance/shadow.rs"]
 mod shadow;
+#[path = "acceptance/signing.rs"]
+mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;

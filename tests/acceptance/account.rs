@@ -4,10 +4,21 @@ use crate::bench::{Bench, scenario};
 use recording::{JOURNAL_FILE, JournalReader, RECORDING_FILE};
 use report::account::{Percent, Shares};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tui::model::Run;
 
-const COVER: [&str; 3] = ["cover-circle.toml", "cover-square.toml", "cover-unknown-columns.toml"];
+/// The shipped scenarios that scan floor.
+fn cover() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(scenario("")).unwrap().map(|entry| entry.unwrap().path());
+    let scans = |file: &PathBuf| {
+        file.extension().is_some_and(|end| end == "toml")
+            && std::fs::read_to_string(file).unwrap().contains("kind = \"cover\"")
+    };
+    let mut files: Vec<PathBuf> = entries.filter(scans).collect();
+    files.sort();
+    assert!(files.len() >= 5, "{files:?}");
+    files
+}
 
 /// The four parts of a floor and what is guaranteed of it, as they are printed.
 type Printed = [String; 5];
@@ -66,47 +77,88 @@ fn of_pane(run: &Path) -> [Percent; 2] {
     [raster.whole(), raster.reachable()].map(|Shares { percent, .. }| percent)
 }
 
-#[test]
-fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_scenario() {
-    for name in COVER {
-        let bench = Bench::new();
-        let flown = bench.fly(&scenario(name), &[]).json();
-        let run = bench.runs().pop().unwrap();
-        let path = run.to_str().unwrap();
-        let text = bench.tankops(&["report", path]).out;
+/// The shares of a floor in every file that a report is written to.
+struct Files {
+    text: String,
+    json: Value,
+    html: String,
+    csv: String,
+}
+
+impl Files {
+    fn of(bench: &Bench, run: &str) -> Self {
+        let text = bench.tankops(&["report", run]).out;
         for file in ["a.html", "a.json", "a.csv"] {
-            let written = bench.tankops(&["report", path, "-o", file]);
+            let written = bench.tankops(&["report", run, "-o", file, "--force"]);
             assert_eq!(written.code, Some(0), "{written:?}");
         }
         let read = |file: &str| std::fs::read_to_string(bench.path().join(file)).unwrap();
-        let (html, csv, json) = (read("a.html"), read("a.csv"), read("a.json"));
-        let json: Value = serde_json::from_str(&json).unwrap();
+        Self {
+            text,
+            json: serde_json::from_str(&read("a.json")).unwrap(),
+            html: read("a.html"),
+            csv: read("a.csv"),
+        }
+    }
+
+    /// Makes sure that all of them print the same shares, which sum to 100.0; gives them. `name`: as text and CSV call the floor.
+    fn agree(&self, name: &str, of: &Value, json: &Value) -> Printed {
+        let printed = of_json(&of["percent"]);
+        let parts: f64 = printed[..4].iter().map(|part| part.parse::<f64>().unwrap()).sum();
+        assert!((parts - 100.0).abs() < 1e-9, "{name}: {printed:?}");
+        assert_eq!(of_json(&json["percent"]), printed, "{name}, JSON");
+        assert_eq!(of_text(&self.text, name), printed, "{name}, text");
+        assert_eq!(of_csv(&self.csv, name), printed, "{name}, CSV");
+        printed
+    }
+}
+
+fn assert_explained(of: &Value, causes: &Value) {
+    for cause in causes.as_array().unwrap() {
+        assert!(cause["measure"]["value_m"].is_number(), "a reason without a number: {of}");
+    }
+}
+
+#[test]
+fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_scenario() {
+    for file in cover() {
+        let bench = Bench::new();
+        let flown = bench.fly(&file, &[]).json();
+        let run = bench.runs().pop().unwrap();
+        let files = Files::of(&bench, run.to_str().unwrap());
+        let file = file.display();
         for (key, floor, pane) in [("whole", "whole floor", 0), ("reachable", "reachable floor", 1)]
             .map(|(k, f, i)| (k, f, of_pane(&run)[i]))
         {
-            let printed = of_json(&flown["floor"][key]["percent"]);
-            let parts: f64 = printed[..4].iter().map(|part| part.parse::<f64>().unwrap()).sum();
-            assert!((parts - 100.0).abs() < 1e-9, "{name} {floor}: {printed:?}");
-            assert_eq!(of_json(&json["floor"][key]["percent"]), printed, "{name} {floor}, JSON");
-            assert_eq!(of_text(&text, floor), printed, "{name} {floor}, text");
-            assert_eq!(of_recording(&run, key), printed, "{name} {floor}, recording");
+            let printed = files.agree(floor, &flown["floor"][key], &files.json["floor"][key]);
+            assert_eq!(of_recording(&run, key), printed, "{file} {floor}, recording");
             let capital = floor.replacen(['w', 'r'], if key == "whole" { "W" } else { "R" }, 1);
-            assert_eq!(of_html(&html, &capital), printed, "{name} {floor}, HTML");
-            assert_eq!(of_csv(&csv, floor), printed, "{name} {floor}, CSV");
+            assert_eq!(of_html(&files.html, &capital), printed, "{file} {floor}, HTML");
             let shown =
                 [pane.scanned, pane.missed, pane.unreachable, pane.margin].map(|part| format!("{part:.1}"));
-            assert_eq!(shown[..], printed[..4], "{name} {floor}, console");
+            assert_eq!(shown[..], printed[..4], "{file} {floor}, console");
+        }
+        let plates = flown["floor"]["plates"].as_array().unwrap();
+        for (plate, json) in plates.iter().zip(files.json["floor"]["plates"].as_array().unwrap()) {
+            let name = plate["name"].as_str().unwrap();
+            let [scanned, missed, unreachable, margin, guaranteed] = files.agree(name, plate, json);
+            let cells = [&scanned, &guaranteed, &missed, &unreachable, &margin];
+            let row: String = cells.map(|cell| format!("<td class=\"r\">{cell}</td>")).concat();
+            let html = files.html.split("<tr").find(|row| {
+                row.contains(&format!(">{name}</td>"))
+                    && row.contains("annular") | row.contains("sketch") | row.contains("rectangular")
+            });
+            assert!(html.unwrap().contains(&row), "{file} {name}, HTML: {html:?} has not {row}");
         }
         // Every gap says why with a number, and what is guaranteed was scanned.
-        for area in flown["floor"]["missed"].as_array().unwrap() {
-            for cause in area["causes"].as_array().unwrap() {
-                assert!(
-                    cause["measure"]["value_m"].is_number() || cause["reason"] == "not_asked",
-                    "{name}: {area}"
-                );
-            }
+        let floor = &flown["floor"];
+        for kind in ["missed", "unreachable"] {
+            floor[kind].as_array().unwrap().iter().for_each(|area| assert_explained(area, &area["causes"]));
+        }
+        for kind in ["slivers", "unreachable_slivers"] {
+            assert_explained(&floor[kind], &floor[kind]["causes"]);
         }
         let truly = flown["coverage"]["by_truth"]["guaranteed_truly"].as_f64().unwrap();
-        assert!(truly >= 0.95, "{name}: {truly}");
+        assert!(truly >= 0.95, "{file}: {truly}");
     }
 }

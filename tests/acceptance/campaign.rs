@@ -161,3 +161,80 @@ fn a_mission_of_the_table_is_flown_again_by_its_command() {
     );
     assert!(worst["what"].as_str().unwrap().starts_with(&what), "{worst} but {what}");
 }
+
+#[test]
+fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
+    let own = bench.file("own.toml", &text);
+    let plan = bench.file("plan.toml", "scenarios = [\"own.toml\"]\nseeds = { count = 6 }\nblock = 2\n");
+    assert_eq!(campaign(&bench, "run --out quiet", &[&plan]).code, Some(0));
+    assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
+    std::fs::write(&own, text.replace("speed_max_m_per_s = ", "speed_max_m_per_s = 0.1 # ")).unwrap();
+    works(&bench, "--block 1", "out");
+    let other = campaign(&bench, "run --out out", &[&plan]);
+    assert!(other.code == Some(2) && other.err.contains("holds another campaign"), "{other:?}");
+    works(&bench, "", "out");
+    assert!(table(&bench, "out") == table(&bench, "quiet"), "the text of the scenario is frozen");
+
+    let frozen = bench.path().join("out/campaign.json");
+    let json = std::fs::read_to_string(&frozen).unwrap();
+    let worked = |json: &str| {
+        std::fs::write(&frozen, json).unwrap();
+        let _ = std::fs::remove_file(bench.path().join("out/parts/part-00000.parquet"));
+        campaign(&bench, "work", &[Path::new("out")])
+    };
+    let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let sha256 = value["program"]["tankops_sha256"].as_str().unwrap();
+    for (changed, why) in [
+        (json.replace(sha256, &"0".repeat(64)), "tankops is not the one that the campaign was prepared with"),
+        (json.replace("\"count\": 6", "\"count\": 0"), "was changed or damaged: there are no missions"),
+        (json.replace("radius_m", "radius_n"), "is not the text of its SHA-256"),
+        (json[..json.len() / 2].to_owned(), "is not a campaign"),
+        (String::new(), "is not a campaign"),
+    ] {
+        let refused = worked(&changed);
+        let is_named = refused.err.contains("campaign.json") || why.starts_with("tankops");
+        assert!(refused.code == Some(2) && refused.err.contains(why) && is_named, "{why}: {refused:?}");
+    }
+    std::fs::write(&frozen, &json).unwrap();
+    works(&bench, "", "out");
+
+    let part = bench.path().join("out/parts/part-00001.parquet");
+    let whole = std::fs::read(&part).unwrap();
+    std::fs::write(&part, &whole[..whole.len() - 9]).unwrap();
+    let damaged = campaign(&bench, "merge", &[Path::new("out")]);
+    let says = damaged.err.contains("part-00001.parquet") && damaged.err.contains("delete it");
+    assert!(damaged.code == Some(2) && says, "{damaged:?}");
+    std::fs::remove_file(&part).unwrap();
+    for pipe in [&part, &frozen] {
+        let _ = std::fs::remove_file(pipe);
+        assert!(std::process::Command::new("mkfifo").arg(pipe).status().unwrap().success());
+        let refused = campaign(&bench, "merge", &[Path::new("out")]);
+        assert!(refused.code.is_some_and(|code| code > 1) && refused.err.contains("not a regular file"));
+    }
+}
+
+#[test]
+fn a_worker_that_is_told_to_stop_leaves_no_part_of_the_block_that_it_was_in() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "block = 1000", 8);
+    assert_eq!(campaign(&bench, "run --out quiet", &[&plan]).code, Some(0));
+    assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
+    let mut command = bench.command();
+    command.args(["campaign", "work", "--pull", "--threads", "1", "out"]);
+    let working = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let claim = bench.path().join("out/claims/00000");
+    while !claim.exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    let pid = rustix::process::Pid::from_child(&working);
+    rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+    let stopped = Ended::from(working.wait_with_output().unwrap());
+    assert!(stopped.code == Some(1) && stopped.err.contains("stopped; 1 blocks are missing"), "{stopped:?}");
+    let left = |folder: &str| std::fs::read_dir(bench.path().join(folder)).unwrap().count();
+    assert_eq!([left("out/parts"), left("out/cost"), left("out/claims")], [0; 3]);
+    works(&bench, "--pull", "out");
+    assert!(table(&bench, "out") == table(&bench, "quiet"), "stopped and flown again");
+}

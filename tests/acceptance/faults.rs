@@ -109,6 +109,23 @@ fn a_plugin_for_another_abi_is_listed_with_the_remedy() {
     assert!(listed.out.contains("ABI 9.0") && listed.out.contains("update the console"), "{listed:?}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_machine_that_lets_a_process_open_few_files_is_said_so_before_anything_is_flown() {
+    let bench = Bench::new();
+    let tankops = bench.command();
+    let mut limited = std::process::Command::new("sh");
+    limited
+        .args(["-c", "ulimit -n 128; exec \"$@\"", "sh"])
+        .arg(tankops.get_program())
+        .args(tankops.get_args());
+    let envs = tankops.get_envs().filter_map(|(name, value)| Some((name, value?)));
+    limited.envs(envs).current_dir(bench.path()).arg("run").arg(scenario("corridor.toml"));
+    let ended = Ended::from(limited.output().unwrap());
+    assert!(ended.code == Some(3) && ended.err.contains("`ulimit -n 256`"), "{ended:?}");
+    assert!(bench.runs().is_empty());
+}
+
 /// Compiles one of the examples in C into a plugin.
 pub(crate) fn compile(example: &str, library: &std::path::Path) {
     compile_file(&crate::bench::workspace().join("plugins/examples/direct-c").join(example), library);

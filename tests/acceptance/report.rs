@@ -13,7 +13,7 @@ fn flown(bench: &Bench) -> (PathBuf, String) {
 }
 
 /// Everything that people must supply.
-const FACTS: &str = r#"
+pub(crate) const FACTS: &str = r#"
 [inspection]
 client = "Port of <Rotterdam>"
 site = "North yard"

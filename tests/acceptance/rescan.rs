@@ -87,6 +87,14 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
     assert!(twice.code == Some(2) && twice.err.contains("given twice"), "{twice:?}");
     let none = rescan(&bench, &[Path::new("no-such-run")], "again.toml");
     assert!(none.code == Some(2) && none.err.contains("tankops runs"), "{none:?}");
+    // A larger area than any that was missed is asked for.
+    let nothing =
+        bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "none.toml", "--min-area-m2", "1000"]);
+    assert!(
+        nothing.code == Some(0) && nothing.out.contains("none.toml is not written: nothing"),
+        "{nothing:?}"
+    );
+    assert!(!bench.path().join("none.toml").exists());
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let goto = bench.runs().into_iter().find(|run| run.to_str().unwrap().contains("goto")).unwrap();
     let point = rescan(&bench, &[&goto], "again.toml");

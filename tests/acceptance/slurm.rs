@@ -4,6 +4,7 @@
 use crate::{
     bench::Bench,
     campaign::{campaign, plan, table},
+    engines::{line_of_the_guide, with_tankops_on_the_path},
 };
 use std::{
     fs,
@@ -168,4 +169,29 @@ fn an_array_with_a_task_requeued_and_a_task_killed_gives_the_same_table() {
     submit();
     slurm.drain();
     assert!(table(&bench, "slurm") == table(&bench, "local"), "by Slurm and here");
+}
+
+#[test]
+#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
+fn a_study_is_shared_by_the_tasks_of_an_array_by_the_line_of_the_guide() {
+    let Some(slurm) = Slurm::start() else {
+        eprintln!("passed over: slurmctld, slurmd and munged are not installed, or this is not root");
+        return;
+    };
+    let bench = Bench::new();
+    let asked = "trap-suite --layouts 3 --case u --method shortest";
+    let line = line_of_the_guide("sbatch --array").replace("coverage-suite --layouts 1000", asked);
+    let line = line.replace("0-7", "0-3");
+    let mut submit = with_tankops_on_the_path(&bench, "sh");
+    let submitted = submit.args(["-c", &line]).env("SLURM_CONF", slurm.conf()).output().unwrap();
+    assert!(submitted.status.success(), "{line}: {submitted:?}");
+    slurm.drain();
+    let rows = |rows: serde_json::Value| -> Vec<serde_json::Value> {
+        let all = rows.as_array().unwrap().iter();
+        all.filter(|row| !row["metric"].as_str().unwrap().contains("time")).cloned().collect()
+    };
+    let alone: Vec<&str> = asked.split_whitespace().collect();
+    let alone = bench.tankops(&[&["reproduce"], &alone[..], &["--json"]].concat()).json();
+    let shared = fs::read(bench.path().join("DIR/result.json")).unwrap();
+    assert_eq!(rows(serde_json::from_slice(&shared).unwrap()), rows(alone));
 }

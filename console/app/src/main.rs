@@ -22,6 +22,7 @@ mod reproduce;
 mod rescan;
 mod shadowing;
 mod shared_folder;
+mod signing;
 mod stop_signal;
 mod study_folder;
 mod trial;
@@ -129,7 +130,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),
-        Some(Command::Report(args)) => past_runs::report(&args),
+        Some(Command::Report(args)) => past_runs::report(&args, &plugins),
         Some(Command::Rescan(args)) => rescan::rescan(&args, &plugins),
         Some(Command::ReplayWorker(args)) => replay_worker::replay(&args),
         Some(Command::Completions { shell }) => manual::completions(shell),

@@ -28,9 +28,9 @@ pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
 }
 
 /// `tankops report RUN...`.
-pub(crate) fn report(args: &ReportArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn report(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if let Some(output) = &args.output {
-        return report_file::write(args, output);
+        return report_file::write(args, output, plugins);
     }
     let past = review::read_all(&args.runs, &args.logs.folder())?;
     let text = if let [only] = &past[..] {

@@ -8,7 +8,7 @@ use flight::{
 use mission::PlannerInfo;
 use planner_host::PluginDirs;
 use report::print::{say, say_line};
-use review::{MissedScan, doubt, missed_scan};
+use review::{MissedScan, NextScan, doubt, missed_scan};
 use scenario::Scenario;
 use std::process::ExitCode;
 
@@ -26,8 +26,14 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
         say_line(&note)?;
     }
     let names: Vec<String> = past.iter().map(|past| past.run.name.clone()).collect();
-    let MissedScan { missed, text, scenario } =
-        missed_scan(past, min_area_m2, &output.display().to_string())?;
+    let scan = match missed_scan(past, min_area_m2, &output.display().to_string())? {
+        NextScan::Worth(scan) => *scan,
+        NextScan::Nothing(why) => {
+            say_line(&format!("{} is not written: {why}", output.display()))?;
+            return Ok(ExitCode::from(COMPLETE));
+        }
+    };
+    let MissedScan { missed, text, scenario } = scan;
     write_file("the scenario", output, &text)?;
     say(&format!("{}: {}", output.display(), missed.human(min_area_m2)))?;
     print_advice(args, &names, &planners_instead(&scenario, plugins))?;

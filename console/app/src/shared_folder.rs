@@ -4,6 +4,7 @@
 use anyhow::Context;
 use recording::{open_regular, read_regular};
 use runs::write_by_draft;
+use rustix::fs::{Timespec, Timestamps, UTIME_NOW, futimens};
 use std::{
     fs::{self, File},
     io::{self, Read, Write},
@@ -61,15 +62,28 @@ impl SharedFolder {
 
     /// Removes what killed processes have left in these folders; what others are writing now stays.
     pub(crate) fn tidy(&self, inner: &[&str]) {
+        let now = self.now();
         for folder in inner.iter().map(|inner| self.0.join(inner)) {
             let files = fs::read_dir(folder).into_iter().flatten().flatten();
             let is_draft = |file: &PathBuf| {
                 file.extension().is_some_and(|extension| extension.to_string_lossy().starts_with("draft-"))
             };
             // A draft that stays behind harms nobody.
-            let left = files.map(|file| file.path()).filter(|file| is_draft(file) && is_silent(file));
+            let left = files.map(|file| file.path()).filter(|file| is_draft(file) && is_silent(file, now));
             left.for_each(|file| drop(fs::remove_file(file)));
         }
+    }
+
+    /// The time by the clock that dates the files here: that of a server where the folder is on one, so that a machine whose clock
+    /// is wrong judges claims as all others do.
+    fn now(&self) -> SystemTime {
+        let probe = self.0.join(CLAIMS).join(format!(".now-{}-{}", host(), std::process::id()));
+        let dated = File::create(&probe).and_then(|mut file| {
+            file.write_all(b".")?;
+            file.metadata()?.modified()
+        });
+        let _ = fs::remove_file(&probe);
+        dated.unwrap_or_else(|_| SystemTime::now())
     }
 
     /// Where a claim is; it holds the machine and the process.
@@ -80,7 +94,7 @@ impl SharedFolder {
     /// Takes something for this process alone; false if another one has it.
     pub(crate) fn claim(&self, name: &str) -> bool {
         let claim = self.claim_file(name);
-        if is_void(&claim) {
+        if claim.exists() && is_void(&claim, self.now()) {
             // Two that find it void do at worst the same work twice.
             let _ = fs::remove_file(&claim);
         }
@@ -96,9 +110,10 @@ impl SharedFolder {
 
     /// Says that the holder of a claim is alive.
     pub(crate) fn keep_claim(&self, name: &str) {
+        let now = Timespec { tv_sec: 0, tv_nsec: UTIME_NOW };
         let touched = File::options().write(true).open(self.claim_file(name));
         // Without it the work is at worst done twice.
-        drop(touched.and_then(|claim| claim.set_modified(SystemTime::now())));
+        drop(touched.map(|claim| futimens(claim, &Timestamps { last_access: now, last_modification: now })));
     }
 
     /// Gives something back.
@@ -109,8 +124,8 @@ impl SharedFolder {
 }
 
 /// Whether the holder of a claim is gone: silent for long, or a process of this machine that has ended.
-fn is_void(claim: &Path) -> bool {
-    if is_silent(claim) {
+fn is_void(claim: &Path, now: SystemTime) -> bool {
+    if is_silent(claim, now) {
         return true;
     }
     let holder = read_regular(claim).unwrap_or_default();
@@ -122,9 +137,9 @@ fn is_void(claim: &Path) -> bool {
 }
 
 /// Whether a file has not been touched for so long that nobody is at work on it.
-fn is_silent(file: &Path) -> bool {
+fn is_silent(file: &Path, now: SystemTime) -> bool {
     let touched = fs::metadata(file).and_then(|file| file.modified());
-    touched.is_ok_and(|at| at.elapsed().unwrap_or_default() > SILENT_FOR)
+    touched.is_ok_and(|at| now.duration_since(at).unwrap_or_default() > SILENT_FOR)
 }
 
 /// The name of this machine; two with one name do at worst the same work twice.
@@ -167,6 +182,24 @@ mod tests {
         assert!(folder.claim("3"));
         fs::write(&claim, format!("another-machine {}", ended.id())).expect("written");
         assert!(!folder.claim("3"), "nobody here knows");
+    }
+
+    #[test]
+    fn a_claim_is_as_old_as_the_file_system_says_and_a_holder_that_speaks_keeps_it() {
+        let here = tempfile::tempdir().expect("a folder");
+        let folder = SharedFolder::new(here.path());
+        folder.make(&[]).expect("a folder");
+        assert!(folder.claim("3"));
+        let claim = here.path().join("claims/3");
+        fs::write(&claim, "another-machine 1").expect("written");
+        let dated = |file: &Path| fs::metadata(file).and_then(|file| file.modified()).expect("dated");
+        let apart = dated(&claim).duration_since(folder.now()).unwrap_or_else(|late| late.duration());
+        assert!(apart < SILENT_FOR);
+        age(&claim);
+        folder.keep_claim("3");
+        assert!(!folder.claim("3"));
+        let left: Vec<_> = fs::read_dir(here.path().join("claims")).expect("read").flatten().collect();
+        assert_eq!(left.len(), 1, "the probe is gone: {left:?}");
     }
 
     #[test]

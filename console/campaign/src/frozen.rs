@@ -1,8 +1,14 @@
 //! A campaign as it is frozen before the first mission: what every block is flown from, and nothing else.
 
-use crate::{design::Design, plan::Plan, value::Value};
+use crate::{
+    design::Design,
+    plan::{MOST_CASES, Plan, SEEDS},
+    table::hex,
+    value::Value,
+};
 use scenario::Settings;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, ops::Range};
 
 /// Version of the frozen form; another one is refused.
@@ -78,17 +84,35 @@ impl Campaign {
     /// Reads a frozen campaign.
     ///
     /// # Errors
-    /// It is none, or of another format.
+    /// It is none, of another format, or not as it was frozen.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
         let campaign: Self =
             serde_json::from_slice(json).map_err(|error| format!("is not a campaign: {error}"))?;
         if campaign.format != FORMAT {
             return Err(format!("has format {}; this tankops knows format {FORMAT}", campaign.format));
         }
-        if campaign.block == 0 || campaign.design.points.is_empty() || campaign.scenarios.is_empty() {
-            return Err("was changed by hand: it has no missions".to_owned());
+        match campaign.damage() {
+            None => Ok(campaign),
+            Some(what) => Err(format!("was changed or damaged: {what}; prepare the campaign again")),
         }
-        Ok(campaign)
+    }
+
+    /// Why it cannot have been frozen by this program.
+    fn damage(&self) -> Option<String> {
+        let Design { points, keys, seeds, .. } = &self.design;
+        let changed = self.scenarios.iter().find(|s| hex(&Sha256::digest(&s.text)) != s.sha256);
+        if let Some(scenario) = changed {
+            return Some(format!("scenario {} is not the text of its SHA-256", scenario.name));
+        }
+        if points.iter().any(|point| point.len() != keys.len()) {
+            return Some(format!("a point has not {} values, one for each key", keys.len()));
+        }
+        let counts = [points.len() as u64, self.scenarios.len() as u64, seeds.count, self.block];
+        let planners = self.design.planners.len().max(1) as u64;
+        let cases = counts[..3].iter().fold(planners, |product, count| product.saturating_mul(*count));
+        let is_possible =
+            counts.iter().all(|count| *count > 0) && cases <= MOST_CASES && SEEDS.contains(&seeds.first);
+        (!is_possible).then(|| "there are no missions, or more than any plan can have".to_owned())
     }
 
     /// Whether another campaign flies the same missions by the same program, in whatever blocks.
@@ -218,7 +242,7 @@ pub(crate) mod tests {
             name: path.trim_end_matches(".toml").to_owned(),
             path: path.clone(),
             text: String::new(),
-            sha256: "ab".into(),
+            sha256: hex(&Sha256::digest("")),
         };
         let scenarios = plan.scenarios.iter().map(text).collect();
         let program = Program {
@@ -253,7 +277,35 @@ pub(crate) mod tests {
         assert!(!campaign(&PLAN.replace("count = 5", "count = 6")).is_same(&frozen));
     }
 
+    #[test]
+    fn what_was_changed_by_hand_is_refused_with_what_is_wrong() {
+        let json = serde_json::to_string(&campaign(PLAN)).expect("written");
+        let refused = |from: &str, to: &str| {
+            let changed = json.replace(from, to);
+            assert_ne!(changed, json, "{from}");
+            Campaign::thaw(changed.as_bytes()).expect_err(to)
+        };
+        for count in ["0", "18446744073709551615"] {
+            assert!(refused("\"count\":5", &format!("\"count\":{count}")).contains("no missions, or more"));
+        }
+        assert!(refused("\"block\":7", "\"block\":0").contains("no missions, or more"));
+        assert!(refused("\"first\":10", "\"first\":18446744073709551615").contains("no missions, or more"));
+        assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("has not 2 values"));
+        assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("scenario a is not the text"));
+    }
+
     proptest! {
+        #[test]
+        fn damage_is_refused_or_leaves_a_campaign_that_can_be_counted(damage in mutations::mutations()) {
+            let json = serde_json::to_vec(&campaign(PLAN)).expect("written");
+            if let Ok(campaign) = Campaign::thaw(&mutations::mutated(&json, &damage)) {
+                let last = campaign.blocks() - 1;
+                let cases = campaign.block(last);
+                prop_assert!(cases.start < cases.end && cases.end == campaign.cases());
+                prop_assert!(!campaign.command(&campaign.case(cases.end - 1)).is_empty());
+            }
+        }
+
         #[test]
         fn blocks_hold_every_case_once(count in 1_u64..400, block in 1_u64..90) {
             let plan = format!("scenarios = [\"a.toml\"]\nseeds = {{ count = {count} }}\nblock = {block}\n");

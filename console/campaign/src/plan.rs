@@ -31,9 +31,9 @@ const METRICS: [&str; 4] = ["mission_time_s", "path_length_m", "clearance_min_m"
 /// More points than this are a mistake.
 const MOST_POINTS: usize = 100_000;
 /// More missions than this are a mistake.
-const MOST_CASES: u64 = 100_000_000;
+pub(crate) const MOST_CASES: u64 = 100_000_000;
 /// Seeds of scenarios are TOML numbers.
-const SEEDS: Range<u64> = 0..(1 << 62);
+pub(crate) const SEEDS: Range<u64> = 0..(1 << 62);
 
 /// A plan, checked as far as it can be without its scenarios and planners.
 #[derive(Debug, Clone, PartialEq)]

@@ -30,8 +30,9 @@ pub struct InOrder {
 }
 
 impl InOrder {
-    /// The answers of a host.
-    pub fn new(host: Host) -> Self {
+    /// The answers of a host, which from now on is asked by this thread alone.
+    pub fn new(mut host: Host) -> Self {
+        host.share_processor();
         Self { host, open: VecDeque::new(), early: Vec::new() }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::bad_input;
 use mission::{PlannerChoice, PlannerInfo, TaskConfig};
-use planner_host::{PluginDirs, WorkerCommand, find_planners, parameter_problems, survey};
+use planner_host::{PluginDirs, WorkerCommand, check_descriptors, find_planners, parameter_problems, survey};
 use scenario::Scenario;
 
 /// Planners that can be chosen.
@@ -14,8 +14,9 @@ pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
 /// that may have them are looked at; all of them if something is wrong, to say what there is instead.
 ///
 /// # Errors
-/// Every objection, with its place in the scenario.
+/// Every objection, with its place in the scenario; or the machine lets no planner run.
 pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
+    check_descriptors().map_err(anyhow::Error::msg)?;
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
     let known = find_planners(&ids, plugins, &WorkerCommand::default());
     check_choices(scenario, &known).or_else(|_| check_choices(scenario, &found(plugins)))

@@ -6,10 +6,10 @@ use report::{Fold, Summary};
 use scenario::Scenario;
 
 /// Flies a scenario to its end, every ask answered before time moves on; `None` if it was stopped before. Figures by the wall
-/// clock and hashes of files are absent, so that equal missions have equal summaries.
+/// clock, hashes of files and the account of the floor are absent: equal missions have equal summaries.
 pub fn fly(scenario: &Scenario, answers: &mut InOrder, is_stopped: impl Fn() -> bool) -> Option<Summary> {
     let mut flight = Flight::prepare(scenario, false);
-    let mut fold = Fold::new();
+    let mut fold = Fold::of_figures();
     fold.apply(&flight.opened());
     let mut orders: &[Order] = &[Order::Start];
     while !matches!(flight.phase(), Phase::Ended(_)) {

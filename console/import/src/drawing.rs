@@ -18,7 +18,9 @@ use crate::{
     is_wholly_outside,
     plan::{FloorPlan, Named},
 };
+use areas::Area;
 use groups::Drawing;
+use nalgebra::Isometry2;
 pub use roles::{Layers, Role};
 use sorted::Sorted;
 use std::path::Path;
@@ -61,35 +63,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
         return Err(of_file(format!("nothing lies on a layer `{missing}`; layers: {listed}")));
     }
     let mut sorted = Sorted::new(all, assumed, &drawing.hidden, &mut notes);
-    let (shell, rest) = sorted.shell(&mut notes).ok_or_else(|| {
-        of_file(format!(
-            "no circle and no closed outline on a layer SHELL; draw the inner side of the shell there, or say which layer \
-             holds it, as in --layer SHELL=0; layers: {listed}"
-        ))
-    })?;
-    let (boundary, center) = areas::boundary(&shell, &mut notes);
-    let (low, high) = boundary.bounds();
-    let across_m = (high - low).max();
-    if !ACROSS_M.contains(&across_m) {
-        return Err(of_file(format!(
-            "the shell is {across_m:.6} m across, with {unit_m} m to the unit of the drawing; tanks of {} to {} m are read: \
-             state the unit, as in --units mm",
-            ACROSS_M.start(),
-            ACROSS_M.end()
-        )));
-    }
-    let center = center
-        .unwrap_or_else(|| if is_near(low, high) { Point::origin() } else { nalgebra::center(&low, &high) });
-    if center != Point::origin() {
-        notes.push(format!("({:.3}, {:.3}) m of the drawing is [0, 0] here", center.x, center.y));
-    }
-    let moved = nalgebra::Isometry2::new(-center.coords, 0.0);
-    let boundary = match boundary {
-        Boundary::Circle { .. } => boundary,
-        Boundary::Polygon { vertices } => {
-            Boundary::Polygon { vertices: vertices.iter().map(|at| moved * at).collect() }
-        }
-    };
+    let (boundary, moved, rest) = floor(&mut sorted, unit_m, &listed, &mut notes).map_err(of_file)?;
     let named = |name: &str, shapes: Vec<Shape>| -> Vec<Named> {
         let named = |(k, shape): (usize, Shape)| Named {
             name: format!("{name} {}", k + 1),
@@ -102,13 +76,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     let mut no_go = named("sump", sorted.areas(Role::Sump, "sump", Vec::new(), &mut notes));
     no_go.extend(named("no-go area", sorted.areas(Role::NoGo, "no-go area", Vec::new(), &mut notes)));
     for all in [&mut obstacles, &mut no_go] {
-        all.retain(|named| {
-            let is_inside = !is_wholly_outside(&boundary, &named.shape);
-            if !is_inside {
-                notes.push(format!("{} lies outside the shell and is left out", named.name));
-            }
-            is_inside
-        });
+        keep_inside(&boundary, all, &mut notes);
     }
     if obstacles.is_empty() {
         notes.push(format!(
@@ -117,6 +85,56 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
         ));
     }
     Ok(FloorPlan { boundary, obstacles, no_go, notes })
+}
+
+/// The shell in the tank frame, how the drawing is moved to it, and what else on the shell's layer is a column.
+fn floor(
+    sorted: &mut Sorted,
+    unit_m: f64,
+    listed: &str,
+    notes: &mut Vec<String>,
+) -> Result<(Boundary, Isometry2<f64>, Vec<Area>), String> {
+    let (shell, rest) = sorted.shell(notes).ok_or_else(|| {
+        format!(
+            "no circle and no closed outline on a layer SHELL; draw the inner side of the shell there, or say which layer \
+             holds it, as in --layer SHELL=0; layers: {listed}"
+        )
+    })?;
+    let (boundary, center) = areas::boundary(&shell, notes);
+    let (low, high) = boundary.bounds();
+    let across_m = (high - low).max();
+    if !ACROSS_M.contains(&across_m) {
+        return Err(format!(
+            "the shell is {across_m:.6} m across, with {unit_m} m to the unit of the drawing; tanks of {} to {} m are read: \
+             state the unit, as in --units mm",
+            ACROSS_M.start(),
+            ACROSS_M.end()
+        ));
+    }
+    let center = center
+        .unwrap_or_else(|| if is_near(low, high) { Point::origin() } else { nalgebra::center(&low, &high) });
+    if center != Point::origin() {
+        notes.push(format!("({:.3}, {:.3}) m of the drawing is [0, 0] here", center.x, center.y));
+    }
+    let moved = Isometry2::new(-center.coords, 0.0);
+    let boundary = match boundary {
+        Boundary::Circle { .. } => boundary,
+        Boundary::Polygon { vertices } => {
+            Boundary::Polygon { vertices: vertices.iter().map(|at| moved * at).collect() }
+        }
+    };
+    Ok((boundary, moved, rest))
+}
+
+/// Leaves out what lies beyond the shell.
+fn keep_inside(boundary: &Boundary, all: &mut Vec<Named>, notes: &mut Vec<String>) {
+    all.retain(|named| {
+        let is_inside = !is_wholly_outside(boundary, &named.shape);
+        if !is_inside {
+            notes.push(format!("{} lies outside the shell and is left out", named.name));
+        }
+        is_inside
+    });
 }
 
 /// Metres to the unit: as stated, else as the header says.

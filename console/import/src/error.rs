@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 /// A larger file is not taken, bytes.
-const LARGEST_BYTES: u64 = 64_000_000;
+const LARGEST_BYTES: u64 = 100_000_000;
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

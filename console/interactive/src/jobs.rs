@@ -4,16 +4,18 @@ use super::{desk::Tools, inbox::Outbox};
 use anyhow::{Context, bail};
 use mission::Severity;
 use recording::RECORDING_FILE;
-use review::{report_text, verdict};
+use review::{report_page, report_text, verdict};
 use std::{
+    io,
     path::Path,
     process::{Command, Stdio},
     thread,
 };
 use tui::{Job, Msg};
 
-/// Name of a report in the folder of its run.
-const REPORT: &str = "report.txt";
+/// Names of the reports in the folder of their run: of a scan of floor, and of other missions.
+const PAGE: &str = "report.html";
+const TEXT: &str = "report.txt";
 
 /// Begins a job; its end is reported to the screen.
 pub(super) fn begin(job: Job, tools: &Tools) {
@@ -37,9 +39,13 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
     match job {
         Job::Verify(_) => verdict(&folder, plugins),
         Job::Report(_) => {
-            let file = folder.join(REPORT);
-            runs::write_whole(&file, report_text(&folder)?.as_bytes()).context("writing the report")?;
-            Ok(format!("report written: {}", file.display()))
+            let (name, text) = match report_page(&folder)? {
+                Some(page) => (PAGE, page),
+                None => (TEXT, report_text(&folder)?),
+            };
+            let file = folder.join(name);
+            runs::write_whole(&file, text.as_bytes()).context("writing the report")?;
+            Ok(format!("report written, a draft: {}", file.display()))
         }
         Job::View(_) => view(&folder.join(RECORDING_FILE)),
         // The viewer takes a moment only in the address of a server, not beside a file.
@@ -67,7 +73,13 @@ fn view(recording: &Path) -> anyhow::Result<String> {
             Ok(format!("opened in rerun: {}", recording.display()))
         }
         Err(error) => {
-            bail!("rerun cannot be started ({error}); open it by hand: rerun {}", recording.display())
+            let why = match error.kind() {
+                io::ErrorKind::NotFound => {
+                    "there is no program rerun on the PATH (pip install rerun-sdk==0.36.3)".to_owned()
+                }
+                _ => format!("rerun cannot be started: {error}"),
+            };
+            bail!("{why}; the recording is {}", recording.display())
         }
     }
 }

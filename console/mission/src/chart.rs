@@ -8,6 +8,7 @@ use crate::{
 };
 use nalgebra::{Isometry2, Translation2};
 use planner_api as api;
+use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
 
 /// A found obstacle must turn out to stand this much elsewhere before it is reported again, metres.
@@ -21,6 +22,8 @@ const OUT_OF_SIGHT_S: f64 = 2.0;
 #[derive(Clone)]
 pub(crate) struct Chart {
     world: World,
+    /// What the drawing knows, in order of the ids.
+    drawn: Arc<[ObstacleId]>,
     found: Vec<Found>,
     /// What is in sight now, where it stands by the pose that is believed in now.
     in_sight: Vec<(ObstacleId, Shape)>,
@@ -55,8 +58,11 @@ impl Chart {
     /// The chart at the start: the drawing alone.
     pub(crate) fn new(drawing: World, config: &MissionConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+        let mut drawn: Vec<_> = drawing.obstacles.iter().filter(|o| o.known).map(|o| o.id).collect();
+        drawn.sort_unstable();
         Self {
             world: drawing,
+            drawn: drawn.into(),
             found: Vec::new(),
             in_sight: Vec::new(),
             map,
@@ -96,8 +102,7 @@ impl Chart {
         let mut events = Vec::new();
         let mut changes_plans = false;
         for sighting in sightings {
-            let on_drawing = self.world.obstacles.iter().any(|o| o.known && o.id == sighting.id);
-            if !on_drawing {
+            if self.drawn.binary_search(&sighting.id).is_err() {
                 let shape = sighting.shape_in_robot.transformed(&from.tank_from_robot());
                 let did_move = self.velocity(sighting.id).is_some();
                 let event = self.place(sighting.id, shape);

@@ -8,6 +8,8 @@ mod planner;
 mod said_limit;
 mod saved;
 mod spare;
+#[cfg(target_os = "linux")]
+mod together;
 
 pub use config::HostConfig;
 pub(crate) use opening::Opening;
@@ -58,6 +60,8 @@ pub struct Host {
     crashes: Vec<Crash>,
     /// Last requests and output of a worker that failed while its planner was being opened.
     remains: Option<(Vec<u8>, String)>,
+    #[cfg(target_os = "linux")]
+    together: Option<together::Together>,
 }
 
 impl Host {
@@ -80,6 +84,32 @@ impl Host {
             printed: Vec::new(),
             crashes: Vec::new(),
             remains: None,
+            #[cfg(target_os = "linux")]
+            together: None,
+        }
+    }
+
+    /// From now on has a planner that is asked alone run on the processor of the thread that asks it for commands. For a thread
+    /// that waits for every command; it has to be the one that calls this.
+    pub fn share_processor(&mut self) {
+        #[cfg(target_os = "linux")]
+        {
+            self.together = Some(together::Together::new());
+        }
+    }
+
+    /// Puts a planner on the processor of this thread for a command, and away from it for everything else.
+    #[cfg_attr(
+        not(target_os = "linux"),
+        allow(unused_variables, clippy::unused_self, reason = "only Linux can")
+    )]
+    fn place(&mut self, wanted: Option<&Wanted<'_>>) {
+        #[cfg(target_os = "linux")]
+        if let Some(together) = &mut self.together {
+            match (wanted, &self.planners[..]) {
+                (Some(Wanted::Step(_)), [Planner { worker: Some(worker), .. }]) => together.gather(worker),
+                (_, planners) => together.part(planners.iter().filter_map(|planner| planner.worker.as_ref())),
+            }
         }
     }
 
@@ -126,6 +156,7 @@ impl Host {
     /// Ends a mission, so that the next one begins as with a new host, but for the processes: a planner that has answered all
     /// it was asked is created again in the process that has loaded it, when it is next opened.
     pub fn end_mission(&mut self) {
+        self.place(None);
         for planner in std::mem::take(&mut self.planners) {
             let Some(worker) = planner.worker else { continue };
             let surplus = match planner.ready {
@@ -149,6 +180,7 @@ impl Host {
         let id = ask.id;
         match ask.what {
             What::Open { choice, site, restore } => {
+                self.place(None);
                 let opening = site.lend(|site| Opening::new(&choice.id, &choice.parameters, site, restore));
                 self.open(id, opening);
             }
@@ -168,6 +200,7 @@ impl Host {
     }
 
     fn try_begin(&mut self, id: AskId, wanted: &Wanted<'_>) -> Result<(), Fault> {
+        self.place(Some(wanted));
         let config = &self.config;
         let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) else {
             return Err(fault::of(Failure::Gone, "", wanted.phase()));

@@ -43,4 +43,4 @@ pub use stats::{CallStats, HostStats, Memory};
 pub use supervisor::{Waker, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, check_plugin, find_planners, survey};
 pub use user_folder::user_folder;
-pub use worker::worker_main;
+pub use worker::{check_descriptors, worker_main};

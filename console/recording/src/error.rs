@@ -22,6 +22,9 @@ pub enum RecordingError {
         /// Which file.
         path: PathBuf,
     },
+    /// The recording SDK panics where the clock is before its first moment.
+    #[error("the clock of this machine is before 1970, and a recording cannot be: set the clock")]
+    Clock,
     /// The first event is not `run_opened`, so there is no world to draw.
     #[error("a recording begins with the event run_opened, got {got} first")]
     NotOpened {

@@ -34,16 +34,14 @@ use std::{
     io::Write,
     path::Path,
     sync::Arc,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
-/// Rows are sent to the file after this many ticks, the first after more: a short run that was flown fast is written in one
-/// piece, and has nothing to merge,
-const SEND_TICKS: u32 = 500;
-const FIRST_SEND_TICKS: u32 = 2000;
+/// Rows are sent to the file after this many ticks,
+const SEND_TICKS: u32 = 2048;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
@@ -59,6 +57,7 @@ pub struct Recorder {
     watch: Option<FileWatch>,
     ticks_waiting: u32,
     sent_at: Instant,
+    /// Rows were sent before the end: what was sent at once has nothing to merge.
     has_sent: bool,
 }
 
@@ -85,6 +84,7 @@ impl Recorder {
     }
 
     fn open(sink: SafeSink, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
+        check_clock(SystemTime::now())?;
         let health = sink.health();
         let stream = Some(Stream::open(sink, identity)?);
         Ok(Self {
@@ -138,8 +138,7 @@ impl Recorder {
         }
         // Whoever looks at a robot that stands still wants to see how it came to that.
         let held = matches!(event.kind, EventKind::Held { .. });
-        let most = if self.has_sent { SEND_TICKS } else { FIRST_SEND_TICKS };
-        if held || self.ticks_waiting >= most { self.send(now) } else { self.idle(now) }
+        if held || self.ticks_waiting >= SEND_TICKS { self.send(now) } else { self.idle(now) }
     }
 
     /// Sends waiting rows if it is time; to be called now and then while nothing happens.
@@ -195,5 +194,22 @@ impl Recorder {
     fn stop(&mut self, error: RecordingError) -> Result<(), RecordingError> {
         self.stream = None;
         Err(error)
+    }
+}
+
+/// Makes sure that the recording SDK can say when it began.
+fn check_clock(now: SystemTime) -> Result<(), RecordingError> {
+    if now < SystemTime::UNIX_EPOCH { Err(RecordingError::Clock) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_before_1970_is_an_error_and_no_panic() {
+        let epoch = SystemTime::UNIX_EPOCH;
+        assert!(matches!(check_clock(epoch - Duration::from_secs(1)), Err(RecordingError::Clock)));
+        assert!(check_clock(epoch).is_ok() && check_clock(SystemTime::now()).is_ok());
     }
 }

@@ -10,11 +10,12 @@ pub mod geojson;
 mod indications;
 pub(crate) mod layers;
 mod maps;
+mod marks;
 mod page;
 mod run_part;
 mod sections;
 
-pub use facts::Inspection;
+pub use facts::{Inspection, unreadable};
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use maps::Figure;
@@ -61,6 +62,46 @@ pub struct Revision {
     pub file: String,
     /// SHA-256 of its file, hexadecimal.
     pub sha256: String,
+    /// The runs that it is about.
+    #[serde(default)]
+    pub runs: Vec<SignedRun>,
+}
+
+/// A run as it was when a report on it was signed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
+pub struct SignedRun {
+    /// Name of its folder.
+    pub run: String,
+    /// SHA-256 of its journal, hexadecimal.
+    pub journal_sha256: Option<String>,
+    /// SHA-256 of its recording, hexadecimal.
+    pub recording_sha256: Option<String>,
+}
+
+impl SignedRun {
+    /// A run as it is now.
+    pub fn of(past: &PastRun) -> Self {
+        let Files { journal_sha256, recording_sha256, .. } = past.files.clone();
+        Self { run: past.name.clone(), journal_sha256, recording_sha256 }
+    }
+}
+
+impl Revision {
+    /// What speaks against a run that is there under the name of one of those that were signed.
+    pub fn doubt(&self, now: &SignedRun) -> Option<String> {
+        let then = self.runs.iter().find(|then| then.run == now.run && *then != now)?;
+        let (file, then, now) = match then.journal_sha256 == now.journal_sha256 {
+            false => ("journal", &then.journal_sha256, &now.journal_sha256),
+            true => ("recording", &then.recording_sha256, &now.recording_sha256),
+        };
+        let digest = |sha256: &Option<String>| sha256.clone().unwrap_or_else(|| "none".into());
+        Some(format!(
+            "signed revision {} is about another {file}: expected SHA-256 {}, found {}",
+            self.revision,
+            digest(then),
+            digest(now)
+        ))
+    }
 }
 
 /// Who signs, and when.
@@ -101,7 +142,7 @@ pub struct Document {
     pub gate: Vec<GateItem>,
     #[serde(skip)]
     pub(crate) pictures: Pictures,
-    /// Name of the scenario.
+    /// Name of the scenario, the first run's.
     pub scenario: String,
     /// Form and size of the tank.
     pub size: String,
@@ -179,7 +220,7 @@ impl Document {
             indications,
             gate: Vec::new(),
             pictures,
-            scenario: run.scenario.clone(),
+            scenario: past[0].fold.run.as_deref().unwrap_or(run).scenario.clone(),
             size: gate::size(run),
             is_whole_floor: evidence.asks_for_everything(),
         };
@@ -214,7 +255,8 @@ pub(crate) fn is_marked(incident: &crate::record::Incident) -> bool {
 /// Number of a document: the beginning of the first run's name, and its seed.
 fn number(past: &[PastRun]) -> String {
     let first = past.first();
-    let began = first.map_or("", |past| past.name.split('-').next().unwrap_or_default());
+    let name = first.map(|past| past.files.closed_as.as_ref().unwrap_or(&past.name));
+    let began = name.map_or("", |name| name.split('-').next().unwrap_or_default());
     let seed = first.and_then(|past| past.fold.run.as_ref()).map_or(0, |run| run.seed);
     format!("{began}-{seed}")
 }

@@ -17,13 +17,12 @@ impl<'a> Datum<'a> {
     /// The datum that an inspection states.
     pub(crate) fn of(facts: &'a Inspection) -> Self {
         let [east_m, north_m] = facts.datum_m.unwrap_or([0.0, 0.0]);
-        let name = facts.datum_crs.as_deref().filter(|_| facts.datum_m.is_some());
-        Self {
-            east_m,
-            north_m,
-            turn_rad: -facts.datum_north_deg.unwrap_or(0.0).to_radians(),
-            name: name.unwrap_or("tank frame, metres"),
-        }
+        let name = match (&facts.datum_crs, facts.datum_m) {
+            (Some(name), Some(_)) => name,
+            (None, Some(_)) => "system not named (inspection.datum_crs), metres",
+            (_, None) => "tank frame, metres",
+        };
+        Self { east_m, north_m, turn_rad: -facts.datum_north_deg.unwrap_or(0.0).to_radians(), name }
     }
 
     /// A place.

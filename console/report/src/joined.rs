@@ -52,6 +52,15 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
         if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
             return Err(format!("run {} is given twice", other.name));
         }
+        let is_copy = |other: &&PastRun| {
+            past.files.journal_sha256.is_some() && other.files.journal_sha256 == past.files.journal_sha256
+        };
+        if let Some(other) = runs[index + 1..].iter().find(is_copy) {
+            return Err(format!(
+                "runs {} and {} have the same journal: one is a copy of the other, or both are one mission with one seed",
+                past.name, other.name
+            ));
+        }
         let other = alone(past)?;
         fit_together((&past.name, &other), (&last.name, &all))?;
         all.scanned.to_mut().join(&other.scanned);

@@ -71,6 +71,24 @@ impl Notes {
         Ok(())
     }
 
+    /// The notes of a file as they are kept: in order, and without anything that a terminal takes for a command.
+    ///
+    /// # Errors
+    /// There is more than can be noted, as a sentence.
+    pub fn tidied(mut self) -> Result<Self, String> {
+        if self.bookmarks.len() > MOST_BOOKMARKS {
+            return Err(format!("there are {} bookmarks; at most {MOST_BOOKMARKS}", self.bookmarks.len()));
+        }
+        self.remark = checked(&self.remark).map_err(|why| format!("remark: {why}"))?;
+        for bookmark in &mut self.bookmarks {
+            bookmark.text =
+                checked(&bookmark.text).map_err(|why| format!("bookmark at {} s: {why}", bookmark.t_s))?;
+        }
+        self.bookmarks.retain(|bookmark| bookmark.t_s.is_finite());
+        self.bookmarks.sort_by(|one, other| one.t_s.total_cmp(&other.t_s));
+        Ok(self)
+    }
+
     fn at(&self, t_s: f64) -> Option<usize> {
         self.bookmarks.iter().position(|bookmark| (bookmark.t_s - t_s).abs() < SAME_S)
     }

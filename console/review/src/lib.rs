@@ -5,7 +5,7 @@ mod readings;
 mod rescan;
 mod verify;
 
-pub use past::{combined, read_all, report_text, summary};
+pub use past::{combined, inspection, read_all, report_page, report_text, summary};
 pub use readings::readings;
-pub use rescan::{MIN_AREA_M2, MissedScan, doubt, missed_scan, rescan_of};
+pub use rescan::{MIN_AREA_M2, MissedScan, NextScan, doubt, missed_scan, rescan_of};
 pub use verify::{Verified, verdict, verify};

@@ -1,8 +1,13 @@
 //! Past runs as their journals tell them.
 
 use flight::failure::bad_input;
-use report::{Expect, PastRun, Summary, account::Account, human, merged};
-use runs::{Past, find};
+use report::{
+    Document, Expect, Inspection, PastRun, Summary,
+    account::Account,
+    document::{Context, html},
+    human, merged,
+};
+use runs::{Past, find, signed_list};
 use scenario::{Scenario, with_todays_keys};
 use std::path::{Path, PathBuf};
 
@@ -30,6 +35,30 @@ pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
 /// Its journal cannot be read.
 pub fn report_text(folder: &Path) -> anyhow::Result<String> {
     Ok(human(&summary(&Past::read(folder)?)?))
+}
+
+/// The inspection report of the run in a folder as a page, a draft; `None` for a mission that was not to scan floor.
+///
+/// # Errors
+/// Its journal, or the list of signed reports on it, cannot be read.
+pub fn report_page(folder: &Path) -> anyhow::Result<Option<String>> {
+    let past = Past::read(folder)?;
+    if past.run.summary.floor.is_none() {
+        return Ok(None);
+    }
+    let (inspection, revisions) = (inspection(&past)?, signed_list(folder)?);
+    let version = env!("CARGO_PKG_VERSION");
+    let context = Context { inspection, revisions, version, ..Context::default() };
+    Ok(Some(html(&Document::new(&[past.run], context).map_err(bad_input)?)))
+}
+
+/// What the scenario of a run says that only people know.
+///
+/// # Errors
+/// The scenario in its journal is refused.
+pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
+    let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    Ok(scenario.map_err(|errors| bad_input(errors.render()))?.inspection)
 }
 
 /// The summary of a run that has been read, held to the bounds of its scenario.

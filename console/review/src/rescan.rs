@@ -13,6 +13,15 @@ const MOST_BOXES: usize = 4000;
 /// Smaller missed areas are not worth a mission, square metres.
 pub const MIN_AREA_M2: f64 = 0.05;
 
+/// A scan of what past runs missed.
+#[derive(Debug)]
+pub enum NextScan {
+    /// There is something to be scanned.
+    Worth(Box<MissedScan>),
+    /// Nothing that can be reached is worth another scan: why, as a sentence and the places that stay.
+    Nothing(String),
+}
+
 /// What past runs missed, and the scenario that scans it.
 #[derive(Debug)]
 pub struct MissedScan {
@@ -27,35 +36,37 @@ pub struct MissedScan {
 /// The scenario that scans what past runs missed.
 ///
 /// # Errors
-/// The runs do not go together, or nothing that can be reached was missed.
-pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyhow::Result<MissedScan> {
+/// The runs do not go together.
+pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyhow::Result<NextScan> {
     let (opened, past): (Vec<_>, Vec<PastRun>) = past.into_iter().map(|past| (past.opened, past.run)).unzip();
     let missed = report::rescan(&past, min_area_m2, MOST_BOXES).map_err(bad_input)?;
     if missed.boxes.is_empty() {
         let why = missed.why_nothing(min_area_m2);
-        return Err(bad_input(format!(
-            "{why} (`tankops rescan --min-area-m2` sets the limit)\n{}",
-            missed.human_out_of_reach().trim_end()
-        )));
+        let out_of_reach = missed.human_out_of_reach();
+        let text = format!("{why} (`tankops rescan --min-area-m2` sets the limit)\n{out_of_reach}");
+        return Ok(NextScan::Nothing(text.trim_end().to_owned()));
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
     let last = opened.last().context("there is no run")?;
     let text = scenario::rescan(last, &names, &missed.boxes, &missed.found);
     let text = text.context("reading the scenario again")?;
     let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
-    Ok(MissedScan { missed, text, scenario })
+    Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))
 }
 
 /// The scenario that scans what past runs missed, for the console.
 ///
 /// # Errors
-/// See [`missed_scan`]; also a journal that was changed.
+/// See [`missed_scan`]; also a journal that was changed, and that there is nothing to be scanned.
 pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past = read_all(&runs, logs)?;
     past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?;
     let shown_name = format!("the re-scan of {}", past.last().map_or("", |past| past.run.name.as_str()));
-    Ok(missed_scan(past, MIN_AREA_M2, &shown_name)?.scenario)
+    match missed_scan(past, MIN_AREA_M2, &shown_name)? {
+        NextScan::Worth(scan) => Ok(scan.scenario),
+        NextScan::Nothing(why) => Err(bad_input(why)),
+    }
 }
 
 /// What speaks against a journal, as a note.

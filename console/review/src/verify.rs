@@ -19,7 +19,8 @@ use mission::{
 use planner_host::PluginDirs;
 use planners::{Asked, BEHIND, Replayed};
 use recording::{Difference, JournalError, RecordedTick, Ticks, journal_of};
-use runs::{Past, end_is_missing};
+use report::document::{Revision, SignedRun};
+use runs::{Past, RunError, end_is_missing, signed_list};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
@@ -45,6 +46,8 @@ struct Findings {
     no_end: Option<String>,
     /// What the planners did when they were asked again; `None` if they were not.
     planners: Option<Asked>,
+    /// The signed reports on the run, as lines; one that is about other files is a doubt.
+    signed: Vec<String>,
     /// The planners of the run, by id.
     builds: BTreeMap<String, PlannerInfo>,
     events: usize,
@@ -83,13 +86,26 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     thread::scope(|scope| {
-        let files = scope.spawn(|| Past::read(folder).map(|past| past.run.files));
+        let files = scope.spawn(|| Past::read(folder).map(|past| (SignedRun::of(&past.run), past.run.files)));
         let findings = compare(&journal_of(folder), plugins)?;
-        let files = files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
+        let (now, files) =
+            files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
+        let (signed, other) = signatures(folder, &now)?;
         let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
-        let doubt = files.doubts.into_iter().next().or_else(missing_end);
-        Ok(Findings { doubt, is_reported: files.are_as_reported.is_some(), ..findings })
+        let doubt = files.doubts.into_iter().next().or_else(missing_end).or(other);
+        Ok(Findings { doubt, signed, is_reported: files.are_as_reported.is_some(), ..findings })
     })
+}
+
+/// The signed reports on a run as lines, and the first thing that speaks against the run being the one that was signed.
+fn signatures(folder: &Path, now: &SignedRun) -> Result<(Vec<String>, Option<String>), RunError> {
+    let revisions = signed_list(folder)?;
+    let other = revisions.iter().find_map(|revision| revision.doubt(now));
+    let line = |revision: &Revision| {
+        let (letter, signature) = (&revision.revision, &revision.signature);
+        format!("signed: revision {letter} by {}, {} UTC: {}", signature.by, signature.at, revision.file)
+    };
+    Ok((revisions.iter().map(line).collect(), other))
 }
 
 impl Findings {
@@ -139,6 +155,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
             proven(planners.as_ref())
         ));
     }
+    lines.extend(findings.signed.iter().cloned());
     lines
 }
 

@@ -58,7 +58,8 @@ impl RunFolder {
         let bytes = |file: &str| fs::metadata(self.path.join(file)).ok().map(|file| file.len());
         let (journal_bytes, recording_bytes) = (bytes(JOURNAL_FILE), bytes(RECORDING_FILE));
         let file = self.path.join(REPORT_FILE);
-        let text = ReportFile::text(summary, journal_bytes, recording_bytes).map_err(io::Error::from);
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        let text = ReportFile::text(&name, summary, journal_bytes, recording_bytes).map_err(io::Error::from);
         text.and_then(|text| write_whole(&file, text.as_bytes()))
             .map_err(RunError::during(format!("writing {}", file.display())))
     }

@@ -61,7 +61,7 @@ impl RunLog {
         Ok(Self { folder: None, beside: None, recorder, least: Summary::default(), began })
     }
 
-    /// Takes the events of a tick, or copies them if they are lent; waits while the recorder's queue is full.
+    /// Takes the events of a tick, which are copied unless they are shared; waits while the recorder's queue is full.
     pub fn keep(&mut self, events: impl Into<Arc<[Event]>>) {
         let events = events.into();
         if let Some(event) = events.last() {

@@ -3,10 +3,13 @@
 use crate::whole::write_whole;
 use recording::{journal_of, read_regular};
 use report::notes::Notes;
+use serde_json::{Map, Value};
 use std::{io, path::Path};
 
 /// Name of the notes in the folder of a run.
 pub const NOTES_FILE: &str = "notes.json";
+/// Longest file of notes, bytes: as many bookmarks with as long texts as there may be.
+const MOST_BYTES: u64 = 4 << 20;
 
 /// The notes about the run in a folder; none if there is no such file.
 ///
@@ -14,24 +17,33 @@ pub const NOTES_FILE: &str = "notes.json";
 /// The file cannot be read or understood: a sentence with its line and column.
 pub fn read_notes(folder: &Path) -> Result<Notes, String> {
     let path = folder.join(NOTES_FILE);
+    let is_long = path.metadata().is_ok_and(|file| file.len() > MOST_BYTES);
+    if is_long {
+        return Err(format!(
+            "{}: longer than {} MB, which no notes are; correct or remove the file",
+            path.display(),
+            MOST_BYTES >> 20
+        ));
+    }
     let text = match read_regular(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
         Err(error) => return Err(format!("{}: {error}", path.display())),
     };
-    let mut notes: Notes = serde_json::from_str(&text).map_err(|error| {
-        let (line, column) = (error.line(), error.column());
-        let sentence = error.to_string();
-        let why = sentence.split_once(" at line ").map_or(sentence.as_str(), |(why, _)| why);
-        format!("{}:{line}:{column}: {why}; correct or remove the file", path.display())
-    })?;
-    // Nothing in it shall reach a terminal as a command.
-    let plain = |text: &mut String| *text = text.replace(char::is_control, " ");
-    plain(&mut notes.remark);
-    notes.bookmarks.iter_mut().for_each(|bookmark| plain(&mut bookmark.text));
-    notes.bookmarks.retain(|bookmark| bookmark.t_s.is_finite());
-    notes.bookmarks.sort_by(|one, other| one.t_s.total_cmp(&other.t_s));
-    Ok(notes)
+    // A list would be taken for the members of the object in their order.
+    let object: Map<String, Value> =
+        serde_json::from_str(&text).map_err(|error| not_understood(&path, &error))?;
+    drop(object);
+    let notes: Notes = serde_json::from_str(&text).map_err(|error| not_understood(&path, &error))?;
+    notes.tidied().map_err(|why| format!("{}: {why}; correct or remove the file", path.display()))
+}
+
+/// What is wrong with the notes, with line and column.
+fn not_understood(path: &Path, error: &serde_json::Error) -> String {
+    let (line, column) = (error.line(), error.column());
+    let sentence = error.to_string();
+    let why = sentence.split_once(" at line ").map_or(sentence.as_str(), |(why, _)| why);
+    format!("{}:{line}:{column}: {why}; correct or remove the file", path.display())
 }
 
 /// Writes the notes about the run in a folder, whole or not at all. A file that cannot be understood is not written over.
@@ -69,12 +81,21 @@ mod tests {
         assert_eq!(read_notes(folder.path()), Ok(notes.clone()));
         assert_eq!(fs::read(folder.path().join(JOURNAL_FILE)).unwrap(), b"journal");
 
-        let damaged = "{\n  \"remark\": 3\n}";
-        fs::write(folder.path().join(NOTES_FILE), damaged).unwrap();
-        for error in [read_notes(folder.path()).unwrap_err(), write_notes(folder.path(), &notes).unwrap_err()]
-        {
-            assert!(error.contains("notes.json:2:13: invalid type: integer `3`"), "{error}");
+        let long = format!("{{\"remark\": \"{}\"}}", "x".repeat(501));
+        let huge = format!("{{\"remark\": \"{}\"}}", "x".repeat(10 << 20));
+        for (damaged, why) in [
+            ("{\n  \"remark\": 3\n}", "notes.json:2:13: invalid type: integer `3`"),
+            ("[]", "notes.json:1:0: invalid type: sequence, expected a map"),
+            (&long, "notes.json: remark: the text has 501 characters; at most 500"),
+            (&huge, "notes.json: longer than 4 MB"),
+        ] {
+            fs::write(folder.path().join(NOTES_FILE), damaged).unwrap();
+            for error in
+                [read_notes(folder.path()).unwrap_err(), write_notes(folder.path(), &notes).unwrap_err()]
+            {
+                assert!(error.contains(why), "{error}");
+            }
+            assert_eq!(fs::read_to_string(folder.path().join(NOTES_FILE)).unwrap(), damaged);
         }
-        assert_eq!(fs::read_to_string(folder.path().join(NOTES_FILE)).unwrap(), damaged);
     }
 }

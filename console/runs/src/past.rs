@@ -51,7 +51,8 @@ impl Past {
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
-            began: began(&name),
+            // Whoever renames a folder does not change when the run began.
+            began: began(files.closed_as.as_deref().unwrap_or(&name)),
             name,
             logs: Logs {
                 journal: shown(&journal),
@@ -119,9 +120,8 @@ fn files(
         journal_bytes: bytes(&journal),
         recording_bytes: bytes(&recording),
         scenario_sha256: Some(sha256_of(opened.scenario_toml.as_bytes())),
-        are_as_reported: reported
-            .is_some_and(|reported| reported.names_digests())
-            .then_some(doubts.is_empty()),
+        are_as_reported: reported.as_ref().is_some_and(Reported::names_digests).then_some(doubts.is_empty()),
+        closed_as: reported.as_ref().and_then(Reported::closed_as).map(str::to_owned),
         journal_sha256,
         recording_sha256,
         doubts,

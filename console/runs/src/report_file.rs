@@ -15,9 +15,11 @@ use std::{
     time::SystemTime,
 };
 
-/// A report as it is written to disk: with the length of the journal that it was made from.
+/// A report as it is written to disk: with the name of the run, and the length of the journal that it was made from.
 #[derive(Serialize)]
 pub(crate) struct ReportFile<'a> {
+    /// Name of its folder.
+    run: &'a str,
     #[serde(flatten)]
     pub summary: &'a Summary,
     /// Absent if there is no journal any more.
@@ -29,16 +31,17 @@ pub(crate) struct ReportFile<'a> {
 }
 
 impl<'a> ReportFile<'a> {
-    /// The report on files of these lengths, bytes, as text.
+    /// The report on a run of this name with files of these lengths, bytes, as text.
     ///
     /// # Errors
     /// It cannot be written as JSON.
     pub(crate) fn text(
+        run: &'a str,
         summary: &'a Summary,
         journal_bytes: Option<u64>,
         recording_bytes: Option<u64>,
     ) -> serde_json::Result<String> {
-        let unsealed = Self { summary, journal_bytes, recording_bytes, report_sha256: String::new() };
+        let unsealed = Self { run, summary, journal_bytes, recording_bytes, report_sha256: String::new() };
         let text = serde_json::to_string_pretty(&unsealed)? + "\n";
         let report_sha256 = digest_of_lines(&text);
         Ok(serde_json::to_string_pretty(&Self { report_sha256, ..unsealed })? + "\n")
@@ -54,6 +57,8 @@ fn digest_of_lines(text: &str) -> String {
 /// What a report says of the files that it was made from.
 #[derive(Deserialize)]
 struct Source {
+    #[serde(default)]
+    run: Option<String>,
     events_sha256: Option<String>,
     #[serde(default)]
     journal_bytes: Option<u64>,
@@ -120,6 +125,11 @@ impl Reported {
             Some(ending) if agrees(&summary, &ending) => Ok(summary),
             _ => Err(format!("{REPORT_FILE} was changed: it does not end as the journal does")),
         }
+    }
+
+    /// Name of the run's folder when the run was closed; older reports do not say.
+    pub(crate) fn closed_as(&self) -> Option<&str> {
+        self.source.run.as_deref()
     }
 
     /// Whether it names the digests of journal and recording.

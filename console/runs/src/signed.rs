@@ -1,6 +1,6 @@
 //! Signed reports of a run: which there are, and that none is changed.
 
-use crate::{error::RunError, whole::write_whole};
+use crate::{error::RunError, register::Register, whole::write_whole};
 use recording::{read_regular, sha256};
 use report::document::Revision;
 use std::{
@@ -11,21 +11,28 @@ use std::{
 /// The list of signed reports in the folder of a run.
 pub const SIGNED_FILE: &str = "signed.json";
 
+/// The signed reports of the run in a folder, in their order.
+///
+/// # Errors
+/// The list cannot be read.
+pub fn signed_list(folder: &Path) -> Result<Vec<Revision>, RunError> {
+    let path = folder.join(SIGNED_FILE);
+    let reading = || RunError::during(format!("reading the list of signed reports: {}", path.display()));
+    let text = match read_regular(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(reading()(error)),
+    };
+    serde_json::from_str(&text).map_err(|error| RunError::Damaged { file: path, why: error.to_string() })
+}
+
 /// The signed reports of the run in a folder, in their order, and what speaks against them: a file that has another digest than
 /// when it was signed, or is not where it was written any more.
 ///
 /// # Errors
 /// The list cannot be read.
 pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), RunError> {
-    let path = folder.join(SIGNED_FILE);
-    let reading = || RunError::during(format!("reading the list of signed reports: {}", path.display()));
-    let text = match read_regular(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
-        Err(error) => return Err(reading()(error)),
-    };
-    let revisions: Vec<Revision> = serde_json::from_str(&text)
-        .map_err(|error| RunError::Damaged { file: path.clone(), why: error.to_string() })?;
+    let revisions = signed_list(folder)?;
     let doubt = |revision: &Revision| {
         let Revision { revision: letter, file, sha256: then, .. } = revision;
         match sha256(&PathBuf::from(file)) {
@@ -42,27 +49,25 @@ pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), Run
     Ok((revisions, doubts))
 }
 
-/// Adds a signed report to the lists of all runs that it is about, or to none of them.
+/// Adds a signed report to the lists of all runs that it is about and to the register, or to none of them.
 ///
 /// # Errors
 /// A list cannot be read or written.
-pub fn add_signed(folders: &[PathBuf], revision: &Revision) -> Result<(), RunError> {
-    for (count, folder) in folders.iter().enumerate() {
-        let added = signed_reports(folder).and_then(|(mut revisions, _)| {
-            revisions.push(revision.clone());
-            write_list(folder, &revisions)
-        });
-        if let Err(error) = added {
-            folders[..count].iter().for_each(|folder| take_back(folder, revision));
-            return Err(error);
-        }
-    }
-    Ok(())
+pub fn add_signed(folders: &[PathBuf], register: &Register, revision: &Revision) -> Result<(), RunError> {
+    let add = |folder: &PathBuf| {
+        let mut revisions = signed_list(folder)?;
+        revisions.push(revision.clone());
+        write_list(folder, &revisions)
+    };
+    let mut added = 0;
+    let all = folders.iter().try_for_each(|folder| add(folder).inspect(|()| added += 1));
+    all.and_then(|()| register.add(revision))
+        .inspect_err(|_| folders[..added].iter().for_each(|folder| take_back(folder, revision)))
 }
 
 /// Takes a report off the list again, if the system lets it.
 fn take_back(folder: &Path, revision: &Revision) {
-    if let Ok((mut revisions, _)) = signed_reports(folder) {
+    if let Ok(mut revisions) = signed_list(folder) {
         revisions.retain(|listed| listed != revision);
         let _ = write_list(folder, &revisions);
     }
@@ -91,10 +96,11 @@ mod tests {
         assert_eq!(signed_reports(folder.path()).unwrap(), (vec![], vec![]));
         let signature = Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() };
         let (name, digest) = (file.display().to_string(), sha256(&file).unwrap());
+        let (number, letter) = ("1-1".to_owned(), "A".to_owned());
         let revision =
-            Revision { number: "1-1".into(), revision: "A".into(), signature, file: name, sha256: digest };
-        let folders = [folder.path().to_owned()];
-        add_signed(&folders, &revision).unwrap();
+            Revision { number, revision: letter, signature, file: name, sha256: digest, runs: vec![] };
+        let (folders, register) = ([folder.path().to_owned()], Register::at(None));
+        add_signed(&folders, &register, &revision).unwrap();
         assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision.clone()], vec![]));
         fs::write(&file, "forged").unwrap();
         let (_, doubts) = signed_reports(folder.path()).unwrap();
@@ -106,8 +112,11 @@ mod tests {
         fs::write(folder.path().join(SIGNED_FILE), "[{").unwrap();
         let other = tempfile::tempdir().unwrap();
         let both = [other.path().to_owned(), folder.path().to_owned()];
-        assert!(add_signed(&both, &revision).is_err());
-        assert_eq!(signed_reports(other.path()).unwrap(), (vec![], vec![]), "in all lists or in none");
+        let unwritable = Register::at(Some("/proc/self/none/signatures".into()));
+        for (folders, register) in [(&both[..], &register), (&both[..1], &unwritable)] {
+            assert!(add_signed(folders, register, &revision).is_err());
+            assert_eq!(signed_reports(other.path()).unwrap(), (vec![], vec![]), "in all lists or in none");
+        }
         let error = signed_reports(folder.path()).unwrap_err().to_string();
         assert!(error.contains("signed.json is damaged: ") && error.contains("line 1"), "{error}");
     }

@@ -12,12 +12,20 @@ use std::{
 /// What is no regular file (a pipe, `/dev/stdout`) is written to as it is.
 ///
 /// # Errors
-/// The system refuses.
+/// The system refuses, or the file is read-only.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // A link stays one: what it leads to is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if path.metadata().is_ok_and(|file| !file.is_file()) {
+    let there = path.metadata().ok();
+    if there.as_ref().is_some_and(|file| !file.is_file()) {
         return fs::write(&path, bytes);
+    }
+    if there.is_some_and(|file| file.permissions().readonly()) {
+        // The system would let it be replaced, and everything be written by some users.
+        return Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            "the file is read-only, as signed reports are",
+        ));
     }
     write_by_draft(&path, &draft_of(&path), bytes)
 }
@@ -151,6 +159,14 @@ mod tests {
         write_whole(Path::new("/dev/null"), b"new").unwrap();
         assert!(!Path::new("/dev/null").metadata().unwrap().is_file());
         assert!(write_whole(folder.path(), b"new").is_err(), "a folder");
+        let mut sealed = fs::metadata(&file).unwrap().permissions();
+        sealed.set_readonly(true);
+        fs::set_permissions(&file, sealed).unwrap();
+        for path in [&file, &link] {
+            let refused = write_whole(path, b"newer").unwrap_err().to_string();
+            assert!(refused.contains("read-only"), "{refused}");
+        }
+        assert_eq!(fs::read(&file).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Scenario,
-    checks::{Site, check_cells, check_lanes, check_period, check_ticks},
+    checks::{Site, cell_m, check_lanes, check_period, check_ticks},
     expect, floor, inspection, layout,
     problem::{Complaint, Problem},
     ranging,
@@ -301,10 +301,7 @@ impl Rest {
         if let (Some(tick_s), Some(section), Some(ae)) = (tick, &sections.ae, &floor.ae) {
             check_period(section, tick_s, ae.period_s);
         }
-        let cell_m = mission.number("cell_m");
-        if let (Some(boundary), Some(cell_m)) = (&floor.boundary, cell_m) {
-            check_cells(mission, boundary, cell_m);
-        }
+        let cell_m = cell_m(mission, floor.boundary.as_ref());
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
         let position_limit_m = mission.number("position_limit_m");
         let scan = scan(mission, swath_m);

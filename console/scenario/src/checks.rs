@@ -64,17 +64,24 @@ impl Site<'_> {
     }
 }
 
-/// Complains about a coverage grid with too many cells.
-pub(crate) fn check_cells(mission: &Section<'_>, boundary: &Boundary, cell_m: f64) {
-    let (low, high) = boundary.bounds();
+/// Edge of a cell of the coverage grid, metres; complains about too many cells. A mission to a goal needs no fine grid, so on a
+/// floor that is too large for the default its cells are larger.
+pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Option<f64> {
+    let cell_m = mission.number("cell_m")?;
+    let Some((low, high)) = boundary.map(Boundary::bounds) else { return Some(cell_m) };
     let size = high - low;
     let cells = (size.x / cell_m).ceil() * (size.y / cell_m).ceil();
-    if cells > MOST_CELLS {
-        // Rounded up to millimetres, with room for the cells cut at the edges.
-        let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
-        let what = Complaint::TooManyCells { cells: cells as u64, limit: MOST_CELLS as u64, fits_m };
-        mission.complain("cell_m", what);
+    if cells <= MOST_CELLS {
+        return Some(cell_m);
     }
+    // Rounded up to millimetres, with room for the cells cut at the edges.
+    let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
+    if !mission.has("cell_m") && mission.word("kind") == Some("goto") {
+        return Some(fits_m);
+    }
+    let what = Complaint::TooManyCells { cells: cells as u64, limit: MOST_CELLS as u64, fits_m };
+    mission.complain("cell_m", what);
+    None
 }
 
 /// Complains about a swath that is so narrow, without the overlap, that the floor takes too many lanes.

@@ -8,7 +8,7 @@ use super::{
 use import::is_wholly_outside;
 use sim::{Mover, Track};
 use std::collections::BTreeMap;
-use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Shape, Vector, Zone, ZoneKind};
+use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Vector, Zone, ZoneKind};
 
 /// Reads `[tank]`.
 pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {

@@ -1,14 +1,22 @@
 //! What only people know of an inspection: `[inspection]`, in a scenario or in a file of its own.
 
-use super::{problem::ScenarioErrors, schema, section::Section, source::Source, syntax_error};
-use report::Inspection;
+use super::{
+    problem::{Complaint, ScenarioErrors},
+    schema,
+    section::Section,
+    source::Source,
+    syntax_error,
+};
+use report::{Inspection, document::unreadable};
 use toml::de::DeTable;
+
+/// Longest fact, characters: more than a sheet of paper.
+const MOST_LETTERS: usize = 4000;
 
 /// Reads `[inspection]`; nothing is known if it is not there.
 pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
     let section = root.table_or_empty("inspection")?;
-    // What is empty is not known.
-    let text = |key: &str| section.text(key).filter(|text| !text.trim().is_empty());
+    let text = |key: &str| fact(&section, key);
     Some(Inspection {
         client: text("client"),
         site: text("site"),
@@ -36,9 +44,23 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
         missed_accepted: text("missed_accepted"),
         remarks: text("remarks"),
         datum_crs: text("datum_crs"),
-        datum_m: if section.has("datum_m") { section.point("datum_m").map(|p| [p.x, p.y]) } else { None },
+        datum_m: section.has("datum_m").then(|| section.pair("datum_m")).flatten(),
         datum_north_deg: section.number("datum_north_deg"),
     })
+}
+
+/// A text of people; none if it is empty. What a reader could not see, or what would have him read something else than is
+/// written, is refused: the text is part of what is signed.
+fn fact(section: &Section<'_>, key: &str) -> Option<String> {
+    // What is empty is not known.
+    let text = section.text(key).filter(|text| !text.trim().is_empty())?;
+    if let Some(odd) = unreadable(&text) {
+        section.complain(key, Complaint::OutOfRange(format!("text that can be read: {odd} cannot")));
+    }
+    if text.chars().count() > MOST_LETTERS {
+        section.complain(key, Complaint::OutOfRange(format!("at most {MOST_LETTERS} characters")));
+    }
+    Some(text)
 }
 
 /// Reads a file with `[inspection]`: what is known only after the run.
@@ -53,5 +75,46 @@ pub fn inspection(text: &str, shown_name: &str) -> Result<Inspection, ScenarioEr
     match read {
         Some(read) if problems.is_empty() => Ok(read),
         _ => Err(ScenarioErrors { shown_name: shown_name.to_owned(), text: text.to_owned(), problems }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    fn refused(line: &str) -> String {
+        inspection(&format!("[inspection]\n{line}\n"), "facts.toml").unwrap_err().render()
+    }
+
+    #[test]
+    fn a_datum_may_lie_anywhere_on_earth() {
+        let read = inspection(
+            "[inspection]\ndatum_crs = \"EPSG:25832\"\ndatum_m = [691608.2, 5334760.4]\n",
+            "facts.toml",
+        );
+        assert_eq!(read.unwrap().datum_m, Some([691_608.2, 5_334_760.4]));
+        assert!(refused("datum_m = [1e300, 0.0]").contains("facts.toml:2:12: inspection.datum_m"));
+    }
+
+    #[test]
+    fn a_fact_that_cannot_be_read_as_it_is_written_is_refused_with_its_line() {
+        let kept = inspection(
+            "[inspection]\nremarks = \"one\\n\\ttwo <b> \\\"three\\\"\"\nsite = \" \"\n",
+            "facts.toml",
+        )
+        .unwrap();
+        assert_eq!((kept.remarks.as_deref(), kept.site), (Some("one\n\ttwo <b> \"three\""), None));
+        for (letter, code) in
+            [("\\u0000", "U+0000"), ("\\f", "U+000C"), ("\\u202e", "U+202E"), ("\\u200b", "U+200B")]
+        {
+            let error = refused(&format!("tank_id = \"T-07{letter}\""));
+            assert!(error.contains("facts.toml:2:11: inspection.tank_id") && error.contains(code), "{error}");
+        }
+        assert!(
+            refused(&format!("remarks = \"{}\"", "x".repeat(MOST_LETTERS + 1)))
+                .contains("at most 4000 characters")
+        );
     }
 }

@@ -171,6 +171,8 @@ impl Key {
 
 const LENGTH: Span = above(0.0).up_to(1000.0);
 const ANGLE: Span = at_least(-360.0).up_to(360.0);
+/// Coordinates of a national or world-wide system in metres; no place on Earth has larger ones.
+const DATUM: Span = at_least(-1e8).up_to(1e8);
 const SHARE: Span = at_least(0.0).up_to(1.0);
 const ANY_LENGTH: Span = at_least(0.0);
 const BY_KIND: &str = "by kind";
@@ -228,7 +230,7 @@ static INSPECTION: &[Key] = &[
     key("missed_accepted", "", Kind::Text).or_none(MISSING),
     key("remarks", "", Kind::Text).or_none(MISSING),
     key("datum_crs", "", Kind::Text).or_none("none"),
-    key("datum_m", "m", Kind::Point).or_none("none"),
+    key("datum_m", "m", Kind::Pair(DATUM)).or_none("none"),
     number("datum_north_deg", "deg", ANGLE).or_none("0"),
 ];
 

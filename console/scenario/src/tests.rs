@@ -53,6 +53,14 @@ fn the_scenarios_in_the_box_are_right() {
 }
 
 #[test]
+fn a_large_floor_to_be_crossed_has_cells_that_fit() {
+    let large = SMALL.replacen("radius_m = 5", "radius_m = 300", 1);
+    assert!((read(&large).mission.cell_m - 0.303).abs() < 1e-9);
+    let cover = large.replacen("kind = \"goto\"\ngoal_m = [3, 0]", "kind = \"cover\"\nswath_m = 2", 1);
+    assert!(errors(&cover).render().contains("help: write cell_m = 0.303 or more"));
+}
+
+#[test]
 fn an_amphibious_robot_has_the_papers_limits_and_planners_get_the_faster_ones() {
     let scenario =
         read(&SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\nmotion = \"amphibious\"", 1));

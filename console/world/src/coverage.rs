@@ -5,6 +5,7 @@ mod floor_maker;
 mod percents;
 pub mod regions;
 mod shell;
+mod span;
 mod swept_area;
 mod tool;
 

@@ -268,8 +268,8 @@ mod tests {
     fn the_many_parts_of_a_wall_do_not_close_a_door() {
         // Two walls, west to east, of parts 10 cm apart, with a door of 1.1 m.
         let part = |k: u32| {
-            let x = if k.is_multiple_of(2) { 0.65 } else { -0.65 };
-            (x + x.signum() * 0.1 * f64::from(k / 2), 3.0, 0.1)
+            let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            (side * 0.65 + side * 0.1 * f64::from(k / 2), 3.0, 0.1)
         };
         let parts: Vec<_> = (0..160).map(part).collect();
         let square = SquareLaw { k_att: 15.0, d_0_m: 3.0, square_m: 4.0, improved: true, hold_steps: 300 };

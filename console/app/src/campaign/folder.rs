@@ -4,8 +4,9 @@ use crate::shared_folder::SharedFolder;
 use anyhow::Context;
 use campaign::{Campaign, Table, table};
 use flight::failure::bad_input;
+use recording::{open_regular, read_regular};
 use std::{
-    fs::{self, File},
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -27,12 +28,10 @@ impl Folder {
     /// The campaign that was frozen here.
     pub(crate) fn campaign(&self) -> anyhow::Result<Campaign> {
         let file = self.path().join(FROZEN);
-        let json = fs::read(&file).map_err(|error| {
-            bad_input(format!(
-                "{}: {error}; `tankops campaign prepare PLAN --out DIR` makes one",
-                file.display()
-            ))
-        })?;
+        let refused = |why: &str| bad_input(format!("{}: {why}", file.display()));
+        let json = self.0.read(Path::new(FROZEN)).map_err(|error| refused(&error.to_string()))?;
+        let missing = || refused("there is none; `tankops campaign prepare PLAN --out DIR` makes one");
+        let json = json.ok_or_else(missing)?;
         Campaign::thaw(&json).map_err(|why| bad_input(format!("{} {why}", file.display())))
     }
 
@@ -62,7 +61,7 @@ impl Folder {
     /// Reads a part.
     pub(crate) fn read_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<Table> {
         let file = self.path().join(Self::part(block));
-        let read = File::open(&file).with_context(|| file.display().to_string())?;
+        let read = open_regular(&file).with_context(|| file.display().to_string())?;
         let remedy = "delete it, then fly the block again";
         table::read_part(campaign, read)
             .map_err(|why| bad_input(format!("{}: {why}; {remedy}", file.display())))
@@ -82,7 +81,7 @@ impl Folder {
     /// Seconds that one core took for all parts so far.
     pub(crate) fn core_seconds(&self) -> f64 {
         let files = fs::read_dir(self.path().join("cost")).into_iter().flatten().flatten();
-        let texts = files.filter_map(|file| fs::read_to_string(file.path()).ok());
+        let texts = files.filter_map(|file| read_regular(&file.path()).ok());
         let seconds = |line: &str| serde_json::from_str::<serde_json::Value>(line).ok()?["wall_s"].as_f64();
         texts.map(|text| text.lines().filter_map(seconds).sum::<f64>()).sum()
     }

@@ -7,7 +7,7 @@ use flight::{
     planners::{check_choices, choice_of},
 };
 use mission::PlannerInfo;
-use planner_host::{PluginDirs, Survey, WorkerCommand, survey};
+use planner_host::{PluginDirs, Survey, WorkerCommand, check_descriptors, survey};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -21,6 +21,7 @@ pub(crate) struct Here {
 impl Here {
     /// Looks at the program and at every plugin.
     pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
+        check_descriptors().map_err(anyhow::Error::msg)?;
         let Survey { plugins } = survey(plugins, &WorkerCommand::default());
         let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
         let sound = plugins.iter().filter(|plugin| plugin.refused.is_none());

@@ -5,7 +5,7 @@ use anyhow::anyhow;
 use campaign::{Campaign, Findings, Table, Watch, findings, page, table};
 use flight::failure::bad_input;
 use sha2::{Digest, Sha256};
-use std::{fs, path::Path};
+use std::path::Path;
 
 /// What was merged.
 pub(crate) struct Results {
@@ -73,7 +73,7 @@ pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyh
 pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let file = if path.is_dir() { path.join("results.parquet") } else { path.to_owned() };
     let shown = file.display();
-    let open = fs::File::open(&file)
+    let open = recording::open_regular(&file)
         .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
     Table::read(open).map_err(|error| bad_input(format!("{shown}: {error}")))
 }

@@ -108,6 +108,27 @@ pub(super) fn spline(spline: &Spline) -> Option<Vec<Point>> {
     (points.len() > 1 && points.iter().all(|p| p.x.is_finite() && p.y.is_finite())).then_some(points)
 }
 
+/// Points of a smooth curve through some points (Catmull and Rom): drawings that state no more leave the curve to the
+/// program that shows them.
+pub(super) fn through(points: &[Point]) -> Vec<Point> {
+    let n = points.len();
+    if n < 3 || n * SPLINE_POINTS > SPLINE_MOST {
+        return points.to_vec();
+    }
+    let slope = |k: usize| (points[(k + 1).min(n - 1)] - points[k.saturating_sub(1)]) / 2.0;
+    let mut curve: Vec<Point> = Vec::new();
+    for k in 0..n - 1 {
+        let (from, to, leaving, arriving) = (points[k], points[k + 1], slope(k), slope(k + 1));
+        curve.extend((0..SPLINE_POINTS).map(|step| {
+            let u = step as f64 / SPLINE_POINTS as f64;
+            let (u2, u3) = (u * u, u * u * u);
+            from + (to - from) * (3.0 * u2 - 2.0 * u3) + leaving * (u3 - 2.0 * u2 + u) + arriving * (u3 - u2)
+        }));
+    }
+    curve.push(points[n - 1]);
+    curve
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,5 +148,14 @@ mod tests {
         assert!(points.iter().all(|p| (p.coords.norm() - 1.0).abs() < 1e-12), "{points:?}");
         assert!((points[0] - points[points.len() - 1]).norm() < 1e-12);
         assert!(spline(&Spline { knots: vec![0.0; 5], ..circle }).is_none());
+    }
+
+    #[test]
+    fn a_curve_through_points_passes_through_them_without_a_kink() {
+        let points = [(0.0, 0.0), (3.0, 1.0), (6.0, 0.5), (8.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        let curve = through(&points);
+        assert!(points.iter().all(|p| curve.iter().any(|at| (at - p).norm() < 1e-12)));
+        let turn = |w: &[Point]| (w[1] - w[0]).angle(&(w[2] - w[1]));
+        assert!(curve.windows(3).all(|w| turn(w) < 0.15), "{curve:?}");
     }
 }

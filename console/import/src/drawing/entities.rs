@@ -1,7 +1,7 @@
 //! What a drawing holds, in metres and with its blocks taken apart.
 
 use super::{
-    curves::{along_arc, arc, chain, ellipse, spline},
+    curves::{along_arc, arc, chain, ellipse, spline, through},
     groups::{Block, Drawing, Entity},
     hatch,
 };
@@ -158,7 +158,15 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             chain_of(points, map, is_closed)
         }
         "LWPOLYLINE" | "POLYLINE" => polyline(entity, &in_plane, scale),
-        "SPLINE" => chain_of(spline(&entity.spline())?, map, entity.has_flag(1)),
+        "SPLINE" => {
+            let by_controls = entity.spline();
+            let points = if by_controls.controls.is_empty() {
+                through(&entity.points(11, 21))
+            } else {
+                spline(&by_controls)?
+            };
+            chain_of(points, map, entity.has_flag(1))
+        }
         // Corners of a filled area; the last two come crosswise.
         "SOLID" | "TRACE" => {
             let mut corners = vec![at(10, 20)?, at(11, 21)?];

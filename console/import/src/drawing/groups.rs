@@ -64,24 +64,17 @@ impl Entity {
         self.number(70, 0.0) as i32 & bit != 0
     }
 
-    /// The numbers of a `SPLINE`; one that was drawn through points and has no others is the polyline through them.
+    /// Points by the codes of their coordinates.
+    pub(super) fn points(&self, x: i32, y: i32) -> Vec<Point> {
+        self.numbers(x).zip(self.numbers(y)).map(|(x, y)| Point::new(x, y)).collect()
+    }
+
+    /// The numbers of a `SPLINE`; without controls if it is stated by the points that it passes through.
     pub(super) fn spline(&self) -> Spline {
-        let points = |x: i32, y: i32| -> Vec<Point> {
-            self.numbers(x).zip(self.numbers(y)).map(|(x, y)| Point::new(x, y)).collect()
-        };
-        let controls = points(10, 20);
-        if controls.is_empty() {
-            let controls = points(11, 21);
-            let inner = 1..controls.len().saturating_sub(1);
-            let ends = [0.0, 0.0].into_iter().chain(inner.map(|k| k as f64));
-            let last = controls.len().saturating_sub(1) as f64;
-            let knots = ends.chain([last, last]).collect();
-            return Spline { degree: 1, knots, controls, weights: Vec::new() };
-        }
         Spline {
             degree: self.number(71, 3.0).max(0.0) as usize,
             knots: self.numbers(40).collect(),
-            controls,
+            controls: self.points(10, 20),
             weights: self.numbers(41).collect(),
         }
     }

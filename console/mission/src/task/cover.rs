@@ -122,8 +122,9 @@ impl Cover {
     pub(crate) fn leg_index(&self) -> Option<usize> {
         let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
-        let here = lanes.legs.iter().position(|(_, end_m)| along_m < *end_m);
-        here.or(lanes.legs.len().checked_sub(1))
+        // The ends of the stretches come one after the other along the plan.
+        let here = lanes.legs.partition_point(|(_, end_m)| *end_m <= along_m);
+        Some(here.min(lanes.legs.len().checked_sub(1)?))
     }
 
     /// Whether the rest of the plan comes nearer than `room_m` to an outline.

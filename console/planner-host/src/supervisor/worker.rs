@@ -71,6 +71,15 @@ impl Worker {
         sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
     }
 
+    /// Has its first thread, which answers, run on these processors alone; threads that it starts from then on do so, too. Where
+    /// the system refuses, it runs where it ran.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn stay_on(&self, processors: &rustix::thread::CpuSet) {
+        if !self.process.is_reaped() {
+            let _ = rustix::thread::sched_setaffinity(Some(self.process.pid()), processors);
+        }
+    }
+
     /// The lines that it printed since the last time.
     pub(crate) fn take_printed(&mut self) -> Vec<String> {
         self.process.take_lines()

@@ -20,6 +20,19 @@ const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
 const LARGEST_FILE: u64 = 64 << 20;
 
+/// Makes sure that a worker can have its socket where it belongs, before one is started.
+///
+/// # Errors
+/// A sentence about the limit that is too low.
+pub fn check_descriptors() -> Result<(), String> {
+    match getrlimit(Resource::Nofile).current {
+        Some(limit) if limit <= SOCKET_AT as u64 => Err(format!(
+            "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Takes the socket that came as standard input and puts nothing in its place.
 pub(super) fn take_socket() -> io::Result<UnixStream> {
     let socket = rustix::io::fcntl_dupfd_cloexec(io::stdin().as_fd(), SOCKET_AT)?;

@@ -5,7 +5,7 @@ use crate::desk::{Desk, LONG, ONE, TWO, opening, plan, soon, step};
 use crate::stand::{built, config, folder_with, impatient, worker};
 use crate::state::COUNTER;
 use mission::planner::Parameters;
-use mission::{Given, What};
+use mission::{Ask, AskId, Given, What};
 use planner_host::{HostConfig, WorkerCommand};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -141,4 +141,35 @@ fn who_has_not_answered_when_a_mission_ends_serves_no_other_one() {
     desk.open(ONE, "none");
     assert!(pids(&name).iter().any(|pid| !before.contains(pid)), "{before:?}");
     assert!(desk.ask(ONE, step(0)).is_ok());
+}
+
+#[test]
+fn who_waits_for_every_command_shares_a_processor_with_the_planner_while_nothing_else_is_done() {
+    let here = || rustix::thread::sched_getaffinity(None).unwrap();
+    // In a thread of its own: where that of the test may run is the business of other tests.
+    let shared = || {
+        let (_folder, worker_command, name) = own_worker();
+        let mut desk = Desk::new(&built(), HostConfig { worker_command, ..config() });
+        desk.host.share_processor();
+        let there = || {
+            let of = |pid: &String| std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
+            let is_list = |line: &&str| line.starts_with("Cpus_allowed_list");
+            let list = |pid| of(pid).lines().find(is_list).unwrap().to_owned();
+            pids(&name).iter().map(list).collect::<Vec<_>>().concat()
+        };
+        desk.open(ONE, "none");
+        let (all, apart) = (here(), there());
+        desk.ask(ONE, step(5)).unwrap();
+        assert!(all.count() == 1 || here().count() == 1 && !there().contains(['-', ',']), "{}", there());
+        desk.ask(ONE, plan()).unwrap();
+        assert!(here() == all && there() == apart, "a plan may use all processors");
+        desk.ask(ONE, step(6)).unwrap();
+        desk.open(TWO, "none");
+        assert!(here() == all && there() == apart.repeat(2), "a new process, too");
+        desk.host.submit(Ask { id: AskId { worker: TWO, n: 99 }, what: What::Close });
+        desk.ask(ONE, step(7)).unwrap();
+        drop(desk);
+        assert!(here() == all);
+    };
+    std::thread::scope(|scope| scope.spawn(shared).join().unwrap());
 }

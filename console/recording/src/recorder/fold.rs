@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{error::RecordingError, rr};
 use mission::{Event, EventKind, Severity, TaskConfig, event::RunOpened};
-use ranging::Residuals;
+use ranging::{Rangings, Residuals};
 use report::Summary;
 use world::{Obstacle, Point, Station};
 
@@ -32,6 +32,7 @@ struct Opened {
     tick: Tick,
     table: Table,
     stations: Vec<Station>,
+    rangings: Rangings,
     residuals: Residuals,
     drawings: Drawings,
     /// Absent if the mission is not there to scan floor.
@@ -91,6 +92,7 @@ impl Fold {
     pub(crate) fn send(&mut self, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         opened.table.send(stream)?;
+        opened.rangings.send(stream)?;
         opened.residuals.send(stream)?;
         opened.drawings.send(stream)
     }
@@ -118,6 +120,7 @@ impl Opened {
             table: Table::open(stream, run)?,
             stations: run.world.stations.clone(),
             drawings: Drawings::new((high.x - low.x).min(high.y - low.y)),
+            rangings: Rangings::new(),
             residuals: Residuals::open(stream, &run.world.stations)?,
             raster: scans.then(|| Raster::open(stream, run)).transpose()?,
             accounting: Accounting::open(run, at),
@@ -190,7 +193,7 @@ impl Opened {
         let tick = std::mem::replace(&mut self.tick, next);
         self.drawings.show(stream, tick.at, &tick.drawings)?;
         self.raster.iter_mut().try_for_each(|raster| raster.picture_if_due(stream, tick.at))?;
-        ranging::draw(stream, &self.stations, &tick)?;
+        self.rangings.push(&self.stations, &tick);
         self.residuals.push(&tick);
         self.table.push(stream, &tick)
     }

@@ -1,34 +1,49 @@
 //! Ranges from their stations towards the believed position: the gap between tip and robot is the residual.
 
 use super::{
-    lane::{Flat, Lane, flat},
+    lane::{Flat, InkedLines, Lane, flat},
     paths,
     stream::Stream,
     style, table,
     tick::Tick,
 };
-use crate::{error::RecordingError, rr};
+use crate::error::RecordingError;
 use positioning::{Exclusion, Fix, Ranging};
 use world::{Station, StationId};
 
-/// Draws the ranges and the fix of a tick.
-pub(crate) fn draw(stream: &Stream, stations: &[Station], tick: &Tick) -> Result<(), RecordingError> {
-    if let Some(ranges) = &tick.ranges {
-        let excluded = |range: &Ranging| {
-            let mut excluded = tick.fix.iter().flat_map(|fix| &fix.excluded);
-            excluded.any(|(station, _)| *station == range.station)
-        };
-        let drawn: Vec<_> =
-            ranges.iter().filter_map(|range| Some((line(range, stations, tick)?, excluded(range)))).collect();
-        let ink = |excluded| if excluded { style::RANGE_EXCLUDED } else { style::RANGE };
-        let lines = rr::LineStrips2D::update_fields()
-            .with_strips(drawn.iter().map(|(line, _)| rr::LineStrip2D::from_iter(*line)))
-            .with_colors(drawn.iter().map(|(_, excluded)| style::color(ink(*excluded))));
-        stream.once(paths::RANGES, tick.at, &lines)?;
+/// The ranges and the fixes on the map.
+pub(crate) struct Rangings {
+    ranges: Lane<InkedLines>,
+    fixes: Lane<Flat>,
+}
+
+impl Rangings {
+    /// Nothing was heard yet.
+    pub(crate) fn new() -> Self {
+        Self { ranges: Lane::new(paths::RANGES), fixes: Lane::new(paths::FIX) }
     }
-    let Some(fix) = &tick.fix else { return Ok(()) };
-    let dot = rr::Points2D::update_fields().with_positions([flat(fix.position)]);
-    stream.once(paths::FIX, tick.at, &dot)
+
+    /// Takes in a tick that is over.
+    pub(crate) fn push(&mut self, stations: &[Station], tick: &Tick) {
+        if let Some(ranges) = &tick.ranges {
+            let ink = |range: &Ranging| {
+                let mut excluded = tick.fix.iter().flat_map(|fix| &fix.excluded);
+                let is_excluded = excluded.any(|(station, _)| *station == range.station);
+                if is_excluded { style::RANGE_EXCLUDED } else { style::RANGE }
+            };
+            let drawn = ranges.iter().filter_map(|range| Some((line(range, stations, tick)?, ink(range))));
+            self.ranges.push(tick.at, InkedLines(drawn.collect()));
+        }
+        if let Some(fix) = &tick.fix {
+            self.fixes.push(tick.at, flat(fix.position));
+        }
+    }
+
+    /// Sends the waiting rows.
+    pub(crate) fn send(&mut self, stream: &Stream) -> Result<(), RecordingError> {
+        self.ranges.send(stream)?;
+        self.fixes.send(stream)
+    }
 }
 
 fn line(range: &Ranging, stations: &[Station], tick: &Tick) -> Option<[Flat; 2]> {

@@ -22,7 +22,7 @@ const FIGURES: [Figure; 7] = [
     (paths::ERROR_95, "95 % bound", style::FIGURE, |tick| Some(tick.estimate?.ellipse_95.0)),
     (paths::COVERED, "reachable floor", style::PLAN, |tick| Some(100.0 * tick.covered?)),
     (paths::SPEED, "speed", style::TRUE, Tick::speed_m_per_s),
-    (paths::SPEED_SENT, "speed sent", style::FIGURE, |tick| tick.speed_sent_m_per_s),
+    (paths::SPEED_SENT, "speed sent", style::FIGURE, Tick::speed_sent_m_per_s),
     (paths::CLEARANCE, "clearance", style::WARNING, |tick| Some(tick.truth?.clearance_m)),
     (paths::CROSS_TRACK, "cross-track", style::ESTIMATE, |tick| tick.cross_track_m),
 ];

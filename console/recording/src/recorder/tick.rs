@@ -16,7 +16,9 @@ pub(crate) struct Tick {
     pub drawings: Vec<Drawing>,
     pub truth: Option<Truth>,
     pub estimate: Option<Estimate>,
-    pub speed_sent_m_per_s: Option<f64>,
+    /// What the planner commands; a robot that is held is told to stand, which no event says.
+    commanded_m_per_s: Option<f64>,
+    is_held: bool,
     /// Scanned share of the reachable floor.
     pub covered: Option<f64>,
     pub cross_track_m: Option<f64>,
@@ -68,7 +70,7 @@ impl Tick {
     /// A tick after this one.
     pub(crate) fn next(&self, at: At) -> Self {
         let before = self.truth.map(|truth| (self.at, truth.pose.position)).or(self.before);
-        Self { before, ..Self::first(at, self.believed, self.anchor) }
+        Self { before, is_held: self.is_held, ..Self::first(at, self.believed, self.anchor) }
     }
 
     /// Takes in an event of the tick.
@@ -82,7 +84,9 @@ impl Tick {
                 self.believed = pose.position;
                 self.estimate = Some(Estimate { position: pose.position, ellipse_95 });
             }
-            EventKind::Commanded { command, .. } => self.speed_sent_m_per_s = Some(speed(&command.drive)),
+            EventKind::Commanded { command, .. } => self.commanded_m_per_s = Some(speed(&command.drive)),
+            EventKind::Held { .. } => self.is_held = true,
+            EventKind::Resumed => self.is_held = false,
             EventKind::Drawn { drawings } => self.drawings.extend(drawings),
             EventKind::Ranged { ranges } => self.ranges = Some(ranges.clone()),
             EventKind::Fixed { fix } => self.fix = Some(fix.clone()),
@@ -116,6 +120,11 @@ impl Tick {
         }
     }
 
+    /// The speed that is sent to the robot.
+    pub(crate) fn speed_sent_m_per_s(&self) -> Option<f64> {
+        self.commanded_m_per_s.or(self.is_held.then_some(0.0))
+    }
+
     /// Distance between estimate and truth, metres.
     pub(crate) fn error_m(&self) -> Option<f64> {
         Some((self.estimate?.position - self.truth?.pose.position).norm())
@@ -133,5 +142,23 @@ fn speed(drive: &Drive) -> f64 {
     match drive {
         Drive::Twist { v_m_per_s, .. } => v_m_per_s.abs(),
         Drive::Velocity(velocity) => velocity.norm(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::{HoldReason, Resumes};
+
+    #[test]
+    fn a_held_robot_is_told_to_stand_until_it_is_resumed() {
+        let held = EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never };
+        let mut tick = Tick::first(At::default(), Point::origin(), None);
+        assert_eq!(tick.speed_sent_m_per_s(), None);
+        tick.apply(&held);
+        let mut next = tick.next(At::default());
+        assert_eq!((tick.speed_sent_m_per_s(), next.speed_sent_m_per_s()), (Some(0.0), Some(0.0)));
+        next.apply(&EventKind::Resumed);
+        assert_eq!(next.next(At::default()).speed_sent_m_per_s(), None);
     }
 }

@@ -21,8 +21,8 @@ use std::{
 
 /// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
 const IDLE: Duration = Duration::from_millis(100);
-/// Events that come faster than this are taken together: waking a thread for each of them would cost the sender as much as
-/// what it sends.
+/// How long the thread lets batches gather once one has come: whoever flies thousands of ticks a second does not wake it for
+/// each of them.
 const GATHER: Duration = Duration::from_millis(2);
 /// How often the files on disk are compared with those that are being written; with [`IDLE`] and the 400 ms
 /// after which a screen asks, an operator knows within a second.
@@ -53,21 +53,14 @@ impl Writer {
 
     /// Writes until nobody sends any more; returns how the journal ended, if it is whole, and what the run came to.
     pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> (Option<JournalEnd>, Summary) {
-        let mut waited = Duration::MAX;
         loop {
-            if waited < GATHER {
-                std::thread::sleep(GATHER);
-            }
-            let began = Instant::now();
             match batches.recv_timeout(IDLE) {
-                Ok(events) => {
-                    waited = began.elapsed();
-                    self.write(&events);
-                    batches.try_iter().for_each(|events| self.write(&events));
-                }
+                Ok(events) => self.write(&events),
                 Err(RecvTimeoutError::Timeout) => self.idle(),
                 Err(RecvTimeoutError::Disconnected) => return self.close(),
             }
+            batches.try_iter().for_each(|events| self.write(&events));
+            std::thread::sleep(GATHER);
         }
     }
 

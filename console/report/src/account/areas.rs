@@ -2,10 +2,7 @@
 
 use super::measure::Measure;
 use serde::{Deserialize, Serialize};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt,
-};
+use std::{collections::BTreeMap, fmt};
 use world::{Floor, PlateMap, Point, Vector};
 
 /// Areas smaller than this are not listed but only summed, square metres.
@@ -115,34 +112,40 @@ pub(crate) fn areas<R: Explained>(
     reason_of: impl Fn(usize) -> Option<R>,
     measure: impl Fn(R, &[usize]) -> Option<Measure>,
 ) -> (Vec<Area<R>>, Slivers<R>) {
-    let reasons: BTreeMap<usize, R> =
-        (0..floor.len()).filter_map(|index| Some((index, reason_of(index)?))).collect();
+    let reasons: Vec<Option<R>> = (0..floor.len()).map(reason_of).collect();
+    let reason = |cell: usize| reasons[cell].expect("only cells with a reason lie together");
     let (mut listed, mut slivers, mut specks) = (Vec::new(), Slivers::default(), Vec::new());
-    for cells in together(floor, reasons.keys().copied().collect()) {
+    for cells in together(floor, (0..floor.len()).filter(|cell| reasons[*cell].is_some())) {
         let area_m2 = cells.len() as f64 * floor.cell_m2();
         if area_m2 < LEAST_M2 {
             slivers.count += 1;
             slivers.area_m2 += area_m2;
             specks.extend(cells);
         } else {
-            listed.push(area_of(floor, plates, &cells, |cell| reasons[&cell], &measure));
+            listed.push(area_of(floor, plates, &cells, reason, &measure));
         }
     }
     // Equal areas stay in the order of their first cell.
     listed.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
-    slivers.causes = causes(floor, &specks, |cell| reasons[&cell], &measure);
+    slivers.causes = causes(floor, &specks, reason, &measure);
     (listed, slivers)
 }
 
-/// Cells in groups of those that touch, be it at a corner; in the order of their first cells.
-pub(crate) fn together(floor: &Floor, mut open: BTreeSet<usize>) -> Vec<Vec<usize>> {
+/// Some cells, in order of their index, in groups of those that touch, be it at a corner; in the order of their first cells.
+pub(crate) fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
+    let all: Vec<usize> = cells.into_iter().collect();
+    let mut is_open = vec![false; floor.len()];
+    all.iter().for_each(|cell| is_open[*cell] = true);
     let mut groups = Vec::new();
-    while let Some(first) = open.pop_first() {
+    for first in all {
+        if !std::mem::take(&mut is_open[first]) {
+            continue;
+        }
         let mut cells = vec![first];
         let mut at = 0;
         while let Some(cell) = cells.get(at).copied() {
             at += 1;
-            cells.extend(around(floor, cell).filter(|next| open.remove(next)));
+            cells.extend(around(floor, cell).filter(|next| std::mem::take(&mut is_open[*next])));
         }
         groups.push(cells);
     }

@@ -7,17 +7,13 @@ use crate::{
 };
 use csv::Writer;
 
-/// The tables, each with what its file's name has behind that of the first: plates with the whole and the reachable floor,
-/// missed areas, arcs of the critical zone that are not done, obstacles found, indications, and the track of every run with its 95 % error.
-pub fn tables(document: &Document, past: &[PastRun]) -> Vec<(&'static str, String)> {
-    vec![
-        ("", plates(document)),
-        ("-missed", missed(document)),
-        ("-zone", zone(document)),
-        ("-obstacles", obstacles(past)),
-        ("-indications", indications(document)),
-        ("-track", track(past)),
-    ]
+/// What the names of the files of the tables have behind that of the first.
+pub const SUFFIXES: [&str; 6] = ["", "-missed", "-zone", "-obstacles", "-indications", "-track"];
+
+/// The tables in the order of [`SUFFIXES`]: plates with the whole and the reachable floor, missed areas, arcs of the critical zone
+/// that are not done, obstacles found, indications, and the track of every run with its 95 % error.
+pub fn tables(document: &Document, past: &[PastRun]) -> [String; SUFFIXES.len()] {
+    [plates(document), missed(document), zone(document), obstacles(past), indications(document), track(past)]
 }
 
 /// Rows under a head; writing to memory cannot fail.
@@ -25,9 +21,15 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = Writer::from_writer(Vec::new());
     let _ = writer.write_record(head);
     for row in rows {
-        let _ = writer.write_record(row);
+        let _ = writer.write_record(row.into_iter().map(harmless));
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// A cell that no spreadsheet computes: a text that begins as a formula does has an apostrophe before it.
+fn harmless(cell: String) -> String {
+    let is_formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
+    if is_formula { format!("'{cell}") } else { cell }
 }
 
 fn plates(document: &Document) -> String {
@@ -151,4 +153,16 @@ fn track(past: &[PastRun]) -> String {
         })
     });
     table(&["run", "t_s", "x_m", "y_m", "heading_rad", "error_95_m"], rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_that_a_spreadsheet_would_compute_is_kept_as_a_text() {
+        let cells = ["=HYPERLINK(\"http://x\")", "@SUM(A1)", "+1+2", "-1.5", "-pit", "pit", "\tpit", ""];
+        let kept = ["'=HYPERLINK(\"http://x\")", "'@SUM(A1)", "'+1+2", "-1.5", "'-pit", "pit", "'\tpit", ""];
+        assert_eq!(cells.map(|cell| harmless(cell.into())), kept);
+    }
 }

@@ -41,7 +41,7 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
         ("Indications", indications(document)),
         ("Tether record", tether(document)),
         ("Alarms, faults, holds and early ends: who reviewed them", incidents(document)),
-        ("Remarks of the inspector", remarks(document)),
+        ("Inspector, certificate, remarks", remarks(document)),
         ("Journal, recording and report.json bound to this report", hashes(document)),
     ];
     let numbered = items.into_iter().zip(1..);
@@ -227,9 +227,13 @@ fn incidents(document: &Document) -> Answered {
 }
 
 fn remarks(document: &Document) -> Answered {
-    let remarks = document.inspection.remarks.clone();
-    let lacks =
-        missing(&[("remarks", remarks.is_some()), ("inspector", document.inspection.inspector.is_some())]);
+    let facts = &document.inspection;
+    let remarks = facts.remarks.clone();
+    let lacks = missing(&[
+        ("remarks", remarks.is_some()),
+        ("inspector", facts.inspector.is_some()),
+        ("inspector_certificate", facts.inspector_certificate.is_some()),
+    ]);
     (remarks.unwrap_or_default(), lacks)
 }
 
@@ -238,6 +242,9 @@ fn hashes(document: &Document) -> Answered {
     for run in &document.runs {
         let files = &run.files;
         lacks.extend(files.doubts.iter().map(|doubt| format!("{}: {doubt}", run.run)));
+        if let Some(then) = files.closed_as.as_ref().filter(|then| **then != run.run) {
+            lacks.push(format!("{}: its folder was renamed; call it {then} again", run.run));
+        }
         if files.are_as_reported.is_none() {
             lacks.push(format!(
                 "{}: no report of the end of the run that the files could be checked against",

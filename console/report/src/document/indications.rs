@@ -1,5 +1,6 @@
 //! Indications of the scanning instrument, by time, placed on the track.
 
+use super::unreadable;
 use crate::record::Record;
 use serde::{Deserialize, Serialize};
 use world::{Point, geometry::unit_vector};
@@ -135,6 +136,10 @@ fn row(
         }
         _ => error.to_string(),
     })?;
+    let texts = [("kind", &row.kind), ("note", &row.note)];
+    if let Some((name, odd)) = texts.into_iter().find_map(|(name, text)| Some((name, unreadable(text)?))) {
+        return Err(format!("{name}: must be text that can be read: {odd} cannot"));
+    }
     let numbers = [
         ("left_m", Some(row.left_m)),
         ("ahead_m", Some(row.ahead_m)),
@@ -203,6 +208,10 @@ mod tests {
         assert_eq!(refused("t_s\n1\n99\n"), "line 3: t_s = 99: the run lasts from 0 to 9.0 s");
         assert_eq!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n"), "line 4: t_s: invalid float literal");
         assert_eq!(refused("t_s,left_m\n1,nan\n"), "line 2: left_m: must be a finite number");
+        assert_eq!(
+            refused("t_s,kind\n1,\u{202E}pit\n"),
+            "line 2: kind: must be text that can be read: U+202E cannot"
+        );
         assert!(refused("time\n1\n").contains("unknown column `time`; there are run, t_s"));
     }
 }

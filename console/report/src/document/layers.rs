@@ -76,7 +76,7 @@ impl<'a> Layers<'a> {
 
     fn gaps_at(&self, places: &[Point]) -> Vec<(Point, Vec<usize>)> {
         let floor = self.floor();
-        let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell)).collect();
+        let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell));
         let is_listed = |cells: &Vec<usize>| cells.len() as f64 * floor.cell_m2() >= LEAST_M2;
         let mut groups: Vec<Vec<usize>> = together(floor, missed).into_iter().filter(is_listed).collect();
         for cells in &mut groups {

@@ -1,12 +1,13 @@
 //! The maps of a report.
 
-use super::{Indication, layers::Layers};
+use super::{Indication, layers::Layers, marks};
 use crate::{
     drawing::{
         badges::{self, Numbered},
         sheet::{Sheet, colour, element, escaped},
         trace::thinned,
     },
+    human::text::counted,
     record::{Lay, Record},
 };
 use serde::Serialize;
@@ -82,7 +83,8 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
     let mut names = sheet.plate_names(layers.plates.as_ref(), 2.1);
-    names.extend(mark_indications(&mut sheet, indications));
+    let marks = marks::draw(&mut sheet, indications, &names);
+    names.extend(marks.boxes);
     let numbered: Vec<Numbered<'_>> = layers
         .gaps
         .iter()
@@ -119,55 +121,25 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         entries.push(legend(zone, "zone", String::new()));
     }
     if !indications.is_empty() {
-        let mark = dot(&format!("{INDICATION} stroke=\"{}\"", colour::TETHER));
+        let mark = dot(&format!("{} stroke=\"{}\"", marks::STYLE, colour::TETHER));
         entries.push(legend(mark, "indication, I and its number", indications.len().to_string()));
     }
     let hidden = numbered.len() - shown.len();
-    let note = if hidden > 0 {
-        format!(" {hidden} areas have no badge: their places are in section 3.")
-    } else {
-        String::new()
-    };
+    let mut note = String::new();
+    if hidden > 0 {
+        note += &format!(" {hidden} areas have no badge: their places are in section 3.");
+    }
+    if marks.unnumbered > 0 {
+        note += &format!(
+            " {} have no room for their numbers: their places are in section 7.",
+            counted(marks.unnumbered, "indication")
+        );
+    }
     let overlap = 100.0 * again as f64 / (once + again).max(1) as f64;
     let caption = format!(
         "What was scanned, by the estimated position; {overlap:.1} % of the scanned floor more than once. Missed cells have an outline of 0.25 mm so that they stay visible.{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
-}
-
-/// How the mark of an indication is filled and drawn.
-const INDICATION: &str = r##"fill="#fff" stroke-width=".5""##;
-
-/// Marks indications with their numbers; returns the boxes of the numbers.
-fn mark_indications(sheet: &mut Sheet, indications: &[Indication]) -> Vec<[Point; 2]> {
-    let purple = colour::TETHER;
-    let mut boxes: Vec<[Point; 2]> = Vec::new();
-    for found in indications {
-        let (at, name) = (sheet.at(found.at), format!("I{}", found.number));
-        let half = world::Vector::new(0.75 * name.len() as f64, 1.2);
-        let beside = [(1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]
-            .map(|(x, y)| at + world::Vector::new(x * (1.4 + half.x), y * (1.4 + half.y)));
-        let is_free = |place: &&Point| {
-            let covers = |[low, high]: &[Point; 2]| {
-                place.x - half.x < high.x
-                    && low.x < place.x + half.x
-                    && place.y - half.y < high.y
-                    && low.y < place.y + half.y
-            };
-            !boxes.iter().any(covers)
-        };
-        let place = *beside.iter().find(is_free).unwrap_or(&beside[0]);
-        boxes.extend([
-            [at - world::Vector::new(1.2, 1.2), at + world::Vector::new(1.2, 1.2)],
-            [place - half, place + half],
-        ]);
-        sheet.circle(found.at, 1.0, &format!("{INDICATION} stroke=\"{purple}\""));
-        sheet.draw(format_args!(
-            r#"<text class="st" x="{:.2}" y="{:.2}" dy=".35em" text-anchor="middle" font-size="2.3" font-weight="700" fill="{purple}">{name}</text>"#,
-            place.x, place.y
-        ));
-    }
-    boxes
 }
 
 /// How well the position was known where the floor was scanned.
@@ -193,9 +165,12 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
         4 => format!("above {:.1} cm", cm(edges_m[3])),
         _ => format!("{:.1} to {:.1} cm", cm(edges_m[class - 1]), cm(edges_m[class])),
     };
+    let share = |class: usize| {
+        classes.iter().filter(|other| usize::from(**other) == class).count() as f64 / scanned as f64
+    };
+    let percents = world::coverage::percents([0, 1, 2, 3, 4].map(share));
     let entry = |(class, colour): (usize, &str)| {
-        let cells = classes.iter().filter(|other| usize::from(**other) == class).count();
-        legend(filled(colour), &text(class), format!("{:.0} %", 100.0 * cells as f64 / scanned as f64))
+        legend(filled(colour), &text(class), format!("{:.1} %", percents[class]))
     };
     Figure {
         caption:

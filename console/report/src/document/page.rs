@@ -151,6 +151,8 @@ pub(super) enum Block {
     Heading(String),
     Note(String),
     Words(Vec<(&'static str, String)>),
+    /// Numbered entries in columns.
+    Columns(Vec<(usize, String)>),
     List(Vec<String>),
     Table(Table),
     Wide(Picture),

@@ -25,6 +25,8 @@ pub struct Files {
     pub are_as_reported: Option<bool>,
     /// What speaks against them.
     pub doubts: Vec<String>,
+    /// Name of the run's folder when the run was closed; absent if nothing says it.
+    pub closed_as: Option<String>,
 }
 
 /// A planner that drove.

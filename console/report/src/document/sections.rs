@@ -3,6 +3,7 @@
 mod closing;
 mod floor;
 mod front;
+mod missed;
 mod runs;
 
 use super::{
@@ -17,7 +18,7 @@ pub(super) fn sections(document: &Document) -> Page {
     let sections = [
         section("Scope", front::scope(document)),
         Section { is_new_sheet: true, ..section("Coverage map", floor::map(document)) },
-        section("Missed and unreachable floor", floor::missed(document)),
+        section("Missed and unreachable floor", missed::missed(document)),
         section("Critical zone along the shell", floor::zone(document)),
         section("Position accuracy and guaranteed coverage", floor::accuracy(document)),
         section("Plates", floor::plates(document)),

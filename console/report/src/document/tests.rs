@@ -9,14 +9,19 @@ use crate::{
     summary::Logs,
 };
 use mission::{Event, EventKind};
-use world::{CellRun, Floor, Obstacle, ObstacleId, Shape};
+use world::{Floor, Obstacle, ObstacleId, Shape};
 
 /// A run that scanned everything but two cells out of the middle.
 fn past() -> PastRun {
+    past_without(&[Point::new(1.0, -1.0), Point::new(1.1, -1.0)])
+}
+
+/// A run that scanned everything but the cells at some places.
+fn past_without(missed: &[Point]) -> PastRun {
     let run = round_tank(0.1);
-    let middle = run.floor.cell_at(Point::new(1.0, -1.0)).unwrap() as u32;
-    let rest = run.floor.len() as u32 - middle - 2;
-    let covered = EventKind::Covered { runs: vec![CellRun(0, middle), CellRun(middle + 2, rest)] };
+    let missed: Vec<usize> = missed.iter().map(|place| run.floor.cell_at(*place).unwrap()).collect();
+    let runs = world::coverage::runs_of((0..run.floor.len()).filter(|cell| !missed.contains(cell)));
+    let covered = EventKind::Covered { runs };
     let (mut fold, mut record) = (Fold::new(), Record::new());
     for kind in [EventKind::RunOpened(Box::new(run)), covered] {
         let event = Event { tick: 0, t_s: 0.0, kind };
@@ -82,8 +87,7 @@ fn files_that_are_not_those_of_the_end_of_the_run_are_an_open_item() {
 #[test]
 fn every_format_has_the_gap_and_the_letters_of_revisions_go_on_after_z() {
     let (runs, document) = ([past()], document(Inspection::default()));
-    let tables = csv::tables(&document, &runs);
-    let missed = &tables.iter().find(|(suffix, _)| *suffix == "-missed").unwrap().1;
+    let [_, missed, ..] = csv::tables(&document, &runs);
     assert!(missed.lines().count() == 2 && missed.contains("not planned"), "{missed}");
     assert!(geojson::geojson(&document, &runs).contains(r#""layer":"missed""#));
     assert!(dxf::dxf(&document, &runs).contains("MISSED"));
@@ -183,6 +187,16 @@ fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
     let places = ["I1", "I2", "I3"].map(place_of);
     assert!(places[0] != places[1] && places[1] != places[2] && places[0] != places[2], "{places:?}");
     assert!(map.legend.iter().any(|entry| entry.text.starts_with("indication") && entry.value == "3"));
+    // Where there is no room, a mark has no number rather than one over another, and the caption says so.
+    let crowd: String = (0..300).fold("t_s\n".into(), |csv, k| csv + &format!("{}\n", 0.03 * f64::from(k)));
+    let [run, _] = two_runs();
+    let context = Context { indications_csv: Some(("found.csv", &crowd)), ..Context::default() };
+    let map = Document::new(&[run], context).unwrap().pictures.coverage;
+    let numbers = map.svg.matches(">I").count();
+    assert!(
+        (1..300).contains(&numbers)
+            && map.caption.contains(&format!("{} indications have no room", 300 - numbers))
+    );
 }
 
 #[test]
@@ -205,4 +219,101 @@ fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
     let [run, _] = two_runs();
     let alone = Document::new(std::slice::from_ref(&run), Context::default()).unwrap();
     assert!(!dxf::dxf(&alone, &[run]).contains("of run"));
+}
+
+#[test]
+fn of_many_missed_areas_the_small_ones_are_said_in_few_words_each_with_its_reason_and_value() {
+    let places: Vec<Point> =
+        (0..60).map(|k| Point::new(-2.0 + 0.4 * f64::from(k % 10), -1.0 + 0.4 * f64::from(k / 10))).collect();
+    let many = Document::new(&[past_without(&places)], Context::default()).unwrap();
+    assert_eq!(many.floor.missed.len(), 60);
+    let page = html(&many);
+    for number in 1..=60 {
+        let entry =
+            page.split_once(&format!("<li id=\"m{number}\">")).unwrap().1.split("</li>").next().unwrap();
+        let (letter, value) = entry.split_once("0.010\u{a0}m²; ").unwrap().1.split_once(' ').unwrap();
+        let is_explained = page.contains(&format!("{letter}: not planned"));
+        assert!(
+            is_explained && value.split([' ', '\u{a0}']).next().unwrap().parse::<f64>().is_ok(),
+            "{entry}"
+        );
+    }
+    let few = Document::new(&[past_without(&places[..40])], Context::default()).unwrap();
+    assert!(html(&few).contains("<tr id=\"m40\"") && !html(&few).contains("<li id=\"m"), "rows");
+}
+
+#[test]
+fn the_balance_of_the_floor_adds_up_to_its_last_digit() {
+    let page = html(&document(Inspection::default()));
+    let line = page
+        .split_once("Whole floor minus reachable floor: ")
+        .unwrap()
+        .1
+        .split(" scanned although")
+        .next()
+        .unwrap();
+    let numbers: Vec<f64> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+    let [all, parts @ ..] = &numbers[..] else { panic!("{line}") };
+    assert!(parts.len() == 3 && (all - parts.iter().sum::<f64>()).abs() < 1e-9, "{line}");
+}
+
+#[test]
+fn a_report_of_a_scan_and_its_rescan_is_called_after_the_scan_and_a_copy_of_a_run_is_refused() {
+    let [first, mut second] = two_runs();
+    second.fold.run.as_mut().unwrap().scenario = "tiny-rescan".into();
+    let scenario = first.fold.run.as_ref().unwrap().scenario.clone();
+    let mut runs = [first, second];
+    assert_eq!(Document::new(&runs, Context::default()).unwrap().scenario, scenario);
+    runs.iter_mut().for_each(|run| run.files.journal_sha256 = Some("a1".repeat(32)));
+    let refused = Document::new(&runs, Context::default()).unwrap_err();
+    assert!(refused.contains("have the same journal"), "{refused}");
+}
+
+#[test]
+fn a_renamed_folder_keeps_number_and_blocks_the_signature() {
+    let mut past = past();
+    past.name = "20300101T000000Z-tiny".into();
+    past.files = Files {
+        recording_sha256: Some("b2".repeat(32)),
+        are_as_reported: Some(true),
+        closed_as: Some("20261122T040132Z-tiny".into()),
+        ..Files::default()
+    };
+    let document = Document::new(&[past], Context::default()).unwrap();
+    assert!(document.number.starts_with("20261122T040132Z-"), "{}", document.number);
+    assert_eq!(
+        document.gate[12].missing,
+        ["20300101T000000Z-tiny: its folder was renamed; call it 20261122T040132Z-tiny again"]
+    );
+}
+
+#[test]
+fn a_run_that_is_not_the_signed_one_any_more_is_named() {
+    let run = |journal: &str| SignedRun {
+        run: "a".into(),
+        journal_sha256: Some(journal.into()),
+        recording_sha256: Some("rec".into()),
+    };
+    let revision = Revision {
+        number: "1-1".into(),
+        revision: "B".into(),
+        signature: Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() },
+        file: "a.html".into(),
+        sha256: "00".into(),
+        runs: vec![run("one")],
+    };
+    assert_eq!(
+        (revision.doubt(&run("one")), revision.doubt(&SignedRun { run: "b".into(), ..run("other") })),
+        (None, None)
+    );
+    let other = revision.doubt(&run("other"));
+    assert_eq!(
+        other.as_deref(),
+        Some("signed revision B is about another journal: expected SHA-256 one, found other")
+    );
+    let lost = revision.doubt(&SignedRun { recording_sha256: None, ..run("one") });
+    assert_eq!(
+        lost.as_deref(),
+        Some("signed revision B is about another recording: expected SHA-256 rec, found none")
+    );
 }

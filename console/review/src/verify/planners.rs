@@ -98,7 +98,8 @@ pub(crate) struct Asked {
 impl Asked {
     /// Asks the planners of a host all that is told, until nobody tells anything any more or one answers otherwise: from
     /// there on it would know other things than it did then.
-    pub(super) fn of(host: Host, told: &Receiver<Told>) -> Self {
+    pub(super) fn of(mut host: Host, told: &Receiver<Told>) -> Self {
+        host.share_processor();
         let mut asking = Asking { host, early: Vec::new(), asked: Self::default() };
         let is_same = told.iter().all(|told| {
             match told {

@@ -98,8 +98,10 @@ struct Widths {
     notes: usize,
 }
 
+/// Columns of how a run ended, with the one that keeps it apart from what is beside it.
+const END: usize = 11;
 /// Columns of mark, date, end and coverage.
-const FIXED: usize = 3 + 12 + 10 + 7;
+const FIXED: usize = 3 + 12 + END + 7;
 
 /// What there is no room for is left out: first the time, then the planner.
 fn widths(listed: &[&PastRun], columns: usize) -> Widths {
@@ -118,7 +120,7 @@ fn head(widths: Widths) -> Parts {
         text::column("   began UTC", 15),
         text::column("scenario", widths.scenario),
         text::column(if widths.planner > 0 { "planner" } else { "" }, widths.planner),
-        text::column("end", 10),
+        text::column("end", END),
         text::column(if widths.time > 0 { "T+" } else { "" }, widths.time),
         "reach %".into(),
         if widths.notes > 7 { "  notes" } else { "" }.into(),
@@ -137,7 +139,7 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
         (Role::Dim, text::column(&run.began, 12)),
         (Role::Text, text::column(name, widths.scenario)),
         (Role::Dim, text::column(&run.planner, widths.planner)),
-        (role, text::column(&run.end, 10)),
+        (role, text::column(&text::fit(&run.end, END - 1), END)),
         (Role::Dim, text::column(&time, widths.time)),
         (Role::Text, format!("{reach:>7}")),
         (Role::Dim, text::fit(&format!("  {}", notes(run)), widths.notes)),

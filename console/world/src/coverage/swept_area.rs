@@ -2,6 +2,7 @@
 
 use super::{
     floor::{Cell, Floor},
+    span::{Capsule, Span, crossings, polygon_span},
     tool::Tool,
 };
 use geometry::{
@@ -18,9 +19,6 @@ const ROW_M: f64 = 0.02;
 const MOST_ROWS: f64 = 5_000.0;
 /// Spans of a row that are nearer than this are one, metres.
 const SEAM_M: f64 = 1e-9;
-
-/// From where to where along a row, metres.
-type Span = (f64, f64);
 
 /// What a tool swept, as spans of rows across a floor: exact along each row. Of the floor only its outline and what stands on
 /// it are taken exactly, too; the border of floor beyond the reach of the tool is that of its cells.
@@ -82,7 +80,8 @@ impl SweptArea {
             }
             Tool::Disc { swath_m } => {
                 let ends = [a.position, b.position].map(|end| self.askew * end);
-                self.add(&ends, swath_m / 2.0, |y| capsule_span(ends, swath_m / 2.0, y));
+                let capsule = Capsule::new(ends, swath_m / 2.0);
+                self.add(&ends, swath_m / 2.0, |y| capsule.span(y));
             }
         }
     }
@@ -177,7 +176,7 @@ impl SweptArea {
             }
             Boundary::Polygon { vertices } => {
                 let corners: Vec<Point> = vertices.iter().map(|vertex| self.askew * vertex).collect();
-                let mut crossed = crossings(&corners, y);
+                let mut crossed: Vec<f64> = crossings(&corners, y).collect();
                 crossed.sort_by(f64::total_cmp);
                 crossed.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
             }
@@ -278,36 +277,8 @@ fn extent(part: &Part) -> Span {
 fn part_span(part: &Part, y: f64) -> Option<Span> {
     match part {
         Part::Polygon { vertices } => polygon_span(vertices, y),
-        Part::Capsule { a, b, half_width_m } => capsule_span([*a, *b], *half_width_m, y),
+        Part::Capsule { a, b, half_width_m } => Capsule::new([*a, *b], *half_width_m).span(y),
     }
-}
-
-/// Where a convex polygon lies at a height.
-fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
-    span_of(crossings(corners, y))
-}
-
-/// Where everything within a distance of a segment lies at a height.
-fn capsule_span([a, b]: [Point; 2], reach_m: f64, y: f64) -> Option<Span> {
-    let disc = |center: Point| {
-        let half_m = (reach_m * reach_m - (y - center.y).powi(2)).max(-1.0);
-        (half_m >= 0.0).then(|| [center.x - half_m.sqrt(), center.x + half_m.sqrt()])
-    };
-    let aside = (b - a).try_normalize(1e-12).map(|ahead| nalgebra::vector![-ahead.y, ahead.x] * reach_m);
-    let sides = aside.map(|aside| crossings(&[a + aside, b + aside, b - aside, a - aside], y));
-    span_of([a, b].into_iter().filter_map(disc).flatten().chain(sides.into_iter().flatten()))
-}
-
-fn span_of(crossed: impl IntoIterator<Item = f64>) -> Option<Span> {
-    let ends = |(low, high): Span, x: f64| (low.min(x), high.max(x));
-    Some(crossed.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)).filter(|(low, high)| low <= high)
-}
-
-/// Where the outline of a polygon crosses a height.
-fn crossings(corners: &[Point], y: f64) -> Vec<f64> {
-    let edges = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
-    let crossed = edges.filter(|(a, b)| (a.y <= y) != (b.y <= y));
-    crossed.map(|(a, b)| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y))).collect()
 }
 
 #[cfg(test)]

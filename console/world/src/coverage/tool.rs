@@ -1,5 +1,6 @@
 //! The scanning tool and the floor that it passes.
 
+use super::span::Capsule;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
@@ -87,7 +88,8 @@ impl Tool {
         match self {
             Self::Bar { swath_m } => Passage::Bar(Swept::new(swath_m, from, to)),
             Self::Disc { swath_m } => {
-                Passage::Disc { from: from.position, to: to.position, reach_m: swath_m / 2.0 }
+                let (from, to, reach_m) = (from.position, to.position, swath_m / 2.0);
+                Passage::Disc { from, to, reach_m, around: Capsule::new([from, to], reach_m + BESIDE_M) }
             }
         }
     }
@@ -97,7 +99,13 @@ impl Tool {
 #[expect(clippy::large_enum_variant, reason = "made and dropped once a tick, never kept")]
 pub(super) enum Passage {
     Bar(Swept),
-    Disc { from: Point, to: Point, reach_m: f64 },
+    Disc {
+        from: Point,
+        to: Point,
+        reach_m: f64,
+        /// A little more than all of it.
+        around: Capsule,
+    },
 }
 
 impl Passage {
@@ -105,18 +113,18 @@ impl Passage {
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
             Self::Bar(swept) => (swept.low, swept.high),
-            Self::Disc { from, to, reach_m } => {
+            Self::Disc { from, to, reach_m, .. } => {
                 let reach = Vector::new(*reach_m, *reach_m);
                 (from.inf(to) - reach, from.sup(to) + reach)
             }
         }
     }
 
-    /// West and east ends of all of it that lies at a height.
+    /// West and east ends of all of it that lies at a height, or a little further out.
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
-            Self::Disc { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+            Self::Disc { around, .. } => around.span(y).unwrap_or((f64::INFINITY, f64::NEG_INFINITY)),
         }
     }
 
@@ -131,7 +139,7 @@ impl Passage {
     pub(super) fn contains(&self, point: Point) -> bool {
         match self {
             Self::Bar(swept) => swept.contains(point),
-            Self::Disc { from, to, reach_m } => {
+            Self::Disc { from, to, reach_m, .. } => {
                 (point - nearest_on_segment(*from, *to, point)).norm() <= *reach_m
             }
         }
@@ -140,7 +148,7 @@ impl Passage {
 
 /// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
-/// Everything lies at least this far within its band, metres.
+/// Everything lies at least this far within its band, or within the ends at a height, metres.
 const BESIDE_M: f64 = 1e-3;
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.

@@ -1,11 +1,14 @@
 //! Shortest paths from the anchor to anywhere, whatever path the robot took: the shortest cable that would do.
 
-use super::cable_obstacles::{CableObstacles, Post, tangent_point};
+use super::{
+    cable::Cable,
+    cable_obstacles::{CableObstacles, Post, tangent_point},
+};
 use crate::total::Total;
 use geometry::{Point, unit_vector, wrap_angle_rad};
 use std::{
     cmp::Reverse,
-    collections::BinaryHeap,
+    collections::{BTreeMap, BinaryHeap},
     f64::consts::{PI, TAU},
     sync::Arc,
 };
@@ -30,6 +33,8 @@ pub struct Geodesic {
     arrivals: Vec<Arrival>,
     /// The same by post and side: at twice the index of the post, plus one for the left-hand side.
     at_post: Vec<Vec<Arrival>>,
+    /// The longest way to each post that is looked for, metres.
+    most_m: Vec<f64>,
 }
 
 /// A shortest path that has come to touch a post.
@@ -80,8 +85,24 @@ impl Geodesic {
     /// assert_eq!(Geodesic::new(Point::origin(), empty).distance_m(Point::new(3.0, 4.0)), 5.0);
     /// ```
     pub fn new(anchor: Point, obstacles: Arc<CableObstacles>) -> Self {
+        let most_m = vec![f64::INFINITY; obstacles.posts.len()];
+        Self::searched(anchor, obstacles, most_m)
+    }
+
+    /// Those that lead to some places on ways no longer than is known to be enough, each place with that length, metres.
+    fn toward(anchor: Point, obstacles: Arc<CableObstacles>, places: &[(Point, f64)]) -> Self {
+        let squares = longest_by_square(places);
+        let most_m = |post: &Post| {
+            let spare_m = squares.iter().map(|(middle, enough_m)| enough_m - (middle - post.center).norm());
+            spare_m.fold(f64::NEG_INFINITY, f64::max) + post.radius_m + SQUARE_M
+        };
+        let most_m = obstacles.posts.iter().map(most_m).collect();
+        Self::searched(anchor, obstacles, most_m)
+    }
+
+    fn searched(anchor: Point, obstacles: Arc<CableObstacles>, most_m: Vec<f64>) -> Self {
         let at_post = vec![Vec::new(); 2 * obstacles.posts.len()];
-        let mut found = Self { obstacles, anchor, arrivals: Vec::new(), at_post };
+        let mut found = Self { obstacles, anchor, arrivals: Vec::new(), at_post, most_m };
         found.search();
         found
     }
@@ -135,8 +156,15 @@ impl Geodesic {
     fn onward(&self, from: Option<usize>, is_meant: impl Fn(usize) -> bool) -> impl Iterator<Item = Arrival> {
         let base = from.map(|index| (self.arrivals[index], self.obstacles.posts[self.arrivals[index].post]));
         let start = base.map_or((self.anchor, 0.0, 0.0), |(a, post)| (post.center, post.radius_m, a.side));
+        let is_near = move |post: usize| {
+            let target = self.obstacles.posts[post];
+            let gap_m = (target.center - start.0).norm() - start.1 - target.radius_m;
+            base.map_or(0.0, |(a, _)| a.length_m) + gap_m.max(0.0) <= self.most_m[post]
+        };
         (0..self.obstacles.posts.len())
-            .filter(move |post| base.is_none_or(|(a, _)| a.post != *post) && is_meant(*post))
+            .filter(move |post| {
+                is_near(*post) && base.is_none_or(|(a, _)| a.post != *post) && is_meant(*post)
+            })
             .flat_map(|post| [(post, 1.0), (post, -1.0)])
             .filter_map(move |(post, side)| {
                 let target = self.obstacles.posts[post];
@@ -157,7 +185,14 @@ impl Geodesic {
                     Some((a, here)) => a.length_m + here.radius_m * wrap_of(&a, bearing_rad)?,
                 };
                 let length_m = before_m + (at - leaves).norm();
-                Some(Arrival { segment: (leaves, at), from, post, side, bearing_rad, length_m })
+                (length_m <= self.most_m[post]).then_some(Arrival {
+                    segment: (leaves, at),
+                    from,
+                    post,
+                    side,
+                    bearing_rad,
+                    length_m,
+                })
             })
     }
 
@@ -242,22 +277,65 @@ impl Geodesic {
         least_m
     }
 
-    /// The largest of the distances to some points, metres; each point comes with an upper bound of its own, metres.
+    /// The largest of the distances from an anchor to some points, metres; each point comes with an upper bound of its own,
+    /// metres. The nearer the bounds are to the distances, the less is searched.
     ///
     /// ```
     /// use std::sync::Arc;
     /// use world::{Boundary, Point, tether::{CableObstacles, Geodesic}};
     /// let empty = Arc::new(CableObstacles::new(&Boundary::Circle { radius_m: 10.0 }, &[]));
     /// let points = [(Point::new(3.0, 4.0), 6.0), (Point::new(1.0, 0.0), 4.0)];
-    /// assert_eq!(Geodesic::new(Point::origin(), empty).farthest_m(points), 5.0);
+    /// assert_eq!(Geodesic::farthest_m(Point::origin(), empty, &points), 5.0);
     /// ```
-    pub fn farthest_m(&self, points: impl IntoIterator<Item = (Point, f64)>) -> f64 {
-        let mut points: Vec<(Point, f64)> = points.into_iter().collect();
+    pub fn farthest_m(anchor: Point, obstacles: Arc<CableObstacles>, points: &[(Point, f64)]) -> f64 {
+        // No point with a bound below the largest straight distance is the farthest.
+        let straight_m = points.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
+        let mut points = bounded(anchor, &obstacles, points);
+        points.retain(|(_, enough_m)| *enough_m >= straight_m);
+        let paths = Self::toward(anchor, obstacles, &points);
         points.sort_by(|a, b| b.1.total_cmp(&a.1));
         points.iter().fold(0.0, |most_m, (point, enough_m)| {
-            if *enough_m <= most_m { most_m } else { most_m.max(self.distance_m(*point).min(*enough_m)) }
+            if *enough_m <= most_m { most_m } else { most_m.max(paths.distance_m(*point).min(*enough_m)) }
         })
     }
+}
+
+/// The same points with bounds that are nearer to the distances where the points come from a path that winds its cable round
+/// much: there the way straight from the anchor and round what stands in it, or from there a little along the path.
+fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64)]) -> Vec<(Point, f64)> {
+    let straight_m = |point: Point| {
+        let mut cable = Cable::on(anchor, Arc::clone(obstacles)).ok()?;
+        cable.drag_to(point);
+        (!obstacles.sidestep.holds(point)).then(|| cable.length_m())
+    };
+    // The last point, its bound, and the way to it from where the bound is that of a cable.
+    let mut before: Option<(Point, f64, f64)> = None;
+    let bound = |(point, enough_m): &(Point, f64)| {
+        let on = before.and_then(|(from, most_m, way_m)| {
+            let step_m = (point - from).norm();
+            let is_short = way_m + step_m <= SQUARE_M;
+            (is_short && obstacles.is_open(from, *point)).then_some((most_m + step_m, way_m + step_m))
+        });
+        let found = on.or_else(|| Some((straight_m(*point)?, 0.0)));
+        before = found.map(|(most_m, way_m)| (*point, most_m, way_m));
+        (*point, found.map_or(*enough_m, |(most_m, _)| most_m.min(*enough_m)))
+    };
+    points.iter().map(bound).collect()
+}
+
+/// Places are taken together in squares of this edge, metres.
+const SQUARE_M: f64 = 1.0;
+
+/// The longest way of all places in each square, by the middle of the square. No place is further from there than an edge.
+fn longest_by_square(places: &[(Point, f64)]) -> Vec<(Point, f64)> {
+    let mut longest: BTreeMap<(i64, i64), f64> = BTreeMap::new();
+    for (place, enough_m) in places {
+        let [column, row] = [place.x, place.y].map(|at| (at / SQUARE_M).floor() as i64);
+        let most_m = longest.entry((column, row)).or_insert(*enough_m);
+        *most_m = most_m.max(*enough_m);
+    }
+    let middle = |at: i64| (at as f64 + 0.5) * SQUARE_M;
+    longest.into_iter().map(|((x, y), most_m)| (Point::new(middle(x), middle(y)), most_m)).collect()
 }
 
 /// Bearing of the common tangent from one disc to another, each on its side.

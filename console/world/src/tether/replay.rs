@@ -4,6 +4,7 @@ use super::{
     cable::{Cable, TetherError},
     cable_obstacles::Bearing,
     case::Case,
+    geodesic::Geodesic,
     ground::Ground,
 };
 use geometry::Point;
@@ -66,7 +67,7 @@ impl Replay {
         if self.max_cable.0 <= straight_m + 1e-3 {
             return straight_m;
         }
-        ground.geodesic().farthest_m(self.lengths.iter().copied())
+        Geodesic::farthest_m(ground.anchor, Arc::clone(&ground.obstacles), &self.lengths)
     }
 
     /// The cable after a straight return to the anchor.

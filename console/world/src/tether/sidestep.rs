@@ -64,9 +64,10 @@ impl Sidestep {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
-    /// The parts of a segment that lie in solids or touch them: where each begins and ends, as shares of the segment.
+    /// The parts of a segment that lie in solids or touch them: where each begins and ends, as shares of the segment, in no
+    /// order.
     pub(super) fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.solids.iter().filter_map(move |solid| solid.inside(from, to))
+        self.near(from, to).filter_map(move |(_, solid)| solid.inside(from, to))
     }
 
     /// Calls `go` with the end of each straight move that leads from one point to another around every solid.

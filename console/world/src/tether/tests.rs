@@ -354,6 +354,7 @@ proptest! {
         let shapes = apart(at.iter().map(|(x, y)| disc(*x, *y, radius)).collect(), anchor, 0.05);
         let mut cable = cable(anchor, &shapes);
         let shortest = Geodesic::new(anchor, std::sync::Arc::clone(cable.obstacles()));
+        let mut lengths = Vec::new();
         for point in walk(anchor, &goals, &shapes, 0.0) {
             cable.drag_to(point);
             let least_m = shortest.distance_m(point);
@@ -363,6 +364,11 @@ proptest! {
             if cable.signature().is_empty() && cable.is_straight() {
                 prop_assert!((least_m - cable.length_m()).abs() < 1e-6);
             }
+            lengths.push((point, cable.length_m()));
         }
+        // The search that goes no further than it has to finds the same.
+        let farthest_m = lengths.iter().map(|(point, _)| shortest.distance_m(*point)).fold(0.0, f64::max);
+        let found_m = Geodesic::farthest_m(anchor, std::sync::Arc::clone(cable.obstacles()), &lengths);
+        prop_assert!((found_m - farthest_m).abs() <= 1e-6, "{found_m} {farthest_m}");
     }
 }

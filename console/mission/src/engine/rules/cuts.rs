@@ -3,6 +3,7 @@
 use world::{
     Boundary, ObstacleMap, Point, Vector,
     polyline::{self, edges, nearest_on_segment},
+    shape::bounds_of,
     tether::crossings,
 };
 
@@ -14,12 +15,13 @@ pub(in crate::engine) const HOME_M: f64 = 0.3;
 const ROOT_SHARE: f64 = 1.1;
 /// How far it is led into that, metres.
 const ROOT_M: f64 = 0.01;
+/// A move this far beside a cut may touch it, metres.
+const BESIDE_M: f64 = 1e-6;
 
 /// The lines that the plan never crosses, and whether the robot has.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct CutsRule {
-    /// Each with whether the robot is beyond it.
-    lines: Vec<(Vec<Point>, bool)>,
+    cuts: Vec<Cut>,
     /// Where the plan is bound to them from, after a return path; `None` once the robot has been there.
     from: Option<Point>,
     seen_at: Point,
@@ -28,7 +30,7 @@ pub(in crate::engine) struct CutsRule {
 impl CutsRule {
     /// The cuts of a plan that is to be flown from here, bound to them from a point on.
     pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point, solids: &Solids<'_>) -> Self {
-        Self { lines: lines.iter().map(|line| (solids.rooted(line), false)).collect(), from, seen_at: here }
+        Self { cuts: lines.iter().map(|line| Cut::new(solids.rooted(line))).collect(), from, seen_at: here }
     }
 
     /// One tick with a position that can be relied on: whether the robot has strayed across a cut by more than its hull. On
@@ -39,15 +41,39 @@ impl CutsRule {
             return false;
         }
         self.from = None;
-        for (line, is_beyond) in &mut self.lines {
-            *is_beyond ^= crossings(&[before, here], std::slice::from_ref(line)) % 2 == 1;
+        for cut in self.cuts.iter_mut().filter(|cut| cut.is_near(before, here)) {
+            cut.is_beyond ^= crossings(&[before, here], std::slice::from_ref(&cut.line)) % 2 == 1;
         }
-        self.lines.iter().any(|(line, is_beyond)| *is_beyond && polyline::distance_m(line, here) > radius_m)
+        self.cuts.iter().any(|cut| cut.is_beyond && polyline::distance_m(&cut.line, here) > radius_m)
     }
 
     /// The plan is given up, and its cuts with it.
     pub(crate) fn clear(&mut self) {
-        self.lines.clear();
+        self.cuts.clear();
+    }
+}
+
+/// A line that the plan never crosses.
+#[derive(Clone, Debug)]
+struct Cut {
+    line: Vec<Point>,
+    /// South-west and north-east corners of the box around it.
+    bounds: (Point, Point),
+    /// Whether the robot is beyond it.
+    is_beyond: bool,
+}
+
+impl Cut {
+    fn new(line: Vec<Point>) -> Self {
+        let (low, high) = bounds_of(&line);
+        let beside = Vector::new(BESIDE_M, BESIDE_M);
+        Self { line, bounds: (low - beside, high + beside), is_beyond: false }
+    }
+
+    /// Whether a move may cross it: a plan of a large tank has a hundred cuts, and the robot is near to one of them.
+    fn is_near(&self, from: Point, to: Point) -> bool {
+        let ((low, high), (west, east)) = (self.bounds, (from.inf(&to), from.sup(&to)));
+        west.x <= high.x && west.y <= high.y && east.x >= low.x && east.y >= low.y
     }
 }
 

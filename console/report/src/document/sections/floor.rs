@@ -1,17 +1,17 @@
-//! Sections on the floor: map, missed areas, critical zone, accuracy, plates.
+//! Sections on the floor: map, critical zone, accuracy, plates.
 
 use super::{
     super::{
         maps::{plate_bar, plate_legend},
-        page::{Block, Cell, Row, Table, Value, per_cent},
+        page::{Block, Row, Table, Value, per_cent},
     },
-    Document, cm, counted, number, picture,
+    Document, cm, number, picture,
 };
-use crate::account::{Area, MissReason};
-use std::collections::BTreeMap;
 
 /// Arcs of the critical zone that are listed.
 const MOST_ARCS: usize = 8;
+/// Numbers of missed areas that stand beside a plate.
+const MOST_NUMBERS: usize = 3;
 
 /// The coverage map.
 pub(super) fn map(document: &Document) -> Vec<Block> {
@@ -23,117 +23,6 @@ pub(super) fn map(document: &Document) -> Vec<Block> {
         ))
     });
     std::iter::once(Block::Wide(picture(&document.pictures.coverage))).chain(exact).collect()
-}
-
-/// Missed areas, and what is out of reach.
-pub(super) fn missed(document: &Document) -> Vec<Block> {
-    let floor = &document.floor;
-    let mut blocks = vec![Block::Text(
-        "Cells that touch make one area, whatever plates they lie on. Every reason states its value; where an area has \
-         several causes, each is listed with its part of the area."
-            .into(),
-    )];
-    let mut table = Table::new(
-        "Missed areas, the largest first",
-        &[
-            ("No.", "", ""),
-            ("x", "m", "r nw"),
-            ("y", "m", "r nw"),
-            ("Extent", "m", "r nw ext"),
-            ("Area", "m²", "r nw area"),
-            (if floor.plates.is_empty() { "" } else { "Plates" }, "", "full"),
-            ("Reason", "", "full"),
-        ],
-    );
-    table.is_cards = true;
-    for (no, area) in (1..).zip(&floor.missed) {
-        let class = if document.pictures.badges.contains(&no) { "badge" } else { "badge h" };
-        let badge = Cell { svg: format!(r#"<span class="{class}">{no}</span>"#), ..Cell::default() };
-        let extent = area.high - area.low;
-        let row = table.row(vec![
-            Value::default(),
-            number(area.at.x, 2).into(),
-            number(area.at.y, 2).into(),
-            format!("{:.2} × {:.2}", extent.x, extent.y).into(),
-            format!("{:.2}", area.area_m2).into(),
-            plates_of(area).into(),
-            area.why().into(),
-        ]);
-        row.id = format!("m{no}");
-        row.cells[0] = badge;
-        (row.cells[1].key, row.cells[2].key) = ("x", "y");
-        row.cells[5].key = if area.plates.is_empty() { "" } else { "plates" };
-    }
-    let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
-    let listed_m2: f64 = floor.missed.iter().map(|area| area.area_m2).sum();
-    let total = format!(
-        "All missed floor: {missed_m2:.2} m²; {}: {listed_m2:.2} m²; {} under 0.01 m² each: {:.2} m²{}.",
-        counted(floor.missed.len() as u64, "area"),
-        floor.slivers.count,
-        floor.slivers.area_m2,
-        if floor.slivers.count > 0 { format!(", {}", floor.slivers.why()) } else { String::new() }
-    );
-    let is_some = !table.rows.is_empty();
-    blocks.extend(is_some.then_some(Block::Table(table)));
-    blocks.push(Block::Note(total));
-    blocks.push(Block::Table(unreachable(document)));
-    blocks.push(Block::Note(balance(document)));
-    blocks
-}
-
-/// Why the whole floor is not the sum of the reachable floor and what is out of reach.
-fn balance(document: &Document) -> String {
-    let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
-    let m2 = |share: f64| share * whole.area_m2;
-    format!(
-        "Whole floor minus reachable floor: {:.2} m² = {:.2} m² unreachable + {:.2} m² shell margin + {:.2} m² scanned although not \
-         counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, or the floor was \
-         reachable before an obstacle was found.",
-        whole.area_m2 - reachable.area_m2,
-        m2(whole.unreachable),
-        m2(whole.margin),
-        m2(whole.scanned) - reachable.scanned * reachable.area_m2
-    )
-}
-
-fn plates_of(area: &Area<MissReason>) -> String {
-    let more = area.plates.len().saturating_sub(2);
-    let names = area.plates.iter().take(2).cloned().collect::<Vec<_>>().join(", ");
-    if more > 0 { format!("{names} +{more}") } else { names }
-}
-
-fn unreachable(document: &Document) -> Table {
-    let floor = &document.floor;
-    let mut table = Table::new(
-        "Floor out of reach of the tool",
-        &[
-            ("Reason", "", ""),
-            ("Areas", "", "r"),
-            ("Area", "m²", "r"),
-            ("Largest: place in m, reason", "", ""),
-        ],
-    );
-    let mut by_reason: BTreeMap<_, Vec<_>> = BTreeMap::new();
-    for area in &floor.unreachable {
-        by_reason.entry(area.reason).or_default().push(area);
-    }
-    for (reason, areas) in by_reason {
-        let largest = areas[0];
-        table.row(vec![
-            reason.plainly().into(),
-            areas.len().to_string().into(),
-            format!("{:.2}", areas.iter().map(|area| area.area_m2).sum::<f64>()).into(),
-            format!("{}, {}: {}", number(largest.at.x, 2), number(largest.at.y, 2), largest.why()).into(),
-        ]);
-    }
-    let slivers = &floor.unreachable_slivers;
-    table.row(vec![
-        "each smaller than 0.01 m²".into(),
-        slivers.count.to_string().into(),
-        format!("{:.2}", slivers.area_m2).into(),
-        slivers.why().into(),
-    ]);
-    table
 }
 
 /// The critical zone: unrolled, its longest arcs, and plate by plate.
@@ -322,7 +211,11 @@ pub(super) fn plates(document: &Document) -> Vec<Block> {
             .filter(|(_, area)| area.plates.iter().any(|plate| plate == name))
             .map(|(no, _): (usize, _)| no.to_string())
             .collect();
-        let more = if numbers.len() > 6 { format!(" +{}", numbers.len() - 6) } else { String::new() };
+        let more = if numbers.len() > MOST_NUMBERS {
+            format!(" +{}", numbers.len() - MOST_NUMBERS)
+        } else {
+            String::new()
+        };
         let found = document.indications.iter().filter(|found| found.plate.as_deref() == Some(name)).count();
         let row: &mut Row = table.row(vec![
             name.into(),
@@ -335,7 +228,8 @@ pub(super) fn plates(document: &Document) -> Vec<Block> {
             tenth(p.margin),
             Value::default(),
             error.map_or_else(|| "\u{2013}".to_owned(), cm).into(),
-            format!("{}{more}", numbers.iter().take(6).cloned().collect::<Vec<_>>().join(", ")).into(),
+            format!("{}{more}", numbers.iter().take(MOST_NUMBERS).cloned().collect::<Vec<_>>().join(", "))
+                .into(),
             if bar { found.to_string() } else { document.indications.len().to_string() }.into(),
         ]);
         if bar {

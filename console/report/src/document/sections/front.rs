@@ -2,6 +2,7 @@
 
 use super::{
     super::{
+        RunPart,
         decisions::{Decision, decisions, is_complete},
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
     },
@@ -23,7 +24,9 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let hash = first.and_then(|run| run.files.journal_sha256.as_ref());
     let hash = hash
         .map_or_else(String::new, |hash| format!("Journal SHA-256 {}...   ", &hash[..hash.len().min(16)]));
-    let css = |text: String| escaped(&text).replace(['\\', '"', '\n'], " ");
+    // A style sheet's text ends at a quote or at any end of a line.
+    let is_end = |letter: char| letter.is_control() || matches!(letter, '\\' | '"');
+    let css = |text: String| escaped(&text).replace(is_end, " ");
     Page {
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
@@ -222,7 +225,11 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let zone_mm = 1000.0 * floor.critical_zone.width_m;
     let cell_cm = 100.0 * floor.cell_m;
-    let runs: Vec<&str> = document.runs.iter().map(|run| run.run.as_str()).collect();
+    let name = |(number, run): (usize, &RunPart)| match document.runs.len() {
+        1 => run.run.clone(),
+        _ => format!("({number}) {}", run.run),
+    };
+    let runs: Vec<String> = (1..).zip(&document.runs).map(name).collect();
     let asked = &document.gate[1].answer;
     vec![
         Block::Text(format!(

@@ -17,9 +17,10 @@ const MOST_INCIDENTS: usize = 120;
 /// Every run, then the indications.
 pub(super) fn runs(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
-    for (run, figures) in document.runs.iter().zip(&document.pictures.runs) {
+    for ((number, run), figures) in (1..).zip(&document.runs).zip(&document.pictures.runs) {
+        let number: usize = number;
         if document.runs.len() > 1 {
-            blocks.push(Block::Heading(format!("Run {}", run.run)));
+            blocks.push(Block::Heading(format!("Run {number}: {}", run.run)));
         }
         let way = run.path_length_m.map(|m| format!(", path {m:.1} m")).unwrap_or_default();
         let collisions = run.collisions.map(|n| format!(", {}", counted(n, "collision"))).unwrap_or_default();
@@ -127,7 +128,7 @@ fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
             ("What", "", ""),
             ("Detail", "", ""),
             ("Until", "h:m:s", "r nw"),
-            ("Reviewed by", "", ""),
+            ("Reviewed by", "", "nw"),
         ],
     );
     let is_many = run.incidents.len() > MOST_INCIDENTS;
@@ -174,10 +175,11 @@ fn indications(document: &Document) -> Vec<Block> {
         "Indications of the instrument, placed by time on the track",
         &[
             ("No.", "", "r"),
+            (if document.runs.len() > 1 { "Run" } else { "" }, "", "c"),
             ("Time", "h:m:s", "r nw"),
             ("x", "m", "r nw"),
             ("y", "m", "r nw"),
-            ("±", "m, 95 %", "r"),
+            ("±", "m, 95 %", "r nw"),
             ("Plate", "", "nw"),
             ("Kind", "", ""),
             ("Size", "mm", "r"),
@@ -186,9 +188,15 @@ fn indications(document: &Document) -> Vec<Block> {
         ],
     );
     let optional = |value: Option<f64>| value.map_or_else(|| "\u{2013}".to_owned(), |value| number(value, 1));
+    let run_of = |name: &str| {
+        let number =
+            document.runs.iter().position(|run| run.run == name).map(|index| (index + 1).to_string());
+        number.filter(|_| document.runs.len() > 1).unwrap_or_default()
+    };
     for found in &document.indications {
         table.row(vec![
             format!("I{}", found.number).into(),
+            run_of(&found.run).into(),
             clock(found.t_s).into(),
             number(found.at.x, 2).into(),
             number(found.at.y, 2).into(),

@@ -1,0 +1,214 @@
+//! Signing a report: what was signed before on its runs, what keeps it from being signed, and what is done when it is.
+
+use flight::failure::bad_input;
+use planner_host::{PluginDirs, user_folder};
+use recording::sha256_of;
+use report::{
+    Document, PastRun,
+    document::{Revision, Signature, SignedRun},
+    print::{say_line, warn_line},
+};
+use runs::{Register, SIGNED_FILE, add_signed, signed_reports};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+/// The signed reports on some runs.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Chain {
+    /// Each once, the earliest first.
+    pub revisions: Vec<Revision>,
+    /// What speaks against them: one was changed, moved or lost, or is about another run of the same name.
+    pub doubts: Vec<String>,
+}
+
+impl Chain {
+    /// The chain of the runs in some folders.
+    ///
+    /// # Errors
+    /// A list, or the register, cannot be read.
+    pub(crate) fn of(folders: &[PathBuf], register: &Register) -> anyhow::Result<Self> {
+        let mut chain = Self::default();
+        for folder in folders {
+            let (signed, mut against) = signed_reports(folder)?;
+            let run = folder.file_name().unwrap_or_default().to_string_lossy();
+            against.extend(register.doubts(&run, &signed)?);
+            for revision in signed {
+                if !chain.revisions.contains(&revision) {
+                    chain.revisions.push(revision);
+                }
+            }
+            chain.doubt(against);
+        }
+        chain.revisions.sort_by(|a, b| a.signature.at.cmp(&b.signature.at));
+        Ok(chain)
+    }
+
+    /// Adds what speaks against runs that are not those that were signed.
+    pub(crate) fn compare(&mut self, past: &[PastRun]) {
+        let now: Vec<SignedRun> = past.iter().map(SignedRun::of).collect();
+        let doubts =
+            self.revisions.iter().flat_map(|revision| now.iter().filter_map(|run| revision.doubt(run)));
+        let doubts = doubts.collect();
+        self.doubt(doubts);
+    }
+
+    fn doubt(&mut self, doubts: Vec<String>) {
+        let more: Vec<String> = doubts.into_iter().filter(|doubt| !self.doubts.contains(doubt)).collect();
+        self.doubts.extend(more);
+    }
+}
+
+/// The register of this user's signatures.
+pub(crate) fn register() -> Register {
+    Register::at(user_folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("signatures")))
+}
+
+/// The signature of somebody at this minute.
+pub(crate) fn signature(by: &str) -> Signature {
+    Signature { by: by.to_owned(), at: now() }
+}
+
+/// Refuses a signature that continues a chain with a doubt.
+pub(crate) fn refuse_doubts(chain: &Chain) -> anyhow::Result<()> {
+    match chain.doubts.first() {
+        Some(doubt) => {
+            Err(bad_input(format!("not signed: {doubt}; put the files back as they were when it was signed")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses a signature under the certificate of somebody else. That no inspector is named is an open item.
+pub(crate) fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::Result<()> {
+    match inspector {
+        Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
+            "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the report states; let \
+             {inspector} sign, or give inspector and inspector_certificate of {by} in a file for --inspection"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses what keeps a report from being signed.
+pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
+    let open: Vec<String> = document
+        .open_items()
+        .map(|item| format!("  {} {}: {}", item.number, item.what, item.missing.join(", ")))
+        .collect();
+    if open.is_empty() {
+        return Ok(());
+    }
+    let (count, are) = (open.len(), if open.len() == 1 { "is" } else { "are" });
+    Err(bad_input(format!(
+        "not signed: {count} of {} items {are} open (keys of [inspection] go into a file for --inspection):\n{}",
+        document.gate.len(),
+        open.join("\n")
+    )))
+}
+
+/// Refuses runs whose journal does not come out again when it is recomputed: its digests prove nothing to whoever can write
+/// `report.json` anew. `folders`: of the runs that were flown; readings that were located are not the simulator's.
+pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<()> {
+    for folder in folders {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        warn_line(&format!("recomputing run {name} ..."));
+        let verified = review::verify(folder, plugins, true)?;
+        if !verified.is_equal {
+            return Err(bad_input(format!("not signed: run {name}: {}", verified.lines.join("\n"))));
+        }
+    }
+    Ok(())
+}
+
+/// Lists a signed report in the folders of its runs and in the register, and makes it read-only. One that cannot be listed is
+/// removed: it could be changed without anybody noticing.
+pub(crate) fn seal(
+    (file, text): (&Path, &str),
+    document: &Document,
+    signature: &Signature,
+    (folders, past): (&[PathBuf], &[PastRun]),
+) -> anyhow::Result<()> {
+    let (revision, sha256) = (document.revision.clone(), sha256_of(text.as_bytes()));
+    let said = format!("signed as revision {revision} by {}, sha256 {sha256}", signature.by);
+    let signed = Revision {
+        number: document.number.clone(),
+        revision,
+        signature: signature.clone(),
+        file: fs::canonicalize(file).unwrap_or_else(|_| file.to_owned()).display().to_string(),
+        sha256,
+        runs: past.iter().map(SignedRun::of).collect(),
+    };
+    add_signed(folders, &register(), &signed).inspect_err(|_| drop(fs::remove_file(file)))?;
+    make_read_only(file)?;
+    Ok(say_line(&said)?)
+}
+
+fn make_read_only(file: &Path) -> anyhow::Result<()> {
+    let mut permissions = fs::metadata(file)?.permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(file, permissions).map_err(|error| {
+        bad_input(format!("{} cannot be made read-only: {error}; see {SIGNED_FILE}", file.display()))
+    })
+}
+
+/// This minute, UTC.
+fn now() -> String {
+    let utc = runs::utc(SystemTime::now());
+    let digits = |range: std::ops::Range<usize>| utc.get(range).unwrap_or_default().to_owned();
+    format!("{}-{}-{} {}:{}", digits(0..4), digits(4..6), digits(6..8), digits(9..11), digits(11..13))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    #[test]
+    fn only_the_inspector_whose_certificate_is_stated_signs() {
+        assert!(refuse_other_signer("L. Kern", Some(" L. Kern ")).is_ok());
+        // That no inspector is named is an open item of the gate.
+        assert!(refuse_other_signer("L. Kern", None).is_ok());
+        let refused = refuse_other_signer("A. Other", Some("L. Kern")).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("not signed: --sign names A. Other, but inspection.inspector is L. Kern")
+        );
+    }
+
+    fn signed(folder: &Path, revision: &str, at: &str) -> Revision {
+        let file = folder.join(format!("{revision}.html"));
+        fs::write(&file, revision).unwrap();
+        let signature = Signature { by: "L. Kern".into(), at: at.into() };
+        let (number, revision) = ("1-1".to_owned(), revision.to_owned());
+        let file = file.display().to_string();
+        Revision { number, sha256: sha256_of(revision.as_bytes()), revision, signature, file, runs: vec![] }
+    }
+
+    #[test]
+    fn the_chain_of_several_runs_has_each_signed_report_once_and_a_changed_one_is_a_doubt_of_all() {
+        let [one, other] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let both = signed(one.path(), "B", "2026-11-22 05:00");
+        let first = signed(one.path(), "A", "2026-11-22 04:00");
+        let of_other = signed(other.path(), "C", "2026-11-22 04:30");
+        let folders = [one.path().to_owned(), other.path().to_owned()];
+        let register = Register::at(None);
+        add_signed(&folders[..1], &register, &first).unwrap();
+        add_signed(&folders[1..], &register, &of_other).unwrap();
+        add_signed(&folders, &register, &both).unwrap();
+        let chain = Chain { revisions: vec![first, of_other, both.clone()], doubts: vec![] };
+        assert_eq!(Chain::of(&folders, &register).unwrap(), chain);
+        assert!(refuse_doubts(&chain).is_ok());
+        fs::write(&both.file, "forged").unwrap();
+        for folders in [&folders[..], &folders[..1], &folders[1..]] {
+            let chain = Chain::of(folders, &register).unwrap();
+            let refused = refuse_doubts(&chain).unwrap_err().to_string();
+            assert!(
+                chain.doubts.len() == 1 && refused.starts_with("not signed: signed revision B was changed"),
+                "{chain:?}"
+            );
+        }
+    }
+}

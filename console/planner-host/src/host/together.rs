@@ -1,0 +1,60 @@
+//! A planner on the processor of the thread that asks it.
+//!
+//! Whoever waits for every command gains nothing by a second processor: one of the two always sleeps. To hand over the
+//! processor takes a fraction of the time that it takes to wake another one.
+
+use crate::supervisor::Worker;
+use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
+use std::time::{Duration, Instant};
+
+/// So long the two stay where they are; then the system may move them to a processor that has less to do.
+const STAYS_FOR: Duration = Duration::from_millis(100);
+
+/// The thread that asks, and perhaps the worker that shares its processor.
+pub(super) struct Together {
+    /// The processors that both may use while they are apart; `None` if there is no choice.
+    all: Option<CpuSet>,
+    /// Until when they stay together.
+    until: Option<Instant>,
+}
+
+impl Together {
+    /// For the thread that calls this. They are apart.
+    pub(super) fn new() -> Self {
+        Self { all: sched_getaffinity(None).ok().filter(|all| all.count() > 1), until: None }
+    }
+
+    /// A command is about to be asked of a worker, which is the only one.
+    pub(super) fn gather(&mut self, worker: &Worker) {
+        let now = Instant::now();
+        match self.until {
+            Some(until) if now < until => {}
+            // This command finds them apart, and each may wake up on another processor.
+            Some(_) => self.part(std::iter::once(worker)),
+            None if self.all.is_some() && sched_getcpu() < CpuSet::MAX_CPU => {
+                let mut here = CpuSet::new();
+                here.set(sched_getcpu());
+                if sched_setaffinity(None, &here).is_ok() {
+                    worker.stay_on(&here);
+                    self.until = Some(now + STAYS_FOR);
+                }
+            }
+            None => {}
+        }
+    }
+
+    /// Something else is about to be done, for which all processors may be used, by new processes and threads, too.
+    pub(super) fn part<'a>(&mut self, workers: impl Iterator<Item = &'a Worker>) {
+        if let (Some(all), Some(_)) = (&self.all, self.until.take()) {
+            // Who cannot be moved is slower, and nothing else.
+            let _ = sched_setaffinity(None, all);
+            workers.for_each(|worker| worker.stay_on(all));
+        }
+    }
+}
+
+impl Drop for Together {
+    fn drop(&mut self) {
+        self.part(std::iter::empty());
+    }
+}

@@ -1,0 +1,166 @@
+//! The section on missed and unreachable floor.
+
+use super::{
+    super::page::{Block, Cell, Table, Value},
+    Document, counted, number,
+};
+use crate::account::{Area, Cause, MissReason};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// With more missed areas than this, small ones are said in few words.
+const MOST_ROWS: usize = 40;
+/// Smaller ones are small, square metres.
+const SMALL_M2: f64 = 0.05;
+
+/// Missed areas, and what is out of reach.
+pub(super) fn missed(document: &Document) -> Vec<Block> {
+    let floor = &document.floor;
+    let mut blocks = vec![Block::Text(
+        "Cells that touch make one area, whatever plates they lie on. Every reason states its value; where an area has \
+         several causes, each is listed with its part of the area."
+            .into(),
+    )];
+    let mut table = Table::new(
+        "Missed areas, the largest first",
+        &[
+            ("No.", "", ""),
+            ("x", "m", "r nw"),
+            ("y", "m", "r nw"),
+            ("Extent", "m", "r nw ext"),
+            ("Area", "m²", "r nw area"),
+            (if floor.plates.is_empty() { "" } else { "Plates" }, "", "full"),
+            ("Reason", "", "full"),
+        ],
+    );
+    table.is_cards = true;
+    let (listed, small) = floor.missed.split_at(listed_one_by_one(&floor.missed));
+    for (no, area) in (1..).zip(listed) {
+        let class = if document.pictures.badges.contains(&no) { "badge" } else { "badge h" };
+        let badge = Cell { svg: format!(r#"<span class="{class}">{no}</span>"#), ..Cell::default() };
+        let extent = area.high - area.low;
+        let row = table.row(vec![
+            Value::default(),
+            number(area.at.x, 2).into(),
+            number(area.at.y, 2).into(),
+            format!("{:.2} × {:.2}", extent.x, extent.y).into(),
+            format!("{:.3}", area.area_m2).into(),
+            plates_of(area).into(),
+            area.why().into(),
+        ]);
+        row.id = format!("m{no}");
+        row.cells[0] = badge;
+        (row.cells[1].key, row.cells[2].key) = ("x", "y");
+        row.cells[5].key = if area.plates.is_empty() { "" } else { "plates" };
+    }
+    let missed_m2 = floor.reachable.missed * floor.reachable.area_m2;
+    let areas_m2: f64 = floor.missed.iter().map(|area| area.area_m2).sum();
+    let total = format!(
+        "All missed floor: {missed_m2:.3} m²; {}: {areas_m2:.3} m²; {} under 0.01 m² each: {:.3} m²{}.",
+        counted(floor.missed.len() as u64, "area"),
+        floor.slivers.count,
+        floor.slivers.area_m2,
+        if floor.slivers.count > 0 { format!(", {}", floor.slivers.why()) } else { String::new() }
+    );
+    let is_some = !table.rows.is_empty();
+    blocks.extend(is_some.then_some(Block::Table(table)));
+    blocks.extend(shortly(small, listed.len() + 1));
+    blocks.push(Block::Note(total));
+    blocks.push(Block::Table(unreachable(document)));
+    blocks.push(Block::Note(balance(document)));
+    blocks
+}
+
+/// How many of the missed areas, the largest first, have a row of their own: all, or of many those that are not small.
+fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
+    if missed.len() > MOST_ROWS {
+        missed.partition_point(|area| area.area_m2 >= SMALL_M2)
+    } else {
+        missed.len()
+    }
+}
+
+/// Small areas in few words: a letter for each reason, with its value. `first`: the number of the first of them.
+fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
+    let reasons: BTreeSet<MissReason> =
+        areas.iter().flat_map(|area| &area.causes).map(|cause| cause.reason).collect();
+    let letters: BTreeMap<MissReason, char> = reasons.into_iter().zip('a'..).collect();
+    if letters.is_empty() {
+        return Vec::new();
+    }
+    let cause = |cause: &Cause<MissReason>| {
+        let value = cause.measure.as_ref().map(|measure| format!(" {}", measure.range())).unwrap_or_default();
+        format!("{}{value}", letters[&cause.reason])
+    };
+    let entry = |(no, area): (usize, &Area<MissReason>)| {
+        let causes = area.causes.iter().map(cause).collect::<Vec<_>>().join(", ");
+        let (x, y) = (number(area.at.x, 2), number(area.at.y, 2));
+        // No line ends between a number and its unit.
+        (no, format!("{x}, {y} m; {:.3} m²; {causes}", area.area_m2).replace(" m", "\u{a0}m"))
+    };
+    let key = letters.iter().map(|(reason, letter)| format!("{letter}: {}", reason.plainly()));
+    vec![
+        Block::Heading(format!("Missed areas under {SMALL_M2} m²")),
+        Block::Text(format!(
+            "Number, place, area, and the value behind each reason. {}. CSV and JSON have every sentence.",
+            key.collect::<Vec<_>>().join("; ")
+        )),
+        Block::Columns((first..).zip(areas).map(entry).collect()),
+    ]
+}
+
+/// Why the whole floor is not the sum of the reachable floor and what is out of reach.
+fn balance(document: &Document) -> String {
+    let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
+    let thousandths = |m2: f64| (1000.0 * m2).round();
+    let all = thousandths(whole.area_m2 - reachable.area_m2);
+    let [unreachable, margin] =
+        [whole.unreachable, whole.margin].map(|share| thousandths(share * whole.area_m2));
+    // The rest of what is printed, so that the line adds up to its last digit.
+    let [all, unreachable, margin, scanned] =
+        [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
+    format!(
+        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin + {scanned:.3} m² \
+         scanned although not counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, \
+         or the floor was reachable before an obstacle was found."
+    )
+}
+
+fn plates_of(area: &Area<MissReason>) -> String {
+    let more = area.plates.len().saturating_sub(2);
+    let names = area.plates.iter().take(2).cloned().collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{names} +{more}") } else { names }
+}
+
+fn unreachable(document: &Document) -> Table {
+    let floor = &document.floor;
+    let mut table = Table::new(
+        "Floor out of reach of the tool",
+        &[
+            ("Reason", "", ""),
+            ("Areas", "", "r"),
+            ("Area", "m²", "r"),
+            ("Largest: place in m, reason", "", ""),
+        ],
+    );
+    let mut by_reason: BTreeMap<_, Vec<_>> = BTreeMap::new();
+    for area in &floor.unreachable {
+        by_reason.entry(area.reason).or_default().push(area);
+    }
+    for (reason, areas) in by_reason {
+        let largest = areas[0];
+        table.row(vec![
+            reason.plainly().into(),
+            areas.len().to_string().into(),
+            format!("{:.3}", areas.iter().map(|area| area.area_m2).sum::<f64>()).into(),
+            format!("{}, {}: {}", number(largest.at.x, 2), number(largest.at.y, 2), largest.why()).into(),
+        ]);
+    }
+    let slivers = &floor.unreachable_slivers;
+    table.row(vec![
+        "each smaller than 0.01 m²".into(),
+        slivers.count.to_string().into(),
+        format!("{:.3}", slivers.area_m2).into(),
+        slivers.why().into(),
+    ]);
+    table
+}
