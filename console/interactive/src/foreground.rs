@@ -1,5 +1,5 @@
 //! The terminal's foreground group: only its processes may read keys. Another process of the session that takes the terminal
-//! would leave a console that hears nothing, so the console takes the terminal back, within a second or at the next key.
+//! would leave a console that hears nothing, so the console takes the terminal back, within two seconds or at the next key.
 //!
 //! A planner's worker cannot be that process: it has left the session before anything of a plugin runs.
 
@@ -41,13 +41,18 @@ impl Foreground {
         }
     }
 
+    /// Whether another process has taken the terminal.
+    pub(super) fn is_lost(&self) -> bool {
+        !self.0.load(Ordering::SeqCst) && !has_terminal() && stdin().is_terminal()
+    }
+
     /// Takes the terminal back if another process has taken it. To be called now and then, too: a process without a shell
     /// above it gets no signal.
     ///
     /// A process in the background that takes the terminal is stopped by the system unless it ignores that signal, which a
     /// shell can arrange for a child.
     pub(super) fn keep(&self) {
-        if self.0.load(Ordering::SeqCst) || has_terminal() || !stdin().is_terminal() {
+        if !self.is_lost() {
             return;
         }
         let Ok(program) = env::current_exe() else { return };

@@ -160,9 +160,15 @@ pub(super) fn terminal(outbox: &Outbox, engine: Current, foreground: Foreground)
     spawn("terminal", move || {
         let stdin = std::io::stdin();
         let mut watched = [PollFd::new(&stdin, PollFlags::empty())];
+        let mut was_lost = false;
         loop {
             let waited = poll(&mut watched, Some(&TERMINAL_PERIOD));
-            foreground.keep();
+            // Twice in a row: whoever continues a stopped console in the background has it heard of that first.
+            let is_lost = foreground.is_lost();
+            if is_lost && was_lost {
+                foreground.keep();
+            }
+            was_lost = is_lost;
             let is_closed =
                 watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             if waited.is_ok() && is_closed {
