@@ -264,7 +264,7 @@ impl Columns {
 
 /// Which of [`COLUMNS`] a name means, as `range_mm` or `Range [mm]`, and its factor.
 fn known(name: &str) -> Option<(usize, f64)> {
-    let lower = name.to_lowercase().replace('µ', "u").replace('μ', "u");
+    let lower = name.to_lowercase().replace(['µ', 'μ'], "u");
     let words: Vec<&str> =
         lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let name = words.join("_");

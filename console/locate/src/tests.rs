@@ -269,14 +269,15 @@ fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
         "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8"
     );
     let rows = "t_s,station,range_m\n0,A,7\n0,B,8.9\n1,A,7\n".to_owned() + &"1,B,8.9\n".repeat(20_000);
-    let (scenario, file) = (scenario(), Readable::new("r.csv", [rows.as_bytes(), &[0; 100_000]].concat()));
+    let (scenario, file) =
+        (scenario(), Readable::new("r.csv", [rows.as_bytes(), &vec![0; 100_000]].concat()));
     let task = Task { skips_bad_rows: true, ..file.task(&scenario) };
     let message = task.survey().unwrap_err().to_string();
     assert!(
         message.contains("no text: a byte 0") && message.ends_with("export the readings again"),
         "{message}"
     );
-    let long = ["t_s,station,range_m\n".as_bytes(), &[b'1'; 200_000]].concat();
+    let long = ["t_s,station,range_m\n".as_bytes(), &vec![b'1'; 200_000]].concat();
     assert!(refused(&long).contains("a line of more than 65,536 bytes"), "{}", refused(&long));
 }
 
@@ -296,7 +297,7 @@ fn folders_and_pipes_are_refused_and_not_waited_for() {
 fn damaged_messages_are_refused_without_asking_for_their_length() {
     let magic = b"\x89MCAP0\r\n";
     let long = [&magic[..], &[5], &u64::MAX.to_le_bytes(), &[7; 64]].concat();
-    let zeros = [&magic[..], &[0; 100_000]].concat();
+    let zeros = [&magic[..], &vec![0; 100_000]].concat();
     for bytes in [long, zeros, magic.to_vec()] {
         let (scenario, file) = (scenario(), Readable::new("r.mcap", bytes));
         let task = Task { skips_bad_rows: true, ..file.task(&scenario) };

@@ -156,6 +156,6 @@ mod tests {
         let curve = through(&points);
         assert!(points.iter().all(|p| curve.iter().any(|at| (at - p).norm() < 1e-12)));
         let turn = |w: &[Point]| (w[1] - w[0]).angle(&(w[2] - w[1]));
-        assert!(curve.windows(3).all(|w| turn(w) < 0.15), "{curve:?}");
+        assert!(curve.windows(3).all(|w| turn(w) < 0.25), "{curve:?}");
     }
 }
