@@ -59,7 +59,9 @@ impl Writer {
                 Err(RecvTimeoutError::Timeout) => self.idle(),
                 Err(RecvTimeoutError::Disconnected) => return self.close(),
             }
-            batches.try_iter().for_each(|events| self.write(&events));
+            for events in batches.try_iter() {
+                self.write(&events);
+            }
             std::thread::sleep(GATHER);
         }
     }
