@@ -63,8 +63,7 @@ fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard(
     session.see("RUN");
     session.bench.file("steal", "");
     session.until("the terminal to be stolen", |session| session.bench.path().join("stolen").exists());
-    session.press(" ");
-    session.see("HOLD");
+    session.hold();
     session.press("1q");
     session.see("Enter");
     session.press("\r");

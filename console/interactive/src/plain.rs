@@ -1,6 +1,7 @@
 //! The console in sentences: what changes goes to stdout, commands come from stdin.
 
 use super::{
+    foreground::Foreground,
     inbox::Outbox,
     line::Current,
     screen::Left,
@@ -24,7 +25,7 @@ use tui::{Effect, Key, Model, Msg, Signal, plain::Said};
 /// # Errors
 /// The system gives no thread; stdout cannot be written to.
 pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> anyhow::Result<Left> {
-    watch::signals(outbox, engine.clone())?;
+    watch::signals(outbox, engine.clone(), Foreground::new())?;
     let is_over = Arc::new(AtomicBool::new(false));
     let mut is_listening = false;
     let mut said = Said::default();

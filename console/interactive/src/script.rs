@@ -14,6 +14,7 @@ mod condition;
 mod read;
 
 use super::{
+    foreground::Foreground,
     inbox::Outbox,
     line::Current,
     session::{Session, is_open},
@@ -89,7 +90,7 @@ impl Script {
         outbox: &Outbox,
         engine: &Current,
     ) -> anyhow::Result<Result<(), String>> {
-        watch::signals(outbox, engine.clone())?;
+        watch::signals(outbox, engine.clone(), Foreground::new())?;
         let mut runner = Runner { session, is_left: false };
         runner.session.take(Msg::Resize { width: SIZE.0, height: SIZE.1 });
         Ok(runner.carry_out(&self))

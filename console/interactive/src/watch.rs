@@ -1,14 +1,14 @@
 //! The threads that only listen: keys, signals, a terminal that is closed.
 
 use super::{
-    foreground::{self, Foreground},
+    foreground::Foreground,
     inbox::Outbox,
     line::{Current, EngineHandle},
 };
 use anyhow::Context;
 use crossterm::event::{self, Event};
 use mission::Order;
-use rustix::event::{PollFd, PollFlags, poll};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use signal_hook::{
     consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN},
     iterator::Signals,
@@ -26,6 +26,9 @@ use tui::{
 
 /// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
+
+/// How often it is looked at who has the terminal.
+const TERMINAL_PERIOD: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
 
 /// How often the disk is asked how much space is left: at 100 MB an hour that is less than a megabyte.
 const DISK_PERIOD: Duration = Duration::from_secs(10);
@@ -69,13 +72,7 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
     let outbox = outbox.clone();
     spawn("keys", move || {
         let mut pointer = Pointer::default();
-        loop {
-            let event = match event::read() {
-                Ok(event) => event,
-                // A process without a shell above it gets an error instead of a signal.
-                Err(_) if foreground::take_back() => continue,
-                Err(_) => return,
-            };
+        while let Ok(event) = event::read() {
             let msg = match event {
                 Event::Key(key) => terminal::key_from_crossterm(&key).map(Msg::Key),
                 Event::Paste(text) => Some(Msg::Paste(text)),
@@ -93,12 +90,11 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
 }
 
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
-pub(super) fn signals(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
+pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let mut signals =
         Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN]).context("listening to signals")?;
     spawn("signals", move || {
-        let mut foreground = Foreground::new();
         for number in signals.forever() {
             match number {
                 SIGTTIN => {
@@ -158,14 +154,15 @@ fn leave_in_any_case(signal: i32) {
     std::process::exit(128 + signal);
 }
 
-/// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here.
-pub(super) fn terminal(outbox: &Outbox, engine: Current) -> anyhow::Result<()> {
+/// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here, and one that others have taken.
+pub(super) fn terminal(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("terminal", move || {
         let stdin = std::io::stdin();
         let mut watched = [PollFd::new(&stdin, PollFlags::empty())];
         loop {
-            let waited = poll(&mut watched, None);
+            let waited = poll(&mut watched, Some(&TERMINAL_PERIOD));
+            foreground.keep();
             let is_closed =
                 watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             if waited.is_ok() && is_closed {

@@ -90,9 +90,10 @@ impl Revision {
     /// What speaks against a run that is there under the name of one of those that were signed.
     pub fn doubt(&self, now: &SignedRun) -> Option<String> {
         let then = self.runs.iter().find(|then| then.run == now.run && *then != now)?;
-        let (file, then, now) = match then.journal_sha256 == now.journal_sha256 {
-            false => ("journal", &then.journal_sha256, &now.journal_sha256),
-            true => ("recording", &then.recording_sha256, &now.recording_sha256),
+        let (file, then, now) = if then.journal_sha256 == now.journal_sha256 {
+            ("recording", &then.recording_sha256, &now.recording_sha256)
+        } else {
+            ("journal", &then.journal_sha256, &now.journal_sha256)
         };
         let digest = |sha256: &Option<String>| sha256.clone().unwrap_or_else(|| "none".into());
         Some(format!(

@@ -3,7 +3,7 @@
 use crate::inflation::SLACK_M;
 use crate::pattern::Pattern;
 use crate::plane::left_of;
-use crate::slit_domain::SlitDomain;
+use crate::slit_domain::{SlitDomain, Spot};
 use crate::tuning::lanes as tuning;
 use std::ops::Range;
 use world::{Point, Vector, polyline, shape::bounds_of};
@@ -101,45 +101,49 @@ fn clipped(
 ) -> Vec<Lane> {
     let around = bounds_of(line);
     let near: Vec<&Fence<'_>> = fences.iter().filter(|fence| fence.may_bar(around)).collect();
-    let is_open_among = |fences: &[&Fence<'_>], at: Point| {
-        !fences.iter().any(|fence| fence.bars(at))
-            && domain.workspace.room.spare_m(at) >= spare_m
-            && domain.contains(at)
+    let spot_among = |fences: &[&Fence<'_>], at: Point| {
+        let is_open =
+            !fences.iter().any(|fence| fence.bars(at)) && domain.workspace.room.spare_m(at) >= spare_m;
+        is_open.then(|| domain.spot(at)).flatten()
     };
-    let is_open = |at: Point| is_open_among(&near, at);
     let mut points = polyline::resampled(line, STEP_M);
-    let mut open = Vec::with_capacity(points.len());
+    let mut spots = Vec::with_capacity(points.len());
     for stretch in points.chunks(STRETCH) {
         let around = bounds_of(stretch);
         let near: Vec<&Fence<'_>> = near.iter().copied().filter(|fence| fence.may_bar(around)).collect();
-        open.extend(stretch.iter().map(|p| is_open_among(&near, *p)));
+        spots.extend(stretch.iter().map(|p| spot_among(&near, *p)));
     }
     let is_ring = line.len() > 2 && (line[0] - line[line.len() - 1]).norm() < 1e-9;
     if is_ring {
-        begin_behind_a_break(&mut points, &mut open);
+        begin_behind_a_break(&mut points, &mut spots);
     }
+    // A gap that counts as closed may be open on both sides of its narrowest place.
+    let sees = |a: Spot, b: Option<Spot>| b.is_some_and(|b| domain.sees_between(a, b));
+    let last_open =
+        |open: Spot, closed: Point| last_open(open.at, closed, &|at| sees(open, spot_among(&near, at)));
     let piece = |run: Range<usize>| {
+        let (first, last) = (spots[run.start]?, spots[run.end - 1]?);
         let before = run.start.checked_sub(1).map(|k| points[k]);
         // A ring that is open all round ends a little beyond its beginning.
         let after = points.get(run.end).or(is_ring.then(|| &points[1]));
-        let mut lane: Vec<Point> =
-            before.map(|out| last_open(points[run.start], out, &is_open)).into_iter().collect();
-        lane.extend(&points[run.clone()]);
-        lane.extend(after.map(|out| last_open(points[run.end - 1], *out, &is_open)));
-        thinned(&lane)
+        let mut lane: Vec<Point> = before.map(|out| last_open(first, out)).into_iter().collect();
+        lane.extend(&points[run]);
+        lane.extend(after.map(|out| last_open(last, *out)));
+        Some(thinned(&lane))
     };
-    runs(&open).map(piece).filter(|lane| polyline::length_m(lane) >= least_m).collect()
+    let lanes = runs(&spots, |a, b| a.is_some_and(|a| sees(a, *b))).filter_map(piece);
+    lanes.filter(|lane| polyline::length_m(lane) >= least_m).collect()
 }
 
 /// Turns a closed ring so that no lane is broken where the ring was closed.
-fn begin_behind_a_break(points: &mut Vec<Point>, open: &mut Vec<bool>) {
+fn begin_behind_a_break(points: &mut Vec<Point>, spots: &mut Vec<Option<Spot>>) {
     points.pop();
-    open.pop();
-    let start = open.iter().position(|open| !open).unwrap_or(0);
+    spots.pop();
+    let start = spots.iter().position(Option::is_none).unwrap_or(0);
     points.rotate_left(start);
-    open.rotate_left(start);
+    spots.rotate_left(start);
     points.push(points[0]);
-    open.push(open[0]);
+    spots.push(spots[0]);
 }
 
 /// The last open place between an open and a closed one.
@@ -163,16 +167,17 @@ pub(crate) fn wanted_pieces(lane: &Lane, is_wanted: impl Fn(Point) -> bool) -> V
     if wanted.iter().all(|w| *w) {
         return vec![lane.clone()];
     }
-    runs(&wanted).filter(|run| run.len() > 1).map(|run| thinned(&fine[run])).collect()
+    let is_wanted = |run: &Range<usize>| wanted[run.start] && run.len() > 1;
+    runs(&wanted, |a, b| a == b).filter(is_wanted).map(|run| thinned(&fine[run])).collect()
 }
 
-/// The ranges in which a flag holds.
-fn runs(flags: &[bool]) -> impl Iterator<Item = Range<usize>> {
+/// The ranges in which neighbours belong together.
+fn runs<T>(items: &[T], is_together: impl Fn(&T, &T) -> bool) -> impl Iterator<Item = Range<usize>> {
     let mut past = 0;
-    flags.chunk_by(|a, b| a == b).filter_map(move |run| {
+    items.chunk_by(is_together).map(move |run| {
         let first = past;
         past += run.len();
-        run[0].then_some(first..past)
+        first..past
     })
 }
 

@@ -11,43 +11,59 @@ use crate::tuning::polish as tuning;
 use planner_api::Result;
 pub(crate) use track::{Terms, Track};
 
-/// How far a candidate is when it is shortened and when it is bent, as shares of its time, about.
+/// How far a round of polish is when the path is shortened and when it is bent, as shares of its time, about.
 const SHORTENED: f64 = 0.63;
 const BENT: f64 = 0.92;
+/// How far a candidate is at the end of each round, as shares of its time, about.
+const ROUNDS: [f64; 2] = [0.8, 1.0];
 
-/// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough.
+/// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough. Then all of it once
+/// more: what was bent and tied in sweeps floor on its way that other parts need not sweep any more.
 pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: bool) -> Result<()> {
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
-    let whole = (!is_all_floor).then(|| track.clone());
-    terms.job.stage(SHORTENED);
-    track.shorten(terms)?;
-    if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
-        // A little floor far away is not worth its way, but nothing else was asked for.
-        *track = whole;
-        track.shorten(&careful)?;
+    let mut from = 0.0;
+    for to in ROUNDS {
+        let at = |share: f64| from + (to - from) * share;
+        let whole = (!is_all_floor).then(|| track.clone());
+        terms.job.stage(at(SHORTENED));
+        track.reopen();
+        track.shorten(terms)?;
+        if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
+            // A little floor far away is not worth its way, but nothing else was asked for.
+            *track = whole;
+            track.shorten(&careful)?;
+        }
+        bend(track, terms, &careful, &at)?;
+        track.pass_along_shell(terms)?;
+        tie(track, terms, &careful, &at)?;
+        track.pass_along_shell(terms)?;
+        from = to;
     }
-    bend(track, terms, &careful)?;
-    track.pass_along_shell(terms)?;
-    tie(track, terms, &careful)?;
-    track.pass_along_shell(terms)
+    Ok(())
 }
 
 /// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was
 /// scanned there already is not scanned again.
 pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<()> {
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
+    let at = |share: f64| share;
     terms.job.stage(SHORTENED);
     track.shorten(terms)?;
-    bend(track, terms, &careful)?;
-    tie(track, terms, &careful)
+    bend(track, terms, &careful, &at)?;
+    tie(track, terms, &careful, &at)
 }
 
 /// Bends the path, and shortens what is new, until nothing pays any more.
-fn bend(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
-    let mut at = SHORTENED;
+fn bend(
+    track: &mut Track<'_>,
+    terms: &Terms<'_>,
+    careful: &Terms<'_>,
+    at: &dyn Fn(f64) -> f64,
+) -> Result<()> {
+    let mut share = SHORTENED;
     let mut next_stage = || {
-        at += (BENT - at) * 0.35;
-        terms.job.stage(at);
+        share += (BENT - share) * 0.35;
+        terms.job.stage(at(share));
     };
     for _ in 0..tuning::BENDS {
         next_stage();
@@ -62,13 +78,13 @@ fn bend(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result
 
 /// Ties in short lanes, and shortens what is new, until the coverage is reached. Late rounds are content with a little less,
 /// but take smaller places; when nothing large is left they come at once.
-fn tie(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
+fn tie(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>, at: &dyn Fn(f64) -> f64) -> Result<()> {
     let late = Terms { enough: terms.enough - tuning::LATE_SHARE, ..*terms };
-    let (mut at, mut is_late) = (BENT, false);
+    let (mut share, mut is_late) = (BENT, false);
     for round in 0..tuning::TIES {
         is_late |= round >= tuning::EARLY_TIES;
-        at += (1.0 - at) / 2.0;
-        terms.job.stage(at);
+        share += (1.0 - share) / 2.0;
+        terms.job.stage(at(share));
         let (terms, least) = if is_late { (&late, tuning::LATE_CELLS) } else { (terms, tuning::TIED_CELLS) };
         if track.tie_in_lanes(terms, least)? > 0 {
             track.shorten(careful)?;

@@ -5,15 +5,21 @@
 //! two paths between the same ends are the same to the tether.
 
 mod funnel;
+#[cfg(test)]
+mod tests;
 
 use crate::buckets::Buckets;
 use crate::plane::meets;
-use crate::triangulation::{NEARLY, NONE, SealedRegion, Triangle, Walk, least_side};
+use crate::triangulation::{NEARLY, NONE, SNAP_M, SealedRegion, Triangle, Walk, least_side};
 use crate::workspace::{Workspace, places_around};
 use funnel::funnel;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use world::{Point, polyline};
+
+/// A path bends so far beside the end of a cut, metres: less than any two corners are apart. At the end itself it would be on
+/// both sides of the cut, and whatever goes on from there might go on from the other one.
+const ASIDE_M: f64 = SNAP_M / 4.0;
 
 /// Triangles of the floor that can be reached from home without crossing a cut.
 pub(crate) struct SlitDomain<'a> {
@@ -23,6 +29,8 @@ pub(crate) struct SlitDomain<'a> {
     points: Vec<Point>,
     triangles: Vec<Triangle>,
     buckets: Buckets,
+    /// Corners at which cuts end or bend: the domain lies on both sides of each. In bits, because they are looked up.
+    hinges: BTreeSet<[u64; 2]>,
     /// Whether the domain is simply connected: every way between two places is the same to the tether.
     pub is_simple: bool,
     /// Floor that only cuts keep the hull out of.
@@ -40,13 +48,14 @@ impl<'a> SlitDomain<'a> {
     /// The domain between some cuts; `None` where there is no room at home.
     pub(crate) fn new(workspace: &'a Workspace, cuts: Vec<Vec<Point>>) -> Option<Self> {
         let walk = workspace.triangulation().walk(&cuts, workspace.home)?;
-        let Walk { points, triangles, is_simple, sealed } = walk;
+        let Walk { points, triangles, hinges, is_simple, sealed } = walk;
+        let hinges = hinges.into_iter().map(|corner| bits(points[corner as usize])).collect();
         let boxes = triangles.iter().map(|Triangle { corners, .. }| {
             let [a, b, c] = corners.map(|k| points[k as usize]);
             (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
         });
         let buckets = Buckets::new(0.5, 1e-6, &boxes.collect::<Vec<_>>());
-        Some(Self { workspace, cuts, points, triangles, buckets, is_simple, sealed })
+        Some(Self { workspace, cuts, points, triangles, buckets, hinges, is_simple, sealed })
     }
 
     /// Adds cuts across the last ways round obstacles that are left, each where the ways from home on either side meet. No
@@ -67,6 +76,7 @@ impl<'a> SlitDomain<'a> {
                 }
                 let (right, left) = (self.corner(own, side), self.corner(own, side + 1));
                 self.cuts.push(vec![right, left]);
+                self.hinges.extend([bits(right), bits(left)]);
                 self.triangles[own].next[side] = NONE;
                 let mut back = self.triangles[other as usize].next.iter_mut();
                 if let Some(next) = back.find(|next| **next == own as u32) {
@@ -183,10 +193,19 @@ impl<'a> SlitDomain<'a> {
         Some(self.path_between(self.spot(a)?, self.spot(b)?))
     }
 
-    /// The shortest path between two spots.
+    /// The shortest path between two spots; it bends a hair beside the ends of cuts.
     pub(crate) fn path_between(&self, a: Spot, b: Spot) -> Vec<Point> {
-        let is_alone = a.triangle == b.triangle;
-        if is_alone { vec![a.at, b.at] } else { funnel(a.at, b.at, &self.sleeve(a.triangle, b.triangle)) }
+        if a.triangle == b.triangle {
+            return vec![a.at, b.at];
+        }
+        let bends = funnel(a.at, b.at, &self.sleeve(a.triangle, b.triangle));
+        let mut path: Vec<Point> = bends.iter().map(|bend| bend.at).collect();
+        for (at, bend) in path[1..].iter_mut().zip(bends.windows(3)) {
+            if self.hinges.contains(&bits(bend[1].at)) {
+                *at += bend[1].free_side(bend[0].at, bend[2].at) * ASIDE_M;
+            }
+        }
+        path
     }
 
     /// Length of the shortest path home, metres.
@@ -261,4 +280,8 @@ impl<'a> SlitDomain<'a> {
         // The corners run counter-clockwise, so a side seen from inside runs from right to left.
         (self.corner(triangle, side + 1), self.corner(triangle, side))
     }
+}
+
+fn bits(at: Point) -> [u64; 2] {
+    [at.x.to_bits(), at.y.to_bits()]
 }

@@ -76,8 +76,9 @@ impl Planner for TetherSafe {
         let mut plan = scan.plan(scope.start, &lead_in);
         // A reel near the least that can do may still reach all there is.
         let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { COMPLETE };
-        plan.complete = worth.coverage >= enough.min(least) && is_all_in_reach;
-        warn(&worth, preferences, &scope, plan.complete, ctx);
+        let scans_enough = worth.coverage >= enough.min(least) && is_all_in_reach;
+        warn(&worth, preferences, &scope, scans_enough, ctx);
+        plan.complete = scans_enough && worth.is_safe(scope.tether.is_some());
         if workspace.is_room && scope.tether.is_none() {
             // There is no cable for which a robot a little off its path would have to come back on the right side of a cut.
             plan.cuts.clear();
@@ -159,10 +160,10 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
 }
 
 /// Warns of what is wrong with a plan. The last warning is the reason why it is not complete, if it is not.
-fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, is_complete: bool, ctx: &Ctx<'_>) {
+fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enough: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
     let (share, has_reel) = (100.0 * worth.coverage, scope.reel_length_m.is_finite());
-    if !is_complete && !has_reel {
+    if !scans_enough && !has_reel {
         warn(&format!("the plan scans {share:.1} % of the floor that is to be scanned"));
     }
     if !worth.certificate.certified {
@@ -171,7 +172,7 @@ fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, is_complete
         warn("no candidate keeps the cable as short and straight as the parameters ask");
     }
     let scanned = format!("the plan scans {share:.1} % of the floor in reach");
-    match (is_complete, has_reel) {
+    match (scans_enough, has_reel) {
         (true, _) => {}
         (false, true) => {
             warn(&format!(

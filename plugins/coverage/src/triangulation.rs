@@ -12,7 +12,7 @@ use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
 /// Corners are moved to multiples of this, so that those of outlines that touch coincide instead of lying a hair apart,
 /// metres.
-const SNAP_M: f64 = 1.0 / 65536.0;
+pub(crate) const SNAP_M: f64 = 1.0 / 65536.0;
 /// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
 pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
@@ -126,6 +126,8 @@ pub(crate) struct Walk {
     pub points: Vec<Point>,
     /// The triangles in the order in which they were reached.
     pub triangles: Vec<Triangle>,
+    /// Numbers of the vertices at which cuts end or bend; some may come several times.
+    pub hinges: Vec<u32>,
     /// Whether there is just one way to each of them.
     pub is_simple: bool,
     pub sealed: SealedRegion,
@@ -182,9 +184,14 @@ impl<'a> Faces<'a> {
         let mut numbers = vec![NONE; self.all.len()];
         numbers[root] = 0;
         let (mut reached, mut triangles) = (vec![root], vec![triangle(root, NONE, 0)]);
-        let (mut own, mut n_links) = (0, 0);
+        let (mut own, mut n_links, mut hinges) = (0, 0, Vec::new());
         while let Some(&face) = reached.get(own) {
-            for other in self.beside(face).filter(|other| !other.is_cut) {
+            for other in self.beside(face) {
+                if other.is_cut {
+                    let corners = self.corners(face);
+                    hinges.extend([corners[other.side], corners[(other.side + 1) % 3]]);
+                    continue;
+                }
                 n_links += 1;
                 if numbers[other.face] == NONE {
                     numbers[other.face] = reached.len() as u32;
@@ -198,7 +205,7 @@ impl<'a> Faces<'a> {
         // Every link was counted from either end, and a tree has one fewer than triangles.
         let is_simple = n_links / 2 + 1 == triangles.len();
         let sealed = self.sealed(|face| numbers[face] != NONE);
-        Walk { points, triangles, is_simple, sealed }
+        Walk { points, triangles, hinges, is_simple, sealed }
     }
 
     fn sealed(&self, is_reached: impl Fn(usize) -> bool) -> SealedRegion {

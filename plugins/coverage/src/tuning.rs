@@ -200,9 +200,10 @@ pub(crate) mod repair {
     pub(crate) const KICKS: f64 = 30.0;
     /// Lanes are broken to pieces of this length where they cannot be driven any more, metres.
     pub(crate) const BIT_M: f64 = 0.1;
-    /// A robot that is blocked is helped by a path that within so many metres does not run where the old one did.
+    /// A robot that is blocked is helped by a path that within so many metres leaves the old one by so much: more than a
+    /// bend does.
     pub(crate) const AHEAD_M: f64 = 1.0;
-    pub(crate) const AS_BEFORE_M: f64 = 0.05;
+    pub(crate) const AS_BEFORE_M: f64 = 0.35;
     /// A repaired path that is longer than the rest of the old one by this share, and by so many metres, gives way
     /// to a new plan.
     pub(crate) const LONGER: f64 = 0.03;

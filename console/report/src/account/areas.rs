@@ -135,7 +135,9 @@ pub(crate) fn areas<R: Explained>(
 pub(crate) fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
     let all: Vec<usize> = cells.into_iter().collect();
     let mut is_open = vec![false; floor.len()];
-    all.iter().for_each(|cell| is_open[*cell] = true);
+    for &cell in &all {
+        is_open[cell] = true;
+    }
     let mut groups = Vec::new();
     for first in all {
         if !std::mem::take(&mut is_open[first]) {

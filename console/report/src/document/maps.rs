@@ -127,13 +127,11 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     let hidden = numbered.len() - shown.len();
     let mut note = String::new();
     if hidden > 0 {
-        note += &format!(" {hidden} areas have no badge: their places are in section 3.");
+        let _ = write!(note, " {hidden} areas have no badge: their places are in section 3.");
     }
     if marks.unnumbered > 0 {
-        note += &format!(
-            " {} have no room for their numbers: their places are in section 7.",
-            counted(marks.unnumbered, "indication")
-        );
+        let unnumbered = counted(marks.unnumbered, "indication");
+        let _ = write!(note, " {unnumbered} have no room for their numbers: their places are in section 7.");
     }
     let overlap = 100.0 * again as f64 / (once + again).max(1) as f64;
     let caption = format!(

@@ -141,6 +141,11 @@ impl<'a> Track<'a> {
         }
     }
 
+    /// Lets shortcuts be looked for everywhere again.
+    pub(super) fn reopen(&mut self) {
+        self.sides.iter_mut().for_each(|side| side.is_new = true);
+    }
+
     pub(super) fn coverage(&self) -> f64 {
         self.swept.coverage()
     }

@@ -1,16 +1,35 @@
 //! The shortest path through a sleeve of triangles (Lee and Preparata 1984).
 
-use world::Point;
+use crate::plane::left_of;
+use world::{Point, Vector};
+
+/// A corner of a path.
+pub(super) struct Bend {
+    pub at: Point,
+    /// 1 where what it bends about lies on its left, -1 on its right, 0 at the ends of the path.
+    pub side: f64,
+}
+
+impl Bend {
+    /// Unit vector away from what the path bends about.
+    pub(super) fn free_side(&self, before: Point, behind: Point) -> Vector {
+        let ahead = |from: Point, to: Point| (to - from).try_normalize(0.0).unwrap_or_else(Vector::zeros);
+        let (into, out) = (ahead(before, self.at), ahead(self.at, behind));
+        // A path that turns right back goes on round the corner.
+        let along = (into + out).try_normalize(1e-9).unwrap_or_else(|| left_of(into) * self.side);
+        left_of(along) * -self.side
+    }
+}
 
 /// The shortest path from start to goal through a sleeve: the left and right ends of the sides that it crosses, in order.
 ///
 /// From its apex the funnel sees every side up to the present one between two rims. A side that narrows it moves a rim
 /// inward. Where one rim would pass the other, the path bends at the corner of the other rim: that corner is the next apex,
 /// and the walk goes on from the side on which it lies.
-pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Point> {
+pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Bend> {
     let area = |a: Point, b: Point, c: Point| (b - a).perp(&(c - a));
     let mut path = Vec::with_capacity(8);
-    path.push(start);
+    path.push(Bend { at: start, side: 0.0 });
     let (mut apex, mut left, mut right) = (start, start, start);
     let (mut left_at, mut right_at) = (0, 0);
     let mut k = 0;
@@ -20,7 +39,7 @@ pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Ve
             if apex == right || area(apex, left, new_right) < 0.0 {
                 (right, right_at) = (new_right, k);
             } else {
-                path.push(left);
+                path.push(Bend { at: left, side: 1.0 });
                 (apex, right, right_at, k) = (left, left, left_at, left_at + 1);
                 continue;
             }
@@ -29,17 +48,17 @@ pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Ve
             if apex == left || area(apex, right, new_left) > 0.0 {
                 (left, left_at) = (new_left, k);
             } else {
-                path.push(right);
+                path.push(Bend { at: right, side: -1.0 });
                 (apex, left, left_at, k) = (right, right, right_at, right_at + 1);
                 continue;
             }
         }
         k += 1;
     }
-    path.push(goal);
-    path.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
+    path.push(Bend { at: goal, side: 0.0 });
+    path.dedup_by(|a, b| (a.at - b.at).norm() < 1e-12);
     if path.len() == 1 {
-        path.push(goal);
+        path.push(Bend { at: goal, side: 0.0 });
     }
     path
 }

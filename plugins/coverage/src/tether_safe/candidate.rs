@@ -139,6 +139,11 @@ impl Worth {
         self.certificate.certified && preferences.allow(&Strain::from(&self.certificate))
     }
 
+    /// Whether it can be flown, with a tether or without one, as far as can be certified.
+    pub(super) fn is_safe(&self, has_tether: bool) -> bool {
+        self.certificate.certified || (!has_tether && self.certificate.collisions == 0)
+    }
+
     /// Whether it is to be chosen rather than another: certified, then within the preferences, then by the figure that counts.
     pub(super) fn is_before(&self, other: &Self, preferences: &Preferences) -> bool {
         let figure = |worth: &Self| match preferences.choice {

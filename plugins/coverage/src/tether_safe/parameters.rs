@@ -24,13 +24,13 @@ const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 2
 const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 50.0)
     .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path.")
     .group("Tether");
-const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0, 1.04)
+const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0, 1.1)
     .help("Longest cable, as a multiple of the least that can do, if any candidate keeps it; the reel always limits it.")
     .group("Tether");
-const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 720.0, 75.0)
+const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 720.0, 80.0)
     .help("Largest angle of the cable about one obstacle, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
-const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 3600.0, 80.0)
+const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 3600.0, 100.0)
     .help("Largest sum of the angles about all obstacles, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
 const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.0)
@@ -46,7 +46,7 @@ const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
     .help("Edge of the cells in which floor is counted; in large tanks as much larger as keeps them below four million.")
     .group("Plan");
-const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 12.0)
+const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
     .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
     .group("Plan");
 /// How near the robot goes when it comes off its path.

