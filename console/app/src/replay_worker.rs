@@ -80,7 +80,7 @@ impl Gdb {
 
     /// With the terminal for its author.
     fn at_terminal(&self) -> io::Result<WorkerCommand> {
-        let then = r#"-ex 'echo Set breakpoints in your planner if you like, then type: run\n'"#;
+        let then = r"-ex 'echo Set breakpoints in your planner if you like, then type: run\n'";
         self.command("</dev/tty >/dev/tty 2>&1", then, Path::new(""))
     }
 

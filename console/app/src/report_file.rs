@@ -111,7 +111,7 @@ fn may_write(
     }
     let is_in =
         |folder: &PathBuf| fs::canonicalize(folder).is_ok_and(|run| Path::new(&path).starts_with(run));
-    if !path.ends_with(".html") && folders.iter().any(is_in) {
+    if output.extension().is_none_or(|suffix| suffix != "html") && folders.iter().any(is_in) {
         return Err(bad_input(format!("{path} is a file of the run; choose another name")));
     }
     if force {

@@ -273,8 +273,8 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
 fn sending(kind: u8, sequence: u32, body: &[u8]) -> String {
     let rest = [&[kind], &sequence.to_le_bytes()[..], &[0; 4], body].concat();
     let frame = [&(rest.len() as u32).to_le_bytes()[..], &rest].concat();
-    let octal: String = frame.iter().map(|byte| format!("\\{byte:03o}")).collect();
-    format!("write(200, \"{octal}\", {})", frame.len())
+    let octal: Vec<String> = frame.iter().map(|byte| format!("\\{byte:03o}")).collect();
+    format!("write(200, \"{}\", {})", octal.concat(), frame.len())
 }
 
 #[test]

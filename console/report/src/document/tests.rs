@@ -265,7 +265,9 @@ fn a_report_of_a_scan_and_its_rescan_is_called_after_the_scan_and_a_copy_of_a_ru
     let scenario = first.fold.run.as_ref().unwrap().scenario.clone();
     let mut runs = [first, second];
     assert_eq!(Document::new(&runs, Context::default()).unwrap().scenario, scenario);
-    runs.iter_mut().for_each(|run| run.files.journal_sha256 = Some("a1".repeat(32)));
+    for run in &mut runs {
+        run.files.journal_sha256 = Some("a1".repeat(32));
+    }
     let refused = Document::new(&runs, Context::default()).unwrap_err();
     assert!(refused.contains("have the same journal"), "{refused}");
 }

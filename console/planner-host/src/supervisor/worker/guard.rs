@@ -37,11 +37,11 @@ impl Guard {
     }
 
     fn stage(&self) -> Stage {
-        let is_full = self.sealed.as_ref().is_some_and(|sealed| sealed.sandbox == Sandbox::Full);
-        match self.has_loaded {
-            false => Stage::Loading,
-            true => Stage::Loaded { no_file_can_be_opened: is_full },
+        if !self.has_loaded {
+            return Stage::Loading;
         }
+        let is_full = self.sealed.as_ref().is_some_and(|sealed| sealed.sandbox == Sandbox::Full);
+        Stage::Loaded { no_file_can_be_opened: is_full }
     }
 
     /// The plugin is loaded.
