@@ -99,7 +99,7 @@ struct Widths {
 }
 
 /// Columns of how a run ended, with the one that keeps it apart from what is beside it.
-const END: usize = 11;
+const END: usize = 10;
 /// Columns of mark, date, end and coverage.
 const FIXED: usize = 3 + 12 + END + 7;
 
