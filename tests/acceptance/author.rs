@@ -66,16 +66,22 @@ fn a_new_planner_is_never_written_over_another() {
 
 #[test]
 fn a_planner_is_checked_and_flown_beside_others() {
-    let bench = Bench::new();
-    let plugin = built(&bench, "c");
-    let tried = bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "2", "--json"]);
-    let trial = &tried.json()[0];
-    assert_eq!((tried.code, trial["planner"].as_str()), (Some(0), Some("my-own")), "{tried:?}");
-    assert!(trial["checks"].as_array().unwrap().iter().all(|check| check["failure"].is_null()), "{trial}");
-    let rows: Vec<&str> =
-        trial["rows"].as_array().unwrap().iter().map(|row| row["planner"].as_str().unwrap()).collect();
-    assert!(rows[0] == "my-own" && rows.contains(&"navfn"), "{rows:?}");
-    assert!(trial["rows"][0]["tanks"] == 2, "{trial}");
+    for lang in ["c", "rust"] {
+        let bench = Bench::new();
+        let plugin = built(&bench, lang);
+        let tried = bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "2", "--json"]);
+        let trial = &tried.json()[0];
+        assert_eq!((tried.code, trial["planner"].as_str()), (Some(0), Some("my-own")), "{tried:?}");
+        assert!(
+            trial["checks"].as_array().unwrap().iter().all(|check| check["failure"].is_null()),
+            "{trial}"
+        );
+        let rows: Vec<&str> =
+            trial["rows"].as_array().unwrap().iter().map(|row| row["planner"].as_str().unwrap()).collect();
+        assert!(rows[0] == "my-own" && rows.contains(&"navfn"), "{rows:?}");
+        assert!(trial["rows"][0]["tanks"] == 2, "{trial}");
+        assert!(trial["rows"][0]["memory_mb"].as_f64().is_some_and(|mb| mb > 1.0), "{trial}");
+    }
 }
 
 #[test]

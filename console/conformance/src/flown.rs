@@ -2,7 +2,7 @@
 
 use crate::tape::Taping;
 use flight::{Flight, hosts};
-use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice, WorkerId};
+use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice};
 use planner_api::Code;
 use planner_host::{Host, PluginDirs};
 use report::{Fold, Summary};
@@ -78,8 +78,7 @@ impl Pilot {
         let start = [Order::Start];
         let events = self.flight.tick(if self.tick == 0 { &start } else { orders }, &mut self.answers);
         if self.tick.is_multiple_of(LOOK_AT_MEMORY_EVERY) {
-            let memory = self.answers.host().memory(WorkerId(0));
-            self.memory_bytes = memory.map(|memory| memory.most_bytes).max(self.memory_bytes);
+            self.memory_bytes = self.answers.memory().map(|memory| memory.most_bytes).max(self.memory_bytes);
         }
         self.tick += 1;
         for event in &events {

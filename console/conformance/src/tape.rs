@@ -2,7 +2,7 @@
 
 use flight::answers::{Answers, InOrder};
 use mission::{Answer, Ask, AskId, Fault, Given, Mission, What, WorkerId};
-use planner_host::Host;
+use planner_host::{Host, Memory};
 
 /// So many asks are kept.
 const MOST: usize = 60;
@@ -10,16 +10,23 @@ const MOST: usize = 60;
 /// Answers of a host, and the first asks.
 pub(crate) struct Taping {
     answers: InOrder,
+    /// The worker that was asked first.
+    worker: Option<WorkerId>,
     tape: Vec<What>,
 }
 
 impl Taping {
     pub(crate) fn new(host: Host) -> Self {
-        Self { answers: InOrder::new(host), tape: Vec::new() }
+        Self { answers: InOrder::new(host), worker: None, tape: Vec::new() }
     }
 
     pub(crate) fn host(&mut self) -> &mut Host {
         self.answers.host()
+    }
+
+    /// Memory of the first planner's process.
+    pub(crate) fn memory(&mut self) -> Option<Memory> {
+        self.answers.host().memory(self.worker?)
     }
 
     pub(crate) fn into_tape(self) -> Vec<What> {
@@ -30,7 +37,8 @@ impl Taping {
 impl Answers for Taping {
     fn submit(&mut self, ask: Ask) {
         // The rest of a tape makes sense only as long as it is of one planner from its beginning.
-        if self.tape.len() < MOST && ask.id.worker == WorkerId(0) && ask.what != What::Close {
+        let first = *self.worker.get_or_insert(ask.id.worker);
+        if self.tape.len() < MOST && ask.id.worker == first && ask.what != What::Close {
             self.tape.push(ask.what.clone());
         }
         self.answers.submit(ask);

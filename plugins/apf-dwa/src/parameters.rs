@@ -73,7 +73,7 @@ const VELOCITY: ParamSpec = float("weight_velocity", "Weight of the speed", "", 
 const STEP_S: ParamSpec = float("step_s", "Step", "s", 0.01, 1.0, 0.1)
     .help("Length of a step when planning; Table 2 of the paper has 0.1 s.")
     .group("Plan");
-const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 1_000_000, 0)
+const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 50_000, 0)
     .help("Steps of a plan; 0 lets the length of the trip decide.")
     .group("Plan");
 

@@ -7,6 +7,7 @@ use planner_api::{
 
 struct Mine {
     speed_m_per_s: f64,
+    limit_m_per_s: f64,
 }
 
 impl Planner for Mine {
@@ -17,8 +18,8 @@ impl Planner for Mine {
     const PARAMS: &'static [ParamSpec] =
         &[float("speed", "Speed", "m/s", 0.01, 2.0, 0.2).help("Speed on the way.").live()];
 
-    fn configure(config: &Config<'_>, _site: &Site<'_>, _ctx: &Ctx<'_>) -> Result<Self> {
-        Ok(Self { speed_m_per_s: config.float("speed") })
+    fn configure(config: &Config<'_>, site: &Site<'_>, _ctx: &Ctx<'_>) -> Result<Self> {
+        Ok(Self { speed_m_per_s: config.float("speed"), limit_m_per_s: site.limits.v_max_m_per_s })
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, _ctx: &Ctx<'_>) -> Result<Plan> {
@@ -35,7 +36,7 @@ impl Planner for Mine {
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         let way = sensed.target - sensed.pose.position;
         ctx.arrow(Layer::Attraction, sensed.pose.position, way);
-        Ok(Command::velocity(way.cap_magnitude(self.speed_m_per_s)))
+        Ok(Command::velocity(way.cap_magnitude(self.speed_m_per_s.min(self.limit_m_per_s))))
     }
 
     fn reconfigure(&mut self, config: &Config<'_>, _ctx: &Ctx<'_>) -> Result<()> {
