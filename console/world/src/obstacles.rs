@@ -263,7 +263,11 @@ impl Outline {
             }
             Self::Parry(shape) => {
                 let projection = shape.project_local_point(point.into(), false);
-                let closest: Point = projection.point.into();
+                // Of a point on a side, parry may say that it is deep inside: its search ends at another side.
+                let inside_of = shape.as_convex_polygon().filter(|_| projection.is_inside);
+                let closest = inside_of
+                    .and_then(|polygon| nearest_on_sides(polygon.points(), point))
+                    .unwrap_or_else(|| projection.point.into());
                 let distance = (point - closest).norm();
                 (if projection.is_inside { -distance } else { distance }, closest)
             }
@@ -295,6 +299,12 @@ impl Outline {
             }
         }
     }
+}
+
+fn nearest_on_sides(corners: &[DVec2], point: Point) -> Option<Point> {
+    let corners: Vec<Point> = corners.iter().map(|corner| (*corner).into()).collect();
+    let far = |at: &Point| (at - point).norm();
+    edges(&corners).map(|(a, b)| nearest_on_segment(a, b, point)).min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 fn segment_box(a: Point, b: Point) -> Aabb {

@@ -294,6 +294,23 @@ mod tests {
     }
 
     #[test]
+    fn blocks_whose_middle_lies_on_the_side_of_a_box_are_asked_cell_by_cell() {
+        let corner = |x: f64, y: f64| Point::new(1.4 + 0.6 * x, -1.4 + 0.4 * y);
+        let vertices = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let mut world = tank(&[]);
+        world.boundary = Boundary::Polygon {
+            vertices: [(-4.8, -2.8), (4.8, -2.8), (4.8, 2.8), (-4.8, 2.8)]
+                .map(|(x, y)| Point::new(x, y))
+                .to_vec(),
+        };
+        let shape = Shape::Polygon { vertices };
+        world.obstacles.push(Obstacle { id: ObstacleId(0), name: String::new(), shape, known: true });
+        let floor = Floor::new(&world, 0.05, 0.3, 0.6, Point::origin());
+        let solid = (0..floor.len()).filter(|cell| floor.kind(*cell) == Cell::Outside).count();
+        assert_eq!(solid, 24 * 16, "cells of a box of 1.2 m by 0.8 m");
+    }
+
+    #[test]
     fn a_found_obstacle_gives_the_floor_that_it_would_have_given_from_the_start() {
         let (before, after) = (tank(&[(2.0, 0.0, 0.3)]), tank(&[(2.0, 0.0, 0.3), (-1.0, 2.0, 0.4)]));
         let make = |world: &World| FloorMaker::new(world, 0.05, 0.35, 0.5, Point::origin());
