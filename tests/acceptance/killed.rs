@@ -10,7 +10,7 @@ use std::{
 #[test]
 fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     // Times differ, so that the kill hits different moments; seeds are written out.
-    for (seed, wait_ms) in [(11, 50), (12, 320), (13, 780), (14, 1210), (15, 1650)] {
+    for (seed, wait_ms) in [(11, 50), (12, 170), (13, 390), (14, 610), (15, 830)] {
         let bench = Bench::new();
         // A long mission: nobody kills in time what ends in a second.
         let slow = slow_scenario(&bench);
