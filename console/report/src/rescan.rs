@@ -28,8 +28,7 @@ pub struct Rescan {
     pub areas: Vec<Area<MissReason>>,
     /// Missed areas that are left, the largest first: too small.
     pub left: Vec<Area<MissReason>>,
-    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well. Why the runs missed them is the
-    /// reason that the report gives.
+    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well, whatever the runs missed them for.
     pub out_of_reach: Vec<Area<MissReason>>,
     /// Missed floor that none of the runs was asked to scan, square metres.
     pub not_asked_m2: f64,
@@ -52,27 +51,24 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m());
     let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
+    let why_missed = |index: usize| reasons.why_missed(floor.center(index), index);
     let no_lane = |index: usize| {
-        let center = floor.center(index);
-        let is_beyond_reel = || reasons.why_missed(center, index) == MissReason::BeyondReel;
-        !lanes.is_reachable(index) || reasons.beyond_lanes_m(center) > 0.0 || is_beyond_reel()
+        let is_narrow = || !lanes.is_reachable(index) || reasons.beyond_lanes_m(floor.center(index)) > 0.0;
+        match why_missed(index) {
+            MissReason::BeyondReel => Some(MissReason::BeyondReel),
+            _ => is_narrow().then_some(MissReason::Narrow),
+        }
     };
-    let is_out_of_reach: Vec<bool> =
-        (0..floor.len()).map(|index| is_asked(index) && no_lane(index)).collect();
-    let is_wanted = |index: usize| is_asked(index) && !is_out_of_reach[index];
+    let no_lane: Vec<Option<MissReason>> =
+        (0..floor.len()).map(|index| is_asked(index).then(|| no_lane(index)).flatten()).collect();
+    let is_wanted = |index: usize| is_asked(index) && no_lane[index].is_none();
     let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
     let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
-    let why = |index: usize| reasons.why_missed(floor.center(index), index);
-    let (out_of_reach, _) = areas_of(
-        floor,
-        plates.as_ref(),
-        |index| is_out_of_reach[index].then(|| why(index)),
-        |why, cells| reasons.measure(grid, why, cells),
-    );
+    let measure = |why, cells: &[usize]| reasons.measure(grid, why, cells);
+    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index], measure);
     let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());
     for cells in clusters(floor, TOGETHER_SWATHS * swath_m, is_wanted) {
-        let area =
-            area_of(floor, plates.as_ref(), &cells, why, |why, cells| reasons.measure(grid, why, cells));
+        let area = area_of(floor, plates.as_ref(), &cells, why_missed, measure);
         if area.area_m2 < min_area_m2 {
             left.push(area);
         } else {
@@ -224,7 +220,7 @@ mod tests {
             "{rescan:?}"
         );
         let reasons: Vec<MissReason> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
-        assert_eq!(reasons.first(), Some(&MissReason::Narrow), "{rescan:?}");
+        assert!(!reasons.is_empty() && reasons.iter().all(|why| *why == MissReason::Narrow), "{rescan:?}");
         assert!(rescan.out_of_reach[0].at.x > 4.6, "{rescan:?}");
     }
 

@@ -84,7 +84,9 @@ impl Reasons<'_> {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
             MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
+            // In a corner no lane leads to floor that is near enough to one by its distance from the nearest wall alone.
             MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
+                .filter(|beyond_m| *beyond_m > 0.0)
                 .map(|m| Measure::of(m).against(self.lane_m)),
             MissReason::Clearance => {
                 Measure::off(cells.iter().map(|cell| solid(*cell))).map(|m| m.against(self.room_m))
