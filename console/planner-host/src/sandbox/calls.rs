@@ -46,7 +46,6 @@ const FREE: &[i64] = &[
     libc::SYS_nanosleep,
     libc::SYS_gettimeofday,
     libc::SYS_getitimer,
-    libc::SYS_setitimer,
     libc::SYS_getrandom,
     libc::SYS_getrusage,
     libc::SYS_sysinfo,
@@ -114,6 +113,11 @@ fn rules() -> Result<Rules, String> {
     rules.insert(libc::SYS_prctl, only(0, &names.map(|name| name as u64))?);
     let flags = [libc::F_GETFD, libc::F_SETFD, libc::F_GETFL];
     rules.insert(libc::SYS_fcntl, only(1, &flags.map(|flag| flag as u64))?);
+    // `nice` reads its own priority before it tries to change it.
+    rules.insert(
+        libc::SYS_getpriority,
+        vec![rule(vec![argument(0, is.clone(), 0)?, argument(1, is.clone(), 0)?])?],
+    );
     // Limits may be read, not set.
     rules.insert(libc::SYS_prlimit64, vec![rule(vec![argument(0, is.clone(), 0)?, argument(2, is, 0)?])?]);
     Ok(rules)

@@ -83,9 +83,13 @@ fn on_clone(call: &Call) -> Verdict {
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
     const MAY: u64 = (libc::CLONE_SETTLS | libc::CLONE_PARENT_SETTID | libc::CLONE_CHILD_CLEARTID) as u64
         | (libc::CLONE_CHILD_SETTID | libc::CLONE_DETACHED) as u64;
+    // By which the C library forks and starts programs.
+    const OF_FORK: u64 = (libc::CLONE_CHILD_CLEARTID | libc::CLONE_CHILD_SETTID) as u64
+        | (libc::CLONE_VM | libc::CLONE_VFORK) as u64;
     let flags = call.arguments[0];
     if flags & THREAD != THREAD || flags & !(THREAD | MAY) != 0 {
-        return Verdict::Forbid("fork".to_owned());
+        let is_fork = flags & !OF_FORK == libc::SIGCHLD as u64;
+        return Verdict::Forbid(if is_fork { "fork" } else { "clone" }.to_owned());
     }
     let threads = std::fs::read_dir(format!("/proc/{}/task", call.thread));
     if threads.map_or(0, Iterator::count) < MOST_THREADS {
@@ -303,6 +307,6 @@ mod tests {
         assert_eq!(clone(0x003d_0f00), Verdict::Allow, "as the C library starts a thread");
         assert_eq!(clone(libc::SIGCHLD as u64), Verdict::Forbid("fork".into()));
         let with_namespace = 0x003d_0f00 | libc::CLONE_NEWUSER as u64;
-        assert_eq!(clone(with_namespace), Verdict::Forbid("fork".into()));
+        assert_eq!(clone(with_namespace), Verdict::Forbid("clone".into()));
     }
 }

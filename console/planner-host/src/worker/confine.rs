@@ -79,9 +79,16 @@ pub(super) fn close_off(socket: &Socket, sequence: u32, file: &File) -> io::Resu
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits the address space.
+/// Limits the address space to this much beside what the worker itself has: that is the planner's.
 pub(super) fn limit_memory(bytes: u64) {
-    limit(Resource::As, bytes);
+    limit(Resource::As, address_space().saturating_add(bytes));
+}
+
+/// Address space of this process, bytes; nothing where the system does not say.
+fn address_space() -> u64 {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok();
+    let pages = pages.and_then(|sizes| sizes.split(' ').next()?.parse::<u64>().ok()).unwrap_or_default();
+    pages * rustix::param::page_size() as u64
 }
 
 fn limit(resource: Resource, most: u64) {
