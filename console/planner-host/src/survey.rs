@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// A library that does not load and describe itself within this time is refused.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
-/// Address space of a planner in its worker unless something else is said, bytes.
+/// Memory of a planner in its worker unless something else is said, bytes.
 pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
 
 /// Every plugin file, in the order in which they are searched.

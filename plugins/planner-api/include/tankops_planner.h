@@ -16,8 +16,8 @@
  *  - Structs only grow at the end. `size` is what its writer knew: read and write nothing beyond it. Where arrays
  *    carry a stride, step by the stride and not by sizeof.
  *  - The planner runs in a process of its own: a crash or an endless loop costs that process, not the console.
- *  - Memory is address space: 256 MB, 1 GB for coverage missions. A thread takes its whole stack of it, 8 MB unless
- *    pthread_attr_setstacksize says otherwise; up to 62 threads of its own are allowed. Threads end within the call.
+ *  - It has 256 MB of memory, 1 GB on coverage missions, used or not, and up to 62 threads. The stack of a thread counts
+ *    in full: 8 MB unless pthread_attr_setstacksize says otherwise. Threads end within the call that starts them.
  *
  * Frame: the tank frame, x east, y north, metres; angles in radians, counter-clockwise from east; SI units.
  */

@@ -62,6 +62,7 @@ pub(crate) fn verdict(call: &Call, stage: Stage) -> Verdict {
         // Terminals are asked for their size and kind by libraries that print; a trace of calls shortens its paths.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
         libc::SYS_getcwd => Verdict::Refuse(libc::ENOENT),
+        libc::SYS_mmap => Verdict::Forbid("mmap of shared memory".to_owned()),
         libc::SYS_landlock_restrict_self if stage == Stage::Loading => Verdict::Allow,
         number => Verdict::Forbid(name(number)),
     }

@@ -92,6 +92,9 @@ mod tests {
         let taken = lines.take();
         assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines at once are not kept)"));
         lines.extend(&[b'x'; 10 * LONGEST]);
-        assert_eq!(lines.take_rest()[0].len(), LONGEST);
+        let cut = lines.take_rest();
+        assert_eq!((cut.len(), cut[0].len()), (1, LONGEST + CUT.len()), "without its end");
+        lines.extend(b"xxx\nnext\n");
+        assert_eq!(lines.take(), ["next"], "its rest is skipped");
     }
 }

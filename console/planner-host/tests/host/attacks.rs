@@ -99,6 +99,11 @@ const ATTACKS: &[(&str, &str)] = &[
     ("syscall(434, getppid(), 0)", "pidfd_open"),
     ("syscall(SYS_bpf, 0, NULL, 0)", "bpf"),
     ("unshare(CLONE_NEWUSER)", "unshare"),
+    ("mmap(NULL, 4096, PROT_READ, MAP_SHARED | MAP_ANONYMOUS, -1, 0)", "mmap of shared memory"),
+    ("mmap(NULL, 4096, PROT_READ, MAP_SHARED, 201, 0)", "mmap of shared memory"),
+    // Of no bytes: where a seal is broken, the machine that runs this test survives it.
+    ("madvise(NULL, 0, 100)", "madvise"),
+    ("madvise(NULL, 0, 101)", "madvise"),
     ("nice(5)", "setpriority"),
     ("syscall(SYS_clone, CLONE_PARENT | SIGCHLD, 0, 0, 0, 0)", "clone"),
     // A storm of alarms would slow every step.
