@@ -212,3 +212,39 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         assert_eq!(session.agree_to_leave(), "code=1", "{attack}");
     }
 }
+
+#[test]
+fn a_plan_that_the_mission_refuses_for_its_tank_is_no_difference() {
+    let bench = Bench::new();
+    let source = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
+    let end = "out->cost = 0.0;";
+    assert!(source.contains(end));
+    let far = format!("const tp_vec2 far = {{1e5, 0.0}}; h->points(h->ctx, &far, 1); {end}");
+    let source = bench.file("far.c", format!("#define IN_STEP\n{}", source.replacen(end, &far, 1)));
+    let plugins = bench.path().join("far");
+    std::fs::create_dir(&plugins).unwrap();
+    crate::faults::compile_file(&source, &plugins.join("libplanner_hostile.so"));
+    let flown = fly(&bench, &plugins);
+    assert!(flown.out.contains("is far outside the tank"), "{flown:?}");
+    bench.prove_with(&bench.runs()[0], &["--plugin-dir", plugins.to_str().unwrap()]);
+}
+
+#[test]
+fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_different() {
+    let bench = Bench::new();
+    // All that a planner is told of the console's environment.
+    let attack = r#"if (getenv("RUST_BACKTRACE") && *getenv("RUST_BACKTRACE") == 'f') abort()"#;
+    let plugins = hostile(&bench, "IN_STEP", attack);
+    let more = ["--planner", "hostile", "--set", "mission.time_limit_s=2", "--plugin-dir"];
+    let plugins = plugins.to_str().unwrap();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[&more[..], &[plugins]].concat());
+    let run = bench.runs().pop().unwrap();
+    bench.prove_with(&run, &["--plugin-dir", plugins]);
+    let mut verify = bench.command();
+    verify.env("RUST_BACKTRACE", "full").arg("verify").arg(&run).args(["--plugin-dir", plugins]);
+    let verified = Ended::from(verify.output().unwrap());
+    assert_eq!(verified.code, Some(1), "{verified:?}");
+    let sentence = "not proven: a planner fails from outside or by the clock at ask ";
+    assert!(verified.out.contains(sentence) && !verified.out.contains("different"), "{verified:?}");
+    assert!(verified.out.contains("SIGABRT") && !verified.out.contains("equal:"), "{verified:?}");
+}

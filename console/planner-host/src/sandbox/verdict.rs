@@ -128,7 +128,9 @@ fn asked_about(call: &Call, stage: Stage) -> Verdict {
     let about = match path.as_str() {
         "" if flags as i32 & libc::AT_EMPTY_PATH != 0 => about::descriptor(call.thread, descriptor as i32),
         path if stage == Stage::Loading && is_library(path) => about::file(path, flags as i32),
-        _ if stage == Stage::Loading && is_library_name(&path) => return Verdict::Refuse(libc::ENOENT),
+        _ if stage == Stage::Loading && (is_library_name(&path) || path.contains("/glibc-hwcaps/")) => {
+            return Verdict::Refuse(libc::ENOENT);
+        }
         path => return of_path(call, path),
     };
     match about {
