@@ -129,7 +129,7 @@ fn asked_about(call: &Call, stage: Stage, sought: &str) -> Verdict {
     let about = match path.as_str() {
         "" if flags as i32 & libc::AT_EMPTY_PATH != 0 => about::descriptor(call.thread, descriptor as i32),
         path if stage == Stage::Loading && is_library(path) => about::file(path, flags as i32),
-        _ if stage == Stage::Loading && (is_library_name(&path) || path.trim_end_matches('/') == sought) => {
+        _ if stage == Stage::Loading && (is_library_name(&path) || is_folder(sought, &path)) => {
             return Verdict::Refuse(libc::ENOENT);
         }
         path => return of_path(call, path),
@@ -187,6 +187,11 @@ fn leads_back(path: &str) -> bool {
     path.split('/').any(|part| part == "..")
 }
 
+/// Whether a path is this folder, if there is one.
+fn is_folder(folder: &str, path: &str) -> bool {
+    !folder.is_empty() && path.trim_end_matches('/') == folder
+}
+
 fn is_below(folder: &str, path: &str) -> bool {
     path.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'))
 }
@@ -225,7 +230,7 @@ mod tests {
 
     fn ask_about(path: &str, flags: i32, stage: Stage) -> Verdict {
         let path = format!("{path}\0");
-        ask_after(&mut String::new(), path, flags, stage)
+        ask_after(&mut String::new(), &path, flags, stage)
     }
 
     fn ask_after(sought: &mut String, path: &str, flags: i32, stage: Stage) -> Verdict {
