@@ -42,7 +42,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
 
 /// The planners that can fly the re-scan, if the one that flew the scan cannot.
 fn planners_instead(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
-    let found = planners::found(plugins);
+    let found = planners::found(plugins).planners;
     let cannot = |info: &PlannerInfo| info.id == scenario.mission.planner.id && !info.covers;
     if !found.iter().any(cannot) {
         return Vec::new();
