@@ -48,6 +48,8 @@ pub struct Tether {
     cable: Cable,
     /// The ground as the middle of the hull meets it on its return path.
     roomy: Arc<CableObstacles>,
+    /// The taut line of the hull on that ground, dragged by the robot like the cable; `None` if the anchor is no place for it.
+    hull: Option<Cable>,
     /// For how long there has been no return path, seconds.
     without_home_s: f64,
     payout: Payout,
@@ -64,11 +66,13 @@ impl Tether {
         let shapes = shapes(world);
         let mut cable = Cable::new(config.anchor, &world.boundary, &shapes)?;
         cable.drag_to(start);
+        let roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes, home_room_m(hull_m)));
         Ok(Self {
             config: config.clone(),
             hull_m,
             cable,
-            roomy: Arc::new(CableObstacles::grown(&world.boundary, &shapes, home_room_m(hull_m))),
+            hull: hull_dragged(config.anchor, &roomy, &[start]),
+            roomy,
             without_home_s: 0.0,
             payout: Payout::default(),
             driven: Driven::new(start),
@@ -99,8 +103,10 @@ impl Tether {
         if let Ok(mut cable) = Cable::on(self.config.anchor, obstacles) {
             cable.drag_along(self.driven.points());
             cable.drag_to(self.cable.tip());
-            self.cable = cable;
             self.roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes, home_room_m(self.hull_m)));
+            self.hull = hull_dragged(self.config.anchor, &self.roomy, self.driven.points());
+            self.drag_hull(cable.tip());
+            self.cable = cable;
         }
     }
 
@@ -108,6 +114,26 @@ impl Tether {
     pub fn drag_to(&mut self, here: Point) {
         self.driven.keep(here);
         self.cable.drag_to(here);
+        self.drag_hull(here);
+    }
+
+    fn drag_hull(&mut self, here: Point) {
+        if let Some(hull) = &mut self.hull {
+            hull.drag_to(here);
+        }
+    }
+
+    /// The way home for the hull. Where the robot was believed to be in a place without room for it, its line may have come to lie
+    /// on a wrong side: then it is laid anew along the cable.
+    fn home(&mut self, map: &ObstacleMap) -> Option<Vec<Point>> {
+        let room_m = home_room_m(self.hull_m);
+        let dragged = self.hull.as_ref().and_then(|hull| self.cable.return_path_of(hull, map, room_m));
+        dragged.or_else(|| {
+            let hull = self.cable.hull_along(&self.roomy)?;
+            let home = self.cable.return_path_of(&hull, map, room_m)?;
+            self.hull = Some(hull);
+            Some(home)
+        })
     }
 
     /// Takes in what the reel has paid out, metres, after some time; `error_m` is the error of the position by which the
@@ -132,14 +158,13 @@ impl Tether {
         let mut way: Vec<Point> = driven[first..].iter().rev().copied().collect();
         let mut freed = self.cable.clone();
         freed.drag_along(&way);
-        way.extend(way_along(&freed, world, room_m)?);
+        way.extend(Ground::new(world, room_m).way_along(&freed)?);
         Some(way)
     }
 
     /// How the cable lies after some time, and what is newly wrong or right again.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
-        let return_path = self.cable.return_path(&self.roomy, map, home_room_m(self.hull_m));
-        let return_length_m = return_path.map(|way| world::polyline::length_m(&way));
+        let return_length_m = self.home(map).map(|way| world::polyline::length_m(&way));
         self.without_home_s = if return_length_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
         let limits = self.config.limits;
         let length_m = self.cable.length_m();
@@ -203,7 +228,14 @@ impl Tether {
 
     /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
     pub fn return_path(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
-        way_along(&self.cable, world, room_m)
+        let ground = Ground::new(world, room_m);
+        ground.way_along(&self.cable).or_else(|| {
+            let hull = hull_dragged(self.config.anchor, &ground.roomy, self.driven.points());
+            hull.and_then(|mut hull| {
+                hull.drag_to(self.cable.tip());
+                self.cable.return_path_of(&hull, &ground.map, room_m)
+            })
+        })
     }
 
     /// Whether the rest of a plan still reels the cable in within its limits, now that more is known of the tank.
@@ -248,10 +280,30 @@ fn bends(cable: &Cable) -> Vec<Point> {
     line[1..line.len() - 1].to_vec()
 }
 
-/// The way along a cable to its anchor with some room for the middle of the hull, metres.
-fn way_along(cable: &Cable, world: &World, room_m: f64) -> Option<Vec<Point>> {
-    let roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes(world), room_m));
-    cable.return_path(&roomy, &ObstacleMap::new(&world.boundary, &world.obstacles), room_m)
+/// The floor as a hull meets it that needs some room.
+struct Ground {
+    roomy: Arc<CableObstacles>,
+    map: ObstacleMap,
+    room_m: f64,
+}
+
+impl Ground {
+    fn new(world: &World, room_m: f64) -> Self {
+        let roomy = Arc::new(CableObstacles::grown(&world.boundary, &shapes(world), room_m));
+        Self { roomy, map: ObstacleMap::new(&world.boundary, &world.obstacles), room_m }
+    }
+
+    /// The way along a cable to its anchor.
+    fn way_along(&self, cable: &Cable) -> Option<Vec<Point>> {
+        cable.return_path(&self.roomy, &self.map, self.room_m)
+    }
+}
+
+/// The taut line of a hull that was dragged from the anchor along a way.
+fn hull_dragged(anchor: Point, roomy: &Arc<CableObstacles>, way: &[Point]) -> Option<Cable> {
+    let mut hull = Cable::hull_at(anchor, roomy)?;
+    hull.drag_along(way);
+    Some(hull)
 }
 
 /// Room for the middle of the hull on a return path, metres.

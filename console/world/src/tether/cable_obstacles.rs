@@ -117,10 +117,6 @@ impl CableObstacles {
         let is_solid = |at: Point| sidestep.holds(at) || boundary.wall_distance_m(at) < -BESIDE_M / 1e3;
         let mut posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
         posts.retain(|post| post.can_bear(is_solid));
-        let around = |post: &Post| {
-            let far = Vector::new(post.radius_m, post.radius_m);
-            (post.center - far, post.center + far)
-        };
         Self {
             boxes: Boxes::new(posts.iter().map(around)),
             posts,
@@ -228,13 +224,24 @@ fn ray_origin(shape: &Shape) -> Point {
     }
 }
 
+/// The posts that lie within no other one. Who hides a post holds its centre, so that few have to be compared.
 fn without_hidden(posts: &[Post]) -> Vec<Post> {
+    let boxes = Boxes::new(posts.iter().map(around));
     let hides = |outer: &Post, inner: &Post, outer_first: bool| {
         let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();
         room_m > 0.0 || (room_m == 0.0 && (outer_first || outer.radius_m > inner.radius_m))
     };
-    let is_hidden = |k: usize| (0..posts.len()).any(|j| j != k && hides(&posts[j], &posts[k], j < k));
+    let is_hidden = |k: usize| {
+        let mut holders = boxes.near(posts[k].center, posts[k].center, 0.0);
+        holders.any(|j| j != k && hides(&posts[j], &posts[k], j < k))
+    };
     (0..posts.len()).filter(|&k| !is_hidden(k)).map(|k| posts[k]).collect()
+}
+
+/// The corners of the box around a post.
+fn around(post: &Post) -> (Point, Point) {
+    let far = Vector::new(post.radius_m, post.radius_m);
+    (post.center - far, post.center + far)
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! The return path: back along the cable, with room for the hull.
 //!
 //! The taut cable itself is no path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
-//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Its signature, and that it crosses no
-//! wall, are checked at the end: where grown obstacles close a gap, the line may have been bent to the wrong side of one.
+//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Either the robot drags that line along as
+//! it drags the cable, which costs little and never errs where the robot has room; or it is laid along the taut cable, which needs no
+//! memory of the way driven. The cable bears on what is grown, and between obstacles that stand closely the nearest place outside of
+//! them may be on the wrong side: so signature, room and walls are checked at the end.
 
 use super::{cable::Cable, cable_obstacles::CableObstacles, homotopy::HomotopySignature};
 use crate::obstacles::ObstacleMap;
@@ -39,12 +41,30 @@ impl Cable {
         map: &ObstacleMap,
         room_m: f64,
     ) -> Option<Vec<Point>> {
-        let mut hull = Self::on(grown.outside(self.anchor()), Arc::clone(grown)).ok()?;
+        self.return_path_of(&self.hull_along(grown)?, map, room_m)
+    }
+
+    /// The hull's own taut line, laid along this cable among obstacles grown by the room that the hull needs; `None` if the
+    /// anchor is inside of one of them.
+    pub fn hull_along(&self, grown: &Arc<CableObstacles>) -> Option<Self> {
+        let mut hull = Self::hull_at(self.anchor(), grown)?;
         for pair in self.taut_line().windows(2) {
             // A point inside a grown obstacle counts as the nearest one outside, from where a straight line to a distant point
             // might pass the next obstacle on its other side.
             hull.drag_along(&grown.with_stops_inside(pair[0], pair[1], STOP_M));
         }
+        Some(hull)
+    }
+
+    /// A hull's taut line of length 0 as near to the anchor as the hull comes, to be dragged along with the robot; `None` if that
+    /// is no place for it.
+    pub fn hull_at(anchor: Point, grown: &Arc<CableObstacles>) -> Option<Self> {
+        Self::on(grown.outside(anchor), Arc::clone(grown)).ok()
+    }
+
+    /// The same path as [`Self::return_path`], given the hull's own taut line: laid by [`Self::hull_along`], or dragged by the robot
+    /// from [`Self::hull_at`]. `None` if it does not unwind this cable, or the hull does not fit.
+    pub fn return_path_of(&self, hull: &Self, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
         let inner = hull.taut_line();
         let fits = has_room(&polyline::without_ends(&inner, ENDS_M), map, room_m - SPARE_M);
         let mut way = vec![self.anchor()];
