@@ -46,6 +46,12 @@ impl Post {
         self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= most)
     }
 
+    /// South-west and north-east corner of the box around it.
+    fn bounds(&self) -> (Point, Point) {
+        let far = Vector::new(self.radius_m, self.radius_m);
+        (self.center - far, self.center + far)
+    }
+
     /// Whether a line can bend here, for all that is solid beside it: at a corner, both edges can be prolonged into free floor.
     /// Floors from maps consist of many convex pieces, and most of their corners lie against other pieces.
     fn can_bear(&self, is_solid: impl Fn(Point) -> bool) -> bool {
@@ -117,12 +123,8 @@ impl CableObstacles {
         let is_solid = |at: Point| sidestep.holds(at) || boundary.wall_distance_m(at) < -BESIDE_M / 1e3;
         let mut posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
         posts.retain(|post| post.can_bear(is_solid));
-        let around = |post: &Post| {
-            let far = Vector::new(post.radius_m, post.radius_m);
-            (post.center - far, post.center + far)
-        };
         Self {
-            boxes: Boxes::new(posts.iter().map(around)),
+            boxes: Boxes::new(posts.iter().map(Post::bounds)),
             posts,
             sidestep,
             rays: Rays::new(&shapes.iter().map(ray_origin).collect::<Vec<_>>()),
@@ -233,7 +235,12 @@ fn without_hidden(posts: &[Post]) -> Vec<Post> {
         let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();
         room_m > 0.0 || (room_m == 0.0 && (outer_first || outer.radius_m > inner.radius_m))
     };
-    let is_hidden = |k: usize| (0..posts.len()).any(|j| j != k && hides(&posts[j], &posts[k], j < k));
+    let boxes = Boxes::new(posts.iter().map(Post::bounds));
+    // What hides a post covers its middle.
+    let is_hidden = |k: usize| {
+        let middle = posts[k].center;
+        boxes.near(middle, middle, 0.0).any(|j| j != k && hides(&posts[j], &posts[k], j < k))
+    };
     (0..posts.len()).filter(|&k| !is_hidden(k)).map(|k| posts[k]).collect()
 }
 

@@ -1,8 +1,10 @@
 //! The return path: back along the cable, with room for the hull.
 //!
 //! The taut cable itself is no path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
-//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Its signature, and that it crosses no
-//! wall, are checked at the end: where grown obstacles close a gap, the line may have been bent to the wrong side of one.
+//! class among obstacles grown by the hull, so it exists wherever the robot has driven. It is found by a hull that follows the
+//! cable. Its signature, and that it crosses no wall, are checked at the end: where grown obstacles close a gap, or where a
+//! wall consists of many pieces, the line may have been bent to the wrong side of one. Then the hull follows a line that keeps
+//! off whatever the cable bears on.
 
 use super::{cable::Cable, cable_obstacles::CableObstacles, homotopy::HomotopySignature};
 use crate::obstacles::ObstacleMap;
@@ -39,8 +41,20 @@ impl Cable {
         map: &ObstacleMap,
         room_m: f64,
     ) -> Option<Vec<Point>> {
+        self.home_along(&self.taut_line(), grown, map, room_m)
+            .or_else(|| self.home_along(&self.line_beside_posts(room_m), grown, map, room_m))
+    }
+
+    /// The return path that follows a line of the cable's homotopy class, from the anchor to the robot.
+    fn home_along(
+        &self,
+        line: &[Point],
+        grown: &Arc<CableObstacles>,
+        map: &ObstacleMap,
+        room_m: f64,
+    ) -> Option<Vec<Point>> {
         let mut hull = Self::on(grown.outside(self.anchor()), Arc::clone(grown)).ok()?;
-        for pair in self.taut_line().windows(2) {
+        for pair in line.windows(2) {
             // A point inside a grown obstacle counts as the nearest one outside, from where a straight line to a distant point
             // might pass the next obstacle on its other side.
             hull.drag_along(&grown.with_stops_inside(pair[0], pair[1], STOP_M));
