@@ -129,8 +129,8 @@ impl Tether {
         let room_m = home_room_m(self.hull_m);
         let dragged = self.hull.as_ref().and_then(|hull| self.cable.return_path_of(hull, map, room_m));
         dragged.or_else(|| {
-            let hull = self.cable.hull_along(&self.roomy)?;
-            let home = self.cable.return_path_of(&hull, map, room_m)?;
+            let home = |hull: Cable| Some((self.cable.return_path_of(&hull, map, room_m)?, hull));
+            let (home, hull) = self.cable.hulls_along(&self.roomy, room_m).find_map(home)?;
             self.hull = Some(hull);
             Some(home)
         })

@@ -380,15 +380,21 @@ impl Cable {
     /// assert!((line_m - cable.length_m()).abs() < 1e-3);
     /// ```
     pub fn taut_line(&self) -> Vec<Point> {
+        self.line_beside_posts(0.0)
+    }
+
+    /// The same with some room between the line and every post that it bears on, metres. Ends and order are those of the
+    /// cable; between two posts the line may come nearer to what else is there.
+    pub(super) fn line_beside_posts(&self, room_m: f64) -> Vec<Point> {
         let mut line = vec![self.anchor];
         for bend in &self.bends {
             let post = self.obstacles.posts[bend.post];
-            let steps =
-                if post.radius_m > 0.0 { (bend.wrap_rad() / ARC_STEP_RAD).ceil().max(1.0) } else { 0.0 };
+            let radius_m = post.radius_m + room_m;
+            let steps = if radius_m > 0.0 { (bend.wrap_rad() / ARC_STEP_RAD).ceil().max(1.0) } else { 0.0 };
             line.extend((0..=steps as usize).map(|k| {
                 let share = if steps > 0.0 { k as f64 / steps } else { 0.0 };
                 let bearing_rad = bend.into_rad + (bend.out_rad - bend.into_rad) * share;
-                tangent_point(post.center, post.radius_m, bend.side, bearing_rad)
+                tangent_point(post.center, radius_m, bend.side, bearing_rad)
             }));
         }
         line.push(self.tip);

@@ -46,6 +46,12 @@ impl Post {
         self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= most)
     }
 
+    /// South-west and north-east corner of the box around it.
+    fn bounds(&self) -> (Point, Point) {
+        let far = Vector::new(self.radius_m, self.radius_m);
+        (self.center - far, self.center + far)
+    }
+
     /// Whether a line can bend here, for all that is solid beside it: at a corner, both edges can be prolonged into free floor.
     /// Floors from maps consist of many convex pieces, and most of their corners lie against other pieces.
     fn can_bear(&self, is_solid: impl Fn(Point) -> bool) -> bool {
@@ -118,7 +124,7 @@ impl CableObstacles {
         let mut posts = without_hidden(&of_obstacles.chain(of_wall).collect::<Vec<_>>());
         posts.retain(|post| post.can_bear(is_solid));
         Self {
-            boxes: Boxes::new(posts.iter().map(around)),
+            boxes: Boxes::new(posts.iter().map(Post::bounds)),
             posts,
             sidestep,
             rays: Rays::new(&shapes.iter().map(ray_origin).collect::<Vec<_>>()),
@@ -226,22 +232,16 @@ fn ray_origin(shape: &Shape) -> Point {
 
 /// The posts that lie within no other one. Who hides a post holds its centre, so that few have to be compared.
 fn without_hidden(posts: &[Post]) -> Vec<Post> {
-    let boxes = Boxes::new(posts.iter().map(around));
     let hides = |outer: &Post, inner: &Post, outer_first: bool| {
         let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();
         room_m > 0.0 || (room_m == 0.0 && (outer_first || outer.radius_m > inner.radius_m))
     };
+    let boxes = Boxes::new(posts.iter().map(Post::bounds));
     let is_hidden = |k: usize| {
-        let mut holders = boxes.near(posts[k].center, posts[k].center, 0.0);
-        holders.any(|j| j != k && hides(&posts[j], &posts[k], j < k))
+        let middle = posts[k].center;
+        boxes.near(middle, middle, 0.0).any(|j| j != k && hides(&posts[j], &posts[k], j < k))
     };
     (0..posts.len()).filter(|&k| !is_hidden(k)).map(|k| posts[k]).collect()
-}
-
-/// The corners of the box around a post.
-fn around(post: &Post) -> (Point, Point) {
-    let far = Vector::new(post.radius_m, post.radius_m);
-    (post.center - far, post.center + far)
 }
 
 #[cfg(test)]

@@ -41,14 +41,23 @@ impl Cable {
         map: &ObstacleMap,
         room_m: f64,
     ) -> Option<Vec<Point>> {
-        self.return_path_of(&self.hull_along(grown)?, map, room_m)
+        self.hulls_along(grown, room_m).find_map(|hull| self.return_path_of(&hull, map, room_m))
     }
 
-    /// The hull's own taut line, laid along this cable among obstacles grown by the room that the hull needs; `None` if the
-    /// anchor is inside of one of them.
-    pub fn hull_along(&self, grown: &Arc<CableObstacles>) -> Option<Self> {
+    /// The hull's own taut line, laid among obstacles grown by the room that the hull needs: along this cable, or else along a line
+    /// that keeps off whatever the cable bears on, for where a wall consists of many pieces.
+    pub fn hulls_along<'a>(
+        &'a self,
+        grown: &'a Arc<CableObstacles>,
+        room_m: f64,
+    ) -> impl Iterator<Item = Self> + 'a {
+        let rooms = [0.0, room_m].into_iter();
+        rooms.filter_map(move |beside_m| self.hull_laid(&self.line_beside_posts(beside_m), grown))
+    }
+
+    fn hull_laid(&self, line: &[Point], grown: &Arc<CableObstacles>) -> Option<Self> {
         let mut hull = Self::hull_at(self.anchor(), grown)?;
-        for pair in self.taut_line().windows(2) {
+        for pair in line.windows(2) {
             // A point inside a grown obstacle counts as the nearest one outside, from where a straight line to a distant point
             // might pass the next obstacle on its other side.
             hull.drag_along(&grown.with_stops_inside(pair[0], pair[1], STOP_M));
@@ -62,7 +71,7 @@ impl Cable {
         Self::on(grown.outside(anchor), Arc::clone(grown)).ok()
     }
 
-    /// The same path as [`Self::return_path`], given the hull's own taut line: laid by [`Self::hull_along`], or dragged by the robot
+    /// The same path as [`Self::return_path`], given the hull's own taut line: laid by [`Self::hulls_along`], or dragged by the robot
     /// from [`Self::hull_at`]. `None` if it does not unwind this cable, or the hull does not fit.
     pub fn return_path_of(&self, hull: &Self, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
         let inner = hull.taut_line();

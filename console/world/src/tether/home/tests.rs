@@ -202,9 +202,10 @@ fn a_cable_that_lies_flat_along_a_box_has_a_way_home() {
     }
 }
 
-/// Part of a wall of a real map, in convex pieces whose corners meet.
-fn pieces_of_a_wall() -> Vec<Shape> {
-    let pieces: [&[(f64, f64)]; 8] = [
+#[test]
+fn a_cable_along_a_wall_of_many_pieces_has_a_way_home() {
+    // A wall of a public map (ipa-apartment), in the convex pieces that it is read in.
+    let pieces: [&[(f64, f64)]; 9] = [
         &[(-2.3, -4.3), (-2.35, -4.25), (-2.4, -4.25), (-2.4, -4.6), (-2.3, -4.75)],
         &[(-2.4, -4.6), (-2.45, -4.6), (-2.35, -4.75), (-2.3, -4.75)],
         &[(-2.5, -6.8), (-2.45, -6.8), (-2.45, -6.05), (-3.05, -5.35), (-3.6, -5.3), (-4.25, -5.25)],
@@ -213,30 +214,30 @@ fn pieces_of_a_wall() -> Vec<Shape> {
         &[(-2.5, -5.35), (-2.35, -5.35), (-2.35, -5.0), (-2.45, -4.9), (-2.5, -4.9)],
         &[(-2.45, -6.05), (-2.4, -6.05), (-2.4, -5.35), (-3.05, -5.35)],
         &[(-2.55, -7.6), (-2.5, -7.6), (-2.5, -6.8), (-4.25, -5.25), (-6.55, -7.35)],
+        &[(-2.6, -8.4), (-2.55, -8.4), (-2.55, -7.6), (-6.55, -7.35)],
     ];
-    let polygon = |corners: &[(f64, f64)]| Shape::Polygon {
+    let shapes = pieces.map(|corners| Shape::Polygon {
         vertices: corners.iter().map(|(x, y)| Point::new(*x, *y)).collect(),
-    };
-    pieces.map(polygon).to_vec()
-}
-
-#[test]
-fn a_line_that_was_dragged_finds_home_where_one_that_is_laid_along_the_cable_does_not() {
-    let (boundary, anchor, shapes) =
-        (Boundary::Circle { radius_m: 20.0 }, Point::new(-12.025, -3.075), pieces_of_a_wall());
-    let grown = Arc::new(CableObstacles::grown(&boundary, &shapes, 0.15));
-    let obstacles: Vec<Obstacle> = shapes
-        .iter()
-        .map(|shape| Obstacle { id: ObstacleId(0), name: String::new(), shape: shape.clone(), known: true })
-        .collect();
+    });
+    let (boundary, room_m) = (Boundary::Circle { radius_m: 20.0 }, 0.15);
+    let obstacles =
+        shapes.clone().map(|shape| Obstacle { id: ObstacleId(0), name: String::new(), shape, known: true });
     let map = ObstacleMap::new(&boundary, &obstacles);
+    let grown = Arc::new(CableObstacles::grown(&boundary, &shapes, room_m));
+    let anchor = Point::new(-12.025, -3.075);
     let mut cable = Cable::new(anchor, &boundary, &shapes).unwrap();
-    let mut hull = Cable::hull_at(anchor, &grown).unwrap();
-    let way = [(-12.025, -3.075), (-5.0, -3.4), (-2.0, -3.8), (-1.9, -6.0), (-2.3, -8.33)];
-    for at in polyline::resampled(&way.map(|(x, y)| Point::new(x, y)), 0.02) {
+    let mut dragged = Cable::hull_at(anchor, &grown).unwrap();
+    let way = [(-12.025, -3.075), (-2.05, -4.0), (-2.05, -5.0), (-2.300_225, -8.330_446)];
+    for at in polyline::resampled(&way.map(|(x, y)| Point::new(x, y)), 0.05) {
         cable.drag_to(at);
-        hull.drag_to(at);
-        assert!(cable.return_path_of(&hull, &map, 0.15).is_some(), "at {at}: {:?}", cable.taut_line());
+        let home = cable.return_path(&grown, &map, room_m);
+        let home = home.unwrap_or_else(|| panic!("none from {at}: {:?}", cable.taut_line()));
+        dragged.drag_to(at);
+        let same = cable.return_path_of(&dragged, &map, room_m);
+        assert!(
+            same.is_some_and(|same| (polyline::length_m(&same) - polyline::length_m(&home)).abs() < 1e-6)
+        );
+        let (home_m, cable_m) = (polyline::length_m(&home), cable.length_m());
+        assert!(home_m > cable_m - 0.02 && home_m < cable_m + 1.0, "{home_m} m of {cable_m} m at {at}");
     }
-    assert_eq!(cable.return_path(&grown, &map, 0.15), None, "what shows the difference: flush with the wall");
 }
