@@ -7,6 +7,7 @@ mod reachable;
 mod tests;
 
 pub(crate) use bar::Run;
+pub(crate) use raster::Grain;
 use raster::Raster;
 pub(crate) use reachable::ReachableFloor;
 use world::Point;
@@ -42,6 +43,11 @@ impl SweptFloor {
 
     pub(crate) fn coverage(&self) -> f64 {
         self.n_swept as f64 / self.floor.n.max(1) as f64
+    }
+
+    /// Number of cells that may be lost while this share stays swept.
+    pub(crate) fn spare(&self, share: f64) -> i64 {
+        (self.n_swept as f64 - share * self.floor.n as f64).floor().max(0.0) as i64
     }
 
     /// Swept share of a part of the floor.
