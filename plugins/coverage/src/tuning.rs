@@ -71,8 +71,8 @@ pub(crate) mod polish {
     pub(crate) const BENT_FLOOR: f64 = 24.0;
     /// Value of floor once the path was bent to it, metres of path per square metre: nothing may be lost again.
     pub(crate) const CAREFUL_M_PER_M2: f64 = 1e6;
-    /// Cells of the first round, as a multiple of those of the second: a path that is roughed costs a third of the time.
-    pub(crate) const ROUGH: f64 = 2.5;
+    /// Cells of the first round, as a multiple of those of the second: finer ones decide between candidates no better.
+    pub(crate) const ROUGH: f64 = 1.6;
     /// Prices at which floor beyond what is enough is given away, as multiples of the price before, dear floor last.
     pub(crate) const PRICES: [f64; 3] = [3.0, 1.0, 0.4];
     /// Share of the scanned floor that shortcuts must leave if only some floor is asked for.
@@ -169,7 +169,7 @@ pub(crate) mod choice {
     /// First tours that cost more than the best by this share never win.
     pub(crate) const HOPELESS: f64 = 0.02;
     /// The same of what was roughed.
-    pub(crate) const CLOSE: f64 = 0.003;
+    pub(crate) const CLOSE: f64 = 0.01;
     /// Within this many swaths of home no cable lies across a cut.
     pub(crate) const FAR: f64 = 4.0;
     /// A plan is complete with this share of the floor in reach even if more is asked for; with a short reel it may

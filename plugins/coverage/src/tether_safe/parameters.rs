@@ -40,7 +40,7 @@ const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m",
     .help("Among candidates one may be this much longer for every whole turn that it saves; 0: what the robot drives in the time \
            of a turn, so that the quickest is chosen.")
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.575)
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.58)
     .help("Touch-ups are added until this share of the floor in reach is scanned, by cells that no path is fitted to.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
