@@ -22,6 +22,9 @@ mod command_line;
 mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
+#[cfg(target_os = "linux")]
+#[path = "acceptance/hostile.rs"]
+mod hostile;
 #[path = "acceptance/imported.rs"]
 mod imported;
 #[cfg(unix)]

@@ -1,5 +1,6 @@
 /* A planner that attacks, for tests. ATTACK is what it does, in C; one of these says when: IN_CONSTRUCTOR, IN_STEP (the
- * fourth), IN_THREAD (one that its constructor starts, while steps are made), IN_DESTRUCTOR. */
+ * fourth), IN_THREAD (one that its constructor starts, while steps are made), IN_LEFTOVER (a thread that its fourth step
+ * leaves behind, at some time in the next 40 ms), IN_DESTRUCTOR, IN_DESTROY. */
 #define _GNU_SOURCE
 #include "tankops_planner.h"
 #include <fcntl.h>
@@ -8,6 +9,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
@@ -25,8 +27,6 @@
 #define ATTACK
 #endif
 
-
-
 /* A file of the console's process. */
 static const char *of_parent(const char *what) {
   static char path[64];
@@ -40,6 +40,14 @@ static void rest(long milliseconds) {
 }
 
 static void attack(void) { ATTACK; }
+
+static void *some_time_later(void *nothing) {
+  unsigned char random;
+  if (getentropy(&random, 1) == 0) rest(random % 40);
+  attack();
+  for (;;) rest(1000);
+  return nothing;
+}
 
 static void *later(void *nothing) {
   rest(100);
@@ -67,7 +75,12 @@ static int32_t create(const tp_host *h, const tp_site *s, const tp_value *v, uin
   *out = &n_steps;
   return TP_OK;
 }
-static void destroy(void *p) { (void)p; }
+static void destroy(void *p) {
+  (void)p;
+#ifdef IN_DESTROY
+  attack();
+#endif
+}
 static int32_t plan(void *p, const tp_host *h, const tp_plan_in *in, tp_plan_out *out) {
   const tp_vec2 start = {in->start.x, in->start.y};
   (void)p;
@@ -81,6 +94,9 @@ static int32_t step(void *p, const tp_host *h, const tp_step_in *in, tp_step_out
   rest(5);
 #ifdef IN_STEP
   if (n_steps == 3) attack();
+#elif defined IN_LEFTOVER
+  pthread_t thread;
+  if (n_steps == 3) pthread_create(&thread, NULL, some_time_later, NULL);
 #endif
   n_steps++;
   out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.1; out->b = 0.0;

@@ -131,7 +131,7 @@ pub(crate) fn compile(example: &str, library: &std::path::Path) {
     compile_file(&crate::bench::workspace().join("plugins/examples/direct-c").join(example), library);
 }
 
-fn compile_file(source: &std::path::Path, library: &std::path::Path) {
+pub(crate) fn compile_file(source: &std::path::Path, library: &std::path::Path) {
     let include = crate::bench::workspace().join("plugins/planner-api/include");
     let compiled = std::process::Command::new("cc")
         .args(["-std=c11", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-o"])

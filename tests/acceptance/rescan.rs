@@ -91,7 +91,7 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
     let nothing =
         bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "none.toml", "--min-area-m2", "1000"]);
     assert!(
-        nothing.code == Some(0) && nothing.out.contains("none.toml is not written: nothing"),
+        nothing.code == Some(1) && nothing.out.contains("none.toml is not written: nothing"),
         "{nothing:?}"
     );
     assert!(!bench.path().join("none.toml").exists());

@@ -87,6 +87,10 @@ fn whatever_a_planner_does_in_shadow_the_robot_drives_as_without_it() {
         assert_eq!(flown.json()["planner_faults"], 0, "{fault}: {flown:?}");
         assert_eq!(truth(&events), truth(&alone), "{fault}: the robot moves as without a shadow");
         assert_eq!(of_kind(&events, "shadow_ended").len(), 1, "{fault}");
+        let named = flown.json()["faults"][0].as_str().unwrap_or_default().to_owned();
+        assert!(named.starts_with("shadow: planner faulty "), "{fault}: {named}");
+        let text = bench.tankops(&["report", run.to_str().unwrap()]).out;
+        assert!(text.contains(&named), "{fault}: {text}");
         assert!(
             of_kind(&events, "held").is_empty() && of_kind(&events, "planner_failed").is_empty(),
             "{fault}"

@@ -139,9 +139,9 @@ fn fly(
             bar.println(format!("{}: {why}\n  {}", row.word(), campaign.command(&campaign.case(row.case))));
         }
     };
-    let (known, on_row) = (&here.known[..], &on_row);
+    let (found, on_row) = (&here.found, &on_row);
     let flown =
-        Work { campaign, folder, plugins, known, blocks, threads, pulls, budget_s, stop, on_row }.fly();
+        Work { campaign, folder, plugins, found, blocks, threads, pulls, budget_s, stop, on_row }.fly();
     bar.finish_and_clear();
     flown
 }

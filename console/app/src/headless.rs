@@ -18,6 +18,7 @@ use flight::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use mission::{Event, EventKind, Order, Outcome, Phase};
+use planner_api::LogLevel;
 use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
@@ -74,8 +75,9 @@ fn fly_beside(
     };
     let bar = progress_bar(scenario, options);
     let mut trouble = None;
+    let mut now = (0, 0.0);
     let mut take = |events: Vec<Event>, host: Option<&mut Host>| {
-        let now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
+        now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
         show_progress(&bar, &events, &scenario.sim.world.stations);
         log.keep(events);
         if let Some(host) = host {
@@ -85,8 +87,15 @@ fn fly_beside(
     };
     take(vec![flight.opened()], None);
     let live_deadlines = options.live_deadlines;
-    let host = fly_to_end((flight, shadowing), host(scenario, plugins), take, (&bar, &stop), live_deadlines);
+    let mut host =
+        fly_to_end((flight, shadowing), host(scenario, plugins), take, (&bar, &stop), live_deadlines);
     bar.finish_and_clear();
+    host.finish();
+    for event in remains::keep(&mut host, Some(&mut log), now) {
+        if let EventKind::PlannerLogged { level: LogLevel::Warn, message, .. } = event.kind {
+            warn_line(&format!("warning: {message}"));
+        }
+    }
     let Closed { summary, kept } = log.close(CLOSE_TIMEOUT, hosts::calls(&host), None, &scenario.expect);
     say(&if options.json { pretty_json("the report", &summary)? } else { report::human(&summary) })?;
     match &kept {

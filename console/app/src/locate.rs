@@ -62,6 +62,9 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         finds_clock_offset: args.find.contains(&FindArg::ClockOffset),
         skips_bad_rows: args.skip_bad_rows,
     };
+    if let Some(file) = args.output.as_ref().filter(|file| file.exists()) {
+        return Err(bad_input(format!("{} already exists; choose another name", file.display())));
+    }
     let survey = task.survey()?;
     let (tally, kept) = located(args, &task, &survey)?;
     if args.json {
@@ -171,6 +174,10 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
     let fixes: u64 = tally.fixes.values().sum();
     let by_word: Vec<String> = tally.fixes.iter().map(|(word, count)| format!("{count} {word}")).collect();
     line("fixes", format!("{fixes} of {} emissions ({})", tally.emissions, by_word.join(", ")));
+    if let Some(off_m) = start_off_m(scenario, tally) {
+        let note = "the track is wrong until three fixes in a row agree; correct the start";
+        line("start", format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"));
+    }
     tally.failed.iter().for_each(|(why, count)| line("no fix", format!("{count} times: {why}")));
     for (id, count) in &tally.left_out {
         let station = scenario.sim.world.stations.iter().find(|station| station.id.0 == *id);
@@ -187,4 +194,11 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
     figure("true error", "of fixes", tally.fix_error_m);
     figure("", "of the track", tally.track_error_m);
     text
+}
+
+/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong.
+fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
+    let (first, error_95_m) = tally.first_fix_m?;
+    let off_m = (first - scenario.mission.start.position).norm();
+    (off_m > 2.0 * error_95_m + 3.0 * scenario.mission.start_sigma_m).then_some(off_m)
 }

@@ -2,7 +2,7 @@
 
 use crate::{cli::RescanArgs, output::write_file};
 use flight::{
-    failure::{COMPLETE, bad_input},
+    failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     planners,
 };
 use mission::PlannerInfo;
@@ -30,7 +30,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
         NextScan::Worth(scan) => *scan,
         NextScan::Nothing(why) => {
             say_line(&format!("{} is not written: {why}", output.display()))?;
-            return Ok(ExitCode::from(COMPLETE));
+            return Ok(ExitCode::from(ENDED_OTHERWISE));
         }
     };
     let MissedScan { missed, text, scenario } = scan;
@@ -42,7 +42,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
 
 /// The planners that can fly the re-scan, if the one that flew the scan cannot.
 fn planners_instead(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
-    let found = planners::found(plugins);
+    let found = planners::found(plugins).planners;
     let cannot = |info: &PlannerInfo| info.id == scenario.mission.planner.id && !info.covers;
     if !found.iter().any(cannot) {
         return Vec::new();

@@ -24,7 +24,7 @@ pub(crate) fn fly(
     let mut trials = Vec::new();
     for file in files {
         let plugins = with_folder_of(file, plugins);
-        let found = planners::found(&plugins);
+        let found = planners::found(&plugins).planners;
         for planner in planners_of(file, &plugins, &found)? {
             trials.push(Trial::of(&planner, &found, &plugins, tanks));
         }

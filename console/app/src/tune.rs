@@ -21,8 +21,8 @@ const MOST_PARTS: usize = 16;
 
 /// `tankops tune`.
 pub(crate) fn tune(args: &TuneArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
-    let known = planners::found(plugins);
-    let planner = planners::choice_of(&args.planner, &known).map_err(bad_input)?;
+    let found = planners::found(plugins);
+    let planner = planners::choice_of(&args.planner, &found).map_err(bad_input)?;
     let start = start(&args.set).and_then(|start| check_parameters(planner, &start).map(|()| start));
     let start = start.map_err(bad_input)?;
     let tuning = Tuning {

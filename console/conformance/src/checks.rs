@@ -30,13 +30,17 @@ pub struct Check {
     pub what: &'static str,
     /// Why it failed; absent if it passed.
     pub failure: Option<String>,
+    /// What is against the rules and does no harm that was seen; absent if there is nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
 }
 
 impl Check {
     pub(crate) fn line(&self) -> String {
-        match &self.failure {
-            None => format!("ok    {}\n", self.what),
-            Some(why) => format!("FAIL  {}: {why}\n", self.what),
+        match (&self.failure, &self.warning) {
+            (None, None) => format!("ok    {}\n", self.what),
+            (None, Some(why)) => format!("warn  {}: {why}\n", self.what),
+            (Some(why), _) => format!("FAIL  {}: {why}\n", self.what),
         }
     }
 }
@@ -53,7 +57,7 @@ pub(crate) struct Subject<'a> {
 
 /// Every check, with the flights that were flown already.
 pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown]) -> Vec<Check> {
-    let check = |what, failure| Check { what, failure };
+    let check = |what, failure| Check { what, failure, warning: None };
     vec![
         check("answers soundly in every tank", flown.iter().find_map(|flown| flown.misbehaved.clone())),
         check("answers steps in time", in_time(flown)),
@@ -63,6 +67,8 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown]) -> Vec<Check> {
         check("takes over under way", subject.takes_over()),
         check("goes on from its saved state", subject.restores()),
         check("keeps no memory for ever", subject.hoards()),
+        check("ends when it is not wanted any more", flown.iter().find_map(|flown| flown.bad_end.clone())),
+        Check { what: "leaves no thread behind", failure: None, warning: threads_left(flown) },
     ]
 }
 
@@ -71,6 +77,12 @@ fn in_time(flown: &[Flown]) -> Option<String> {
     let slowest = flown.iter().filter_map(|flown| flown.p50_ms).fold(0.0, f64::max);
     (slowest > STEP_WITHIN_MS)
         .then(|| format!("half of the steps took {slowest:.0} ms; the console waits {STEP_WITHIN_MS} ms"))
+}
+
+fn threads_left(flown: &[Flown]) -> Option<String> {
+    let left = flown.iter().filter_map(|flown| flown.threads_left).max()?;
+    let what = if left == 1 { "1 thread is".to_owned() } else { format!("{left} threads are") };
+    Some(format!("{what} still there between its calls; end them within the call that starts them"))
 }
 
 impl Subject<'_> {

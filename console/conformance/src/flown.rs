@@ -18,6 +18,10 @@ pub(crate) struct Flown {
     pub(crate) p99_ms: Option<f64>,
     /// Memory that its process had at most, bytes; absent where the system does not say.
     pub(crate) memory_bytes: Option<u64>,
+    /// Threads that were left between its last calls; absent where the system does not say.
+    pub(crate) threads_left: Option<u32>,
+    /// How it ended when it was not wanted any more, if not well.
+    pub(crate) bad_end: Option<String>,
     /// First fault that no good planner has.
     pub(crate) misbehaved: Option<String>,
     /// It said that it does not fly such missions.
@@ -27,12 +31,19 @@ pub(crate) struct Flown {
 /// The memory of planners is looked at every so many ticks.
 const LOOK_AT_MEMORY_EVERY: u64 = 16;
 
+/// So many looks in a row must find a thread for it to count as left.
+const LOOKS: usize = 3;
+/// Threads that every worker has.
+const OWN_THREADS: u32 = 2;
+
 /// A flight that goes on until its mission ends, or somebody stops looking.
 pub(crate) struct Pilot {
     flight: Flight,
     answers: Taping,
     fold: Fold,
     memory_bytes: Option<u64>,
+    /// Threads that its process had at the last looks, newest first.
+    threads: [u32; LOOKS],
     misbehaved: Option<String>,
     unsupported: bool,
     tick: u64,
@@ -64,6 +75,7 @@ impl Pilot {
             answers: Taping::new(host),
             fold,
             memory_bytes: None,
+            threads: [0; LOOKS],
             misbehaved: None,
             unsupported: false,
             tick: 0,
@@ -78,7 +90,7 @@ impl Pilot {
         let start = [Order::Start];
         let events = self.flight.tick(if self.tick == 0 { &start } else { orders }, &mut self.answers);
         if self.tick.is_multiple_of(LOOK_AT_MEMORY_EVERY) {
-            self.memory_bytes = self.answers.memory().map(|memory| memory.most_bytes).max(self.memory_bytes);
+            self.look_at_process();
         }
         self.tick += 1;
         for event in &events {
@@ -93,6 +105,13 @@ impl Pilot {
         Some(events)
     }
 
+    fn look_at_process(&mut self) {
+        let memory = self.answers.memory();
+        self.memory_bytes = memory.map(|memory| memory.most_bytes).max(self.memory_bytes);
+        self.threads.rotate_right(1);
+        self.threads[0] = memory.map_or(0, |memory| memory.threads);
+    }
+
     /// First fault that no good planner has.
     pub(crate) fn misbehaved(&self) -> Option<&str> {
         self.misbehaved.as_deref()
@@ -105,11 +124,17 @@ impl Pilot {
 
     fn land(mut self) -> Flown {
         let calls = hosts::calls(self.answers.host());
+        // A thread that has just ended may still be counted.
+        let threads = self.threads.into_iter().min().unwrap_or_default();
+        self.answers.host().finish();
+        let bad_end = self.answers.host().take_bad_ends().into_iter().next();
         Flown {
             summary: self.fold.summary(),
             p50_ms: calls.p50_us.map(|us| us / 1000.0),
             p99_ms: calls.p99_us.map(|us| us / 1000.0),
             memory_bytes: self.memory_bytes,
+            threads_left: threads.checked_sub(OWN_THREADS).filter(|left| *left > 0),
+            bad_end: bad_end.map(|end| end.to_string()),
             misbehaved: self.misbehaved,
             unsupported: self.unsupported,
         }

@@ -1,13 +1,30 @@
 //! The planners that there are, and whether a scenario can be flown with them.
 
 use crate::failure::bad_input;
-use mission::{PlannerChoice, PlannerInfo, TaskConfig};
-use planner_host::{PluginDirs, WorkerCommand, check_descriptors, find_planners, parameter_problems, survey};
+use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
+use planner_host::{
+    PluginDirs, Survey, Surveyor, WorkerCommand, check_descriptors, parameter_problems, survey,
+};
 use scenario::Scenario;
 
-/// Planners that can be chosen.
-pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
-    survey(plugins, &WorkerCommand::default()).planners().cloned().collect()
+/// What there is to choose from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Found {
+    /// Planners that can be chosen.
+    pub planners: Vec<PlannerInfo>,
+    /// Plugins that cannot be chosen.
+    pub refused: Vec<RefusedPlugin>,
+}
+
+impl From<&Survey> for Found {
+    fn from(survey: &Survey) -> Self {
+        Self { planners: survey.planners().cloned().collect(), refused: survey.refused().collect() }
+    }
+}
+
+/// Looks at every plugin.
+pub fn found(plugins: &PluginDirs) -> Found {
+    Found::from(&survey(plugins, &WorkerCommand::default()))
 }
 
 /// Makes sure, before anything is flown, that the planners of a scenario are there and take their parameters. Only the plugins
@@ -18,8 +35,10 @@ pub fn found(plugins: &PluginDirs) -> Vec<PlannerInfo> {
 pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
     check_descriptors().map_err(anyhow::Error::msg)?;
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
-    let known = find_planners(&ids, plugins, &WorkerCommand::default());
-    check_choices(scenario, &known).or_else(|_| check_choices(scenario, &found(plugins)))
+    let worker = WorkerCommand::default();
+    let surveyor = Surveyor::new(plugins, &worker);
+    let chosen = Found { planners: surveyor.find(&ids), refused: Vec::new() };
+    check_choices(scenario, &chosen).or_else(|_| check_choices(scenario, &Found::from(&surveyor.survey())))
 }
 
 /// The planners of a scenario, with the sections that name them.
@@ -29,15 +48,15 @@ fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerCh
     std::iter::once(("planner", &mission.planner)).chain(fallback)
 }
 
-/// Makes sure, before anything is flown, that the planners of a scenario are among the known ones and take their
+/// Makes sure, before anything is flown, that the planners of a scenario are among those that were found and take their
 /// parameters.
 ///
 /// # Errors
 /// Every objection, with its place in the scenario.
-pub fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Result<()> {
+pub fn check_choices(scenario: &Scenario, found: &Found) -> anyhow::Result<()> {
     let must_cover = matches!(scenario.mission.task, TaskConfig::Cover { .. });
     let objections: Vec<_> = chosen(scenario)
-        .flat_map(|(section, choice)| objections(section, choice, known, must_cover))
+        .flat_map(|(section, choice)| objections(section, choice, found, must_cover))
         .collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
@@ -45,15 +64,15 @@ pub fn check_choices(scenario: &Scenario, known: &[PlannerInfo]) -> anyhow::Resu
 fn objections(
     section: &str,
     choice: &PlannerChoice,
-    known: &[PlannerInfo],
+    found: &Found,
     must_cover: bool,
 ) -> Vec<(String, String)> {
     let at = |key: String| format!("{section}.parameters.{key}");
-    match choice_of(&choice.id, known) {
+    match choice_of(&choice.id, found) {
         Err(message) => vec![(format!("{section}.id"), message)],
         Ok(info) if let Some(why) = info.why_no_coverage().filter(|_| must_cover) => {
             let ids: Vec<&str> =
-                known.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
+                found.planners.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
             let who = if ids.is_empty() {
                 "none that was found does".into()
             } else {
@@ -71,15 +90,28 @@ fn objections(
 /// The planner of this id.
 ///
 /// # Errors
-/// One sentence with what there is.
-pub fn choice_of<'a>(id: &str, known: &'a [PlannerInfo]) -> Result<&'a PlannerInfo, String> {
-    known.iter().find(|info| info.id == id).ok_or_else(|| {
-        let ids: Vec<&str> = known.iter().map(|info| info.id.as_str()).collect();
+/// Why its plugin is refused, or one sentence with what there is.
+pub fn choice_of<'a>(id: &str, found: &'a Found) -> Result<&'a PlannerInfo, String> {
+    found.planners.iter().find(|info| info.id == id).ok_or_else(|| {
+        if let Some(RefusedPlugin { plugin, reason }) =
+            found.refused.iter().find(|refused| refused.is_named_after(id))
+        {
+            return format!("planner `{id}` cannot be chosen: plugin {plugin} is refused: {reason}");
+        }
+        let ids: Vec<&str> = found.planners.iter().map(|info| info.id.as_str()).collect();
         let has = if ids.is_empty() {
             "no planner was found at all".into()
         } else {
             format!("found: {}", ids.join(", "))
         };
-        format!("there is no planner `{id}`; {has}; `tankops planners` shows where they are searched for")
+        let refused: Vec<String> = found
+            .refused
+            .iter()
+            .map(|RefusedPlugin { plugin, reason }| format!("; plugin {plugin} is refused: {reason}"))
+            .collect();
+        let refused = refused.concat();
+        format!(
+            "there is no planner `{id}`; {has}{refused}; `tankops planners` shows where they are searched for"
+        )
     })
 }

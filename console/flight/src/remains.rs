@@ -11,11 +11,12 @@ const MOST_SHOWN: usize = 8;
 /// Keeps what planners have printed and what is left of those that failed since the last time, in files of the run beside the
 /// journal; gives the printed lines as events for whoever watches, which are not the journal's.
 pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f64)) -> Vec<Event> {
-    let (printed, crashes) = (host.take_printed(), host.take_crashes());
+    let (printed, crashes, bad_ends) = (host.take_printed(), host.take_crashes(), host.take_bad_ends());
     if let Some(log) = &mut log {
         let lines =
             printed.iter().map(|Printed { planner, line }| format!("T+{t_s:.1} s  {planner}: {line}\n"));
-        log.keep_output(&lines.collect::<String>());
+        let ends = bad_ends.iter().map(|end| format!("T+{t_s:.1} s  {end}\n"));
+        log.keep_output(&lines.chain(ends).collect::<String>());
         for crash in &crashes {
             log.keep_crash(&files(crash));
         }
@@ -23,7 +24,12 @@ pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f6
     let shown = printed.into_iter().take(MOST_SHOWN).map(|Printed { planner, line }| {
         EventKind::PlannerLogged { planner, level: LogLevel::Debug, message: line }
     });
-    shown.map(|kind| Event { tick, t_s, kind }).collect()
+    let ends = bad_ends.into_iter().map(|end| EventKind::PlannerLogged {
+        message: end.to_string(),
+        planner: end.planner,
+        level: LogLevel::Warn,
+    });
+    shown.chain(ends).map(|kind| Event { tick, t_s, kind }).collect()
 }
 
 /// The files of a crash, for `tankops replay-worker`.

@@ -42,7 +42,8 @@ fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {
 
 /// Whether the plugins are still the files that were looked at when the console was started.
 fn plugins(tools: &Tools) -> Check {
-    let planners = tools.planners.get();
+    let found = tools.planners.get();
+    let planners = &found.planners;
     let changed: Vec<&str> = planners
         .iter()
         .filter(|info| {

@@ -18,10 +18,13 @@ use crate::{
     Drill,
     config::{Config, presets},
     history,
-    survey::surveyed,
 };
-use flight::{Flight, planners::check_choices, scenarios};
-use mission::{PlannerChoice, PlannerInfo, Severity};
+use flight::{
+    Flight,
+    planners::{Found, check_choices, found},
+    scenarios,
+};
+use mission::{PlannerChoice, Severity};
 use planner_host::PluginDirs;
 use review::{combined, rescan_of};
 use runs::Closed;
@@ -72,18 +75,18 @@ pub(super) enum Request {
     Leave { hurry: bool },
 }
 
-/// The planners as they were found last.
+/// The planners and plugins as they were found last.
 #[derive(Clone, Default)]
-pub(super) struct Known(Arc<Mutex<Arc<Vec<PlannerInfo>>>>);
+pub(super) struct Known(Arc<Mutex<Arc<Found>>>);
 
 impl Known {
     /// Other planners were found.
-    pub(super) fn set(&self, found: Vec<PlannerInfo>) {
+    pub(super) fn set(&self, found: Found) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(found);
     }
 
-    /// The planners.
-    pub(super) fn get(&self) -> Arc<Vec<PlannerInfo>> {
+    /// What was found.
+    pub(super) fn get(&self) -> Arc<Found> {
         Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -317,7 +320,7 @@ impl Desk {
             Ok(file) => (Severity::Info, format!("preset {name} saved: {}", file.display())),
             Err(error) => (Severity::Warn, format!("preset {name} is not saved: {error:#}")),
         };
-        outbox.send(Msg::Presets(presets::load(&planners.get())));
+        outbox.send(Msg::Presets(presets::load(&planners.get().planners)));
         outbox.send(Msg::Notice { severity, text });
     }
 
@@ -325,9 +328,9 @@ impl Desk {
     fn survey(&self) {
         let Tools { plugins, planners, outbox, .. } = self.tools.clone();
         let began = thread::Builder::new().name("survey".into()).spawn(move || {
-            let (found, refused) = surveyed(&plugins);
+            let found = found(&plugins);
             planners.set(found.clone());
-            outbox.send(Msg::Planners { found, refused });
+            outbox.send(Msg::Planners { found: found.planners, refused: found.refused });
         });
         if let Err(error) = began {
             jobs::report(&self.tools.outbox, &format!("cannot look at the plugins: {error}"));

@@ -82,6 +82,7 @@ impl Engine {
             stops_ms: Vec::new(),
             log: None,
             printed: Vec::new(),
+            now: (0, 0.0),
             closed: None,
             health_sent_at: now,
             reached: Reached::since(now),
@@ -126,6 +127,8 @@ struct EngineThread {
     /// How long each stop took, milliseconds.
     stops_ms: Vec<f64>,
     log: Option<RunLog>,
+    /// Number and mission time of the last tick, seconds.
+    now: (u64, f64),
     /// What planners printed in this tick, for the screen alone.
     printed: Vec<Event>,
     closed: Option<Closed>,
@@ -208,8 +211,8 @@ impl EngineThread {
         }
         self.reached.count();
         self.keep(&events);
-        let at = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
-        self.printed = remains::keep(&mut self.host, self.log.as_mut(), at);
+        self.now = events.last().map_or((0, 0.0), |event| (event.tick, event.t_s));
+        self.printed = remains::keep(&mut self.host, self.log.as_mut(), self.now);
         events
     }
 

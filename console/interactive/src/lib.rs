@@ -22,7 +22,6 @@ mod replaying;
 mod screen;
 mod script;
 mod session;
-mod survey;
 mod viewing;
 mod watch;
 
@@ -30,7 +29,7 @@ pub use foreground::take_terminal;
 
 use config::Config;
 use desk::{Desk, Known, Request, Tools};
-use flight::{Flight, failure::bad_input, scenarios};
+use flight::{Flight, failure::bad_input, planners, scenarios};
 use foreground::Foreground;
 use inbox::{Outbox, RunOutbox, inbox};
 use line::Current;
@@ -48,7 +47,6 @@ use std::{
     sync::Arc,
     thread,
 };
-use survey::surveyed;
 use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, terminal};
 
 /// What a console is opened with; `None` leaves a choice to `config.toml` and then to the terminal.
@@ -131,9 +129,9 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     let speed = options.speed.unwrap_or(config.speed);
     // The plugins are looked at while the scenario is read and its floor laid out.
     let dirs = plugins.clone();
-    let survey = thread::Builder::new().name("survey".into()).spawn(move || surveyed(&dirs))?;
+    let survey = thread::Builder::new().name("survey".into()).spawn(move || planners::found(&dirs))?;
     let opening = Opening::of(options)?;
-    let (found, refused) = survey.join().map_err(|_| anyhow::anyhow!("looking at the plugins panicked"))?;
+    let found = survey.join().map_err(|_| anyhow::anyhow!("looking at the plugins panicked"))?;
     let (outbox, inbox) = inbox();
     let tools = Tools {
         logs: logs.clone(),
@@ -167,7 +165,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
             model
         }
     };
-    outbox.send(Msg::Planners { found, refused });
+    outbox.send(Msg::Planners { found: found.planners, refused: found.refused });
     let current = desk.current();
     let (desk, thread) = desk.start()?;
     desk.request(Request::Look);

@@ -40,7 +40,7 @@ impl Disk {
     /// Looks at it, and reports to the screen.
     pub(super) fn look(&self) {
         let outbox: &Outbox = &self.tools.outbox;
-        outbox.send(Msg::Presets(presets::load(&self.tools.planners.get())));
+        outbox.send(Msg::Presets(presets::load(&self.tools.planners.get().planners)));
         outbox.send(Msg::Found(Box::new(self.found())));
     }
 

@@ -29,57 +29,43 @@ pub(crate) struct Moments {
     rows: Rows,
     columns: Columns,
     cells: StringRecord,
-    /// The row that begins the next moment.
-    next: Option<Row>,
-    /// A problem found while a moment was put together.
-    found: Option<Problem>,
-    last_s: f64,
+    /// The moment that is being put together, and the row that began it.
+    open: Option<(Row, Moment)>,
     /// Rows read.
     pub count: u64,
 }
 
 impl Moments {
     pub(crate) fn new(rows: Rows, columns: Columns) -> Self {
-        Self {
-            rows,
-            columns,
-            cells: StringRecord::new(),
-            next: None,
-            found: None,
-            last_s: f64::NEG_INFINITY,
-            count: 0,
-        }
+        Self { rows, columns, cells: StringRecord::new(), open: None, count: 0 }
     }
 
-    /// The next row that can be used; a problem is kept for the caller.
-    fn row(&mut self) -> Option<Row> {
-        let read = self.rows.next(&mut self.cells);
-        let line = match read {
-            Ok(line) => line?,
-            Err(problem) => {
-                self.count += 1;
-                self.found = Some(problem);
-                return None;
-            }
-        };
+    /// The next row, or what is wrong with it.
+    fn row(&mut self) -> Option<Result<Row, Problem>> {
+        let read = self.rows.next(&mut self.cells).transpose()?;
         self.count += 1;
-        self.columns.row(&self.cells, line).map_err(|problem| self.found = Some(problem)).ok()
+        Some(read.and_then(|line| self.columns.row(&self.cells, line)))
     }
 
-    fn moment(&mut self, first: &Row) -> Moment {
-        let mut moment =
-            Moment { t_s: first.t_s, ranges: Vec::new(), odometry: Odometry::default(), truth: None };
-        let mut row = first.clone();
-        loop {
-            moment.add(&row);
-            match self.row() {
-                Some(next) if belongs(&next, first) => row = next,
-                other => {
-                    self.next = other;
-                    break;
-                }
+    /// Takes in a row; gives the moment that it ends, if it begins another.
+    fn take(&mut self, row: Row) -> Result<Option<Moment>, Problem> {
+        match &mut self.open {
+            Some((first, moment)) if belongs(&row, first) => {
+                moment.add(&row);
+                return Ok(None);
             }
+            Some((first, _)) if row.t_s < first.t_s => {
+                let what = format!("{} s is earlier than the row before ({} s)", row.t_s, first.t_s);
+                return Err(self.columns.wrong_time(row.line, what));
+            }
+            _ => {}
         }
+        let moment = Moment::of(&row);
+        Ok(self.open.replace((row, moment)).map(|(_, moment)| self.whole(moment)))
+    }
+
+    /// A moment of which nothing more comes.
+    fn whole(&self, mut moment: Moment) -> Moment {
         if self.columns.kind() == Kind::Differences {
             moment.count_from_first();
         }
@@ -87,22 +73,19 @@ impl Moments {
     }
 }
 
+/// A bad row in the middle of a moment comes before it and does not divide it.
 impl Iterator for Moments {
     type Item = Result<Moment, Problem>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Some(problem) = self.found.take() {
-            return Some(Err(problem));
+        while let Some(row) = self.row() {
+            match row.and_then(|row| self.take(row)) {
+                Ok(None) => {}
+                Ok(Some(moment)) => return Some(Ok(moment)),
+                Err(problem) => return Some(Err(problem)),
+            }
         }
-        let Some(first) = self.next.take().or_else(|| self.row()) else {
-            return self.found.take().map(Err);
-        };
-        if first.t_s < self.last_s {
-            let what = format!("{} s is earlier than the row before ({} s)", first.t_s, self.last_s);
-            return Some(Err(self.columns.wrong_time(first.line, what)));
-        }
-        self.last_s = first.t_s;
-        Some(Ok(self.moment(&first)))
+        self.open.take().map(|(_, moment)| Ok(self.whole(moment)))
     }
 }
 
@@ -115,6 +98,13 @@ fn belongs(row: &Row, first: &Row) -> bool {
 }
 
 impl Moment {
+    fn of(first: &Row) -> Self {
+        let mut moment =
+            Self { t_s: first.t_s, ranges: Vec::new(), odometry: Odometry::default(), truth: None };
+        moment.add(first);
+        moment
+    }
+
     fn add(&mut self, row: &Row) {
         if let Some(Heard { station, range_m, repetitions }) = row.range {
             let index = self.ranges.iter().position(|set| set.station == station);

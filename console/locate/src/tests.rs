@@ -139,6 +139,23 @@ fn bad_rows_are_named_by_line_and_column() {
 }
 
 #[test]
+fn a_bad_row_in_the_middle_of_an_emission_does_not_divide_it() {
+    let (mut good, mut bad) = (String::from("t_s,station,range_m\n"), String::new());
+    for (t_s, station, range_m, _) in walk(5) {
+        let _ = writeln!(good, "{t_s},{station},{range_m}");
+        let middle = if station == "C" { format!("{t_s},G,1\n{t_s},A,x\n") } else { String::new() };
+        let _ = writeln!(bad, "{middle}{t_s},{station},{range_m}");
+    }
+    let bad = "t_s,station,range_m\n".to_owned() + &bad;
+    let (scenario, good, bad) = (scenario(), Readable::new("g.csv", good), Readable::new("b.csv", bad));
+    let (whole, rest) = (good.task(&scenario), Task { skips_bad_rows: true, ..bad.task(&scenario) });
+    let (survey, left) = (whole.survey().unwrap(), rest.survey().unwrap());
+    assert_eq!((left.rows, left.bad), (survey.rows + 10, 10));
+    let fixes = |task: &Task, survey: &Survey| located(task, survey).0.fixes;
+    assert_eq!(fixes(&rest, &left), fixes(&whole, &survey));
+}
+
+#[test]
 fn a_file_without_what_it_needs_is_refused_with_what_would_be_right() {
     let cases = [
         "",

@@ -31,8 +31,8 @@ pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
 pub use planner::{
-    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo, Sandbox,
-    todays_parameter,
+    Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
+    RefusedPlugin, Sandbox, todays_parameter,
 };
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

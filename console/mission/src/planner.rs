@@ -134,6 +134,23 @@ pub struct PlannerInfo {
     pub parameters: Vec<ParamInfo>,
 }
 
+/// A plugin that was found and not accepted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RefusedPlugin {
+    /// File name of the plugin, without the folder.
+    pub plugin: String,
+    /// Why, as a sentence.
+    pub reason: String,
+}
+
+impl RefusedPlugin {
+    /// Whether its file is called as one that holds the planner of this id usually is.
+    pub fn is_named_after(&self, id: &str) -> bool {
+        let stem = self.plugin.split_once('.').map_or(&*self.plugin, |(stem, _)| stem);
+        stem.split_once("planner_").is_some_and(|(_, name)| name.replace('_', "-") == id.replace('_', "-"))
+    }
+}
+
 impl PlannerInfo {
     /// Why it cannot fly a mission over a whole floor, if it cannot; the sentence reads on after the planner's name.
     pub fn why_no_coverage(&self) -> Option<&'static str> {
@@ -201,10 +218,14 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Whether the process failed from outside the planner's own logic, by the clock, or by what the machine enforces:
-    /// computing the run again need not show it again. After such a fault the process is gone.
+    /// Whether the process failed from outside the planner's own logic, by the clock, by what the machine enforces, or by
+    /// something that reached the console unasked, as from a thread that outlived its call: computing the run again need not
+    /// show it again, or not in the same tick. After such a fault the process is gone.
     pub fn is_external(self) -> bool {
-        matches!(self, Self::Died | Self::Hung | Self::Late | Self::Starved | Self::Forbidden)
+        matches!(
+            self,
+            Self::Died | Self::Hung | Self::Late | Self::Starved | Self::Forbidden | Self::Protocol
+        )
     }
 }
 

@@ -17,14 +17,15 @@ pub(crate) use planner::Wanted;
 
 use crate::OnProgress;
 use crate::discovery::PluginDirs;
-use crate::remains::{Crash, Printed, is_crash};
+use crate::remains::{BadEnd, Crash, Printed, is_crash};
 use crate::stats::{Durations, HostStats, Memory};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
+use crate::wire::SHUT_DOWN_WITHIN;
 use find::Catalog;
 use mission::{Answer, Ask, AskId, Fault, Given, Said, What, WorkerId};
 use planner::{Asked, Doing, Outcome, Planner};
 use saved::SavedStates;
-use spare::Spares;
+use spare::{Spare, Spares};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -32,6 +33,16 @@ use std::time::{Duration, Instant};
 const MOST_PRINTED: usize = 256;
 /// What is left of so many planners is kept for those who do not take it.
 const MOST_CRASHES: usize = 4;
+
+/// So many planners that did not end well are kept for those who do not take them.
+const MOST_BAD_ENDS: usize = 16;
+
+/// A worker that is being ended.
+struct Leaving {
+    /// The planner that it had; empty if it had none yet.
+    planner: String,
+    worker: Worker,
+}
 
 /// Runs planners for missions, each in a worker process.
 ///
@@ -45,7 +56,7 @@ pub struct Host {
     catalog: Catalog,
     planners: Vec<Planner>,
     /// Workers that nobody asks any more and that have not ended yet.
-    leaving: Vec<Worker>,
+    leaving: Vec<Leaving>,
     answers: VecDeque<Answer>,
     /// What the last look found, kept for its memory.
     ready: Vec<Ready>,
@@ -58,6 +69,7 @@ pub struct Host {
     on_progress: Option<OnProgress>,
     printed: Vec<Printed>,
     crashes: Vec<Crash>,
+    bad_ends: Vec<BadEnd>,
     /// Last requests and output of a worker that failed while its planner was being opened.
     remains: Option<(Vec<u8>, String)>,
     #[cfg(target_os = "linux")]
@@ -83,6 +95,7 @@ impl Host {
             on_progress: None,
             printed: Vec::new(),
             crashes: Vec::new(),
+            bad_ends: Vec::new(),
             remains: None,
             #[cfg(target_os = "linux")]
             together: None,
@@ -128,6 +141,11 @@ impl Host {
         std::mem::take(&mut self.crashes)
     }
 
+    /// Which planners did not end well since the last time.
+    pub fn take_bad_ends(&mut self) -> Vec<BadEnd> {
+        std::mem::take(&mut self.bad_ends)
+    }
+
     /// How long a plan may take.
     pub fn plan_budget(&self) -> Duration {
         self.config.plan_deadline
@@ -158,18 +176,20 @@ impl Host {
     pub fn end_mission(&mut self) {
         self.place(None);
         for planner in std::mem::take(&mut self.planners) {
+            let name = planner.name().to_owned();
             let Some(worker) = planner.worker else { continue };
             let surplus = match planner.ready {
                 Some(ready) if worker.is_idle() => self.spares.keep(worker, ready.loaded),
                 _ => Some(worker),
             };
             if let Some(worker) = surplus {
-                self.dismiss(worker);
+                self.dismiss(&name, worker);
             }
         }
         self.answers.clear();
         self.printed.clear();
         self.crashes.clear();
+        self.bad_ends.clear();
         self.remains = None;
         self.saved = SavedStates::default();
         (self.plan_times, self.step_times, self.n_faults) = Default::default();
@@ -223,24 +243,51 @@ impl Host {
     /// Ends a worker and drops what it was asked.
     pub(crate) fn close(&mut self, id: WorkerId) {
         if let Some(index) = self.planners.iter().position(|planner| planner.id == id) {
-            let planner = self.planners.swap_remove(index);
-            if let Some(worker) = planner.worker {
-                self.dismiss(worker);
+            let mut planner = self.planners.swap_remove(index);
+            if let Some(worker) = planner.worker.take() {
+                self.dismiss(planner.name(), worker);
             }
         }
         self.answers.retain(|answer| answer.ask.worker != id);
     }
 
     /// Asks a worker to exit by itself, and leaves it to its end.
-    fn dismiss(&mut self, mut worker: Worker) {
+    fn dismiss(&mut self, planner: &str, mut worker: Worker) {
         worker.shut_down();
-        self.leave(worker);
+        self.leave(planner, worker);
     }
 
     /// Leaves a worker to its end.
-    fn leave(&mut self, worker: Worker) {
+    fn leave(&mut self, planner: &str, mut worker: Worker) {
+        self.note_printed(planner, worker.take_printed());
         if !worker.is_gone() {
-            self.leaving.push(worker);
+            self.leaving.push(Leaving { planner: planner.to_owned(), worker });
+        }
+    }
+
+    fn note_printed(&mut self, planner: &str, lines: Vec<String>) {
+        let printed = |line| Printed { planner: planner.to_owned(), line };
+        self.printed.extend(lines.into_iter().map(printed));
+        let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
+        self.printed.drain(..surplus);
+    }
+
+    /// Asks all workers to exit by themselves, and waits until they have: a moment, or as long as they are given for it.
+    pub fn finish(&mut self) {
+        self.place(None);
+        self.answers.clear();
+        for mut planner in std::mem::take(&mut self.planners) {
+            if let Some(worker) = planner.worker.take() {
+                self.dismiss(planner.name(), worker);
+            }
+        }
+        for Spare { worker, loaded } in self.spares.take_all() {
+            self.dismiss(&loaded.info.id, worker);
+        }
+        let until = Instant::now() + 2 * SHUT_DOWN_WITHIN;
+        while !self.leaving.is_empty() && Instant::now() < until {
+            self.clear_wake_ups();
+            self.look(Some(until));
         }
     }
 
@@ -282,7 +329,8 @@ impl Host {
     /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
-        let woken = wait(Some(&self.wake_ups), asked.chain(&self.leaving), until, &mut self.ready);
+        let leaving = self.leaving.iter().map(|leaving| &leaving.worker);
+        let woken = wait(Some(&self.wake_ups), asked.chain(leaving), until, &mut self.ready);
         let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();
         for planner in &mut self.planners {
@@ -301,12 +349,20 @@ impl Host {
         }
         let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
         self.printed.drain(..surplus);
-        self.leaving.retain_mut(|worker| {
+        let mut ended = Vec::new();
+        for mut leaving in std::mem::take(&mut self.leaving) {
             if let Some(ready) = ready.next() {
-                worker.advance(ready, now, &mut |_| {});
+                leaving.worker.advance(ready, now, &mut |_| {});
             }
-            !worker.is_gone()
-        });
+            let list = if leaving.worker.is_gone() { &mut ended } else { &mut self.leaving };
+            list.push(leaving);
+        }
+        for Leaving { planner, mut worker } in ended {
+            self.note_printed(&planner, worker.take_last_printed());
+            let bad =
+                worker.take_bad_end().filter(|_| !planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS);
+            self.bad_ends.extend(bad.map(|how| BadEnd { planner, how }));
+        }
         for (id, outcome) in outcomes {
             self.take(id, outcome);
         }
@@ -368,8 +424,12 @@ impl Host {
     /// Removes a worker that cannot be asked any more.
     fn retire(&mut self, id: WorkerId) {
         let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
-        if let Some(ended) = unasked.and_then(|planner| planner.worker.take_if(|worker| !worker.is_idle())) {
-            self.leave(ended);
+        let ended = unasked.and_then(|planner| {
+            let worker = planner.worker.take_if(|worker| !worker.is_idle())?;
+            Some((planner.name().to_owned(), worker))
+        });
+        if let Some((planner, worker)) = ended {
+            self.leave(&planner, worker);
         }
     }
 }
@@ -378,6 +438,7 @@ impl Drop for Host {
     /// Kills all workers at once, then reaps them.
     fn drop(&mut self) {
         let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
-        asked.chain(&mut self.leaving).chain(self.spares.workers()).for_each(Worker::kill);
+        let leaving = self.leaving.iter_mut().map(|leaving| &mut leaving.worker);
+        asked.chain(leaving).chain(self.spares.workers()).for_each(Worker::kill);
     }
 }

@@ -2,6 +2,7 @@
 //! when it arrives, so it enters neither journal nor recording.
 
 use mission::{Cause, Fault};
+use std::fmt;
 
 /// A line that a planner printed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,6 +22,21 @@ pub struct Crash {
     pub frames: Vec<u8>,
     /// The end of what it printed.
     pub output: String,
+}
+
+/// A planner that did not end well when it was not wanted any more.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BadEnd {
+    /// Which.
+    pub planner: String,
+    /// How it ended; reads on after its name.
+    pub how: String,
+}
+
+impl fmt::Display for BadEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "planner {} {} while it was destroyed", self.planner, self.how)
+    }
 }
 
 /// Whether an author has to find out why: the planner did not refuse by itself, and the console did not refuse it.

@@ -37,11 +37,12 @@ pub fn replay(
             Received::Broken => return Err(format!("request {n} is damaged")),
         }
         let budget = incoming.soft_deadline().filter(|_| !patient).unwrap_or(Duration::from_hours(24));
-        let asked = worker.ask(incoming.kind(), budget.mul_f64(10.0 / 9.0), |w| {
+        let budget = budget.mul_f64(10.0 / 9.0);
+        let asked = worker.ask(incoming.kind(), budget, |w| {
             w.written(incoming.body().0);
         });
         let answer = asked.and_then(|()| answered(&mut worker, incoming.kind()));
-        let what = name(incoming.kind());
+        let what = name(&incoming);
         match answer {
             Ok(given) => say(&format!("{n:>4}  {what:<11} {given}")),
             Err(Failure::Planner(refusal)) if worker.is_idle() => {
@@ -51,7 +52,7 @@ pub fn replay(
                 let how = match failure {
                     // Only gdb knows how.
                     Failure::Died { .. } if patient => "its process ended in the debugger".to_owned(),
-                    failure => sentence(&failure),
+                    failure => sentence(&failure, budget),
                 };
                 say(&format!("{n:>4}  {what:<11} {how}"));
                 return Ok(Replayed::Failed(format!("request {n} ({what}): {how}")));
@@ -72,16 +73,22 @@ pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
     None
 }
 
-fn name(kind: u8) -> &'static str {
-    match kind {
+/// What was asked, a step with the number of its tick.
+fn name(request: &Incoming) -> String {
+    let what = match request.kind() {
         kind::LOAD => "load",
         kind::CONFIGURE => "configure",
         kind::RECONFIGURE => "reconfigure",
         kind::RESTORE => "restore",
         kind::PLAN => "plan",
-        kind::STEP => "step",
+        kind::STEP => {
+            let mut body = request.body();
+            let sensed = body.flag().and_then(|_| body.sensed());
+            return sensed.map_or_else(|_| "step".to_owned(), |sensed| format!("step {}", sensed.tick));
+        }
         _ => "?",
-    }
+    };
+    what.to_owned()
 }
 
 /// Waits for the answer, in a few words.
@@ -110,8 +117,11 @@ fn answered(worker: &mut Worker, kind: u8) -> Result<String, Failure> {
     }
 }
 
-fn sentence(failure: &Failure) -> String {
+fn sentence(failure: &Failure, budget: Duration) -> String {
     match failure {
+        Failure::Hung | Failure::Late | Failure::Starved => {
+            format!("did not answer within {:.1} s; its process was stopped", budget.as_secs_f64())
+        }
         Failure::Planner(refusal) => refusal.message.clone(),
         other => refusal_text(other).replace(" while it was loaded", ""),
     }

@@ -31,6 +31,8 @@ pub struct Memory {
     pub now_bytes: u64,
     /// At most so far, bytes.
     pub most_bytes: u64,
+    /// Threads that it has now, its own two among them.
+    pub threads: u32,
 }
 
 /// Wall times of the calls of one kind, microseconds: a million of them in four megabytes, each exact to a ten-millionth.

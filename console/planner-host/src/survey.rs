@@ -9,8 +9,10 @@ use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
 use crate::wire::answer::{Described, Sealed};
 use crate::wire::body::{Body, Read, Writer};
 use crate::wire::{self, kind};
-use mission::PlannerInfo;
+use mission::{PlannerInfo, RefusedPlugin};
 use planner_api::Caps;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -18,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// A library that does not load and describe itself within this time is refused.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
-/// Address space of a worker unless something else is said, bytes.
+/// Memory of a planner in its worker unless something else is said, bytes.
 pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
 
 /// Every plugin file, in the order in which they are searched.
@@ -50,30 +52,54 @@ impl Survey {
     pub fn planners(&self) -> impl Iterator<Item = &PlannerInfo> {
         self.plugins.iter().flat_map(|plugin| &plugin.planners)
     }
+
+    /// The plugins that cannot be chosen.
+    pub fn refused(&self) -> impl Iterator<Item = RefusedPlugin> {
+        self.plugins.iter().filter_map(|plugin| {
+            let name = plugin.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            Some(RefusedPlugin { plugin: name, reason: plugin.refused.clone()? })
+        })
+    }
 }
 
 /// Looks at every plugin: one that is not known yet is loaded and described in a worker of its own that is thrown away.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
-    let mut known: Vec<String> = Vec::new();
-    let probing = Probing::of(dirs, worker);
-    let plugins = dirs.plugins().iter().map(|plugin| look_at(plugin, &probing, &mut known)).collect();
-    Survey { plugins }
+    Surveyor::new(dirs, worker).survey()
 }
 
-/// The planners of these ids that there are, each of the first plugin that has it; no other plugin is looked at.
-pub fn find_planners(ids: &[&str], dirs: &PluginDirs, worker: &WorkerCommand) -> Vec<PlannerInfo> {
-    let (probing, plugins) = (Probing::of(dirs, worker), dirs.plugins());
-    let find = |id: &&str| {
-        let may_have = plugins.iter().filter(|plugin| plugin.may_have(id));
-        let found = may_have.filter_map(|plugin| probing.planners_of(plugin).ok());
-        found.flatten().find(|info| info.id == **id)
-    };
-    ids.iter().filter_map(find).collect()
+/// Looks at plugins, at each no more than once: one that does not load takes its time.
+pub struct Surveyor<'a> {
+    probing: Probing<'a>,
+    plugins: Vec<PluginFile>,
+}
+
+impl<'a> Surveyor<'a> {
+    /// Nothing is loaded yet.
+    pub fn new(dirs: &PluginDirs, worker: &'a WorkerCommand) -> Self {
+        Self { probing: Probing::of(dirs, worker), plugins: dirs.plugins() }
+    }
+
+    /// The planners of these ids that there are, each of the first plugin that has it; no other plugin is looked at.
+    pub fn find(&self, ids: &[&str]) -> Vec<PlannerInfo> {
+        let find = |id: &&str| {
+            let may_have = self.plugins.iter().filter(|plugin| plugin.may_have(id));
+            let found = may_have.filter_map(|plugin| self.probing.planners_of(plugin).ok());
+            found.flatten().find(|info| info.id == **id)
+        };
+        ids.iter().filter_map(find).collect()
+    }
+
+    /// Every plugin.
+    pub fn survey(&self) -> Survey {
+        let mut known: Vec<String> = Vec::new();
+        let plugins = self.plugins.iter().map(|plugin| look_at(plugin, &self.probing, &mut known)).collect();
+        Survey { plugins }
+    }
 }
 
 /// Looks at one file, wherever it lies and whatever it is called; it is loaded also when it is known.
 pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool) -> SurveyedPlugin {
-    let probing = Probing { worker, requires_sandbox, cache: Cache::new(None) };
+    let probing = Probing { worker, requires_sandbox, cache: Cache::new(None), refused: RefCell::default() };
     look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new())
 }
 
@@ -82,20 +108,29 @@ struct Probing<'a> {
     worker: &'a WorkerCommand,
     requires_sandbox: bool,
     cache: Cache,
+    /// Plugins that could not be loaded, and why.
+    refused: RefCell<BTreeMap<PathBuf, Failure>>,
 }
 
 impl<'a> Probing<'a> {
     fn of(dirs: &PluginDirs, worker: &'a WorkerCommand) -> Self {
-        Self { worker, requires_sandbox: dirs.requires_sandbox, cache: Cache::new(dirs.cache.as_deref()) }
+        let cache = Cache::new(dirs.cache.as_deref());
+        Self { worker, requires_sandbox: dirs.requires_sandbox, cache, refused: RefCell::default() }
     }
 
     fn planners_of(&self, plugin: &PluginFile) -> Result<Vec<PlannerInfo>, Failure> {
         if let Some(planners) = self.cache.get(plugin) {
             return Ok(planners);
         }
-        let planners = probe(plugin, self)?;
-        self.cache.put(plugin, &planners);
-        Ok(planners)
+        if let Some(failure) = self.refused.borrow().get(&plugin.path) {
+            return Err(failure.clone());
+        }
+        let probed = probe(plugin, self);
+        match &probed {
+            Ok(planners) => self.cache.put(plugin, planners),
+            Err(failure) => drop(self.refused.borrow_mut().insert(plugin.path.clone(), failure.clone())),
+        }
+        probed
     }
 }
 

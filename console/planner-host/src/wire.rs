@@ -20,7 +20,11 @@ use std::time::Duration;
 pub(crate) const VERSION: u32 = 5;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
-/// The signal by which a worker ends itself that cannot talk to its console any more. No exit code: those are the planner's.
+/// The signal by which a worker ends itself that cannot talk to its console any more. No exit code: those are the planner's;
+/// and on Linux a signal that nothing uses.
+#[cfg(target_os = "linux")]
+pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
+#[cfg(not(target_os = "linux"))]
 pub(crate) const CHANNEL_LOST: Signal = Signal::USR2;
 /// A worker that is asked to shut down is given this long to drop its planner cleanly.
 pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);

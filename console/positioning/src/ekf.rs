@@ -163,9 +163,16 @@ impl Ekf {
         &self.covariance
     }
 
-    /// Puts the position where a fix says it is, whatever was believed, and doubts the heading.
-    pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
-        let start = Pose { position, heading_rad: self.state.z };
+    /// Puts the position where a fix says it is, whatever was believed, turns the heading by what is known to be wrong with it, and
+    /// doubts it by a standard deviation more, radians.
+    pub fn restart_at(
+        &mut self,
+        position: Point,
+        covariance: &Matrix2<f64>,
+        turn_rad: f64,
+        heading_sigma_rad: f64,
+    ) {
+        let start = Pose { position, heading_rad: self.state.z + turn_rad };
         let heading_sigma_rad = (self.covariance[(2, 2)] + heading_sigma_rad.powi(2)).sqrt();
         let mut restarted = Self::new(start, 0.0, heading_sigma_rad, self.noise);
         restarted.covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(covariance);

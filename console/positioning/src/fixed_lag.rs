@@ -78,7 +78,7 @@ impl FixedLag {
 
     /// Puts the present where a fix says it is; see [`Ekf::restart_at`]. The past carries no information about it.
     pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
-        self.filter.restart_at(position, covariance, heading_sigma_rad);
+        self.filter.restart_at(position, covariance, 0.0, heading_sigma_rad);
         self.past.clear();
     }
 

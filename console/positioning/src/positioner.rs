@@ -145,6 +145,8 @@ pub struct Positioner {
     filter: Ekf,
     sound: Calibration,
     refused_in_a_row: u32,
+    /// The first of the refused fixes in a row, and where the filter was then.
+    first_refused: Option<(Fix, Pose)>,
 }
 
 impl Positioner {
@@ -152,7 +154,7 @@ impl Positioner {
     pub fn new(config: PositionerConfig) -> Self {
         let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         let sound = Calibration::new(&config.stations, Unknowns::default());
-        Self { config, filter, sound, refused_in_a_row: 0 }
+        Self { config, filter, sound, refused_in_a_row: 0, first_refused: None }
     }
 
     /// Moves the estimate by one tick of odometry.
@@ -226,7 +228,7 @@ impl Positioner {
             return false;
         }
         if self.filter_accepts(fix, rangings) {
-            self.refused_in_a_row = 0;
+            (self.refused_in_a_row, self.first_refused) = (0, None);
             return true;
         }
         // A fix that can be tested and passed speaks against the filter; others do not.
@@ -237,11 +239,27 @@ impl Positioner {
         }
         self.refused_in_a_row += 1;
         if self.refused_in_a_row < PATIENCE {
+            self.first_refused.get_or_insert_with(|| (fix.clone(), self.filter.pose()));
             return false;
         }
         self.refused_in_a_row = 0;
-        self.filter.restart_at(fix.position, &fix.covariance, RESTART_HEADING_SIGMA_RAD);
+        let turned = self.first_refused.take().and_then(|first| self.turned(&first, fix));
+        let (turn_rad, sigma_rad) = turned.unwrap_or((0.0, RESTART_HEADING_SIGMA_RAD));
+        self.filter.restart_at(fix.position, &fix.covariance, turn_rad, sigma_rad);
         true
+    }
+
+    /// By how much the heading was wrong while fixes were refused, radians, with the standard deviation: the angle between the
+    /// way from fix to fix and the way that odometry gives. `None` if the two are not of one length, because the robot slipped or
+    /// was carried, or too short to say.
+    fn turned(&self, (first, then): &(Fix, Pose), last: &Fix) -> Option<(f64, f64)> {
+        let by_fixes = last.position - first.position;
+        let by_odometry = self.filter.pose().position - then.position;
+        let sigma_m = (first.covariance + last.covariance).trace().sqrt();
+        let (way_m, off_m) = (by_odometry.norm(), (by_fixes.norm() - by_odometry.norm()).abs());
+        let sigma_rad = sigma_m / way_m;
+        let is_told = sigma_rad < RESTART_HEADING_SIGMA_RAD && off_m < 3.0 * sigma_m;
+        is_told.then(|| (by_odometry.perp(&by_fixes).atan2(by_odometry.dot(&by_fixes)), sigma_rad))
     }
 
     /// Corrects the filter where the geometry is better known.

@@ -16,6 +16,9 @@ use mission::{
 };
 use world::{Obstacle, Pose};
 
+/// So many faults are named.
+const MOST_FAULTS: usize = 20;
+
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
@@ -111,6 +114,12 @@ impl Fold {
                 // What the console refused to load or to let drive was not at work, so it has not failed.
                 let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
                 self.known.planner_faults += u64::from(!refused);
+                self.note_fault(event.t_s, "", &fault.message);
+            }
+            EventKind::Shadowed { of } => {
+                if let EventKind::PlannerFailed { fault, .. } = &**of {
+                    self.note_fault(event.t_s, "shadow: ", &fault.message);
+                }
             }
             EventKind::Held { .. } => self.known.holds += 1,
             EventKind::Ended { outcome, reason } => {
@@ -118,6 +127,12 @@ impl Fold {
                 self.known.reason = Some(reason.clone());
             }
             _ => {}
+        }
+    }
+
+    fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {
+        if self.known.faults.len() < MOST_FAULTS {
+            self.known.faults.push(format!("{whose}{message} (at {t_s:.1} s)"));
         }
     }
 

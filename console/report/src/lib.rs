@@ -43,7 +43,7 @@ pub use joined::PastRun;
 pub use merged::{Merged, MergedRun, merged};
 pub use overlap::Overlap;
 pub use record::Record;
-pub use rescan::{NoLane, Rescan, rescan};
+pub use rescan::{Rescan, rescan};
 pub use summary::{
     Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
 };

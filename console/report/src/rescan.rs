@@ -4,7 +4,7 @@ mod text;
 
 use crate::{
     account::{
-        Area, Explained, Measure, MissReason,
+        Area, MissReason,
         areas::{area_of, areas as areas_of},
     },
     joined::{Joined, PastRun, joined, updated_floor},
@@ -28,31 +28,12 @@ pub struct Rescan {
     pub areas: Vec<Area<MissReason>>,
     /// Missed areas that are left, the largest first: too small.
     pub left: Vec<Area<MissReason>>,
-    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well.
-    pub out_of_reach: Vec<Area<NoLane>>,
+    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well, whatever the runs missed them for.
+    pub out_of_reach: Vec<Area<MissReason>>,
     /// Missed floor that none of the runs was asked to scan, square metres.
     pub not_asked_m2: f64,
     /// Obstacles that the runs found.
     pub found: BTreeSet<ObstacleId>,
-}
-
-/// Why no lane leads to floor that was missed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum NoLane {
-    /// Lanes are laid for the swath less the overlap, which does not reach as far as the whole swath.
-    Narrow,
-    /// The cable does not lead there.
-    Reel,
-}
-
-impl Explained for NoLane {
-    fn sentence(self, _: Option<&Measure>) -> String {
-        let reason = match self {
-            Self::Narrow => "beyond the lanes, which are laid for the swath less the overlap",
-            Self::Reel => "beyond the reel",
-        };
-        reason.to_owned()
-    }
 }
 
 /// Finds what is to be scanned again.
@@ -70,25 +51,24 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m());
     let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
-    let no_lane: Vec<Option<NoLane>> = (0..floor.len())
-        .map(|index| {
-            let is_beyond = || reasons.why_missed(floor.center(index), index) == MissReason::BeyondReel;
-            match () {
-                () if !is_asked(index) => None,
-                () if !lanes.is_reachable(index) => Some(NoLane::Narrow),
-                () => is_beyond().then_some(NoLane::Reel),
-            }
-        })
-        .collect();
+    let why_missed = |index: usize| reasons.why_missed(floor.center(index), index);
+    let no_lane = |index: usize| {
+        let is_narrow = || !lanes.is_reachable(index) || reasons.beyond_lanes_m(floor.center(index)) > 0.0;
+        match why_missed(index) {
+            MissReason::BeyondReel => Some(MissReason::BeyondReel),
+            _ => is_narrow().then_some(MissReason::Narrow),
+        }
+    };
+    let no_lane: Vec<Option<MissReason>> =
+        (0..floor.len()).map(|index| is_asked(index).then(|| no_lane(index)).flatten()).collect();
     let is_wanted = |index: usize| is_asked(index) && no_lane[index].is_none();
     let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
     let plates = run.plates.map(|layout| layout.map(&run.world.boundary, floor));
-    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index], |_, _| None);
+    let measure = |why, cells: &[usize]| reasons.measure(grid, why, cells);
+    let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index], measure);
     let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());
     for cells in clusters(floor, TOGETHER_SWATHS * swath_m, is_wanted) {
-        let why = |cell| reasons.why_missed(floor.center(cell), cell);
-        let area =
-            area_of(floor, plates.as_ref(), &cells, why, |why, cells| reasons.measure(grid, why, cells));
+        let area = area_of(floor, plates.as_ref(), &cells, why_missed, measure);
         if area.area_m2 < min_area_m2 {
             left.push(area);
         } else {
@@ -239,8 +219,8 @@ mod tests {
             rescan.areas.len() == 1 && holds(&rescan, 1.0, -1.0) && !holds(&rescan, 4.8, 0.0),
             "{rescan:?}"
         );
-        let reasons: Vec<NoLane> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
-        assert!(!reasons.is_empty() && reasons.iter().all(|why| *why == NoLane::Narrow), "{rescan:?}");
+        let reasons: Vec<MissReason> = rescan.out_of_reach.iter().map(|area| area.reason).collect();
+        assert!(!reasons.is_empty() && reasons.iter().all(|why| *why == MissReason::Narrow), "{rescan:?}");
         assert!(rescan.out_of_reach[0].at.x > 4.6, "{rescan:?}");
     }
 

@@ -54,6 +54,9 @@ pub struct Summary {
     pub holds: u64,
     /// How often a planner failed; one that the console refused has not.
     pub planner_faults: u64,
+    /// The first faults of planners, with their times, as sentences; those of a planner in shadow begin with "shadow".
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<String>,
     /// Bounds of the scenario's `[expect]` that the run did not keep, as sentences; absent if nobody compared.
     #[serde(default)]
     pub violations: Option<Vec<String>>,

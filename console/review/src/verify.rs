@@ -3,8 +3,9 @@
 //! Two proofs are made in one pass. *Mission*: simulator and mission are given the recorded orders and the recorded answers
 //! of the planners in the ticks in which they arrived, and every line must come out again, byte for byte. This is always
 //! possible, whatever the machine did to the planners while the run was flown. *Planners*: each ask also goes to a planner,
-//! and its answer must be the recorded one. A planner that was killed, stopped or too late then is not asked to be so again:
-//! such faults are counted.
+//! and its answer must be the recorded one. When a planner is killed, stopped, too late, or disturbed by a thread that it left
+//! behind, is decided by the machine and not by what it is asked: such faults are taken from the journal and counted, and one
+//! that comes in another tick than then is the same fault.
 //!
 //! The journal is read tick by tick; memory does not grow with it.
 
@@ -114,8 +115,16 @@ impl Findings {
         self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
     }
 
+    /// Where a planner failed from outside or by the clock that did not fail in the run.
+    fn unproven(&self) -> Option<&String> {
+        self.planners.as_ref().and_then(|asked| asked.unproven.as_ref())
+    }
+
     fn are_equal(&self) -> bool {
-        self.difference.is_none() && self.doubt.is_none() && self.other_answer().is_none()
+        self.difference.is_none()
+            && self.doubt.is_none()
+            && self.other_answer().is_none()
+            && self.unproven().is_none()
     }
 }
 
@@ -141,6 +150,12 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
             "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
         )
     }));
+    if let Some(why) = findings.unproven().filter(|_| findings.other_answer().is_none()) {
+        lines.push(format!(
+            "not proven: a planner fails from outside or by the clock at {why}, and did not fail in the run: verify once more; \
+             the mission repeats from the recorded answers"
+        ));
+    }
     if let Some(why) = findings.other_answer() {
         lines.push(format!("different: {why}; the mission repeats from the recorded answers"));
     }
@@ -161,15 +176,19 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
 
 /// What is proven of the planners of a run that is equal.
 fn proven(planners: Option<&Asked>) -> String {
-    let Some(Asked { same, not_comparable, .. }) = planners else {
+    let Some(Asked { same, not_comparable, too_early, .. }) = planners else {
         return "the planners were not asked (--from-journal): what they answered, drew and logged is not proven"
             .into();
     };
-    let rest = match not_comparable {
+    let refused = match not_comparable {
         0 => String::new(),
         n => format!(", {n} that the mission refused or did not use cannot be compared"),
     };
-    format!("{same} answers of planners are the same again{rest}")
+    let failed = match too_early {
+        0 => String::new(),
+        n => format!(", {n} of a planner that failed earlier than in the run cannot be compared"),
+    };
+    format!("{same} answers of planners are the same again{refused}{failed}")
 }
 
 /// The run of a journal, ready to be flown again.
@@ -255,7 +274,7 @@ fn recompute(
 
 /// Planners of the run whose plugin is another file now.
 fn planner_changes(builds: &BTreeMap<String, PlannerInfo>, plugins: &PluginDirs) -> Vec<String> {
-    let now = found(plugins);
+    let now = found(plugins).planners;
     let changed = |(id, then): (&String, &PlannerInfo)| match now.iter().find(|info| info.id == *id) {
         None => Some(format!("planner {id} of the run is not installed; --from-journal does without it")),
         Some(info) if info.sha256 != then.sha256 => Some(format!(

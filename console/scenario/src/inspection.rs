@@ -13,6 +13,9 @@ use toml::de::DeTable;
 /// Longest fact, characters: more than a sheet of paper.
 const MOST_LETTERS: usize = 4000;
 
+/// What people write where they do not know yet, in small letters.
+const PLACEHOLDERS: [&str; 6] = ["fixme", "lorem ipsum", "tba", "tbc", "tbd", "todo"];
+
 /// Reads `[inspection]`; nothing is known if it is not there.
 pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
     let section = root.table_or_empty("inspection")?;
@@ -50,17 +53,31 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
 }
 
 /// A text of people; none if it is empty. What a reader could not see, or what would have him read something else than is
-/// written, is refused: the text is part of what is signed.
+/// written, is refused: the text is part of what is signed. So is a placeholder, which says that nothing is known.
 fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     // What is empty is not known.
     let text = section.text(key).filter(|text| !text.trim().is_empty())?;
     if let Some(odd) = unreadable(&text) {
         section.complain(key, Complaint::OutOfRange(format!("text that can be read: {odd} cannot")));
     }
+    if is_placeholder(&text) {
+        let wanted = "the fact, or no such key: a placeholder is not signed".to_owned();
+        section.complain(key, Complaint::OutOfRange(wanted));
+    }
     if text.chars().count() > MOST_LETTERS {
         section.complain(key, Complaint::OutOfRange(format!("at most {MOST_LETTERS} characters")));
     }
     Some(text)
+}
+
+/// Whether a text stands for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`.
+fn is_placeholder(text: &str) -> bool {
+    let text = text.to_lowercase();
+    let is_marked = PLACEHOLDERS.iter().any(|word| {
+        text.trim_start().strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+    });
+    let letters = || text.chars().filter(|letter| letter.is_alphanumeric());
+    is_marked || letters().all(|letter| letter == 'x')
 }
 
 /// Reads a file with `[inspection]`: what is known only after the run.
@@ -83,6 +100,18 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
+
+    #[test]
+    fn a_placeholder_is_no_fact() {
+        for text in ["TBD", "todo: ask the client", "xxx", "...", "-", "?", "Lorem ipsum dolor"] {
+            let error = refused(&format!("client = \"{text}\""));
+            assert!(error.contains("2:10: inspection.client") && error.contains("a placeholder"), "{error}");
+        }
+        for text in ["none", "A", "7", "Todor Ivanov", "X-12", "Tbcom Ltd"] {
+            let read = inspection(&format!("[inspection]\nclient = \"{text}\"\n"), "facts.toml");
+            assert_eq!(read.unwrap().client.as_deref(), Some(text));
+        }
+    }
 
     fn refused(line: &str) -> String {
         inspection(&format!("[inspection]\n{line}\n"), "facts.toml").unwrap_err().render()

@@ -21,7 +21,7 @@ pub mod view;
 
 pub use caps::{Caps, Colours, Glyphs};
 pub use keys::{Key, KeyPress};
-pub use model::{Health, Measured, Model, Recording, Refused, RunId, RunResult, Source, Speed, Times};
+pub use model::{Health, Measured, Model, Recording, RunId, RunResult, Source, Speed, Times};
 pub use theme::{Role, Theme, ThemeName};
 pub use update::{
     Effect, Job, Mouse, Msg, Redraw, ReplayMsg, Rows, RunMsg, Signal, Target, Transport, is_typing, redraw,

@@ -31,7 +31,7 @@ pub mod what_if;
 
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
-pub use console::{Console, Notice, Refused, Speed, Times};
+pub use console::{Console, Notice, Speed, Times};
 pub use coverage::{FloorClass, Raster};
 pub use event_list::EventList;
 pub use health::{Health, Measured, Recording, Watches};

@@ -37,8 +37,8 @@ use crate::actions::{ActionId, context::contexts, find};
 use crate::keys::{Key, KeyPress};
 use crate::model::console::Bell;
 use crate::model::plugins::differences;
-use crate::model::{Cause, Model, Overlay, Pane, Refused, ui::Arrangement};
-use mission::{PlannerInfo, Severity};
+use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
+use mission::{PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
 
 /// Takes in one message and answers what has to be done outside.
@@ -141,7 +141,7 @@ fn resize(model: &mut Model, width: u16, height: u16) {
     }
 }
 
-fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refused>) {
+fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<RefusedPlugin>) {
     for plugin in refused.iter().filter(|plugin| !model.console.refused.contains(plugin)) {
         let text = format!("plugin {} refused: {}", plugin.plugin, plugin.reason);
         model.live.run.log.add(model.live.run.clock.t_s, Severity::Watch, "plan", text);

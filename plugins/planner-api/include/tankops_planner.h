@@ -16,6 +16,8 @@
  *  - Structs only grow at the end. `size` is what its writer knew: read and write nothing beyond it. Where arrays
  *    carry a stride, step by the stride and not by sizeof.
  *  - The planner runs in a process of its own: a crash or an endless loop costs that process, not the console.
+ *  - It has 256 MB of memory, 1 GB on coverage missions, used or not, and up to 62 threads. The stack of a thread counts
+ *    in full: 8 MB unless pthread_attr_setstacksize says otherwise. Threads end within the call that starts them.
  *
  * Frame: the tank frame, x east, y north, metres; angles in radians, counter-clockwise from east; SI units.
  */
@@ -207,7 +209,10 @@ typedef struct tp_planner { /* the first five functions are required, the others
   tp_str name, version, about;
   int32_t (*describe)(const tp_host *);
   int32_t (*create)(const tp_host *, const tp_site *, const tp_value *values, uint32_t n, void **instance);
-  void (*destroy)(void *instance);
+  void (*destroy)(void *instance); /* when the mission has no more use for the instance: its end, another planner, a new
+                    build, and before the next instance is created in this process. 0.1 s after it begins the process is
+                    killed; a crash, an attempt that no planner may make and too long a time are reported, and harm no
+                    mission. An instance whose process was killed, for a fault or with the console, is not destroyed. */
   int32_t (*plan)(void *instance, const tp_host *, const tp_plan_in *, tp_plan_out *);
   int32_t (*step)(void *instance, const tp_host *, const tp_step_in *, tp_step_out *);
   int32_t (*reconfigure)(void *instance, const tp_host *, const tp_value *values, uint32_t n);

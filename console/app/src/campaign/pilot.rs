@@ -1,8 +1,12 @@
 //! Flies the missions of a campaign, one after the other, in this thread.
 
 use campaign::{Campaign, Case, Row, Status};
-use flight::{answers::InOrder, hosts, planners::check_choices, unrecorded};
-use mission::PlannerInfo;
+use flight::{
+    answers::InOrder,
+    hosts,
+    planners::{Found, check_choices},
+    unrecorded,
+};
 use planner_host::{Host, HostConfig, PluginDirs};
 use report::Summary;
 use scenario::Scenario;
@@ -15,7 +19,7 @@ const TRIES: u32 = 3;
 pub(crate) struct Pilot<'a> {
     campaign: &'a Campaign,
     plugins: &'a PluginDirs,
-    known: &'a [PlannerInfo],
+    found: &'a Found,
     /// One for each kind of limits; a host has one.
     hosts: Vec<(HostConfig, InOrder)>,
 }
@@ -29,8 +33,8 @@ enum Tried {
 }
 
 impl<'a> Pilot<'a> {
-    pub(crate) fn new(campaign: &'a Campaign, plugins: &'a PluginDirs, known: &'a [PlannerInfo]) -> Self {
-        Self { campaign, plugins, known, hosts: Vec::new() }
+    pub(crate) fn new(campaign: &'a Campaign, plugins: &'a PluginDirs, found: &'a Found) -> Self {
+        Self { campaign, plugins, found, hosts: Vec::new() }
     }
 
     /// Flies a mission, and says how many tries that took; `None` if it was stopped.
@@ -64,7 +68,7 @@ impl<'a> Pilot<'a> {
     }
 
     fn attempt(&mut self, scenario: &Scenario, is_stopped: impl Fn() -> bool) -> Tried {
-        if let Err(why) = check_choices(scenario, self.known) {
+        if let Err(why) = check_choices(scenario, self.found) {
             return Tried::Refused(why.to_string().lines().next().unwrap_or_default().to_owned());
         }
         let answers = self.answers(scenario);

@@ -4,10 +4,9 @@ use anyhow::Context;
 use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
 use flight::{
     failure::bad_input,
-    planners::{check_choices, choice_of},
+    planners::{Found, check_choices, choice_of},
 };
-use mission::PlannerInfo;
-use planner_host::{PluginDirs, Survey, WorkerCommand, check_descriptors, survey};
+use planner_host::{PluginDirs, WorkerCommand, check_descriptors, survey};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -15,23 +14,23 @@ use std::{collections::BTreeMap, fs, path::Path};
 /// What flies a campaign here, found once for a process.
 pub(crate) struct Here {
     pub program: Program,
-    pub known: Vec<PlannerInfo>,
+    pub found: Found,
 }
 
 impl Here {
     /// Looks at the program and at every plugin.
     pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
         check_descriptors().map_err(anyhow::Error::msg)?;
-        let Survey { plugins } = survey(plugins, &WorkerCommand::default());
+        let survey = survey(plugins, &WorkerCommand::default());
         let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
-        let sound = plugins.iter().filter(|plugin| plugin.refused.is_none());
+        let sound = survey.plugins.iter().filter(|plugin| plugin.refused.is_none());
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let program = Program {
             tankops_version: env!("CARGO_PKG_VERSION").to_owned(),
             tankops_sha256: hex(&Sha256::digest(&program)),
             plugins_sha256: sound.map(|plugin| (name(&plugin.path), plugin.sha256.clone())).collect(),
         };
-        Ok(Self { program, known: plugins.into_iter().flat_map(|plugin| plugin.planners).collect() })
+        Ok(Self { program, found: Found::from(&survey) })
     }
 
     /// Makes sure that a campaign was frozen with what is here.
@@ -64,11 +63,11 @@ pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let scenarios = scenarios(&plan, folder)?;
     for (at, id) in plan.design.planners.iter().enumerate() {
-        choice_of(id, &here.known)
+        choice_of(id, &here.found)
             .map_err(|why| bad_input(plan.refused(PlanKey::Planner(at), &why).render()))?;
     }
     let campaign = Campaign::freeze(plan.clone(), here.program.clone(), scenarios);
-    check_values(&plan, &campaign, &here.known)?;
+    check_values(&plan, &campaign, &here.found)?;
     Ok(campaign)
 }
 
@@ -95,12 +94,12 @@ fn scenarios(plan: &Plan, folder: &Path) -> anyhow::Result<Vec<ScenarioText>> {
 
 /// Refuses a plan with bounds that no scenario takes, or a key that is refused wherever it is set: that is a slip of the pen.
 /// What only some combinations refuse becomes a row of the table.
-fn check_values(plan: &Plan, campaign: &Campaign, known: &[PlannerInfo]) -> anyhow::Result<()> {
+fn check_values(plan: &Plan, campaign: &Campaign, found: &Found) -> anyhow::Result<()> {
     let tried = |set: Vec<String>, planner: Option<&String>, scenario: &ScenarioText| {
         let settings = Settings { set, planner: planner.cloned(), seed: Some(campaign.design.seeds.first) };
         let scenario = Scenario::parse_with(&scenario.text, &scenario.name, &settings);
         let scenario = scenario.map_err(|errors| errors.to_string())?;
-        check_choices(&scenario, known)
+        check_choices(&scenario, found)
             .map_err(|why| why.to_string().lines().next().unwrap_or_default().to_owned())
     };
     let everywhere = |set: &Vec<String>| -> Result<(), String> {

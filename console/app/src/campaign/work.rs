@@ -4,7 +4,7 @@ use super::{folder::Folder, pilot::Pilot};
 use crate::stop_signal::StopSignal;
 use anyhow::anyhow;
 use campaign::{Campaign, Row, Watch, table};
-use mission::PlannerInfo;
+use flight::planners::Found;
 use planner_host::PluginDirs;
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -21,7 +21,7 @@ pub(crate) struct Work<'a> {
     pub campaign: &'a Campaign,
     pub folder: &'a Folder,
     pub plugins: &'a PluginDirs,
-    pub known: &'a [PlannerInfo],
+    pub found: &'a Found,
     /// Blocks, in this order; those that have a part are passed over.
     pub blocks: Vec<u64>,
     pub threads: usize,
@@ -73,7 +73,7 @@ impl Work<'_> {
     }
 
     fn take_turns<'q>(&'q self, queue: &Mutex<Queue<'q>>, is_enough: &AtomicBool) {
-        let mut pilot = Pilot::new(self.campaign, self.plugins, self.known);
+        let mut pilot = Pilot::new(self.campaign, self.plugins, self.found);
         let is_stopped = || self.stop.requested() || is_enough.load(Ordering::Relaxed);
         while !is_stopped() {
             let Some((block, n)) = self.next(&mut lock(queue)) else { return };

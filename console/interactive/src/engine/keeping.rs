@@ -2,10 +2,10 @@
 
 use super::EngineThread;
 use crate::pace::Reached;
-use flight::hosts;
+use flight::{hosts, remains};
 use mission::Event;
 use report::Stops;
-use runs::{Closed, Kept, RunLog};
+use runs::{CLOSE_TIMEOUT, Closed, Kept, RunLog};
 use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};
 
@@ -56,6 +56,14 @@ impl EngineThread {
 
     /// Closes journal and recording and writes the report.
     pub(super) fn close_log(&mut self, within: Duration) {
+        if self.log.is_none() {
+            return;
+        }
+        if within == CLOSE_TIMEOUT {
+            self.host.finish();
+        }
+        let last = remains::keep(&mut self.host, self.log.as_mut(), self.now);
+        self.send(RunMsg::Events(last));
         let Some(log) = self.log.take() else { return };
         let (calls, stops) = (hosts::calls(&self.host), Stops::of(&self.stops_ms));
         let closed = log.close(within, calls, stops, &self.scenario.expect);

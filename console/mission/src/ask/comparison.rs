@@ -23,6 +23,8 @@ impl Comparison {
             (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
                 return Self::NotComparable;
             }
+            // Sound by itself, and refused for this tank by the mission, which does not record it then.
+            (Ok(Given::Plan(_)), Err(Fault { cause: Cause::BadOutput, .. })) => return Self::NotComparable,
             (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
                 .or_else(|| {
                     (own.said.clone().rounded() != recorded.said).then_some("logs or draws something else")
@@ -116,6 +118,8 @@ mod tests {
         assert_eq!(compared(Err(panic.clone()), Err(panic.clone())), Comparison::Same);
         let different = compared(Err(other), Err(panic.clone()));
         assert!(is_different(&different, "fails with \"it gave NaN\" instead of \"it panicked\""));
+        let far = fault(Cause::BadOutput, "it gave a path far outside the tank");
+        assert_eq!(compared(Ok(Given::Plan(Plan::default())), Err(far)), Comparison::NotComparable);
         let well = compared(Ok(Given::Reconfigured), Err(panic.clone()));
         assert!(is_different(&well, "does not fail (\"it panicked\" then)"));
         assert!(is_different(&compared(Err(panic), Ok(Given::Reconfigured)), "fails: it panicked"));

@@ -261,7 +261,7 @@ impl Planner {
         self.blamed(fault::bad_output(self.name(), phase, what))
     }
 
-    fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         self.ready.as_ref().map_or("", |ready| &ready.loaded.info.id)
     }
 

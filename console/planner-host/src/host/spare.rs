@@ -31,6 +31,11 @@ impl Spares {
         Some(self.0.remove(at))
     }
 
+    /// All of them, not to be used again.
+    pub(super) fn take_all(&mut self) -> Vec<Spare> {
+        std::mem::take(&mut self.0)
+    }
+
     /// All workers.
     pub(super) fn workers(&mut self) -> impl Iterator<Item = &mut Worker> {
         self.0.iter_mut().map(|spare| &mut spare.worker)

@@ -27,11 +27,9 @@ const FREE: &[i64] = &[
     libc::SYS_fstat,
     libc::SYS_lseek,
     libc::SYS_pread64,
-    libc::SYS_mmap,
     libc::SYS_mprotect,
     libc::SYS_munmap,
     libc::SYS_mremap,
-    libc::SYS_madvise,
     libc::SYS_brk,
     libc::SYS_futex,
     libc::SYS_set_robust_list,
@@ -46,7 +44,6 @@ const FREE: &[i64] = &[
     libc::SYS_nanosleep,
     libc::SYS_gettimeofday,
     libc::SYS_getitimer,
-    libc::SYS_setitimer,
     libc::SYS_getrandom,
     libc::SYS_getrusage,
     libc::SYS_sysinfo,
@@ -114,6 +111,18 @@ fn rules() -> Result<Rules, String> {
     rules.insert(libc::SYS_prctl, only(0, &names.map(|name| name as u64))?);
     let flags = [libc::F_GETFD, libc::F_SETFD, libc::F_GETFL];
     rules.insert(libc::SYS_fcntl, only(1, &flags.map(|flag| flag as u64))?);
+    // Memory that is shared, or that grows by itself, does not count towards the limit of memory.
+    let counted = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64;
+    let private = argument(3, SeccompCmpOp::MaskedEq(counted), libc::MAP_PRIVATE as u64)?;
+    rules.insert(libc::SYS_mmap, vec![rule(vec![private])?]);
+    // All but taking pages of the machine out of use, which who is privileged may do.
+    let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
+    rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
+    // `nice` reads its own priority before it tries to change it.
+    rules.insert(
+        libc::SYS_getpriority,
+        vec![rule(vec![argument(0, is.clone(), 0)?, argument(1, is.clone(), 0)?])?],
+    );
     // Limits may be read, not set.
     rules.insert(libc::SYS_prlimit64, vec![rule(vec![argument(0, is.clone(), 0)?, argument(2, is, 0)?])?]);
     Ok(rules)

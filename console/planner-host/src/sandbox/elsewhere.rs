@@ -43,7 +43,7 @@ impl std::os::fd::AsFd for Listener {
     }
 }
 
-pub(crate) fn verdict(call: &Call, _: super::Stage) -> Verdict {
+pub(crate) fn verdict(call: &Call, _: super::Stage, _: &mut String) -> Verdict {
     match *call {}
 }
 

@@ -44,14 +44,14 @@ pub(crate) enum Verdict {
     Forbid(String),
 }
 
-/// Decides about a call.
-pub(crate) fn verdict(call: &Call, stage: Stage) -> Verdict {
+/// Decides about a call. `sought` is the folder in which a library was looked for last.
+pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict {
     let Call { number, arguments, .. } = *call;
     match number {
         libc::SYS_clone => on_clone(call),
         libc::SYS_openat if arguments[2] as i32 & !READING != 0 => written(call, 1),
-        libc::SYS_openat => opened(call, 1, stage, arguments[2] as i32),
-        libc::SYS_newfstatat => asked_about(call, stage),
+        libc::SYS_openat => opened(call, 1, stage, arguments[2] as i32, sought),
+        libc::SYS_newfstatat => asked_about(call, stage, sought),
         libc::SYS_readlinkat | libc::SYS_faccessat => on_path(call, 1),
         #[cfg(target_arch = "x86_64")]
         libc::SYS_open if arguments[1] as i32 & !READING != 0 => written(call, 0),
@@ -62,6 +62,7 @@ pub(crate) fn verdict(call: &Call, stage: Stage) -> Verdict {
         // Terminals are asked for their size and kind by libraries that print; a trace of calls shortens its paths.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
         libc::SYS_getcwd => Verdict::Refuse(libc::ENOENT),
+        libc::SYS_mmap => Verdict::Forbid("mmap of shared memory".to_owned()),
         libc::SYS_landlock_restrict_self if stage == Stage::Loading => Verdict::Allow,
         number => Verdict::Forbid(name(number)),
     }
@@ -83,9 +84,13 @@ fn on_clone(call: &Call) -> Verdict {
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
     const MAY: u64 = (libc::CLONE_SETTLS | libc::CLONE_PARENT_SETTID | libc::CLONE_CHILD_CLEARTID) as u64
         | (libc::CLONE_CHILD_SETTID | libc::CLONE_DETACHED) as u64;
+    // By which the C library forks and starts programs.
+    const OF_FORK: u64 = (libc::CLONE_CHILD_CLEARTID | libc::CLONE_CHILD_SETTID) as u64
+        | (libc::CLONE_VM | libc::CLONE_VFORK) as u64;
     let flags = call.arguments[0];
     if flags & THREAD != THREAD || flags & !(THREAD | MAY) != 0 {
-        return Verdict::Forbid("fork".to_owned());
+        let is_fork = flags & !OF_FORK == libc::SIGCHLD as u64;
+        return Verdict::Forbid(if is_fork { "fork" } else { "clone" }.to_owned());
     }
     let threads = std::fs::read_dir(format!("/proc/{}/task", call.thread));
     if threads.map_or(0, Iterator::count) < MOST_THREADS {
@@ -97,7 +102,7 @@ fn on_clone(call: &Call) -> Verdict {
 
 /// A file that is opened to be read: libraries while the plugin is loaded, afterwards the plugin's own bytes, in which
 /// the names of its functions are. Landlock lets nothing else be opened then, whatever the path has become by then.
-fn opened(call: &Call, index: usize, stage: Stage, flags: i32) -> Verdict {
+fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut String) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));
     };
@@ -109,7 +114,8 @@ fn opened(call: &Call, index: usize, stage: Stage, flags: i32) -> Verdict {
     if may_be_opened {
         Verdict::Allow
     } else if stage == Stage::Loading && is_library_name(&path) {
-        // The loader tries where a library was when the plugin was built.
+        // The loader tries where a library was when the plugin was built, and then asks whether that folder is there.
+        path.rsplit_once('/').map_or("", |(folder, _)| folder).clone_into(sought);
         Verdict::Refuse(libc::ENOENT)
     } else {
         of_path(call, &path)
@@ -117,13 +123,15 @@ fn opened(call: &Call, index: usize, stage: Stage, flags: i32) -> Verdict {
 }
 
 /// A question about a file: it is answered for an open one, and for libraries while the plugin is loaded.
-fn asked_about(call: &Call, stage: Stage) -> Verdict {
+fn asked_about(call: &Call, stage: Stage, sought: &str) -> Verdict {
     let [descriptor, path, to, flags, ..] = call.arguments;
     let Some(path) = path_at(call.thread, path) else { return Verdict::Forbid(name(call.number)) };
     let about = match path.as_str() {
         "" if flags as i32 & libc::AT_EMPTY_PATH != 0 => about::descriptor(call.thread, descriptor as i32),
         path if stage == Stage::Loading && is_library(path) => about::file(path, flags as i32),
-        _ if stage == Stage::Loading && is_library_name(&path) => return Verdict::Refuse(libc::ENOENT),
+        _ if stage == Stage::Loading && (is_library_name(&path) || is_folder(sought, &path)) => {
+            return Verdict::Refuse(libc::ENOENT);
+        }
         path => return of_path(call, path),
     };
     match about {
@@ -179,6 +187,11 @@ fn leads_back(path: &str) -> bool {
     path.split('/').any(|part| part == "..")
 }
 
+/// Whether a path is this folder, if there is one.
+fn is_folder(folder: &str, path: &str) -> bool {
+    !folder.is_empty() && path.trim_end_matches('/') == folder
+}
+
 fn is_below(folder: &str, path: &str) -> bool {
     path.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'))
 }
@@ -211,12 +224,33 @@ mod tests {
 
     fn open(path: &str, flags: i32, stage: Stage) -> Verdict {
         let path = format!("{path}\0");
-        verdict(&Call::of(libc::SYS_openat, [0, path.as_ptr() as u64, flags as u64, 0, 0, 0]), stage)
+        let call = Call::of(libc::SYS_openat, [0, path.as_ptr() as u64, flags as u64, 0, 0, 0]);
+        verdict(&call, stage, &mut String::new())
     }
 
     fn ask_about(path: &str, flags: i32, stage: Stage) -> Verdict {
         let path = format!("{path}\0");
-        verdict(&Call::of(libc::SYS_newfstatat, [1, path.as_ptr() as u64, 0x1000, flags as u64, 0, 0]), stage)
+        ask_after(&mut String::new(), &path, flags, stage)
+    }
+
+    fn ask_after(sought: &mut String, path: &str, flags: i32, stage: Stage) -> Verdict {
+        let call = Call::of(libc::SYS_newfstatat, [1, path.as_ptr() as u64, 0x1000, flags as u64, 0, 0]);
+        verdict(&call, stage, sought)
+    }
+
+    #[test]
+    fn a_folder_is_not_there_in_which_a_library_was_looked_for() {
+        let (path, mut sought) = ("/opt/lib/tls/libx.so.1\0", String::new());
+        let call = Call::of(libc::SYS_openat, [0, path.as_ptr() as u64, LOADER_FLAGS as u64, 0, 0, 0]);
+        assert_eq!(verdict(&call, Stage::Loading, &mut sought), Verdict::Refuse(libc::ENOENT));
+        let missing = Verdict::Refuse(libc::ENOENT);
+        assert_eq!(ask_after(&mut sought, "/opt/lib/tls/\0", 0, Stage::Loading), missing);
+        let other = ask_after(&mut sought, "/opt/lib\0", 0, Stage::Loading);
+        assert_eq!(other, forbidden("newfstatat of /opt/lib"));
+    }
+
+    fn decide(number: i64, arguments: [u64; 6], stage: Stage) -> Verdict {
+        verdict(&Call::of(number, arguments), stage, &mut String::new())
     }
 
     fn forbidden(what: &str) -> Verdict {
@@ -256,9 +290,9 @@ mod tests {
             assert_eq!(long, forbidden("openat"), "its end is not known");
         }
         assert_eq!(open("/a/\u{1b}[2J", libc::O_RDWR, LOADED), forbidden("openat of /a/?[2J"));
-        assert_eq!(verdict(&Call::of(libc::SYS_openat, [0; 6]), LOADED), forbidden("openat"));
-        assert_eq!(verdict(&Call::of(libc::SYS_socket, [0; 6]), Stage::Loading), forbidden("socket"));
-        assert_eq!(verdict(&Call::of(9999, [0; 6]), Stage::Loading), forbidden("call 9999"));
+        assert_eq!(decide(libc::SYS_openat, [0; 6], LOADED), forbidden("openat"));
+        assert_eq!(decide(libc::SYS_socket, [0; 6], Stage::Loading), forbidden("socket"));
+        assert_eq!(decide(9999, [0; 6], Stage::Loading), forbidden("call 9999"));
     }
 
     #[test]
@@ -279,10 +313,10 @@ mod tests {
         }
         let memory = open("/proc/self/mem", libc::O_RDWR, LOADED);
         assert_eq!(memory, forbidden("openat of /proc/self/mem"), "nothing is written");
-        let terminal = Call::of(libc::SYS_ioctl, [1, libc::TCGETS, 0, 0, 0, 0]);
-        assert_eq!(verdict(&terminal, LOADED), Verdict::Refuse(libc::ENOTTY));
-        let typed = Call::of(libc::SYS_ioctl, [0, libc::TIOCSTI, 0, 0, 0, 0]);
-        assert_eq!(verdict(&typed, LOADED), forbidden("ioctl"));
+        let terminal = decide(libc::SYS_ioctl, [1, libc::TCGETS, 0, 0, 0, 0], LOADED);
+        assert_eq!(terminal, Verdict::Refuse(libc::ENOTTY));
+        let typed = decide(libc::SYS_ioctl, [0, libc::TIOCSTI, 0, 0, 0, 0], LOADED);
+        assert_eq!(typed, forbidden("ioctl"));
     }
 
     #[test]
@@ -299,10 +333,10 @@ mod tests {
 
     #[test]
     fn threads_are_no_processes() {
-        let clone = |flags| verdict(&Call::of(libc::SYS_clone, [flags, 0, 0, 0, 0, 0]), LOADED);
+        let clone = |flags| decide(libc::SYS_clone, [flags, 0, 0, 0, 0, 0], LOADED);
         assert_eq!(clone(0x003d_0f00), Verdict::Allow, "as the C library starts a thread");
         assert_eq!(clone(libc::SIGCHLD as u64), Verdict::Forbid("fork".into()));
         let with_namespace = 0x003d_0f00 | libc::CLONE_NEWUSER as u64;
-        assert_eq!(clone(with_namespace), Verdict::Forbid("fork".into()));
+        assert_eq!(clone(with_namespace), Verdict::Forbid("clone".into()));
     }
 }

@@ -38,6 +38,8 @@ fn signal_text(number: i32) -> String {
         Some(Signal::ALARM) => ("SIGALRM", "an alarm that it had set"),
         Some(Signal::VTALARM) => ("SIGVTALRM", "an alarm that it had set"),
         Some(Signal::PROF) => ("SIGPROF", "an alarm that it had set"),
+        Some(Signal::USR1) => ("SIGUSR1", "sent by itself or from outside"),
+        Some(Signal::USR2) => ("SIGUSR2", "sent by itself or from outside"),
         Some(Signal::TRAP) => ("SIGTRAP", "a breakpoint"),
         Some(Signal::QUIT) => ("SIGQUIT", "asked to end"),
         Some(Signal::XCPU) => ("SIGXCPU", "used up its processor time"),
@@ -100,6 +102,7 @@ mod tests {
         assert_eq!(signalled(CHANNEL_LOST.as_raw()), "lost its channel to the console");
         assert_eq!(signalled(2), "was killed by SIGINT (interrupted)");
         assert_eq!(signalled(31), "was killed by SIGSYS (a call of the system that no planner may make)");
+        assert_eq!(signalled(12), "was killed by SIGUSR2 (sent by itself or from outside)");
         assert_eq!(signalled(14), "was killed by SIGALRM (an alarm that it had set)");
         assert_eq!(signalled(40), "was killed by signal 40");
         assert_eq!(how_it_ended(None), "lost its channel to the console");

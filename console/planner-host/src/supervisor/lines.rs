@@ -6,11 +6,15 @@ use crate::wire::body::plain;
 const MOST: usize = 256;
 /// Longest line, bytes.
 const LONGEST: usize = 400;
+/// What stands after a line that is longer.
+const CUT: &[u8] = b" (the rest of this line is not kept)";
 
 /// Lines that were printed and not taken yet.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     partial: Vec<u8>,
+    /// Whether the beginning of the current line is kept, and its rest is not.
+    is_cut: bool,
     whole: Vec<String>,
     n_dropped: usize,
 }
@@ -21,13 +25,24 @@ impl Lines {
         for byte in bytes {
             match byte {
                 b'\n' => self.end_line(),
+                _ if self.is_cut => {}
                 _ if self.partial.len() < LONGEST => self.partial.push(*byte),
-                _ => {}
+                _ => self.cut_line(),
             }
         }
     }
 
+    /// A line may have no end.
+    fn cut_line(&mut self) {
+        self.partial.extend_from_slice(CUT);
+        self.end_line();
+        self.is_cut = true;
+    }
+
     fn end_line(&mut self) {
+        if std::mem::take(&mut self.is_cut) {
+            return;
+        }
         let text = plain(&String::from_utf8_lossy(&self.partial));
         self.partial.clear();
         if self.whole.len() < MOST {
@@ -77,6 +92,9 @@ mod tests {
         let taken = lines.take();
         assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines at once are not kept)"));
         lines.extend(&[b'x'; 10 * LONGEST]);
-        assert_eq!(lines.take_rest()[0].len(), LONGEST);
+        let cut = lines.take_rest();
+        assert_eq!((cut.len(), cut[0].len()), (1, LONGEST + CUT.len()), "without its end");
+        lines.extend(b"xxx\nnext\n");
+        assert_eq!(lines.take(), ["next"], "its rest is skipped");
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn load_of(pid: Pid) -> Option<Load> {
     Some(Load { cpu, is_running: stats.any(|stat| matches!(stat.state, 'R' | 'D')) })
 }
 
-/// What a process has of memory; nothing where there is no `/proc`.
+/// What a process has of memory and threads; nothing where there is no `/proc`.
 pub(super) fn memory_of(pid: Pid) -> Option<Memory> {
     memory_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
 }
@@ -29,7 +29,8 @@ fn memory_in(status: &str) -> Option<Memory> {
         let value = status.lines().find_map(|line| line.strip_prefix(key))?;
         Some(value.strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
     };
-    Some(Memory { now_bytes: bytes("VmRSS:")?, most_bytes: bytes("VmHWM:")? })
+    let threads = status.lines().find_map(|line| line.strip_prefix("Threads:"))?.trim().parse().ok()?;
+    Some(Memory { now_bytes: bytes("VmRSS:")?, most_bytes: bytes("VmHWM:")?, threads })
 }
 
 fn ticks_per_second() -> u32 {
@@ -68,8 +69,8 @@ mod tests {
 
     #[test]
     fn memory_is_found_by_its_names() {
-        let status = "Name:\tworker\nVmHWM:\t    5600 kB\nVmRSS:\t    5000 kB\n";
-        let memory = Memory { now_bytes: 5000 << 10, most_bytes: 5600 << 10 };
+        let status = "Name:\tworker\nVmHWM:\t    5600 kB\nVmRSS:\t    5000 kB\nThreads:\t3\n";
+        let memory = Memory { now_bytes: 5000 << 10, most_bytes: 5600 << 10, threads: 3 };
         assert_eq!((memory_in(status), memory_in("Name:\tworker\n")), (Some(memory), None));
     }
 

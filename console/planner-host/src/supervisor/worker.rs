@@ -39,6 +39,10 @@ pub(crate) struct Worker {
     sequence: u32,
     state: State,
     tape: Tape,
+    /// Whether it had nothing to do when it was asked to end.
+    leaves_idle: bool,
+    /// How it ended then, if not well; reads on after the planner's name.
+    bad_end: Option<String>,
 }
 
 impl Worker {
@@ -55,7 +59,19 @@ impl Worker {
         let (incoming, writer) = (Incoming::default(), Writer::default());
         let guard = Guard::default();
         let (state, tape) = (State::Idle, Tape::default());
-        Ok(Self { process, socket, incoming, guard, writer, n_sent: 0, sequence: 0, state, tape })
+        Ok(Self {
+            process,
+            socket,
+            incoming,
+            guard,
+            writer,
+            n_sent: 0,
+            sequence: 0,
+            state,
+            tape,
+            leaves_idle: false,
+            bad_end: None,
+        })
     }
 
     /// Whether the process has ended and was reaped.
@@ -82,6 +98,17 @@ impl Worker {
 
     /// The lines that it printed since the last time.
     pub(crate) fn take_printed(&mut self) -> Vec<String> {
+        self.process.take_lines()
+    }
+
+    /// How it ended when it was asked to, if not well; reads on after the planner's name.
+    pub(crate) fn take_bad_end(&mut self) -> Option<String> {
+        self.bad_end.take()
+    }
+
+    /// What it printed last, once it has ended.
+    pub(crate) fn take_last_printed(&mut self) -> Vec<String> {
+        self.process.read_output();
         self.process.take_lines()
     }
 
@@ -164,7 +191,12 @@ impl Worker {
                     watch((Source::Calls, calls, PollFlags::IN));
                 }
             }
-            State::Dying(_) | State::Leaving(_) => {}
+            State::Leaving(Some(_)) => {
+                if let Some(calls) = self.guard.calls() {
+                    watch((Source::Calls, calls, PollFlags::IN));
+                }
+            }
+            State::Dying(_) | State::Leaving(None) => {}
         }
         if let Some(pidfd) = self.process.pidfd().filter(|_| !self.process.is_reaped()) {
             watch((Source::Exit, pidfd, PollFlags::IN));
@@ -205,7 +237,7 @@ impl Worker {
             }
             State::Dying(_) => self.advance_dying(ready, now).map(Err),
             State::Leaving(until) => {
-                self.advance_leaving(*until, now);
+                self.advance_leaving(ready, *until, now);
                 None
             }
         }

@@ -79,9 +79,25 @@ pub(super) fn close_off(socket: &Socket, sequence: u32, file: &File) -> io::Resu
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits the address space.
+/// Address space that is not memory: the C library reserves 64 MB for each thread that allocates.
+const RESERVED: u64 = 1 << 30;
+
+/// Limits memory to this much beside what the worker itself has: that is the planner's. What is shared does not count for
+/// the system, and cannot be had in a worker.
 pub(super) fn limit_memory(bytes: u64) {
-    limit(Resource::As, bytes);
+    let (own_space, own_data) = own_memory();
+    limit(Resource::Data, own_data.saturating_add(bytes));
+    limit(Resource::As, own_space.saturating_add(bytes).saturating_add(RESERVED));
+}
+
+/// Address space of this process, and what of it is memory of its own, bytes; nothing where the system does not say.
+fn own_memory() -> (u64, u64) {
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let bytes_at = |at| {
+        let pages: Option<u64> = pages.split_ascii_whitespace().nth(at).and_then(|pages| pages.parse().ok());
+        pages.unwrap_or_default() * rustix::param::page_size() as u64
+    };
+    (bytes_at(0), bytes_at(5))
 }
 
 fn limit(resource: Resource, most: u64) {

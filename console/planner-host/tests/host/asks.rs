@@ -98,11 +98,11 @@ fn stopped_and_computing_workers_hang_in_their_own_time() {
 #[test]
 fn a_worker_that_died_between_asks_is_reported_at_the_next_ask() {
     let late = "if (++c->in_this_process >= 30) abort();";
-    let at_exit = "if (!c->in_this_process++) signal(SIGALRM, SIG_DFL), ualarm(1000, 0);";
-    let source = COUNTER
-        .replace(late, at_exit)
-        .replace("#include <stdlib.h>", "#include <signal.h>\n#include <stdlib.h>\n#include <unistd.h>");
-    let source = format!("#define _DEFAULT_SOURCE\n{source}");
+    let leaves_thread =
+        "pthread_t thread; if (!c->in_this_process++) pthread_create(&thread, NULL, soon, NULL);";
+    let head = "#define _DEFAULT_SOURCE\n#include <pthread.h>\n#include <signal.h>\n#include <unistd.h>\n\
+                static void *soon(void *p) { usleep(1000); kill(getpid(), SIGALRM); return p; }";
+    let source = format!("{head}\n{}", COUNTER.replace(late, leaves_thread));
     let (_folder, dirs) = folder_with("counter", &source);
     let mut desk = Desk::new(&dirs, config());
     desk.ask(ONE, opening("counter", &Parameters::new(), None)).unwrap();

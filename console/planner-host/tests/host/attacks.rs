@@ -99,6 +99,19 @@ const ATTACKS: &[(&str, &str)] = &[
     ("syscall(434, getppid(), 0)", "pidfd_open"),
     ("syscall(SYS_bpf, 0, NULL, 0)", "bpf"),
     ("unshare(CLONE_NEWUSER)", "unshare"),
+    ("mmap(NULL, 4096, PROT_READ, MAP_SHARED | MAP_ANONYMOUS, -1, 0)", "mmap of shared memory"),
+    ("mmap(NULL, 4096, PROT_READ, MAP_SHARED, 201, 0)", "mmap of shared memory"),
+    // Of no bytes: where a seal is broken, the machine that runs this test survives it.
+    ("madvise(NULL, 0, 100)", "madvise"),
+    ("madvise(NULL, 0, 101)", "madvise"),
+    ("nice(5)", "setpriority"),
+    ("syscall(SYS_clone, CLONE_PARENT | SIGCHLD, 0, 0, 0, 0)", "clone"),
+    // A storm of alarms would slow every step.
+    (
+        "struct itimerval often = {{0, 1}, {0, 1}}; signal(SIGALRM, SIG_IGN); setitimer(ITIMER_REAL, &often, NULL)",
+        "setitimer",
+    ),
+    ("syscall(SYS_getpriority, 0, getppid())", "getpriority"),
     // Ways that begin where libraries are, and lead elsewhere.
     (r#"open("/usr/lib/../../etc/shadow", O_RDONLY | O_CLOEXEC)"#, "openat of /usr/lib/../../etc/shadow"),
     (r#"open("/proc/self/../1/environ", O_RDONLY)"#, "openat of /proc/self/../1/environ"),
@@ -232,7 +245,11 @@ fn ways_to_end_are_told_apart() {
         ("quick_exit(4)", "planner hostile ended its own process with exit code 4 during step 3"),
         ("raise(SIGALRM)", "planner hostile was killed by SIGALRM (an alarm that it had set) during step 3"),
         (
-            "struct itimerval soon = {{0, 0}, {0, 1}}; setitimer(ITIMER_REAL, &soon, NULL); rest(1000)",
+            "raise(SIGUSR2)",
+            "planner hostile was killed by SIGUSR2 (sent by itself or from outside) during step 3",
+        ),
+        (
+            "alarm(1); rest(1900)",
             "planner hostile was killed by SIGALRM (an alarm that it had set) during step 3",
         ),
         ("raise(SIGTRAP)", "planner hostile was killed by SIGTRAP (a breakpoint) during step 3"),
@@ -315,6 +332,13 @@ fn low_descriptors_can_be_closed_without_harm() {
     let mut host = host(&dirs);
     choose(&mut host, "hostile", &Parameters::new()).unwrap();
     (0..10).for_each(|tick| drop(step(&mut host, tick).unwrap()));
+}
+
+#[test]
+fn a_planner_has_the_memory_that_is_documented_and_no_more() {
+    let hoard = "int mb = 0; while (malloc(1 << 20)) mb++; _exit(mb >= 245 && mb <= 256 ? 9 : mb % 256)";
+    let fault = fault_of("IN_STEP", hoard);
+    assert_eq!(fault.message, "planner hostile ended its own process with exit code 9 during step 3");
 }
 
 #[test]

@@ -126,7 +126,7 @@ proptest! {
                 0 => filter.predict(&Odometry { forward_m: a, sideways_m: b, turn_rad: c }),
                 1 => { filter.update_position(Point::new(a, b), &covariance); }
                 2 => { filter.update_range(Point::new(a, b), c, d); }
-                _ => filter.restart_at(Point::new(a, b), &covariance, c),
+                _ => filter.restart_at(Point::new(a, b), &covariance, 0.0, c),
             }
             let numbers = filter.covariance();
             prop_assert!(numbers.iter().all(|n| n.is_finite()));

@@ -105,6 +105,27 @@ fn a_robot_that_was_stopped_while_its_tracks_went_on_is_found_again() {
 }
 
 #[test]
+fn a_robot_that_began_elsewhere_and_turned_otherwise_than_was_said_is_found() {
+    let stations = ring(5, 7.5);
+    for (k, heading_rad) in [0.4, -1.2, 2.0, 3.1].into_iter().enumerate() {
+        let mut draws = Draws::new(0.05, 20, k as u64);
+        let mut truth = Pose::new(3.0, -2.0, heading_rad);
+        let mut positioner = at_the_origin(&stations);
+        for tick in 1..=120 {
+            truth = truth.moved(0.03, 0.0, 0.01);
+            positioner.predict(&Odometry { forward_m: 0.03, sideways_m: 0.0, turn_rad: 0.01 });
+            if tick % 10 == 0 {
+                positioner.cycle(&draws.cycle(&stations, truth.position));
+            }
+        }
+        let pose = positioner.estimate().pose;
+        let turned_rad = (pose.heading_rad - truth.heading_rad).sin().abs();
+        assert!((pose.position - truth.position).norm() < 0.15, "{heading_rad}: {pose:?}, truth {truth:?}");
+        assert!(turned_rad < 0.15, "{heading_rad}: {pose:?}, truth {truth:?}");
+    }
+}
+
+#[test]
 fn a_spiral_with_slip_is_followed_within_the_reported_errors() {
     let stations = paper_stations();
     let mut draws = Draws::new(0.05, 20, 77);

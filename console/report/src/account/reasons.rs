@@ -41,10 +41,16 @@ impl Reasons<'_> {
         }
     }
 
+    /// How far a place lies beyond any lane, which keeps hull and clearance from what is solid, metres; negative within reach of one.
+    pub(crate) fn beyond_lanes_m(&self, place: Point) -> f64 {
+        let (_, solid_m) = self.evidence.nearest_solid(place);
+        self.room_m - solid_m - self.lane_m / 2.0
+    }
+
     /// Why no plan led to a place.
     fn why_not_planned(&self, place: Point) -> MissReason {
         let (_, solid_m) = self.evidence.nearest_solid(place);
-        if self.room_m - solid_m > self.lane_m / 2.0 {
+        if self.beyond_lanes_m(place) > 0.0 {
             MissReason::Narrow
         } else if solid_m < self.room_m {
             MissReason::Clearance
@@ -78,7 +84,9 @@ impl Reasons<'_> {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
             MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
-            MissReason::Narrow => most(&|cell| Some(self.room_m - solid(cell).1 - self.lane_m / 2.0))
+            // In a corner no lane leads to floor that is near enough to one by its distance from the nearest wall alone.
+            MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
+                .filter(|beyond_m| *beyond_m > 0.0)
                 .map(|m| Measure::of(m).against(self.lane_m)),
             MissReason::Clearance => {
                 Measure::off(cells.iter().map(|cell| solid(*cell))).map(|m| m.against(self.room_m))

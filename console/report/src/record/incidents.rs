@@ -11,7 +11,7 @@ pub struct Incident {
     pub t_s: f64,
     /// When it was over, seconds; absent for what has no length, and for what lasted to the end.
     pub until_s: Option<f64>,
-    /// What kind: `alarm`, `hold`, `fault`, `obstacle`, `plan`, `order`, `station` or `end`.
+    /// What kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `plan`, `order`, `station` or `end`.
     pub kind: &'static str,
     /// How much it asked of the operator.
     pub severity: Severity,
@@ -98,6 +98,9 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::TetherAlarmCleared { alarm } => ("", None, key(alarm.word())),
         EventKind::Truth { collided: true, .. } => ("alarm", None, None),
         EventKind::PlannerFailed { .. } => ("fault", None, None),
+        EventKind::Shadowed { of } if matches!(**of, EventKind::PlannerFailed { .. }) => {
+            ("shadow", None, None)
+        }
         EventKind::ObstacleFound { .. } => ("obstacle", None, None),
         EventKind::Planned { .. } | EventKind::Certified { .. } => ("plan", None, None),
         EventKind::StationRejected { station, .. } => {

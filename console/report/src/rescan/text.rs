@@ -19,7 +19,7 @@ impl Rescan {
         );
         text += &listed("again", &self.areas);
         text += &listed(&format!("left, smaller than {min_area_m2} m²"), &self.left);
-        text += &listed("left, out of reach", &self.out_of_reach);
+        text += &listed("left, out of reach of every lane", &self.out_of_reach);
         if self.not_asked_m2 > 0.0 {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "left: {:.2} m² that no mission was to scan", self.not_asked_m2);
@@ -29,13 +29,13 @@ impl Rescan {
 
     /// What no lane leads to.
     pub fn human_out_of_reach(&self) -> String {
-        listed("out of reach", &self.out_of_reach)
+        listed("out of reach of every lane", &self.out_of_reach)
     }
 
     /// Why nothing is scanned again, as a sentence.
     pub fn why_nothing(&self, min_area_m2: f64) -> String {
         format!(
-            "nothing was missed that is worth another scan: {} smaller than {min_area_m2} m² left, {:.2} m² together, and {} out of reach",
+            "nothing was missed that is worth another scan: {} smaller than {min_area_m2} m² left, {:.2} m² together, and {} out of reach of every lane",
             counted(self.left.len(), "place", "places"),
             total_m2(&self.left),
             counted(self.out_of_reach.len(), "place", "places"),

@@ -3,7 +3,9 @@
 //! The mission lives on the recorded answers alone, so planners are asked in a thread of their own and may be some ticks behind.
 
 use flight::answers::Answers;
-use mission::{Answer, Ask, AskId, Mission, Sending, What, ask::Comparison, event::RecordedAnswers};
+use mission::{
+    Answer, Ask, AskId, Mission, Sending, What, WorkerId, ask::Comparison, event::RecordedAnswers,
+};
 use planner_host::Host;
 use recording::RecordedTick;
 use std::{
@@ -91,6 +93,10 @@ pub(crate) struct Asked {
     pub not_comparable: usize,
     /// Faults from outside or by the clock, by planner.
     pub external: BTreeMap<String, usize>,
+    /// Answers of workers that failed so earlier than in the journal, which therefore could not be compared.
+    pub too_early: usize,
+    /// A worker failed so that did not fail in the journal; the sentence says which and how.
+    pub unproven: Option<String>,
     /// The first answer that is another one.
     pub difference: Option<String>,
 }
@@ -100,7 +106,7 @@ impl Asked {
     /// there on it would know other things than it did then.
     pub(super) fn of(mut host: Host, told: &Receiver<Told>) -> Self {
         host.share_processor();
-        let mut asking = Asking { host, early: Vec::new(), asked: Self::default() };
+        let mut asking = Asking { host, early: Vec::new(), failed: BTreeMap::new(), asked: Self::default() };
         let is_same = told.iter().all(|told| {
             match told {
                 Told::Ask(ask) => asking.ask(ask),
@@ -111,6 +117,7 @@ impl Asked {
         if !is_same {
             told.iter().for_each(drop);
         }
+        asking.asked.unproven = asking.failed.into_values().next();
         asking.asked
     }
 }
@@ -120,6 +127,8 @@ struct Asking {
     host: Host,
     /// Answers that came before they were looked for.
     early: Vec<Answer>,
+    /// Workers that failed from outside or by the clock, and not yet in the journal; where and how.
+    failed: BTreeMap<WorkerId, String>,
     asked: Asked,
 }
 
@@ -149,9 +158,22 @@ impl Asking {
         {
             // The mission closes the worker; nobody waits for it to fail in the same way.
             *self.asked.external.entry(fault.planner.clone()).or_default() += 1;
+            self.failed.remove(&answer.ask.worker);
             return;
         }
-        let comparison = match self.own_answer(answer.ask) {
+        let own = self.own_answer(answer.ask);
+        if let Some(Answer { result: Err(fault), .. }) = &own
+            && fault.cause.is_external()
+        {
+            // The machine decides when it comes: if the journal has it later, it is the same one.
+            let ask = answer.ask;
+            self.failed
+                .entry(ask.worker)
+                .or_insert_with(|| format!("ask {ask} in tick {tick} (\"{}\")", fault.message));
+            self.asked.too_early += 1;
+            return;
+        }
+        let comparison = match own {
             None => Comparison::Different("gave no answer".to_owned()),
             Some(_) if !is_used => Comparison::NotComparable,
             Some(own) => Comparison::of(&own, answer, |command| sending.as_sent(command)),

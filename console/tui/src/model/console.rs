@@ -2,7 +2,7 @@
 
 use super::{Preset, Watches};
 use crate::actions::keymap::Keymap;
-use mission::{PlannerInfo, Severity};
+use mission::{PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
 
 /// The time, by the caller.
@@ -75,15 +75,6 @@ impl Default for Speed {
     }
 }
 
-/// A plugin that was found and not accepted.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Refused {
-    /// File name of the plugin, without the folder.
-    pub plugin: String,
-    /// Why, as a sentence.
-    pub reason: String,
-}
-
 /// A message for the operator that disappears by itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Notice {
@@ -132,7 +123,7 @@ pub struct Console {
     /// Planners to choose from.
     pub planners: Vec<PlannerInfo>,
     /// Plugins that cannot be chosen.
-    pub refused: Vec<Refused>,
+    pub refused: Vec<RefusedPlugin>,
     /// What the last look at the plugins changed, as sentences; `None` before the second look.
     #[serde(default)]
     pub reloaded: Option<Vec<String>>,

@@ -3,11 +3,11 @@
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
 use crate::model::{
-    Forecast, GhostPlan, Health, Measured, Preset, Refused, Run, RunId, RunResult, Source, Speed, Times,
+    Forecast, GhostPlan, Health, Measured, Preset, Run, RunId, RunResult, Source, Speed, Times,
     home::Found,
     replay::{Align, Reel, Side},
 };
-use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, Severity};
+use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity};
 use report::{Estimate, Summary, account::Account, notes::Notes};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -47,7 +47,7 @@ pub enum Msg {
         /// Planners to choose from.
         found: Vec<PlannerInfo>,
         /// Plugins that cannot be chosen.
-        refused: Vec<Refused>,
+        refused: Vec<RefusedPlugin>,
     },
     /// News of the console itself; a CRIT one becomes an alarm.
     Notice {

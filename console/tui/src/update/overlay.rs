@@ -118,9 +118,20 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
+/// Takes the selected planner. Checked again: the mission went on while the list was open.
 fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
-    let Some(planner) = model.console.planners.get(selected) else { return Vec::new() };
-    choose(model, purpose, planner.clone())
+    let Some(planner) = model.console.planners.get(selected).cloned() else { return Vec::new() };
+    let id = match purpose {
+        Purpose::Drive => ActionId::ChoosePlanner,
+        Purpose::Compare => ActionId::Compare,
+        Purpose::WhatIf => ActionId::WhatIf,
+        Purpose::Shadow => ActionId::Shadow,
+    };
+    if let Err(why) = offered(model, id) {
+        model.ui.overlay = Overlay::None;
+        return refuse(model, why);
+    }
+    choose(model, purpose, planner)
 }
 
 /// Takes a planner for some purpose, if it can fly the mission; whether it shall drive is asked first.

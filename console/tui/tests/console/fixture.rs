@@ -12,8 +12,7 @@ use positioning::{Exclusion, Fix, Integrity, Ranging, Residual};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::OnceLock;
 use tui::{
-    Caps, Colours, Glyphs, Health, Model, Msg, Recording, Refused, RunId, RunMsg, Source, Speed, Times,
-    update,
+    Caps, Colours, Glyphs, Health, Model, Msg, Recording, RunId, RunMsg, Source, Speed, Times, update,
 };
 use world::spiral::Spiral;
 use world::tether::{Bearing, Cable, Certificate, Contact, capstan_factor};
@@ -497,7 +496,7 @@ impl Screen {
             reached_speed: None,
             ..Health::default()
         }));
-        let refused = Refused {
+        let refused = mission::RefusedPlugin {
             plugin: "my_plugin.so".into(),
             reason: "built for planner ABI 3, this console uses 1: rebuild it".into(),
         };

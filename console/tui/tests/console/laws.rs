@@ -194,6 +194,18 @@ fn answers_hold(msg: &Msg) -> bool {
     }
 }
 
+/// Whether a robot that is held stays held, whatever else the order changes.
+fn is_harmless(order: &Order) -> bool {
+    matches!(
+        order,
+        Order::Hold
+            | Order::SetParameter { .. }
+            | Order::UseStation { .. }
+            | Order::Shadow(_)
+            | Order::DropShadow
+    )
+}
+
 fn caps() -> impl Strategy<Value = Caps> {
     prop::sample::select(vec![RICH, PLAIN, ASCII])
 }
@@ -247,7 +259,8 @@ proptest! {
                     Order::ChoosePlanner(_) if follows_hold => {}
                     order => {
                         prop_assert_eq!(standing.standing().allows(&order), Ok(()), "{:?} in {:?}", order, standing.phase);
-                        follows_hold = false;
+                        // Orders are obeyed in turn: what does not move the robot leaves it held.
+                        follows_hold &= is_harmless(&order);
                     }
                 }
             }
@@ -273,15 +286,7 @@ proptest! {
                 let Effect::Order(order) = &effect else { continue };
                 // A planner that is opened or that plans before the start moves nothing.
                 let waits = screen.model.live.waits() && matches!(order, Order::Plan | Order::ChoosePlanner(_));
-                let is_harmless = matches!(
-                    order,
-                    Order::Hold
-                        | Order::SetParameter { .. }
-                        | Order::UseStation { .. }
-                        | Order::Shadow(_)
-                        | Order::DropShadow
-                );
-                let moves = !waits && !is_harmless;
+                let moves = !waits && !is_harmless(order);
                 prop_assert!(!moves, "{mouse:?}: {effect:?}");
             }
             screen.model.ui.mouse = true;

@@ -107,6 +107,16 @@ fn a_shadow_is_chosen_by_name_or_from_the_list_and_dropped_again() {
 }
 
 #[test]
+fn a_list_that_is_open_when_the_mission_ends_starts_no_shadow() {
+    let mut screen = Screen::running();
+    screen.type_text(":shadow");
+    screen.press([Key::Enter, Key::Down]);
+    let ended = screen.mission.ended(mission::Outcome::Complete, "task complete");
+    screen.hear(RunMsg::Events(vec![ended]));
+    assert_eq!(screen.press([Key::Enter]), []);
+}
+
+#[test]
 fn a_rebuilt_planner_is_offered_in_shadow_while_the_mission_runs() {
     let rebuilt = || {
         let mut found = planners();

@@ -138,6 +138,7 @@ impl StepOut {
             unknown => return Err(format!("gave the unknown status {unknown}")),
         };
         let drive = match self.drive {
+            u32::MAX => return Err("gave a status and no drive".to_owned()),
             DRIVE_TWIST => Drive::Twist { v_m_per_s: self.a, w_rad_per_s: self.b },
             DRIVE_VELOCITY => Drive::Velocity(nalgebra::Vector2::new(self.a, self.b)),
             unknown => return Err(format!("gave the unknown kind of drive {unknown}")),

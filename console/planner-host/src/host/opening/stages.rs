@@ -122,7 +122,7 @@ impl Host {
     /// Shuts down a worker whose planner cannot be opened.
     fn part(&mut self, mut worker: Worker, fault: Fault) -> Result<(), Fault> {
         self.remains = Some(worker.remains());
-        self.dismiss(worker);
+        self.dismiss(&fault.planner, worker);
         Err(fault)
     }
 
@@ -143,7 +143,7 @@ impl Host {
             Ok(Some(loaded)) => loaded,
             other => {
                 self.remains = other.is_err().then(|| worker.remains());
-                self.dismiss(worker);
+                self.dismiss("", worker);
                 if let Err(failure) = other {
                     opening.note(failure, &candidate);
                 }

@@ -12,6 +12,9 @@ use std::net::Shutdown;
 use std::os::unix::process::ExitStatusExt;
 use std::time::Instant;
 
+/// How a worker ended that had to be killed.
+const LATE: &str = "did not end within 0.1 s";
+
 impl Worker {
     /// Kills the process for this failure.
     pub(super) fn end(&mut self, failure: Failure) -> Failure {
@@ -57,7 +60,7 @@ impl Worker {
             State::Gone | State::Leaving(_) => return,
             State::Dying(_) => return self.kill(),
             State::Busy(_) | State::Cancelling(..) => self.send_cancel(now),
-            State::Idle => {}
+            State::Idle => self.leaves_idle = true,
         }
         match self.socket.shutdown(Shutdown::Write) {
             // The socket stays open until the worker has ended: it takes a full hang-up for the console's death.
@@ -74,11 +77,28 @@ impl Worker {
         }
     }
 
-    pub(super) fn advance_leaving(&mut self, until: Option<Instant>, now: Instant) {
-        if self.process.reap().is_some() {
-            self.state = State::Gone;
-        } else if until.is_some_and(|until| now >= until) {
+    pub(super) fn advance_leaving(&mut self, ready: Ready, until: Option<Instant>, now: Instant) {
+        let call = until.filter(|_| ready.called).and_then(|_| self.guard.decide());
+        if let Some(call) = call {
+            self.end_badly(format!("tried {call}, which no planner may do,"));
             self.kill();
+        } else if let Some(status) = self.process.reap() {
+            self.state = State::Gone;
+            if until.is_some() && !status.success() {
+                // Its own watchdog kills it when the time is over.
+                let is_late = status.signal() == Some(Signal::KILL.as_raw());
+                self.end_badly(if is_late { LATE.to_owned() } else { how_it_ended(Some(status)) });
+            }
+        } else if until.is_some_and(|until| now >= until) {
+            self.end_badly(LATE.to_owned());
+            self.kill();
+        }
+    }
+
+    /// Who was interrupted did not end by itself.
+    fn end_badly(&mut self, how: String) {
+        if self.leaves_idle {
+            self.bad_end.get_or_insert(how);
         }
     }
 }

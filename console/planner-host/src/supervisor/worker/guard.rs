@@ -18,6 +18,8 @@ pub(super) struct Guard {
     received: Option<OwnedFd>,
     listener: Option<Listener>,
     has_loaded: bool,
+    /// The folder in which a library was looked for last.
+    sought: String,
 }
 
 impl Guard {
@@ -58,7 +60,7 @@ impl Guard {
     pub(super) fn decide(&mut self) -> Option<String> {
         let listener = self.listener.as_ref()?;
         let call = listener.next()?;
-        let verdict = verdict(&call, self.stage());
+        let verdict = verdict(&call, self.stage(), &mut self.sought);
         self.has_loaded |= ends_loading(&call);
         listener.answer(&call, &verdict);
         match verdict {

@@ -1,0 +1,250 @@
+//! Planners that attack while they fly: what is told of them, what can be proven afterwards, and what the operator still has.
+
+use crate::{
+    bench::{Bench, Ended, journal, of_kind, scenario, workspace},
+    session::Session,
+};
+use std::path::{Path, PathBuf};
+
+/// A folder with the planner `hostile`, which does this at this moment.
+pub(crate) fn hostile(bench: &Bench, moment: &str, attack: &str) -> PathBuf {
+    let source = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
+    let source = bench.file("hostile.c", format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
+    let folder = bench.path().join("hostile");
+    std::fs::create_dir_all(&folder).unwrap();
+    crate::faults::compile_file(&source, &folder.join("libplanner_hostile.so"));
+    folder
+}
+
+fn fly(bench: &Bench, plugins: &Path) -> Ended {
+    let more = ["--planner", "hostile", "--set", "planner.fallback.id=apf", "--plugin-dir"];
+    let more = [&more[..], &[plugins.to_str().unwrap()]].concat();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &more)
+}
+
+/// It does so at a time that the machine decides, so that the same questions do not give the same fault again.
+#[test]
+fn a_fault_of_a_thread_that_outlives_its_step_is_taken_from_the_journal() {
+    let attacks = [
+        r#"write(200, "01234567890123456789012345678901", 32)"#,
+        "abort()",
+        r#"open("/etc/passwd", O_RDONLY)"#,
+        "_exit(3)",
+        "for (;;) memset(malloc(1 << 20), 1, 1 << 20)",
+    ];
+    for attack in attacks {
+        let bench = Bench::new();
+        let plugins = hostile(&bench, "IN_LEFTOVER", attack);
+        for _ in 0..3 {
+            let flown = fly(&bench, &plugins);
+            assert_eq!(flown.json()["outcome"], "complete", "{attack}: {flown:?}");
+            assert_eq!(flown.json()["planner_faults"], 1, "{attack}: {flown:?}");
+            let run = bench.runs().pop().unwrap();
+            let verified = bench.verify(&run, &["--plugin-dir", plugins.to_str().unwrap()]);
+            assert_eq!(verified.code, Some(0), "{attack}: {verified:?}");
+            let note =
+                "note: faults of planner hostile from outside or by the clock, taken from the journal: 1";
+            assert!(verified.out.contains(note), "{attack}: {verified:?}");
+        }
+    }
+}
+
+#[test]
+fn a_plugin_that_is_refused_is_named_with_the_reason_to_who_wants_its_planner() {
+    let bench = Bench::new();
+    let plugins = hostile(&bench, "IN_CONSTRUCTOR", "socket(AF_INET, SOCK_STREAM, 0)");
+    let refused = fly(&bench, &plugins);
+    let sentence = "planner `hostile` cannot be chosen: plugin libplanner_hostile.so is refused: tried socket while it was loaded";
+    assert!(refused.code == Some(2) && refused.err.contains(sentence), "{refused:?}");
+    std::fs::rename(plugins.join("libplanner_hostile.so"), plugins.join("libplanner_x.so")).unwrap();
+    let refused = fly(&bench, &plugins);
+    let sentence = "there is no planner `hostile`; found: ";
+    let reason = "; plugin libplanner_x.so is refused: tried socket while it was loaded";
+    assert!(refused.err.contains(sentence) && refused.err.contains(reason), "{refused:?}");
+}
+
+#[test]
+fn a_planner_that_does_not_end_well_when_it_is_destroyed_is_named() {
+    let attacks = [
+        ("abort()", "was killed by SIGABRT"),
+        ("for (;;) rest(1000)", "did not end within 0.1 s"),
+        (r#"open("/etc/passwd", O_RDONLY)"#, "tried openat of /etc/passwd, which no planner may do,"),
+        ("_exit(3)", "ended its own process with exit code 3"),
+    ];
+    for (attack, how) in attacks {
+        let bench = Bench::new();
+        let plugins = hostile(&bench, "IN_DESTROY", attack);
+        let more = ["--planner", "hostile", "--set", "mission.time_limit_s=1", "--plugin-dir"];
+        let more = [&more[..], &[plugins.to_str().unwrap()]].concat();
+        let flown = bench.fly(&scenario("goto-single-obstacle.toml"), &more);
+        let log = std::fs::read_to_string(bench.runs()[0].join("planner.log")).unwrap_or_default();
+        for text in [&flown.err, &log] {
+            let (before, after) =
+                text.split_once(how).unwrap_or_else(|| panic!("{attack}: {flown:?}, {log}"));
+            assert!(
+                before.ends_with("planner hostile ") && after.contains("while it was destroyed"),
+                "{text}"
+            );
+        }
+        assert_eq!(flown.json()["planner_faults"], 0, "the mission was over: {flown:?}");
+    }
+}
+
+/// The example in C, changed, as `tankops check` finds it.
+fn checked(change: (&str, &str), head: &str) -> Ended {
+    let bench = Bench::new();
+    let source = std::fs::read_to_string(workspace().join("plugins/examples/direct-c/direct.c")).unwrap();
+    assert!(source.contains(change.0));
+    let source = bench.file("changed.c", format!("{head}\n{}", source.replacen(change.0, change.1, 1)));
+    let plugin = bench.path().join("libplanner_changed.so");
+    crate::faults::compile_file(&source, &plugin);
+    bench.tankops(&["check", plugin.to_str().unwrap(), "--fly", "1"])
+}
+
+#[test]
+fn a_check_finds_what_crashes_when_it_is_destroyed_and_threads_that_stay() {
+    let crashes = checked(("free(instance);", "free(instance); abort();"), "");
+    let line = "FAIL  ends when it is not wanted any more: planner direct-c was killed by SIGABRT";
+    assert!(crashes.code == Some(1) && crashes.out.contains(line), "{crashes:?}");
+    let stays = "#define _GNU_SOURCE\n#include <pthread.h>\n#include <time.h>\nstatic void *stay(void *p) { for (;;) { struct timespec s = {9, 0}; nanosleep(&s, 0); } \
+                 return p; }";
+    let start = "static int n; pthread_t t; if (n++ == 2) pthread_create(&t, 0, stay, 0);\n  const direct *self = instance;";
+    let threads = checked(("const direct *self = instance;", start), stays);
+    let line = "warn  leaves no thread behind: 1 thread is still there between its calls";
+    assert!(threads.code == Some(0) && threads.out.contains(line), "{threads:?}");
+}
+
+#[test]
+fn a_line_without_an_end_is_kept_by_its_beginning() {
+    let bench = Bench::new();
+    let flood = "static char much[100000]; memset(much, 'x', sizeof much); for (int i = 0; i < 1000; i++) write(2, much, sizeof much)";
+    fly(&bench, &hostile(&bench, "IN_STEP", flood));
+    let plugins = bench.path().join("hostile");
+    let more = ["--planner", "hostile", "--set", "mission.time_limit_s=3", "--plugin-dir"];
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[&more[..], &[plugins.to_str().unwrap()]].concat());
+    let log = std::fs::read_to_string(bench.runs().pop().unwrap().join("planner.log")).unwrap();
+    assert!(log.contains("hostile: xxx") && log.contains("x (the rest of this line is not kept)\n"), "{log}");
+    assert!(log.len() < 2000, "{}", log.len());
+}
+
+#[test]
+fn a_replay_says_which_step_did_not_answer_and_after_how_long() {
+    let bench = Bench::new();
+    fly(&bench, &hostile(&bench, "IN_STEP", "for (;;) rest(1000)"));
+    let bundle = bench.runs()[0].join("crash-1");
+    let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+    let sentence = "(step 3): did not answer within 2.0 s; its process was stopped";
+    assert!(replayed.code == Some(1) && replayed.out.contains(sentence), "{replayed:?}");
+}
+
+/// Whether the console's group is the terminal's foreground group.
+fn has_the_keyboard(console: i32) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{console}/stat")).unwrap();
+    let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    // Group and the terminal's foreground group.
+    fields[2] == fields[5]
+}
+
+/// Attacks that last, and those that would take keyboard or screen.
+const LASTING: &[(&str, &str)] = &[
+    ("IN_STEP", "for (;;);"),
+    ("IN_STEP", "for (;;) rest(1000)"),
+    ("IN_STEP", "kill(getpid(), SIGSTOP)"),
+    ("IN_STEP", "raise(SIGTSTP)"),
+    ("IN_STEP", "for (;;) { char *p = malloc(1 << 20); if (p) memset(p, 1, 1 << 20); }"),
+    ("IN_STEP", "pthread_t t; for (int i = 0; i < 60; i++) pthread_create(&t, NULL, spin, NULL)"),
+    ("IN_STEP", "pthread_t t; for (int i = 0; i < 4; i++) pthread_create(&t, NULL, prints, NULL)"),
+    ("IN_STEP", "pthread_t t; for (int i = 0; i < 4; i++) pthread_create(&t, NULL, signals, NULL)"),
+    ("IN_STEP", "prints(NULL)"),
+    ("IN_STEP", r#"for (;;) write(1, "\033[2J\033[?1049l\033c", 14)"#),
+    ("IN_STEP", r#"for (;;) write(200, "\011\000\000\000\203\001\000\000\000\000\000\000\000", 13)"#),
+    ("IN_STEP", r#"for (;;) write(200, "\377\377\377\000\200", 5)"#),
+    ("IN_STEP", "for (int fd = 0; fd < 4096; fd++) close(fd)"),
+    ("IN_STEP", "sigset_t all; sigfillset(&all); sigprocmask(SIG_BLOCK, &all, NULL); for (;;);"),
+    ("IN_STEP", "kill(getppid(), SIGSTOP)"),
+    ("IN_STEP", r#"open("/dev/tty", O_RDWR)"#),
+    ("IN_STEP", "tcsetpgrp(0, getpid())"),
+    ("IN_STEP", "ioctl(1, TIOCSTI, \"q\")"),
+    ("IN_STEP", "if (fork() == 0) for (;;);"),
+    ("IN_THREAD", "for (;;) write(200, \"x\", 1)"),
+];
+
+const HELPERS: &str = r#"
+static void *spin(void *p) { for (;;); return p; }
+static void *prints(void *p) { for (;;) write(2, "the quick brown fox jumps over the lazy dog\n", 44); return p; }
+static void nothing(int s) { (void)s; }
+static void *signals(void *p) { signal(SIGURG, nothing); for (;;) raise(SIGURG), kill(getpid(), SIGURG); return p; }
+"#;
+
+#[test]
+fn the_console_hears_space_whatever_a_planner_does_for_long() {
+    for (moment, attack) in LASTING {
+        let attacks = Bench::new();
+        let hostile_c = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
+        let hostile_c =
+            hostile_c.replacen("static void attack", &format!("{HELPERS}\nstatic void attack"), 1);
+        let source =
+            attacks.file("hostile.c", format!("#define {moment}\n#define ATTACK {attack}\n{hostile_c}"));
+        crate::faults::compile_file(&source, &attacks.path().join("libplanner_hostile.so"));
+        let (goto, plugins) = (scenario("goto-single-obstacle.toml"), attacks.path().display());
+        let arguments = format!("--plugin-dir {plugins} console {} --planner hostile", goto.display());
+        let mut session = Session::open(&arguments, 120, 36);
+        session.see("IDLE");
+        session.start();
+        session.until("the attack", |session| {
+            let runs = session.bench.runs();
+            runs.first().is_some_and(|run| of_kind(&journal(run), "truth").len() > 8)
+        });
+        session.press(" ");
+        // A robot that the fault holds is asked for, too.
+        session.until(&format!("space to be heard: {attack}"), |session| {
+            let events = journal(&session.run());
+            let is_ordered = of_kind(&events, "ordered").iter().any(|event| event["order"] == "hold");
+            is_ordered || session.text().contains("Resume?") || session.text().contains("resume")
+        });
+        session
+            .until("the robot to be held", |session| !of_kind(&journal(&session.run()), "held").is_empty());
+        assert!(has_the_keyboard(session.console_pid()), "{attack}");
+        // Whatever asks something is closed on the way.
+        session.press("\x1b");
+        session.press_until("1", "1 Home");
+        session.press("q");
+        assert_eq!(session.agree_to_leave(), "code=1", "{attack}");
+    }
+}
+
+#[test]
+fn a_plan_that_the_mission_refuses_for_its_tank_is_no_difference() {
+    let bench = Bench::new();
+    let source = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
+    let end = "out->cost = 0.0;";
+    assert!(source.contains(end));
+    let far = format!("const tp_vec2 far = {{1e5, 0.0}}; h->points(h->ctx, &far, 1); {end}");
+    let source = bench.file("far.c", format!("#define IN_STEP\n{}", source.replacen(end, &far, 1)));
+    let plugins = bench.path().join("far");
+    std::fs::create_dir(&plugins).unwrap();
+    crate::faults::compile_file(&source, &plugins.join("libplanner_hostile.so"));
+    let flown = fly(&bench, &plugins);
+    assert!(flown.out.contains("is far outside the tank"), "{flown:?}");
+    bench.prove_with(&bench.runs()[0], &["--plugin-dir", plugins.to_str().unwrap()]);
+}
+
+#[test]
+fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_different() {
+    let bench = Bench::new();
+    // All that a planner is told of the console's environment.
+    let attack = r#"if (getenv("RUST_BACKTRACE") && *getenv("RUST_BACKTRACE") == 'f') abort()"#;
+    let plugins = hostile(&bench, "IN_STEP", attack);
+    let more = ["--planner", "hostile", "--set", "mission.time_limit_s=2", "--plugin-dir"];
+    let plugins = plugins.to_str().unwrap();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[&more[..], &[plugins]].concat());
+    let run = bench.runs().pop().unwrap();
+    bench.prove_with(&run, &["--plugin-dir", plugins]);
+    let mut verify = bench.command();
+    verify.env("RUST_BACKTRACE", "full").arg("verify").arg(&run).args(["--plugin-dir", plugins]);
+    let verified = Ended::from(verify.output().unwrap());
+    assert_eq!(verified.code, Some(1), "{verified:?}");
+    let sentence = "not proven: a planner fails from outside or by the clock at ask ";
+    assert!(verified.out.contains(sentence) && !verified.out.contains("different"), "{verified:?}");
+    assert!(verified.out.contains("SIGABRT") && !verified.out.contains("equal:"), "{verified:?}");
+}
