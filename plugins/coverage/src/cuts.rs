@@ -53,6 +53,13 @@ pub(crate) fn domain_between_walls(workspace: &Workspace) -> Option<SlitDomain<'
     Some(domain)
 }
 
+/// How many lanes the cuts of a workspace would break, about: what a pattern costs, before anything is laid.
+pub(crate) fn broken_lanes(workspace: &Workspace, pattern: &Pattern, rule: &CutRule) -> f64 {
+    let broken = |side: &[Point]| pattern.broken_lanes(&workspace.wall, side[0], side[1], workspace.swath_m);
+    let cuts = cuts(workspace, pattern, rule, &[]);
+    cuts.iter().flat_map(|cut| cut.windows(2)).map(broken).sum()
+}
+
 /// The last cut made of those that keep the robot out of sealed floor.
 fn last_at_rim<'a>(cuts: &'a [Vec<Point>], sealed: &SealedRegion) -> Option<&'a [Point]> {
     let is_at_rim = |cut: &&[Point]| sealed.rim.iter().any(|p| polyline::distance_m(cut, *p) < SNAPPED_M);

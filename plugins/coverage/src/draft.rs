@@ -1,11 +1,11 @@
 //! From lanes to a path: a first tour, enough to estimate what a candidate will be worth, and the finished path.
 
-use crate::floor::{ReachableFloor, SweptFloor};
+use crate::floor::{Grain, ReachableFloor, SweptFloor};
 use crate::jobs::Job;
 use crate::lanes::{Lane, lanes, wanted_pieces};
 use crate::pattern::Pattern;
 use crate::plane::angle_rad;
-use crate::polish::{Terms, Track, polish};
+use crate::polish::{Terms, Track, polish, settle};
 use crate::scan::{Piece, Scan};
 use crate::scope::Scope;
 use crate::slit_domain::SlitDomain;
@@ -43,7 +43,7 @@ impl<'a> Draft<'a> {
     ) -> Result<Self> {
         job.stage(0.5);
         let all = lanes(&domain, pattern, domain.workspace.swath_m / tuning::lanes::LEAST_IN_SWATH);
-        let floor = ReachableFloor::new(&domain, scope.cell_m).within(scope.regions);
+        let floor = ReachableFloor::new(&domain, rough_m(&scope)).within(scope.regions);
         let (lanes, costs, pieces) = (Vec::new(), Costs::default(), Vec::new());
         let mut draft =
             Self { scope, effort, domain, floor, lanes, costs, pieces, length_m: 0.0, turns: 0.0 };
@@ -51,14 +51,9 @@ impl<'a> Draft<'a> {
         job.stage(0.95);
         draft.pieces = draft.toured(tuning::tour::DRAFT_SHARE, job)?;
         job.stage(1.0);
-        let path = joined(&draft.pieces);
-        let mut swept = SweptFloor::new(draft.floor);
-        swept.sweep(&path);
-        let missed_m2 = (1.0 - swept.coverage()) * swept.floor.area_m2();
-        draft.floor = swept.floor;
-        draft.length_m = polyline::length_m(&path)
-            + tuning::touch_ups::MISSED * missed_m2 / draft.domain.workspace.swath_m;
-        draft.turns = rotation_turns(&path);
+        let mut swept = SweptFloor::new(draft.floor.clone());
+        swept.sweep(&joined(&draft.pieces));
+        draft.measure(&swept);
         Ok(draft)
     }
 
@@ -111,8 +106,8 @@ impl<'a> Draft<'a> {
         lanes.iter().flat_map(|lane| wanted_pieces(lane, is_wanted)).collect()
     }
 
-    /// The candidate with lanes over large missed places, shortened wherever that pays.
-    pub(crate) fn finished(mut self, job: &Job) -> Result<Scan<'a>> {
+    /// The candidate with lanes over large missed places, shortened wherever that pays, in coarse cells.
+    pub(crate) fn roughed(mut self, job: &Job) -> Result<Self> {
         job.stage(0.02);
         let swath_m = self.domain.workspace.swath_m;
         let mut swept = SweptFloor::new(self.floor.clone());
@@ -123,16 +118,45 @@ impl<'a> Draft<'a> {
         let fresh = large.flat_map(|group| touch_up(&self.domain, &swept, group)).collect();
         self.lanes.extend(self.wanted(fresh));
         // The draft was quick; from here on the order matters.
-        job.stage(0.27);
+        job.stage(0.4);
         let pieces = self.toured(1.0, job)?;
-        job.stage(0.32);
+        job.stage(0.5);
         let is_wanted = |at| self.scope.is_in_reach(&self.domain, at);
         let terms = Terms::of(&self.scope, self.effort, swath_m, &is_wanted, job);
         let mut track = Track::new(&self.domain, &pieces, |_| true, swept.floor);
-        polish(&mut track, &terms, self.scope.regions.is_empty())?;
+        polish(&mut track, &terms, self.scope.regions.is_empty(), 0.5..1.0)?;
+        let (pieces, swept) = track.into_pieces();
+        self.pieces = pieces;
+        self.measure(&swept);
+        Ok(self)
+    }
+
+    /// A candidate that was roughed, with the last touches.
+    pub(crate) fn finished(self, job: &Job) -> Result<Scan<'a>> {
+        let is_wanted = |at| self.scope.is_in_reach(&self.domain, at);
+        let terms = Terms::of(&self.scope, self.effort, self.domain.workspace.swath_m, &is_wanted, job);
+        let floor = |grain| ReachableFloor::in_cells(&self.domain, grain).within(self.scope.regions);
+        let cell_m = self.scope.cell_m;
+        let mut track = Track::new(&self.domain, &self.pieces, |_| true, floor(Grain::of(cell_m)));
+        polish(&mut track, &terms, self.scope.regions.is_empty(), 0.1..0.8)?;
+        settle(&mut track, &terms, &floor(Grain::other(cell_m)))?;
         let (pieces, swept) = track.into_pieces();
         Ok(Scan { pieces, domain: self.domain, swept })
     }
+
+    /// Length and turns of the path so far, with what it misses.
+    fn measure(&mut self, swept: &SweptFloor) {
+        let path = joined(&self.pieces);
+        let missed_m2 = (self.scope.enough - swept.coverage()).max(0.0) * swept.floor.area_m2();
+        let touch_ups_m = tuning::touch_ups::MISSED * missed_m2 / self.domain.workspace.swath_m;
+        self.length_m = polyline::length_m(&path) + touch_ups_m;
+        self.turns = rotation_turns(&path);
+    }
+}
+
+/// Edge of the cells for everything but the last touches, metres.
+fn rough_m(scope: &Scope<'_>) -> f64 {
+    scope.cell_m * tuning::polish::ROUGH
 }
 
 fn joined(pieces: &[Piece]) -> Vec<Point> {

@@ -7,15 +7,19 @@ mod reachable;
 mod tests;
 
 pub(crate) use bar::Run;
+pub(crate) use raster::Grain;
 use raster::Raster;
 pub(crate) use reachable::ReachableFloor;
 use world::Point;
+
+/// What the count of a cell begins at that the tool cannot reach: it is never 0 nor 1, so nobody has to ask.
+const OUT_OF_REACH: u16 = 1 << 15;
 
 /// Reachable floor with the number of times that each cell was swept.
 #[derive(Clone)]
 pub(crate) struct SweptFloor {
     pub floor: ReachableFloor,
-    /// How often each cell was swept.
+    /// How often each cell was swept, from [`OUT_OF_REACH`] on where the tool cannot reach it.
     swept: Vec<u16>,
     /// Number of reachable cells that were swept.
     n_swept: usize,
@@ -30,18 +34,25 @@ impl SweptFloor {
     /// A floor with nothing swept.
     pub(crate) fn new(floor: ReachableFloor) -> Self {
         let n = floor.cells.len();
-        Self { floor, swept: vec![0; n], n_swept: 0, stamps: vec![0; n], n_looks: 0, n_exchanges: 0 }
+        let begin = |is_reachable: &bool| if *is_reachable { 0 } else { OUT_OF_REACH };
+        let swept = floor.cells.iter().map(begin).collect();
+        Self { floor, swept, n_swept: 0, stamps: vec![0; n], n_looks: 0, n_exchanges: 0 }
     }
 
     /// Sweeps along a path.
     pub(crate) fn sweep(&mut self, path: &[Point]) {
         let swept = &mut self.swept;
         self.floor.raster.along(path, |cells| swept[cells].iter_mut().for_each(|n| *n = n.saturating_add(1)));
-        self.n_swept = swept.iter().zip(self.floor.cells.iter()).filter(|(n, r)| **n > 0 && **r).count();
+        self.n_swept = swept.iter().filter(|n| (1..OUT_OF_REACH).contains(*n)).count();
     }
 
     pub(crate) fn coverage(&self) -> f64 {
         self.n_swept as f64 / self.floor.n.max(1) as f64
+    }
+
+    /// Number of cells that may be lost while this share stays swept.
+    pub(crate) fn spare(&self, share: f64) -> i64 {
+        (self.n_swept as f64 - share * self.floor.n as f64).floor().max(0.0) as i64
     }
 
     /// Swept share of a part of the floor.
@@ -58,7 +69,7 @@ impl SweptFloor {
 
     /// Whether the tool could reach a cell and has not swept it.
     pub(crate) fn is_missed(&self, cell: usize) -> bool {
-        self.swept[cell] == 0 && self.floor.cells[cell]
+        self.swept[cell] == 0
     }
 
     /// Where the cells lie.
@@ -69,14 +80,13 @@ impl SweptFloor {
     /// Whether a place is reachable floor that was swept just once.
     pub(crate) fn is_swept_once(&self, at: Point) -> bool {
         let cell = self.raster().cell_at(at);
-        cell.is_some_and(|cell| self.swept[cell] == 1 && self.floor.cells[cell])
+        cell.is_some_and(|cell| self.swept[cell] == 1)
     }
 
     /// Number of reachable cells under some runs that were swept so often; those under several runs count several times.
     pub(crate) fn count(&self, often: u16, runs: &[Run]) -> u32 {
         let count = |cells: std::ops::Range<usize>| {
-            let both = self.swept[cells.clone()].iter().zip(&self.floor.cells[cells]);
-            both.map(|(n, reachable)| u16::from(*n == often && *reachable)).sum::<u16>()
+            self.swept[cells].iter().map(|n| u16::from(*n == often)).sum::<u16>()
         };
         runs.iter().map(|run| u32::from(count(run.cells()))).sum()
     }
@@ -128,18 +138,18 @@ impl SweptFloor {
         // The cells of a run fit into 16 bits: the shorter the number, the more of them are added at a time.
         for cells in new.iter().map(|run| run.cells()) {
             let mut fresh = 0_u16;
-            for (n, reachable) in self.swept[cells.clone()].iter_mut().zip(&self.floor.cells[cells]) {
-                fresh += u16::from(*n == 0 && *reachable);
+            for n in &mut self.swept[cells] {
+                fresh += u16::from(*n == 0);
                 *n = n.saturating_add(1);
             }
             won += usize::from(fresh);
         }
         for cells in old.iter().map(|run| run.cells()) {
             let (mut empty, mut was_empty) = (0_u16, 0_u16);
-            for (n, reachable) in self.swept[cells.clone()].iter_mut().zip(&self.floor.cells[cells]) {
-                was_empty += u16::from(*n == 0 && *reachable);
+            for n in &mut self.swept[cells] {
+                was_empty += u16::from(*n == 0);
                 *n = n.saturating_sub(1);
-                empty += u16::from(*n == 0 && *reachable);
+                empty += u16::from(*n == 0);
             }
             left += usize::from(empty);
             unswept += usize::from(empty - was_empty);
@@ -168,8 +178,7 @@ impl SweptFloor {
         old.into_iter().any(|side| {
             for run in side {
                 for cell in run.cells() {
-                    let is_swept_once = self.swept[cell] == 1 && self.stamps[cell] != look;
-                    lost += i64::from(is_swept_once && self.floor.cells[cell]);
+                    lost += i64::from(self.swept[cell] == 1 && self.stamps[cell] != look);
                 }
             }
             lost > most

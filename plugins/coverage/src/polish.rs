@@ -7,39 +7,57 @@ mod shortcuts;
 mod ties;
 mod track;
 
+use crate::floor::ReachableFloor;
 use crate::tuning::polish as tuning;
 use planner_api::Result;
+use std::collections::BTreeSet;
+use std::ops::Range;
 pub(crate) use track::{Terms, Track};
 
 /// How far a round of polish is when the path is shortened and when it is bent, as shares of its time, about.
 const SHORTENED: f64 = 0.63;
 const BENT: f64 = 0.92;
-/// How far a candidate is at the end of each round, as shares of its time, about.
-const ROUNDS: [f64; 2] = [0.8, 1.0];
-
-/// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough. Then all of it once
-/// more: what was bent and tied in sweeps floor on its way that other parts need not sweep any more.
-pub(crate) fn polish(track: &mut Track<'_>, terms: &Terms<'_>, is_all_floor: bool) -> Result<()> {
+/// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough. A second round pays:
+/// what was bent and tied in sweeps floor on its way that other parts need not sweep any more. `time` is the share of the
+/// candidate's time that the round takes.
+pub(crate) fn polish(
+    track: &mut Track<'_>,
+    terms: &Terms<'_>,
+    is_all_floor: bool,
+    time: Range<f64>,
+) -> Result<()> {
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
-    let mut from = 0.0;
-    for to in ROUNDS {
-        let at = |share: f64| from + (to - from) * share;
-        let whole = (!is_all_floor).then(|| track.clone());
-        terms.job.stage(at(SHORTENED));
-        track.reopen();
-        track.shorten(terms)?;
-        if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
-            // A little floor far away is not worth its way, but nothing else was asked for.
-            *track = whole;
-            track.shorten(&careful)?;
-        }
-        bend(track, terms, &careful, &at)?;
-        track.pass_along_shell(terms)?;
-        tie(track, terms, &careful, &at)?;
-        track.pass_along_shell(terms)?;
-        from = to;
+    let at = |share: f64| time.start + (time.end - time.start) * share;
+    let whole = (!is_all_floor).then(|| track.clone());
+    terms.job.stage(at(SHORTENED));
+    track.reopen();
+    track.shorten(terms)?;
+    if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
+        // A little floor far away is not worth its way, but nothing else was asked for.
+        *track = whole;
+        track.shorten(&careful)?;
     }
-    Ok(())
+    bend(track, terms, &careful, &at)?;
+    track.pass_along_shell(terms)?;
+    tie(track, terms, &careful, &at)?;
+    track.pass_along_shell(terms)
+}
+
+/// Brings the coverage that other cells than the path's tell to what is enough: by bends and ties, or by shortcuts as long as
+/// it is more than that.
+pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &ReachableFloor) -> Result<()> {
+    let enough = track.enough_here(terms.enough, other);
+    let terms = Terms { enough, keep: enough, ..*terms };
+    let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..terms };
+    bend(track, &terms, &careful, &|_| 1.0)?;
+    tie(track, &terms, &careful, &|_| 1.0)?;
+    for price in tuning::PRICES {
+        if track.coverage() > enough {
+            track.reopen();
+            track.shorten(&Terms { floor_m_per_m2: terms.floor_m_per_m2 * price, ..terms })?;
+        }
+    }
+    track.pass_along_shell(&terms)
 }
 
 /// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was
@@ -60,14 +78,14 @@ fn bend(
     careful: &Terms<'_>,
     at: &dyn Fn(f64) -> f64,
 ) -> Result<()> {
-    let mut share = SHORTENED;
+    let (mut share, mut vain) = (SHORTENED, BTreeSet::new());
     let mut next_stage = || {
         share += (BENT - share) * 0.35;
         terms.job.stage(at(share));
     };
     for _ in 0..tuning::BENDS {
         next_stage();
-        if track.bend(terms)? == 0 {
+        if track.bend(terms, &mut vain)? == 0 {
             break;
         }
         next_stage();

@@ -71,6 +71,10 @@ pub(crate) mod polish {
     pub(crate) const BENT_FLOOR: f64 = 24.0;
     /// Value of floor once the path was bent to it, metres of path per square metre: nothing may be lost again.
     pub(crate) const CAREFUL_M_PER_M2: f64 = 1e6;
+    /// Cells of the first round, as a multiple of those of the second: finer ones decide between candidates no better.
+    pub(crate) const ROUGH: f64 = 1.6;
+    /// Prices at which floor beyond what is enough is given away, as multiples of the price before, dear floor last.
+    pub(crate) const PRICES: [f64; 3] = [3.0, 1.0, 0.4];
     /// Share of the scanned floor that shortcuts must leave if only some floor is asked for.
     pub(crate) const KEPT: f64 = 0.9;
     /// Rounds of bends and of ties, early rounds of ties, and by how much less coverage is enough after these.
@@ -110,6 +114,8 @@ pub(crate) mod bends {
     pub(crate) const PLACES: usize = 5;
     /// Sides of the path that a bend replaces on either side of its point.
     pub(crate) const BASES: [usize; 3] = [1, 2, 4];
+    /// Floor that a bend may gain, as a multiple of that which it is meant for.
+    pub(crate) const AND_BESIDE: f64 = 2.0;
     /// Offsets of a bend, as shares of the swath.
     pub(crate) const ASIDE: [f64; 4] = [0.1, 0.2, 0.35, 0.55];
 }
@@ -154,12 +160,16 @@ pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
     /// about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
+    /// Directions of straight lanes that are looked at in a round tank before any lanes are laid.
+    pub(crate) const LOOKED_AT: usize = 12;
     /// How far the tether of a first tour may exceed what is preferred, as multiples of its length and of its wraps:
     /// polishing changes them by less.
     pub(crate) const DRAFT_CABLE: f64 = 1.015;
     pub(crate) const DRAFT_WRAP: f64 = 1.1;
     /// First tours that cost more than the best by this share never win.
     pub(crate) const HOPELESS: f64 = 0.02;
+    /// The same of what was roughed.
+    pub(crate) const CLOSE: f64 = 0.01;
     /// Within this many swaths of home no cable lies across a cut.
     pub(crate) const FAR: f64 = 4.0;
     /// A plan is complete with this share of the floor in reach even if more is asked for; with a short reel it may

@@ -1,6 +1,6 @@
 //! The tank as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
 
-use crate::floor::ReachableFloor;
+use crate::floor::{Grain, ReachableFloor};
 use crate::inflation::SLACK_M;
 use crate::plane::direction;
 use crate::triangulation::Triangulation;
@@ -43,8 +43,8 @@ pub(crate) struct Workspace {
     /// more obstacles than columns.
     pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
-    /// The floor that the tool can reach if no cut seals any off; made when it is first asked for.
-    pub floor: OnceLock<ReachableFloor>,
+    /// The floor that the tool can reach if no cut seals any off, in different cells; made when it is first asked for.
+    pub floors: [OnceLock<(Grain, ReachableFloor)>; 3],
     /// What the cable lies on; made when it is first asked for.
     pub ground: OnceLock<Ground>,
 }
@@ -68,7 +68,7 @@ impl Workspace {
         }
         let room = Room::new(site, Keep { obstacle_m: keep_m, wall_m: keep_m });
         let home = home(&room, anchor);
-        let (triangulation, floor, ground) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        let (triangulation, floors, ground) = (OnceLock::new(), Default::default(), OnceLock::new());
         Ok(Self {
             wall,
             parts,
@@ -80,7 +80,7 @@ impl Workspace {
             room,
             is_room,
             triangulation,
-            floor,
+            floors,
             ground,
         })
     }

@@ -7,14 +7,35 @@ use crate::plane::{direction, extent, left_of};
 use std::ops::Range;
 use world::{Boundary, Point, Vector, polyline::edges, shape::bounds_of};
 
-/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
+/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan. Where a path was fitted to
+/// the cells of such rows, those of other rows tell what it is worth.
 const ROWS_RAD: f64 = 0.3;
+const OTHER_ROWS_RAD: f64 = 0.9;
 /// Corners of the largest polygon that is filled: a fan of wedges over half a turn, and its middle.
 pub(super) const MOST_CORNERS: usize = 11;
 /// Rows of a polygon that are filled together.
 const BAND: usize = 32;
 /// The end of a closed range as the start of what lies behind it.
 const NEXT: f64 = 1e-9;
+
+/// Size of cells and direction of their rows.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Grain {
+    cell_m: f64,
+    rows_rad: f64,
+}
+
+impl Grain {
+    /// Cells with this edge, metres.
+    pub(crate) fn of(cell_m: f64) -> Self {
+        Self { cell_m, rows_rad: ROWS_RAD }
+    }
+
+    /// Cells as large in rows of another direction.
+    pub(crate) fn other(cell_m: f64) -> Self {
+        Self { cell_m, rows_rad: OTHER_ROWS_RAD }
+    }
+}
 
 /// Where the cells of a floor lie, and what sweeps them.
 #[derive(Clone, Copy)]
@@ -33,8 +54,8 @@ pub(crate) struct Raster {
 
 impl Raster {
     /// Cells over everything within a wall.
-    pub(super) fn over(wall: &Boundary, cell_m: f64, bar_m: f64) -> Self {
-        let ahead = direction(ROWS_RAD);
+    pub(super) fn over(wall: &Boundary, Grain { cell_m, rows_rad }: Grain, bar_m: f64) -> Self {
+        let ahead = direction(rows_rad);
         let (low, high) = match wall {
             Boundary::Circle { .. } => wall.bounds(),
             Boundary::Polygon { vertices } => {

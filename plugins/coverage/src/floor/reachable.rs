@@ -1,6 +1,6 @@
 //! The floor that the tool can reach.
 
-use crate::floor::raster::Raster;
+use crate::floor::raster::{Grain, Raster};
 use crate::slit_domain::SlitDomain;
 use std::sync::Arc;
 use world::{Point, shape::mean_of};
@@ -18,17 +18,24 @@ pub(crate) struct ReachableFloor {
 impl ReachableFloor {
     /// The floor that the tool can reach from a domain, in cells with this edge, metres.
     pub(crate) fn new(domain: &SlitDomain<'_>, cell_m: f64) -> Self {
-        if domain.sealed.area_m2 > 0.0 {
-            return Self::of(domain, cell_m);
-        }
-        // Cuts take no floor away: it is the same for all domains of the workspace.
-        let floor = domain.workspace.floor.get_or_init(|| Self::of(domain, cell_m));
-        if floor.raster.cell_m.total_cmp(&cell_m).is_eq() { floor.clone() } else { Self::of(domain, cell_m) }
+        Self::in_cells(domain, Grain::of(cell_m))
     }
 
-    fn of(domain: &SlitDomain<'_>, cell_m: f64) -> Self {
+    /// The floor that the tool can reach from a domain, in such cells.
+    pub(crate) fn in_cells(domain: &SlitDomain<'_>, grain: Grain) -> Self {
+        if domain.sealed.area_m2 > 0.0 {
+            return Self::of(domain, grain);
+        }
+        // Cuts take no floor away: it is the same for all domains of the workspace.
+        let mut kept =
+            domain.workspace.floors.iter().map(|kept| kept.get_or_init(|| (grain, Self::of(domain, grain))));
+        kept.find(|(other, _)| *other == grain)
+            .map_or_else(|| Self::of(domain, grain), |(_, floor)| floor.clone())
+    }
+
+    fn of(domain: &SlitDomain<'_>, grain: Grain) -> Self {
         let workspace = domain.workspace;
-        let raster = Raster::over(&workspace.wall, cell_m, workspace.swath_m);
+        let raster = Raster::over(&workspace.wall, grain, workspace.swath_m);
         let mut free = vec![false; raster.len()];
         for triangle in domain.triangles() {
             raster.fill(&triangle, |cells| free[cells].fill(true));

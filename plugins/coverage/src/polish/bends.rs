@@ -6,9 +6,10 @@ use crate::plane::Course;
 use crate::polish::track::{Terms, Track};
 use crate::scan::Piece;
 use crate::slit_domain::Spot;
-use crate::tuning::bends::{ASIDE, BASES, NEAR_M, PLACES};
+use crate::tuning::bends::{AND_BESIDE, ASIDE, BASES, NEAR_M, PLACES};
 use crate::tuning::polish::BENT_CELLS;
 use planner_api::Result;
+use std::collections::BTreeSet;
 use world::{Point, Vector};
 
 /// A bend that may pay.
@@ -34,8 +35,8 @@ struct Stretch {
 
 impl Track<'_> {
     /// Bends the path to missed floor until the coverage is reached, wherever a square metre costs little enough. Returns the
-    /// number of bends.
-    pub(super) fn bend(&mut self, terms: &Terms<'_>) -> Result<usize> {
+    /// number of bends. Groups of missed cells that no bend is worth, each by its first cell and their number, are remembered.
+    pub(super) fn bend(&mut self, terms: &Terms<'_>, vain: &mut BTreeSet<(usize, usize)>) -> Result<usize> {
         if self.coverage() >= terms.enough {
             return Ok(0);
         }
@@ -45,7 +46,14 @@ impl Track<'_> {
         for (k, group) in missed.iter().take_while(|group| group.len() >= BENT_CELLS).enumerate() {
             terms.job.check()?;
             terms.job.reached(k as f64 / missed.len() as f64);
-            offers.extend(self.best_bend(group, &places, terms));
+            let id = (group[0], group.len());
+            if vain.contains(&id) {
+                continue;
+            }
+            match self.best_bend(group, &places, terms) {
+                Some(offer) => offers.push(offer),
+                None => drop(vain.insert(id)),
+            }
         }
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut n_made = 0;
@@ -56,7 +64,9 @@ impl Track<'_> {
             // The path may have changed since: only if the bend is still cheap it is made.
             let Some(k) = (0..=self.sides.len()).find(|k| self.point(*k) == at) else { continue };
             let Some((stretch, spot)) = self.stretch(k, base).zip(self.domain.spot(to)) else { continue };
-            if self.rate(&stretch, spot, terms, f64::INFINITY).is_some_and(|rate| rate <= terms.bend_m_per_m2)
+            if self
+                .rate(&stretch, spot, terms, (f64::INFINITY, f64::INFINITY))
+                .is_some_and(|rate| rate <= terms.bend_m_per_m2)
             {
                 self.make_bend(k, &stretch, to);
                 n_made += 1;
@@ -77,6 +87,7 @@ impl Track<'_> {
             .collect();
         near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         let bar_m = self.swept.raster().bar_m;
+        let most_m2 = AND_BESIDE * group.len() as f64 * self.swept.raster().cell_m2();
         let mut best: Option<Offer> = None;
         for (_, k) in near.into_iter().take(PLACES) {
             let at = self.point(k);
@@ -90,7 +101,7 @@ impl Track<'_> {
                 for (base, stretch) in BASES.into_iter().zip(&stretches) {
                     let Some(stretch) = stretch else { continue };
                     let most = best.as_ref().map_or(terms.bend_m_per_m2, |best| best.rate);
-                    let rate = self.rate(stretch, spot, terms, most).filter(|rate| *rate < most);
+                    let rate = self.rate(stretch, spot, terms, (most, most_m2)).filter(|rate| *rate < most);
                     best = rate.map(|rate| Offer { rate, at, base, to }).or(best);
                 }
             }
@@ -110,15 +121,23 @@ impl Track<'_> {
         Some(Stretch { from, past, course, a, b, swept })
     }
 
-    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it surely
-    /// costs more than so much.
-    fn rate(&mut self, old: &Stretch, to: Spot, terms: &Terms<'_>, most_m_per_m2: f64) -> Option<f64> {
-        if !(self.domain.sees_between(old.a, to) && self.domain.sees_between(to, old.b)) {
-            return None;
-        }
+    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it costs more
+    /// than so much for no more floor than that.
+    fn rate(
+        &mut self,
+        old: &Stretch,
+        to: Spot,
+        terms: &Terms<'_>,
+        (most_m_per_m2, most_m2): (f64, f64),
+    ) -> Option<f64> {
         let way = [old.a.at, to.at, old.b.at];
         let new = self.course(old.from, old.past, &way);
         let cost_m = new.excess_m(old.course, terms.turn_m_per_rad);
+        if cost_m > most_m_per_m2 * most_m2
+            || !(self.domain.sees_between(old.a, to) && self.domain.sees_between(to, old.b))
+        {
+            return None;
+        }
         let cell_m2 = self.swept.raster().cell_m2();
         let swept = self.swept_with(old.from, old.past, &way);
         // A quick look at what the new way sweeps first.
@@ -164,13 +183,14 @@ mod tests {
                 floor_m_per_m2: 15.0,
                 bend_m_per_m2,
                 enough: 1.0,
+                keep: 0.0,
                 is_wanted: &|_| true,
                 job: &Job::default(),
             };
             let piece = Piece { points: points.clone(), is_lane: true };
             let mut track = Track::new(&domain, &[piece], |_| true, floor.clone());
             let before = track.coverage();
-            let n = track.bend(&terms).unwrap();
+            let n = track.bend(&terms, &mut BTreeSet::new()).unwrap();
             (n, track.coverage() - before, track.points(0..track.sides.len()))
         };
         let (n, gained, points) = bent(40.0);

@@ -110,13 +110,16 @@ impl Track<'_> {
         let (sides, new) = (self.around(from, to), self.swept_with(from, to, &way));
         let cell_m2 = self.swept.raster().cell_m2();
         let most_lost = ((saving_m - LEAST_SAVING_M) / (terms.floor_m_per_m2 * cell_m2)).floor() as i64;
+        let most_lost = most_lost.min(self.swept.spare(terms.keep));
         let old = from_the_middle(sides.clone()).map(|side| &self.sides[side].along[..]);
         if self.swept.loses_more(old, &new, most_lost) {
             return false;
         }
         let old = self.swept_by(sides);
         let lost_m2 = self.swept.exchange(&old, &new) as f64 * cell_m2;
-        if saving_m - terms.floor_m_per_m2 * lost_m2 < LEAST_SAVING_M {
+        if saving_m - terms.floor_m_per_m2 * lost_m2 < LEAST_SAVING_M
+            || (lost_m2 > 0.0 && self.coverage() < terms.keep)
+        {
             self.swept.exchange(&new, &old);
             return false;
         }

@@ -27,6 +27,8 @@ pub(crate) struct Terms<'a> {
     /// Metres of path and turning that a square metre of floor may cost by a bend.
     pub bend_m_per_m2: f64,
     pub enough: f64,
+    /// Coverage that shortcuts must leave.
+    pub keep: f64,
     /// Where the robot may go.
     pub is_wanted: &'a dyn Fn(Point) -> bool,
     pub job: &'a Job,
@@ -86,6 +88,7 @@ impl<'a> Terms<'a> {
             floor_m_per_m2: FLOOR / swath_m,
             bend_m_per_m2: BENT_FLOOR / swath_m,
             enough: scope.enough,
+            keep: 0.0,
             is_wanted,
             job,
         }
@@ -148,6 +151,14 @@ impl<'a> Track<'a> {
 
     pub(super) fn coverage(&self) -> f64 {
         self.swept.coverage()
+    }
+
+    /// Coverage in the cells that the path was fitted to at which it is so much in others: a fitted path seems to sweep more than
+    /// it does.
+    pub(super) fn enough_here(&self, enough: f64, other: &ReachableFloor) -> f64 {
+        let mut swept = SweptFloor::new(other.clone());
+        swept.sweep(&self.points(0..self.sides.len()));
+        enough + (self.coverage() - swept.coverage()).max(0.0)
     }
 
     /// A point of the path, from 0 to the number of sides.

@@ -1,12 +1,13 @@
 //! Candidates of a tether-safe plan: how lanes and cuts may lie.
 
-use crate::cuts::{CutRule, domain, domain_between_walls};
+use crate::cuts::{CutRule, broken_lanes, domain, domain_between_walls};
 use crate::draft::rotation_turns;
 use crate::pattern::{Pattern, Rows};
 use crate::scan::Scan;
 use crate::slit_domain::SlitDomain;
 use crate::tether::{Tethered, least_cable_m};
 use crate::tether_safe::parameters::{Choice, Preferences};
+use crate::tuning::choice::LOOKED_AT;
 use crate::tuning::cuts::{AROUND_SHARE, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
 use planner_api::Site;
@@ -24,16 +25,11 @@ pub(super) struct Candidate {
 impl Candidate {
     /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
     pub(super) fn all(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Self> {
-        let straight = |k: usize| {
-            let angle_rad =
-                main_direction_rad(&workspace.wall) + PI * k as f64 / preferences.directions as f64;
-            Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
-        };
         // Contours of the outer wall are no lanes of a floor between inner walls.
         let is_meant = preferences.contours && (preferences.directions == 0 || !workspace.is_room);
         let contours = is_meant.then_some(Pattern::Contours);
-        let patterns = contours.into_iter().chain((0..preferences.directions).map(straight));
-        patterns.map(|pattern| Self { pattern, alpha_rad }).collect()
+        let straight = straight(workspace, preferences, alpha_rad);
+        contours.into_iter().chain(straight).map(|pattern| Self { pattern, alpha_rad }).collect()
     }
 
     /// What the operator calls it.
@@ -69,6 +65,25 @@ impl Candidate {
         let mut domains = slacks.iter().map(|slack| made(*slack));
         domains.find(|domain| domain.as_ref().is_none_or(is_short)).unwrap_or_else(|| made(0.0))
     }
+}
+
+/// Straight lanes in different directions: in a round tank those of many in which the cuts break the fewest lanes.
+fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Pattern> {
+    let wanted = preferences.directions;
+    let is_round = matches!(workspace.wall, Boundary::Circle { .. }) && !workspace.is_room;
+    let looked_at = if is_round && wanted > 0 { wanted.max(LOOKED_AT) } else { wanted };
+    let pattern = |k: usize| {
+        let angle_rad = main_direction_rad(&workspace.wall) + PI * k as f64 / looked_at as f64;
+        Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
+    };
+    let mut patterns: Vec<Pattern> = (0..looked_at).map(pattern).collect();
+    if wanted < looked_at {
+        let cable_m = least_cable_m(workspace) * preferences.cable_share.min(2.0);
+        let rule = CutRule { alpha_rad, cable_m: cable_m.min(preferences.limits.reel_length_m) };
+        patterns.sort_by_cached_key(|pattern| (broken_lanes(workspace, pattern, &rule) * 1e3) as i64);
+        patterns.truncate(wanted);
+    }
+    patterns
 }
 
 /// The direction of the longest wall, radians; east in a round tank.

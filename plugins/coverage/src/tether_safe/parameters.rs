@@ -19,7 +19,7 @@ const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "stra
     .help("Lanes along the wall, straight lanes within a lap along the wall, or whichever is better.")
     .group("Plan");
 const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 2)
-    .help("Straight lanes are tried in this many directions.")
+    .help("Straight lanes are tried in this many directions: in a round tank those in which cuts break the fewest lanes.")
     .group("Plan");
 const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 50.0)
     .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path.")
@@ -41,7 +41,7 @@ const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m",
            of a turn, so that the quickest is chosen.")
     .group("Plan");
 const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.58)
-    .help("Touch-ups are added until this share of the floor in reach is scanned.")
+    .help("Touch-ups are added until this share of the floor in reach is scanned, by cells that no path is fitted to.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
     .help("Edge of the cells in which floor is counted; in large tanks as much larger as keeps them below four million.")

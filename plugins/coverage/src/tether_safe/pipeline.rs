@@ -8,7 +8,7 @@ use crate::stages::{Stage, Stages};
 use crate::tether::Tethered;
 use crate::tether_safe::candidate::{Candidate, Worth};
 use crate::tether_safe::parameters::{Choice, Preferences};
-use crate::tuning::choice::{ANGLES, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
+use crate::tuning::choice::{ANGLES, CLOSE, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel, Result, Site};
 use world::tether::Cable;
@@ -69,29 +69,33 @@ impl<'a> Pipeline<'a> {
         if !tried.is_enough(self.preferences) && !tried.left.is_empty() {
             stages.end = end;
             let left = std::mem::take(&mut tried.left);
-            self.finish(left, &stages.next(1.0, "candidates with more tether"), &mut tried)?;
+            self.finish(left, stages, (1.0, "candidates with more tether"), &mut tried)?;
         }
         Ok(tried)
     }
 
     /// The first tours of all candidates with cuts up to an angle, the cheapest first.
     fn drafts(&self, alpha_rad: f64, stage: &Stage<'_>) -> Result<Vec<Drafted<'a>>> {
-        let Self { site, workspace, preferences, scope, cable } = *self;
-        let lenient = preferences.with_leeway(DRAFT_CABLE, DRAFT_WRAP);
+        let Self { workspace, preferences, scope, .. } = *self;
         let drafted = |candidate: Candidate, job: &Job| {
             job.stage(0.25);
             let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
             let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
-            let estimate_m = draft.estimate_m(preferences.choice_turn_m);
-            let tethered = Tethered { domain: draft.domain(), path: &draft.path(), cable };
-            let strain = tethered.strain(site, preferences.demanded);
-            let may_meet = strain.is_some_and(|strain| lenient.allow(&strain));
-            Ok(Some(Drafted { name: candidate.name(), estimate_m, may_meet, draft }))
+            Ok(Some(self.judged(candidate.name(), draft)))
         };
         let drafts = run_all(Candidate::all(workspace, preferences, alpha_rad), stage, drafted)?;
-        let mut drafts: Vec<Drafted<'a>> = drafts.into_iter().flatten().collect();
-        drafts.sort_by(|a, b| a.estimate_m.total_cmp(&b.estimate_m));
-        Ok(drafts)
+        Ok(cheapest_first(drafts.into_iter().flatten()))
+    }
+
+    /// A draft with what it promises.
+    fn judged(&self, name: String, draft: Draft<'a>) -> Drafted<'a> {
+        let Self { site, preferences, cable, .. } = *self;
+        let estimate_m = draft.estimate_m(preferences.choice_turn_m);
+        let tethered = Tethered { domain: draft.domain(), path: &draft.path(), cable };
+        let strain = tethered.strain(site, preferences.demanded);
+        let lenient = preferences.with_leeway(DRAFT_CABLE, DRAFT_WRAP);
+        let may_meet = strain.is_some_and(|strain| lenient.allow(&strain));
+        Drafted { name, estimate_m, may_meet, draft }
     }
 
     /// Finishes the drafts that may win, and those that look worse if none of the former meets the preferences. Those whose
@@ -106,17 +110,14 @@ impl<'a> Pipeline<'a> {
         let left: Vec<Drafted<'a>> = drafts.extract_if(.., |draft| !draft.may_meet).collect();
         tried.left.extend(left);
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
-        let may_win = |draft: &Drafted<'_>| {
-            self.preferences.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + HOPELESS)
-        };
-        let hopeless = drafts.split_off(drafts.partition_point(may_win));
+        let hopeless = self.hopeless(&mut drafts, HOPELESS);
         let (ctx, n) = (stages.ctx, drafts.len() as f64);
         ctx.scalar("candidates worked out", n, "");
         // It is an even chance that those that look worse are finished as well.
         let n_expected = n + hopeless.len() as f64 / 2.0;
-        self.finish(drafts, &stages.next(n / n_expected.max(1.0), what), tried)?;
+        self.finish(drafts, stages, (n / n_expected.max(1.0), what), tried)?;
         if !tried.is_enough(self.preferences) && !hopeless.is_empty() {
-            return self.finish(hopeless, &stages.next(1.0, what), tried);
+            return self.finish(hopeless, stages, (1.0, what), tried);
         }
         for Drafted { name, estimate_m, .. } in hopeless {
             let more_m = estimate_m - least_m;
@@ -128,8 +129,40 @@ impl<'a> Pipeline<'a> {
         Ok(())
     }
 
-    /// Finishes drafts, and keeps the scan of the best candidate so far.
-    fn finish(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
+    /// Takes out the drafts that cost more than the cheapest by so much, if only the cheapest is wanted.
+    fn hopeless(&self, drafts: &mut Vec<Drafted<'a>>, share: f64) -> Vec<Drafted<'a>> {
+        let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
+        let may_win = |draft: &Drafted<'_>| {
+            self.preferences.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + share)
+        };
+        drafts.split_off(drafts.partition_point(may_win))
+    }
+
+    /// Roughs drafts, and finishes those that may win then: all of them if none of the others meets the preferences.
+    fn finish(
+        &self,
+        drafts: Vec<Drafted<'a>>,
+        stages: &mut Stages<'_>,
+        (share, what): (f64, &'static str),
+        tried: &mut Tried<'a>,
+    ) -> Result<()> {
+        let end = stages.end;
+        stages.end = stages.toward(end, share);
+        let roughed = |Drafted { name, draft, .. }, job: &Job| Ok(self.judged(name, draft.roughed(job)?));
+        let roughed = run_all(drafts, &stages.next(0.6, what), roughed)?;
+        let (mut close, mut rest): (Vec<_>, Vec<_>) = roughed.into_iter().partition(|draft| draft.may_meet);
+        close = cheapest_first(close.into_iter());
+        rest.extend(self.hopeless(&mut close, CLOSE));
+        self.touch_up(close, &stages.next(0.6, what), tried)?;
+        if !tried.is_enough(self.preferences) {
+            self.touch_up(rest, &stages.next(1.0, what), tried)?;
+        }
+        stages.end = end;
+        Ok(())
+    }
+
+    /// Puts the last touches to drafts, and keeps the scan of the best candidate so far.
+    fn touch_up(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
         let Self { site, preferences, cable, .. } = *self;
         tried.finished.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
             let scan = draft.finished(job)?;
@@ -140,6 +173,12 @@ impl<'a> Pipeline<'a> {
         tried.keep_best(preferences);
         Ok(())
     }
+}
+
+fn cheapest_first<'a>(drafts: impl Iterator<Item = Drafted<'a>>) -> Vec<Drafted<'a>> {
+    let mut drafts: Vec<Drafted<'a>> = drafts.collect();
+    drafts.sort_by(|a, b| a.estimate_m.total_cmp(&b.estimate_m));
+    drafts
 }
 
 impl<'a> Tried<'a> {

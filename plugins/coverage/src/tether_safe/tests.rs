@@ -33,7 +33,7 @@ fn the_floor_is_covered_by_whatever_cells_it_is_counted() {
         let plan = plan(&tank, &[], None).0.unwrap();
         for cell_m in [0.043, CELL_M, 0.02] {
             let share = tank.score(&plan.path, &plan.cuts, cell_m).unwrap().coverage_reachable;
-            assert!(share >= 0.994, "{} by cells of {cell_m} m: {share}", known.id());
+            assert!(share >= 0.995, "{} by cells of {cell_m} m: {share}", known.id());
         }
     }
 }
