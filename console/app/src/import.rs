@@ -8,6 +8,9 @@ use scenario::Scenario;
 use std::process::ExitCode;
 use world::Boundary;
 
+/// Bad rows that an error lists.
+const LISTED: usize = 10;
+
 /// `tankops import FILE -o SCENARIO`.
 pub(crate) fn import(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
@@ -39,7 +42,7 @@ fn read(args: &ImportArgs) -> anyhow::Result<FloorPlan> {
             let radius_m = args.tank_radius.ok_or_else(|| {
                 bad_input("a list of columns does not state the tank: add --tank-radius with its inner radius in metres")
             })?;
-            read(columns::read(&args.file, radius_m))
+            columns::read(&args.file, radius_m).map_err(|errors| bad_input(listed(&errors)))
         }
         "dxf" => {
             let unit_m = args.units.map(Into::into);
@@ -51,6 +54,14 @@ fn read(args: &ImportArgs) -> anyhow::Result<FloorPlan> {
         }
         _ => Err(bad_input(format!("{}: import reads .dxf and .csv files", args.file.display()))),
     }
+}
+
+/// What is wrong with a file, line by line.
+fn listed(errors: &[ImportError]) -> String {
+    let mut lines: Vec<String> = errors.iter().take(LISTED).map(ImportError::to_string).collect();
+    let more = errors.len() - lines.len();
+    lines.extend((more > 0).then(|| format!("and {more} more")));
+    lines.join("\n")
 }
 
 fn human(plan: &FloorPlan) -> String {

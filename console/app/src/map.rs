@@ -11,6 +11,14 @@ use world::{Obstacle, ObstacleId, Point, Shape, World};
 pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
     let map = OccupancyMap::read(&args.map).map_err(|error| bad_input(error.to_string()))?;
     let start = args.start.map(|[x, y]| Point::new(x, y));
+    if let Some(solid) = start.filter(|start| !map.is_free_at(*start)) {
+        return Err(bad_input(format!(
+            "--start {},{}: no free floor there in {}; without --start the largest free floor is taken",
+            solid.x,
+            solid.y,
+            args.map.display()
+        )));
+    }
     let floor = MapFloor::new(&map, start, args.simplify)
         .ok_or_else(|| bad_input(format!("{}: shows no free floor", args.map.display())))?;
     if let Some(file) = &args.svg {

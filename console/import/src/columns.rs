@@ -18,79 +18,120 @@ use world::{Boundary, Point, Shape};
 /// tank's centre. Lines that begin with `#` are skipped, and fields of other names listed.
 ///
 /// # Errors
-/// File, line and field of what is wrong.
-pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, ImportError> {
+/// File, line and field of everything that is wrong.
+pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportError>> {
     // Lines are counted by their line feeds.
-    let text = decoded(&read_file(file)?, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
-    let wrong = |line: u64, key: &str, what: String| ImportError {
+    let text = read_file(file).map_err(|error| vec![error])?;
+    let text = decoded(&text, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
+    let wrong = |Wrong { line, field, what }: Wrong| ImportError {
         file: file.display().to_string(),
         line: Some(line as usize),
-        key: Some(key.to_owned()).filter(|key| !key.is_empty()),
+        key: Some(field).filter(|field| !field.is_empty()),
         what,
     };
+    let (obstacles, unused) = list(&text, tank_radius_m)
+        .map_err(|problems| problems.into_iter().map(wrong).collect::<Vec<ImportError>>())?;
+    if obstacles.is_empty() {
+        return Err(vec![ImportError::of_file(file, "no columns: below the first line there are no rows")]);
+    }
+    let boundary = Boundary::Circle { radius_m: tank_radius_m };
+    let notes = unused.iter().map(|field| format!("not used: field {field}")).collect();
+    Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), notes })
+}
+
+/// What is wrong in a line, perhaps in one of its fields.
+struct Wrong {
+    line: u64,
+    field: String,
+    what: String,
+}
+
+impl Wrong {
+    fn new(line: u64, field: impl Into<String>, what: impl Into<String>) -> Self {
+        Self { line, field: field.into(), what: what.into() }
+    }
+}
+
+/// The columns of a list, and the names of fields that are not used.
+fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Named>, Vec<String>), Vec<Wrong>> {
     if let Some(at) = text.find('\0') {
         let line = text[..at].lines().count().max(1) as u64;
-        return Err(wrong(line, "", "no text: a byte 0; save the list as CSV".into()));
+        return Err(vec![Wrong::new(line, "", "no text: a byte 0; save the list as CSV")]);
     }
-    let delimiter = delimiter(&text);
+    let delimiter = delimiter(text);
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let bad = |error: &csv::Error, line: u64| {
-        let what = match error.kind() {
-            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                format!("{len} cells, and the first line names {expected_len}")
-            }
-            _ => format!("not a CSV file: {error}"),
-        };
-        wrong(line, "", what)
-    };
     let header = match reader.headers() {
         Ok(header) => header.clone(),
-        Err(error) => return Err(bad(&error, line_of(&reader))),
+        Err(error) => return Err(vec![no_row(&error, line_of(&reader))]),
     };
     let first_line = line_of(&reader);
-    let fields = Fields::new(&header).map_err(|(field, what)| wrong(first_line, &field, what))?;
-    let (mut names, mut obstacles) = (HashSet::new(), Vec::new());
+    let fields = Fields::new(&header).map_err(|(field, what)| vec![Wrong::new(first_line, field, what)])?;
+    let (mut names, mut columns, mut problems) = (HashSet::new(), Vec::new(), Vec::new());
     let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(|error| bad(&error, line_of(&reader)))? {
+    loop {
+        let read = reader.read_record(&mut record);
         let line = line_of(&reader);
-        // Spreadsheets leave lines of empty cells behind a list.
-        if record.iter().all(str::is_empty) {
-            continue;
+        match read {
+            Ok(false) => break,
+            Err(error) => {
+                problems.push(no_row(&error, line));
+                continue;
+            }
+            // Spreadsheets leave lines of empty cells behind a list.
+            Ok(true) if record.iter().all(str::is_empty) => continue,
+            Ok(true) => {}
         }
-        let metres = |quantity: Quantity| {
-            let has_commas = delimiter != b',';
-            fields.metres(&record, quantity, has_commas).map_err(|(field, what)| wrong(line, field, what))
-        };
-        let (center, radius_m) =
-            (Point::new(metres(Quantity::X)?, metres(Quantity::Y)?), metres(Quantity::Radius)?);
-        if radius_m <= 0.0 {
-            let what = format!("{radius_m} m for the radius; it must be greater than 0");
-            return Err(wrong(line, fields.name_of(Quantity::Radius), what));
-        }
-        if center.coords.norm() - radius_m >= tank_radius_m {
-            let what = format!(
-                "({}, {}) lies outside the tank of {tank_radius_m} m; x and y count from its centre",
-                center.x, center.y
-            );
-            return Err(wrong(line, fields.name_of(Quantity::X), what));
-        }
+        let disc = disc(&fields, &record, delimiter != b',', tank_radius_m);
+        let shape = disc.map_err(|(field, what)| problems.push(Wrong::new(line, field, what))).ok();
         let given = fields.name(&record).filter(|name| !name.is_empty());
-        let name = given.map_or_else(|| format!("column {}", obstacles.len() + 1), str::to_owned);
+        let name = given.map_or_else(|| format!("column {}", columns.len() + 1), str::to_owned);
         if !names.insert(name.clone()) {
-            return Err(wrong(line, "name", format!("`{name}` is there twice")));
+            problems.push(Wrong::new(line, "name", format!("`{name}` is there twice")));
         }
-        obstacles.push(Named { name, shape: Shape::Disc { center, radius_m } });
+        columns.extend(shape.map(|shape| Named { name, shape }));
     }
-    if obstacles.is_empty() {
-        return Err(ImportError::of_file(file, "no columns: below the first line there are no rows"));
+    if problems.is_empty() { Ok((columns, fields.unused)) } else { Err(problems) }
+}
+
+/// The column of a row; otherwise the field that is wrong, and what is wrong with it.
+fn disc(
+    fields: &Fields,
+    record: &csv::StringRecord,
+    has_commas: bool,
+    tank_radius_m: f64,
+) -> Result<Shape, (String, String)> {
+    let metres = |quantity| {
+        fields.metres(record, quantity, has_commas).map_err(|(field, what)| (field.to_owned(), what))
+    };
+    let (center, radius_m) =
+        (Point::new(metres(Quantity::X)?, metres(Quantity::Y)?), metres(Quantity::Radius)?);
+    if radius_m <= 0.0 {
+        let what = format!("{radius_m} m for the radius; it must be greater than 0");
+        return Err((fields.name_of(Quantity::Radius).to_owned(), what));
     }
-    let boundary = Boundary::Circle { radius_m: tank_radius_m };
-    let notes = fields.unused.iter().map(|field| format!("not used: field {field}")).collect();
-    Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), notes })
+    if center.coords.norm() - radius_m >= tank_radius_m {
+        let what = format!(
+            "({}, {}) lies outside the tank of {tank_radius_m} m; x and y count from its centre",
+            center.x, center.y
+        );
+        return Err((fields.name_of(Quantity::X).to_owned(), what));
+    }
+    Ok(Shape::Disc { center, radius_m })
+}
+
+/// Why a line is no row.
+fn no_row(error: &csv::Error, line: u64) -> Wrong {
+    let what = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("{len} cells, and the first line names {expected_len}")
+        }
+        _ => format!("not a CSV file: {error}"),
+    };
+    Wrong::new(line, "", what)
 }
 
 /// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.

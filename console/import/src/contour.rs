@@ -44,6 +44,11 @@ impl Component {
         (!cells.is_empty()).then_some(Self { columns: map.columns, is_free, n_cells: cells.len(), low, high })
     }
 
+    /// Its cells among those of the map.
+    pub(crate) fn into_cells(self) -> Vec<bool> {
+        self.is_free
+    }
+
     /// Whether a cell is free; outside the map none is.
     pub(crate) fn is_free(&self, [x, y]: Node) -> bool {
         x >= 0

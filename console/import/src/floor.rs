@@ -20,6 +20,8 @@ pub struct MapFloor {
     pub n_corners: [usize; 2],
     /// Farthest that any floor that became solid is from a solid cell, metres.
     pub error_m: f64,
+    /// Which cells of the map belong together.
+    is_joined: Vec<bool>,
 }
 
 impl MapFloor {
@@ -44,7 +46,14 @@ impl MapFloor {
             n_outlines: outlines.rings.len(),
             n_corners: [component.rings(), outlines.rings].map(|rings| rings.iter().map(Vec::len).sum()),
             error_m: outlines.error_cells * map.cell_m,
+            is_joined: component.into_cells(),
         })
+    }
+
+    /// Whether a place is free in the map, but no way over free cells leads there.
+    pub fn is_cut_off(&self, map: &OccupancyMap, place: Point) -> bool {
+        let is_joined = map.cell_at(place).is_some_and(|(x, y)| self.is_joined[y * map.columns + x]);
+        map.is_free_at(place) && !is_joined
     }
 }
 

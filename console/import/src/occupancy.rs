@@ -74,6 +74,11 @@ impl OccupancyMap {
         Some((fits(at.x, self.columns)?, fits(at.y, self.rows())?))
     }
 
+    /// Whether a place lies on a free cell.
+    pub fn is_free_at(&self, place: Point) -> bool {
+        self.cell_at(place).is_some_and(|(x, y)| self.is_free[y * self.columns + x])
+    }
+
     /// A lattice point in the tank frame.
     pub(crate) fn to_tank(&self, x: f64, y: f64) -> Point {
         self.tank_from_map * (Point::new(x, y) * self.cell_m)

@@ -144,7 +144,7 @@ fn a_bad_row_in_the_middle_of_an_emission_does_not_divide_it() {
     for (t_s, station, range_m, _) in walk(5) {
         let _ = writeln!(good, "{t_s},{station},{range_m}");
         let middle = if station == "C" { format!("{t_s},G,1\n{t_s},A,x\n") } else { String::new() };
-        let _ = write!(bad, "{middle}{t_s},{station},{range_m}\n");
+        let _ = writeln!(bad, "{middle}{t_s},{station},{range_m}");
     }
     let bad = "t_s,station,range_m\n".to_owned() + &bad;
     let (scenario, good, bad) = (scenario(), Readable::new("g.csv", good), Readable::new("b.csv", bad));

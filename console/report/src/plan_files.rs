@@ -3,6 +3,7 @@
 use crate::{
     dxf::Drawing,
     geojson::{Datum, corners, feature, outline},
+    leg::Leg,
     plan::Planned,
 };
 use serde_json::json;
@@ -46,9 +47,8 @@ impl Planned {
             };
             feature(geometry, json!({ "layer": "obstacles", "name": obstacle.name }))
         }));
-        features.extend((1..).zip(&self.legs).map(|(number, leg): (usize, _)| {
-            let geometry = datum.line(&self.path[leg.first..=leg.last]);
-            feature(geometry, json!({ "layer": "path", "leg": number, "tag": leg.tag }))
+        features.extend(self.lines().map(|(number, leg, line)| {
+            feature(datum.line(line), json!({ "layer": "path", "leg": number, "tag": leg.tag }))
         }));
         features.extend(self.cuts.iter().map(|cut| feature(datum.line(cut), json!({ "layer": "cuts" }))));
         let collection = json!({
@@ -67,12 +67,42 @@ impl Planned {
         for obstacle in &drawing.obstacles {
             dxf.shape("OBSTACLES", &obstacle.shape);
         }
-        for leg in &self.legs {
-            dxf.polyline("PATH", &self.path[leg.first..=leg.last], false);
+        for (.., line) in self.lines() {
+            dxf.polyline("PATH", line, false);
         }
         for cut in &self.cuts {
             dxf.polyline("CUTS", cut, false);
         }
         dxf.finish()
+    }
+
+    /// The legs with their numbers from 1 and their lines; a leg in one place is no line, and other programs refuse it.
+    fn lines(&self) -> impl Iterator<Item = (usize, &Leg, &[Point])> {
+        let numbered = (1..).zip(&self.legs);
+        let lines = numbered.map(|(number, leg)| (number, leg, &self.path[leg.first..=leg.last]));
+        lines.filter(|(.., line)| line.iter().any(|point| *point != line[0]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use crate::{fold::tests::round_tank, plan::Made};
+    use planner_api::{LegTag, Plan};
+
+    #[test]
+    fn a_leg_in_one_place_is_no_line() {
+        let run = round_tank(0.05);
+        let path = [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let leg = |first, last| planner_api::Leg { first, last, tag: LegTag::Travel };
+        let plan = Plan { path, legs: vec![leg(0, 1), leg(1, 2)], ..Plan::default() };
+        let made = Made { plan, plan_time_ms: 1.0, reason: None, warnings: vec![] };
+        let planned = Planned::new(&run.mission, &run.world, made);
+        let numbers: Vec<usize> = planned.lines().map(|(number, ..)| number).collect();
+        assert_eq!(numbers, [2]);
+        let text = planned.geojson(&run.world, &crate::Inspection::default());
+        assert_eq!(text.matches("\"layer\":\"path\"").count(), 1, "{text}");
     }
 }

@@ -5,7 +5,7 @@
 
 use super::problem::{Complaint, Problem, ScenarioErrors};
 use import::{MapFloor, OccupancyMap, plan::points};
-use std::{fmt::Write, path::Path};
+use std::{fmt::Write, ops::Range, path::Path};
 use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Value, value};
 use world::{Boundary, Point};
@@ -29,19 +29,26 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     if tolerance.is_some() && tolerance_m.is_none() {
         return Ok(text.to_owned());
     }
-    let wrong = |what: String| ScenarioErrors {
+    let problem = |key: &str, at: Range<usize>, what: String| ScenarioErrors {
         shown_name: shown_name.to_owned(),
         text: text.to_owned(),
         problems: vec![Problem {
-            key: "tank.map".into(),
-            value: Some(format!("\"{file}\"")),
-            at: Some(named.span()),
+            key: key.into(),
+            value: text.get(at.clone()).map(str::to_owned),
+            at: Some(at),
             what: Complaint::Map(what),
         }],
     };
+    let wrong = |what: String| problem("tank.map", named.span(), what);
     let map = OccupancyMap::read(&folder.join(file)).map_err(|error| wrong(error.to_string()))?;
     let floor = MapFloor::new(&map, start(table.get_ref()), tolerance_m);
     let floor = floor.ok_or_else(|| wrong("shows no free floor".into()))?;
+    let goal = table.get_ref().get("mission").and_then(|mission| mission.get_ref().get("goal_m"));
+    if let Some(goal) = goal.filter(|goal| point(goal.get_ref()).is_some_and(|at| floor.is_cut_off(&map, at)))
+    {
+        let what = format!("is free floor in {file}, but no way leads there from the start: a closed door?");
+        return Err(problem("mission.goal_m", goal.span(), what));
+    }
     let tank = document["tank"].as_table_like_mut().expect("the tank has a map");
     tank.remove("map_tolerance_m");
     tank.remove("map");
@@ -91,10 +98,7 @@ mod tests {
 
     #[test]
     fn a_map_becomes_the_wall_and_obstacles_that_hold_the_start() {
-        let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("m.yaml"), "image: m.pgm\nresolution: 0.5\norigin: [-1, 0, 0]\n").unwrap();
-        let rows = "0 0 0 0 0 0 0 0\n0 9 9 9 9 0 9 0\n0 9 0 0 9 0 9 0\n0 9 9 9 9 0 0 0\n0 0 0 0 0 0 0 0\n";
-        fs::write(dir.path().join("m.pgm"), format!("P2 8 5 9\n{rows}")).unwrap();
+        let dir = two_rooms();
         let text = "[robot]\nstart_m = [1.25, 0.75]\n[tank]\nmap_tolerance_m = 0\nmap = \"m.yaml\" # drawn\n";
         let changed = put_in(text, "s.toml", dir.path()).unwrap();
         assert_eq!(
@@ -104,6 +108,29 @@ mod tests {
              [[obstacles]]\nname = \"map 1\"\nkind = \"polygon\"\nvertices_m = [[1, 1], [1, 1.5], [0, 1.5], [0, 1]]\n"
         );
         assert_eq!(put_in(&changed, "s.toml", dir.path()).unwrap(), changed);
+    }
+
+    /// A folder with a map of two rooms that nothing joins.
+    fn two_rooms() -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("m.yaml"), "image: m.pgm\nresolution: 0.5\norigin: [-1, 0, 0]\n").unwrap();
+        let rows = "0 0 0 0 0 0 0 0\n0 9 9 9 9 0 9 0\n0 9 0 0 9 0 9 0\n0 9 9 9 9 0 0 0\n0 0 0 0 0 0 0 0\n";
+        fs::write(dir.path().join("m.pgm"), format!("P2 8 5 9\n{rows}")).unwrap();
+        dir
+    }
+
+    #[test]
+    fn a_goal_behind_a_closed_door_is_reported_as_such() {
+        let dir = two_rooms();
+        let text = |goal: &str| {
+            format!("[robot]\nstart_m = [1.25, 0.75]\n[mission]\ngoal_m = {goal}\n[tank]\nmap = \"m.yaml\"\n")
+        };
+        let errors = put_in(&text("[2.25, 1.25]"), "s.toml", dir.path()).unwrap_err();
+        assert_eq!(
+            errors.problems[0].to_string(),
+            "mission.goal_m = [2.25, 1.25]: is free floor in m.yaml, but no way leads there from the start: a closed door?"
+        );
+        assert!(put_in(&text("[-0.25, 0.75]"), "s.toml", dir.path()).is_ok());
     }
 
     #[test]

@@ -4,10 +4,8 @@ fn read_bytes(bytes: &[u8]) -> Result<FloorPlan, String> {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("c.csv");
     std::fs::write(&file, bytes).unwrap();
-    read(&file, 10.0).map_err(|error| {
-        let file = "c.csv".into();
-        ImportError { file, ..error }.to_string()
-    })
+    let shown = |error: ImportError| ImportError { file: "c.csv".into(), ..error }.to_string();
+    read(&file, 10.0).map_err(|errors| errors.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
 }
 
 fn found(text: &[u8]) -> Vec<(String, f64, f64, f64)> {
@@ -41,6 +39,21 @@ fn lists_of_spreadsheets_are_read_as_they_are_saved() {
         assert_eq!(found(text), expected);
     }
     assert_eq!(read_bytes(german.as_bytes()).unwrap().notes, ["not used: field Nr"]);
+}
+
+#[test]
+fn all_bad_rows_are_named() {
+    let text = "name,x_m,y_m,radius_m\nA,1,2,0.3\nB,x,2,0.3\nC,1,2\nA,3,3,-1\nD,30,2,0.3\n";
+    assert_eq!(
+        read_bytes(text.as_bytes()).unwrap_err().lines().map(|line| &line[..18]).collect::<Vec<_>>(),
+        [
+            "c.csv, line 3, x_m",
+            "c.csv, line 4: 3 c",
+            "c.csv, line 5, rad",
+            "c.csv, line 5, nam",
+            "c.csv, line 6, x_m"
+        ]
+    );
 }
 
 #[test]
