@@ -155,6 +155,7 @@ const LASTING: &[(&str, &str)] = &[
     ("IN_STEP", "pthread_t t; for (int i = 0; i < 60; i++) pthread_create(&t, NULL, spin, NULL)"),
     ("IN_STEP", "pthread_t t; for (int i = 0; i < 4; i++) pthread_create(&t, NULL, prints, NULL)"),
     ("IN_STEP", "pthread_t t; for (int i = 0; i < 4; i++) pthread_create(&t, NULL, signals, NULL)"),
+    ("IN_STEP", "pthread_t t; for (int i = 0; i < 4; i++) pthread_create(&t, NULL, asks, NULL)"),
     ("IN_STEP", "prints(NULL)"),
     ("IN_STEP", r#"for (;;) write(1, "\033[2J\033[?1049l\033c", 14)"#),
     ("IN_STEP", r#"for (;;) write(200, "\011\000\000\000\203\001\000\000\000\000\000\000\000", 13)"#),
@@ -172,6 +173,7 @@ const LASTING: &[(&str, &str)] = &[
 const HELPERS: &str = r#"
 static void *spin(void *p) { for (;;); return p; }
 static void *prints(void *p) { for (;;) write(2, "the quick brown fox jumps over the lazy dog\n", 44); return p; }
+static void *asks(void *p) { for (;;) open("/proc/self/cgroup", O_RDONLY); return p; }
 static void nothing(int s) { (void)s; }
 static void *signals(void *p) { signal(SIGURG, nothing); for (;;) raise(SIGURG), kill(getpid(), SIGURG); return p; }
 "#;
@@ -193,14 +195,15 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         session.start();
         session.until("the attack", |session| {
             let runs = session.bench.runs();
-            runs.first().is_some_and(|run| of_kind(&journal(run), "truth").len() > 8)
+            let flown = runs.iter().find(|run| run.join(recording::JOURNAL_FILE).exists());
+            flown.is_some_and(|run| of_kind(&journal(run), "truth").len() > 8)
         });
         session.press(" ");
-        // A robot that the fault holds is asked for, too.
+        // Where the fault holds the robot already, the key asks whether it is to go on.
         session.until(&format!("space to be heard: {attack}"), |session| {
             let events = journal(&session.run());
             let is_ordered = of_kind(&events, "ordered").iter().any(|event| event["order"] == "hold");
-            is_ordered || session.text().contains("Resume?") || session.text().contains("resume")
+            is_ordered || session.text().contains("Resume?")
         });
         session
             .until("the robot to be held", |session| !of_kind(&journal(&session.run()), "held").is_empty());

@@ -265,6 +265,12 @@ impl Host {
         }
     }
 
+    fn note_bad_end(&mut self, end: BadEnd) {
+        if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
+            self.bad_ends.push(end);
+        }
+    }
+
     fn note_printed(&mut self, planner: &str, lines: Vec<String>) {
         let printed = |line| Printed { planner: planner.to_owned(), line };
         self.printed.extend(lines.into_iter().map(printed));
@@ -359,9 +365,9 @@ impl Host {
         }
         for Leaving { planner, mut worker } in ended {
             self.note_printed(&planner, worker.take_last_printed());
-            let bad =
-                worker.take_bad_end().filter(|_| !planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS);
-            self.bad_ends.extend(bad.map(|how| BadEnd { planner, how }));
+            if let Some(how) = worker.take_bad_end() {
+                self.note_bad_end(BadEnd { planner, how });
+            }
         }
         for (id, outcome) in outcomes {
             self.take(id, outcome);

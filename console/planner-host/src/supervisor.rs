@@ -95,6 +95,29 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// Whether the process has ended with it, by itself or killed for what it did.
+    pub(crate) fn has_ended_the_process(&self) -> bool {
+        matches!(
+            self,
+            Self::Died { .. }
+                | Self::Forbidden { .. }
+                | Self::Hung
+                | Self::Late
+                | Self::Protocol
+                | Self::Gone
+        )
+    }
+
+    /// How the process ended; reads on after the planner's name.
+    pub(crate) fn how(&self) -> String {
+        match self {
+            Self::Died { how, .. } => how.clone(),
+            Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
+            Self::Protocol => "sent something that is no answer".to_owned(),
+            _ => "did not end in time".to_owned(),
+        }
+    }
+
     /// Whether the planner cannot be asked again after this, or ran out of time: then its process ends.
     fn ends_the_process(&self) -> bool {
         let Self::Planner(refusal) = self else { return false };

@@ -50,6 +50,8 @@ impl Stage {
 pub(super) struct Loaded {
     pub(super) info: PlannerInfo,
     state_version: u32,
+    /// Whether its process has served an earlier mission.
+    is_reused: bool,
 }
 
 /// The tank as it goes to the worker.
@@ -98,7 +100,7 @@ impl Opening {
 
 impl Loaded {
     fn new(planner: &answer::Described, sealed: &answer::Sealed, plugin: &str) -> Self {
-        Self { info: info(planner, sealed, plugin), state_version: planner.state_version }
+        Self { info: info(planner, sealed, plugin), state_version: planner.state_version, is_reused: false }
     }
 
     /// Its private state, under the number of the ask that it was saved for.

@@ -1,13 +1,13 @@
 //! Planners that attack: none reaches anything outside its process, and each attempt is a fault that names it.
 #![cfg(target_os = "linux")]
 
-use crate::desk::LONG;
+use crate::desk::{Desk, LONG, ONE, opening, step as desk_step};
 use crate::stand::{built, choose, config, folder_with, plan, step, worker};
 use mission::planner::Parameters;
-use mission::{Cause, Fault, Sandbox};
+use mission::{Cause, Fault, Given, Sandbox};
 use planner_host::{BlockingHost, PluginDirs, survey};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 const HOSTILE: &str = include_str!("../../../../plugins/faulty/hostile.c");
@@ -197,6 +197,30 @@ fn a_destructor_that_attacks_reaches_nothing_and_ends_with_its_process() {
     drop(host);
     assert!(!canary.exists());
     assert!(began.elapsed() < LONG);
+}
+
+#[test]
+fn an_instance_that_does_not_end_well_is_no_fault_of_the_next_mission() {
+    // The last one leaves a thread behind, which ends the process between two missions.
+    for (moment, attack) in [
+        ("IN_DESTROY", "abort()"),
+        ("IN_DESTROY", "socket(AF_UNIX, SOCK_STREAM, 0)"),
+        ("IN_LEFTOVER", "rest(60), raise(SIGALRM)"),
+    ] {
+        let (_folder, dirs) = hostile(moment, attack);
+        let mut desk = Desk::new(&dirs, config());
+        for _ in 0..3 {
+            let opened = desk.ask(ONE, opening("hostile", &Parameters::new(), None));
+            assert!(matches!(opened, Ok(Given::Opened(_))), "{attack}: {opened:?}");
+            (0..4).for_each(|tick| drop(desk.ask(ONE, desk_step(tick)).unwrap()));
+            desk.host.end_mission();
+            std::thread::sleep(Duration::from_millis(200));
+        }
+        let opened = desk.ask(ONE, opening("hostile", &Parameters::new(), None));
+        assert!(opened.is_ok(), "{attack}: {opened:?}");
+        let ends = desk.host.take_bad_ends();
+        assert!(ends.iter().any(|end| end.planner == "hostile"), "{attack}: {ends:?}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::host::planner::{Asked, Doing, Planner, Ready, unless_refused};
 use crate::host::spare::Spare;
 use crate::host::{Host, fault, fault::Phase};
 use crate::parameters;
+use crate::remains::BadEnd;
 use crate::supervisor::{Failure, Worker};
 use crate::survey::write_load;
 use crate::wire::answer::{Described, Said, Sealed, said_of};
@@ -21,7 +22,9 @@ impl Host {
         self.close(id.worker);
         self.planners.push(Planner::new(id.worker));
         let begun = match self.spares.take(&opening.planner) {
-            Some(Spare { worker, loaded }) => self.create(id, worker, opening, loaded),
+            Some(Spare { worker, loaded }) => {
+                self.create(id, worker, opening, Loaded { is_reused: true, ..loaded })
+            }
             None => self.load_next(id, opening),
         };
         self.close_unless(begun, id);
@@ -167,21 +170,39 @@ impl Host {
         let info = &loaded.info;
         let values = parameters::numbers(info, &opening.parameters);
         let values = values.map_err(|message| fault::of_parameters(&info.id, message));
-        let asked = values.and_then(|values| {
-            let write = |w: &mut Writer| {
-                w.values(&values).written(&opening.site.bytes);
-            };
-            let asked = worker.ask(kind::CONFIGURE, self.config.configure_deadline, write);
-            asked.map_err(|failure| loaded.fault(failure, Phase::Configure))
-        });
-        match asked {
+        let values = match values {
+            Ok(values) => values,
+            Err(fault) => return self.part(worker, loaded.blamed(fault)),
+        };
+        let write = |w: &mut Writer| {
+            w.values(&values).written(&opening.site.bytes);
+        };
+        match worker.ask(kind::CONFIGURE, self.config.configure_deadline, write) {
             Ok(()) => {
                 let doing = Doing::Open(Box::new(opening), Box::new(Stage::Configure(loaded)));
                 self.wait_for(id, worker, doing);
                 Ok(())
             }
-            Err(fault) => self.part(worker, loaded.blamed(fault)),
+            Err(failure) => self.part_or_load_again(id, worker, opening, &loaded, failure),
         }
+    }
+
+    /// A planner that was not made. In a process that has served an earlier mission it may have been the instance of that one
+    /// which did not end well: that is not the fault of this mission, and a new process tells.
+    fn part_or_load_again(
+        &mut self,
+        id: AskId,
+        worker: Worker,
+        opening: Opening,
+        loaded: &Loaded,
+        failure: Failure,
+    ) -> Result<(), Fault> {
+        if !loaded.is_reused || !failure.has_ended_the_process() {
+            return self.part(worker, loaded.fault(failure, Phase::Configure));
+        }
+        self.dismiss(&loaded.info.id, worker);
+        self.note_bad_end(BadEnd { planner: loaded.info.id.clone(), how: failure.how() });
+        self.load_next(id, opening)
     }
 
     /// Gives a planner that was made the state of an earlier one, if there is one that it understands.
@@ -195,7 +216,7 @@ impl Host {
     ) -> Result<(), Fault> {
         let said = match answer {
             Ok(said) => said,
-            Err(failure) => return self.part(worker, loaded.fault(failure, Phase::Configure)),
+            Err(failure) => return self.part_or_load_again(id, worker, opening, &loaded, failure),
         };
         let fitting = |ask| self.saved.fitting(ask, &loaded.info, loaded.state_version);
         let Some(state) = opening.restore.and_then(fitting) else {
