@@ -41,7 +41,9 @@ use stream::Stream;
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
 /// Rows are sent to the file after this many ticks,
-const SEND_TICKS: u32 = 2048;
+const SEND_TICKS: u32 = 16_384;
+/// or after this many drawings of planners, of which a tick may have thousands,
+const SEND_DRAWINGS: usize = 1 << 19;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
@@ -56,6 +58,7 @@ pub struct Recorder {
     health: Arc<SinkHealth>,
     watch: Option<FileWatch>,
     ticks_waiting: u32,
+    drawings_waiting: usize,
     sent_at: Instant,
     /// Rows were sent before the end: what was sent at once has nothing to merge.
     has_sent: bool,
@@ -93,6 +96,7 @@ impl Recorder {
             health,
             watch: None,
             ticks_waiting: 0,
+            drawings_waiting: 0,
             sent_at: now,
             has_sent: false,
         })
@@ -136,9 +140,13 @@ impl Recorder {
             Ok(ticks_closed) => self.ticks_waiting += ticks_closed,
             Err(error) => return self.stop(error),
         }
+        if let EventKind::Drawn { drawings } = &event.kind {
+            self.drawings_waiting += drawings.len();
+        }
+        let is_much = self.ticks_waiting >= SEND_TICKS || self.drawings_waiting >= SEND_DRAWINGS;
         // Whoever looks at a robot that stands still wants to see how it came to that.
         let held = matches!(event.kind, EventKind::Held { .. });
-        if held || self.ticks_waiting >= SEND_TICKS { self.send(now) } else { self.idle(now) }
+        if held || is_much { self.send(now) } else { self.idle(now) }
     }
 
     /// Sends waiting rows if it is time; to be called now and then while nothing happens.
@@ -179,7 +187,7 @@ impl Recorder {
     fn send(&mut self, now: Instant) -> Result<(), RecordingError> {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
-        self.ticks_waiting = 0;
+        (self.ticks_waiting, self.drawings_waiting) = (0, 0);
         self.has_sent = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);

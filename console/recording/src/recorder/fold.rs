@@ -40,7 +40,6 @@ struct Opened {
     accounting: Accounting,
     states: States,
     document: Document,
-    target: Option<Point>,
     /// Whether the plan before had lines that are never crossed.
     has_cuts: bool,
 }
@@ -126,7 +125,6 @@ impl Opened {
             accounting: Accounting::open(run, at),
             states: States::open(stream, at)?,
             document,
-            target: None,
             has_cuts: false,
         };
         opened.write_document(stream, at)?;
@@ -163,11 +161,6 @@ impl Opened {
                 self.document.parameters_changed(choice);
                 stream.property("planners", &self.document.planner_properties())?;
                 self.write_document(stream, at)?;
-            }
-            EventKind::Progressed { target, .. } if self.target != Some(*target) => {
-                self.target = Some(*target);
-                let dot = rr::Points2D::update_fields().with_positions([super::lane::flat(*target)]);
-                stream.once(paths::TARGET, at, &dot)?;
             }
             EventKind::Ended { outcome, reason } => {
                 self.document.ended(*outcome, reason);

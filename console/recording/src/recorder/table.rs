@@ -49,6 +49,7 @@ fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
             let placed = Placed { at: flat(tick.estimate?.position), angle_rad: angle_rad as f32 };
             Some(Ellipse { placed, half_axes_m: (long_m as f32, short_m as f32) })
         }),
+        changes(paths::TARGET, |tick| tick.target.map(flat)),
         Box::new(Way::new(paths::WAY_TRUE, spacing_m, |tick| Some(tick.truth?.pose.position))),
         Box::new(Way::new(paths::WAY_ESTIMATE, spacing_m, |tick| Some(tick.estimate?.position))),
     ]

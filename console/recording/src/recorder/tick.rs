@@ -30,6 +30,8 @@ pub(crate) struct Tick {
     pub scalars: Vec<(String, f64, String)>,
     /// Where the robot was last believed to be.
     pub believed: Point,
+    /// Where the robot was last sent to.
+    pub target: Option<Point>,
     /// Where the tether is made fast.
     anchor: Option<Point>,
     /// Where it truly was in the last tick that has a truth.
@@ -70,7 +72,12 @@ impl Tick {
     /// A tick after this one.
     pub(crate) fn next(&self, at: At) -> Self {
         let before = self.truth.map(|truth| (self.at, truth.pose.position)).or(self.before);
-        Self { before, is_held: self.is_held, ..Self::first(at, self.believed, self.anchor) }
+        Self {
+            before,
+            is_held: self.is_held,
+            target: self.target,
+            ..Self::first(at, self.believed, self.anchor)
+        }
     }
 
     /// Takes in an event of the tick.
@@ -91,7 +98,8 @@ impl Tick {
             EventKind::Ranged { ranges } => self.ranges = Some(ranges.clone()),
             EventKind::Fixed { fix } => self.fix = Some(fix.clone()),
             EventKind::Scalars { scalars } => self.scalars.extend_from_slice(scalars),
-            EventKind::Progressed { covered_reachable, cross_track_m, .. } => {
+            EventKind::Progressed { covered_reachable, cross_track_m, target, .. } => {
+                self.target = Some(*target);
                 self.covered = Some(*covered_reachable);
                 self.cross_track_m = *cross_track_m;
             }

@@ -5,6 +5,9 @@ use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
+/// Cells for which room is made before it is known how many there are.
+const MOST_RESERVED: usize = 1024;
+
 /// What a cell of the floor is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -279,8 +282,9 @@ impl Floor {
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
         let passage = tool.passage(a, b);
         let (low, high) = passage.bounds();
-        let (_, rows) = self.spans(low, high);
-        let mut cells = Vec::new();
+        let (columns, rows) = self.spans(low, high);
+        // All that fits in the box: growing step by step costs more than the cells.
+        let mut cells = Vec::with_capacity((columns.len() * rows.len()).min(MOST_RESERVED));
         for row in rows {
             let y = self.center_of(0, row).y;
             let (west, east) = passage.ends_at(y);
