@@ -8,8 +8,10 @@ use std::fmt;
 
 /// Arms that are shown; a page has all of them.
 const MOST_ARMS: usize = 20;
-/// Names of arms are cut to this.
+/// Names of arms are cut to this,
 const NAME: usize = 40;
+/// with so much of their beginning: values of the grid are at the end.
+const BEGINNING: usize = 10;
 
 /// A share as per cent with its interval.
 pub(crate) fn share(share: &Share) -> String {
@@ -58,10 +60,12 @@ pub(crate) fn columns(rows: &[Vec<String>]) -> String {
 }
 
 fn short(name: &str) -> String {
-    if name.chars().count() <= NAME {
+    let count = name.chars().count();
+    if count <= NAME {
         return name.to_owned();
     }
-    name.chars().take(NAME - 1).chain(['…']).collect()
+    let end = name.chars().skip(count - (NAME - 1 - BEGINNING));
+    name.chars().take(BEGINNING).chain(['…']).chain(end).collect()
 }
 
 impl fmt::Display for Findings {
@@ -118,5 +122,18 @@ mod tests {
     #[test]
     fn findings_are_read_on_a_terminal() {
         insta::assert_snapshot!(example().to_string());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_the_values_in_which_they_differ() {
+        let names = [0.25, 0.3].map(|speed| format!("planner of the scenario speed_max_m_per_s={speed}"));
+        let [slow, fast] = names.map(|name| short(&name));
+        assert_eq!(slow, "planner of…enario speed_max_m_per_s=0.25");
+        assert!(fast.ends_with("speed_max_m_per_s=0.3") && fast.chars().count() <= NAME, "{fast}");
     }
 }
