@@ -39,6 +39,47 @@ fn a_drawing_with_layers_of_other_names_becomes_a_mission_that_is_flown() {
     assert!(wrong.code == Some(2) && wrong.err.contains("as in COLUMNS=Posts"), "{wrong:?}");
 }
 
+/// A round tank whose plates are drawn by their seams: a ring with four joints, and a cross within.
+fn plated() -> String {
+    let groups = "0 SECTION,2 HEADER,9 $INSUNITS,70 6,0 ENDSEC,0 SECTION,2 ENTITIES,\
+                  0 CIRCLE,8 SHELL,10 0,20 0,40 3,0 CIRCLE,8 PLATES,10 0,20 0,40 2.4,\
+                  0 LINE,8 PLATES,10 -3,20 0,11 3,21 0,0 LINE,8 PLATES,10 0,20 -3,11 0,21 3,\
+                  0 TEXT,8 PLATES,10 1,20 1,1 B & C,0 TEXT,8 0,10 -2,20 1.9,1 A-1,0 ENDSEC,0 EOF";
+    groups.split(',').map(|pair| pair.trim().replacen(' ', "\n", 1) + "\n").collect()
+}
+
+#[test]
+fn plates_of_a_drawing_are_accounted_for_one_by_one_in_every_report() {
+    let bench = Bench::new();
+    bench.file("floor.dxf", plated());
+    let imported = bench.tankops(&["import", "floor.dxf", "-o", "floor.toml", "--svg", "floor.svg"]);
+    assert!(imported.code == Some(0) && imported.out.contains(", 8 plates"), "{imported:?}");
+    let read = |name: &str| std::fs::read_to_string(bench.path().join(name)).unwrap();
+    assert!(read("floor.svg").contains("B &amp; C"));
+    let scenario = bench.path().join("floor.toml");
+    bench.fly(&scenario, &[]);
+    let run = bench.runs().pop().unwrap().to_str().unwrap().to_owned();
+    for file in ["r.html", "r.json", "r.csv", "r.dxf"] {
+        let report = bench.tankops(&["report", &run, "-o", file]);
+        assert_eq!(report.code, Some(0), "{report:?}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&read("r.json")).unwrap();
+    let plates = json["floor"]["plates"].as_array().unwrap();
+    let names: Vec<&str> = plates.iter().map(|plate| plate["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["A-1", "P-01", "P-02", "P-06", "B & C", "P-03", "P-04", "P-05"], "annular ones first");
+    let quarters = [(0..4, 2.545), (4..8, 4.524)];
+    for (range, wanted_m2) in quarters {
+        for plate in &plates[range] {
+            let area_m2 = plate["area_m2"].as_f64().unwrap();
+            assert!((area_m2 - wanted_m2).abs() < 0.1, "{plate}");
+            assert!(plate["percent"]["scanned"].as_f64().unwrap() > 50.0, "{plate}");
+        }
+    }
+    assert!(read("r.csv").lines().any(|line| line.starts_with("B & C,")), "{}", read("r.csv"));
+    assert!(read("r.html").contains("B &amp; C") && !read("r.html").contains("B & C"));
+    assert!(read("r.dxf").matches("\n8\nPLATES\n").count() > 8);
+}
+
 #[test]
 fn a_map_is_shown_with_what_became_of_it() {
     let bench = Bench::new();

@@ -25,7 +25,7 @@ pub(crate) fn import(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     Scenario::parse(&text, &output.display().to_string()).map_err(|errors| bad_input(errors.render()))?;
     write_file("the scenario", output, &text)?;
     if let Some(file) = &args.svg {
-        write_file("the drawing", file, &report::drawing::floor(&plan.world()))?;
+        write_file("the drawing", file, &report::drawing::floor(&plan.world(), &plan.plates))?;
     }
     for note in &plan.notes {
         say_line(&format!("note: {note}"))?;
@@ -70,5 +70,9 @@ fn human(plan: &FloorPlan) -> String {
         Boundary::Polygon { vertices } => format!("tank with {} straight walls", vertices.len()),
     };
     let (obstacles, no_go) = (plan.obstacles.len(), plan.no_go.len());
-    format!("{tank}, {obstacles} obstacles, {no_go} no-go areas")
+    let plates = match plan.plates.len() {
+        0 => String::new(),
+        n => format!(", {n} plates"),
+    };
+    format!("{tank}, {obstacles} obstacles, {no_go} no-go areas{plates}")
 }

@@ -22,7 +22,7 @@ pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
     let floor = MapFloor::new(&map, start, args.simplify)
         .ok_or_else(|| bad_input(format!("{}: shows no free floor", args.map.display())))?;
     if let Some(file) = &args.svg {
-        write_file("the drawing", file, &drawing::floor(&world_of(&floor)))?;
+        write_file("the drawing", file, &drawing::floor(&world_of(&floor), &[]))?;
     }
     say(&human(args, &map, &floor))?;
     Ok(ExitCode::from(COMPLETE))

@@ -38,7 +38,7 @@ impl Flight {
             world: scenario.sim.world.clone(),
             mission: config.clone(),
             floor: floor.clone(),
-            plates: scenario.plates,
+            plates: scenario.plates.clone(),
             checklist: scenario.checklist.clone(),
             measured: None,
         };

@@ -36,7 +36,7 @@ pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportErro
     }
     let boundary = Boundary::Circle { radius_m: tank_radius_m };
     let notes = unused.iter().map(|field| format!("not used: field {field}")).collect();
-    Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), notes })
+    Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), plates: Vec::new(), notes })
 }
 
 /// What is wrong in a line, perhaps in one of its fields.

@@ -1,14 +1,17 @@
 //! Floor drawings as DXF.
 //!
-//! Layers say what is what: SHELL, COLUMNS, PIPES, SUMP and NOGO; a layer counts if one word of its name is one of these, in
+//! Layers say what is what: SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES; a layer counts if one word of its name is one of these, in
 //! the singular or the plural, or if somebody names it. Blocks are taken apart, with the layer of their insertion for what
 //! lies on layer 0.
 
 mod areas;
 mod curves;
 mod entities;
+mod faces;
 mod groups;
 mod hatch;
+mod labels;
+mod plates;
 mod rings;
 mod roles;
 mod sorted;
@@ -75,6 +78,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     obstacles.extend(named("pipe", sorted.pipes(assumed.pipe_width_m, &mut notes)));
     let mut no_go = named("sump", sorted.areas(Role::Sump, "sump", Vec::new(), &mut notes));
     no_go.extend(named("no-go area", sorted.areas(Role::NoGo, "no-go area", Vec::new(), &mut notes)));
+    let plates = sorted.plates(&boundary, &moved, &mut notes);
     for all in [&mut obstacles, &mut no_go] {
         keep_inside(&boundary, all, &mut notes);
     }
@@ -84,7 +88,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
              layers: {listed}"
         ));
     }
-    Ok(FloorPlan { boundary, obstacles, no_go, notes })
+    Ok(FloorPlan { boundary, obstacles, no_go, plates, notes })
 }
 
 /// The shell in the tank frame, how the drawing is moved to it, and what else on the shell's layer is a column.

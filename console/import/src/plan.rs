@@ -1,10 +1,12 @@
 //! A floor as another program's file states it, and the scenario made of it.
 
 use std::{f64::consts::TAU, fmt::Write};
-use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
+use world::{Boundary, DrawnPlate, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
 
 /// Corners that a polygon of a scenario may have; its sides are compared pair by pair.
 pub const MOST_CORNERS: usize = 200;
+/// Plates that a floor of a scenario may have.
+pub const MOST_PLATES: usize = 2_000;
 /// Stations of a scenario whose file names none.
 const N_STATIONS: usize = 5;
 /// Places along a side of the floor among which the start is chosen.
@@ -34,6 +36,8 @@ pub struct FloorPlan {
     pub obstacles: Vec<Named>,
     /// Where the robot must not go: sumps and no-go areas.
     pub no_go: Vec<Named>,
+    /// Plates of the floor, if the file shows them; where they overlap the first one counts.
+    pub plates: Vec<DrawnPlate>,
     /// What was assumed, changed or not understood, for people.
     pub notes: Vec<String>,
 }
@@ -74,6 +78,7 @@ impl FloorPlan {
         };
         entries(&mut text, "obstacles", "kind", &self.obstacles);
         entries(&mut text, "zones", "kind = \"no_go\"\nshape", &self.no_go);
+        plates(&mut text, &self.plates);
         let start = self.roomiest();
         let seconds = (self.boundary.area_m2() / (SWATH_M * PACE_M_PER_S)).clamp(600.0, LONGEST_S).ceil();
         let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
@@ -156,6 +161,17 @@ fn entries(text: &mut String, list: &str, kind: &str, all: &[Named]) {
         // Names may hold anything that a drawing does.
         let _ = write!(text, "\n[[{list}]]\nname = {name:?}\n{kind} = {outline}\n");
     }
+}
+
+fn plates(text: &mut String, plates: &[DrawnPlate]) {
+    if plates.is_empty() {
+        return;
+    }
+    *text += "\n[plates]\noutlines = [\n";
+    for DrawnPlate { name, vertices_m } in plates {
+        let _ = writeln!(text, "    {{ name = {name:?}, vertices_m = {} }},", points(vertices_m));
+    }
+    *text += "]\n";
 }
 
 fn micrometres(v: f64) -> f64 {

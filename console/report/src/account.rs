@@ -201,7 +201,7 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
 
 /// The plates of a floor, if their layout is known.
 pub(crate) fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
-    run.plates.map(|layout| layout.map(&run.world.boundary, floor))
+    run.plates.as_ref().map(|layout| layout.map(&run.world.boundary, floor))
 }
 
 /// The plate of the floor beside a place on the wall.

@@ -5,10 +5,13 @@ use super::{
     problem::Complaint,
     section::{Place, Section},
 };
-use import::is_wholly_outside;
+use import::{is_wholly_outside, plan::MOST_PLATES};
 use sim::{Mover, Track};
 use std::collections::BTreeMap;
-use world::{Boundary, Obstacle, ObstacleId, PlateLayout, Vector, Zone, ZoneKind};
+use world::{
+    Boundary, DrawnPlate, NO_PLATE, Obstacle, ObstacleId, PlateLayout, RegularPlates, Shape, Vector, Zone,
+    ZoneKind,
+};
 
 /// Reads `[tank]`.
 pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
@@ -34,6 +37,10 @@ pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
 /// Reads `[plates]`.
 pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<PlateLayout> {
     let section = root.table("plates")?;
+    if section.has("outlines") {
+        section.refuse(&["annular_width_m", "annular_count", "plate_length_m", "plate_width_m"], "outlines");
+        return Some(PlateLayout::Drawn { plates: drawn_plates(&section, boundary)? });
+    }
     let (annular_m, length_m) = (section.number("annular_width_m")?, section.number("plate_length_m")?);
     let width_m = section.number("plate_width_m")?;
     let n_annular = if section.has("annular_count") {
@@ -43,7 +50,34 @@ pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<
         let shell_m = (4.0 * std::f64::consts::PI * boundary?.area_m2()).sqrt();
         (shell_m / length_m).ceil().clamp(1.0, 1000.0) as u32
     };
-    Some(PlateLayout { annular_m, n_annular, length_m, width_m })
+    Some(PlateLayout::Regular(RegularPlates { annular_m, n_annular, length_m, width_m }))
+}
+
+/// Reads the outlines of plates; those that are wrong are left out.
+fn drawn_plates(section: &Section<'_>, boundary: Option<&Boundary>) -> Option<Vec<DrawnPlate>> {
+    let mut names = Names::default();
+    let sections = section.tables("outlines");
+    if sections.is_empty() {
+        section.complain("outlines", Complaint::TooFew { have: 0, need: 1 });
+        return None;
+    }
+    if sections.len() > MOST_PLATES {
+        section.complain("outlines", Complaint::TooMany { have: sections.len(), most: MOST_PLATES });
+        return None;
+    }
+    let mut read = |section: &Section<'_>| {
+        let name = if section.has("name") { names.of(section, String::new) } else { section.text("name") };
+        if name.as_deref() == Some(NO_PLATE) {
+            section.complain("name", Complaint::Duplicate { other: "the floor on no plate".into() });
+        }
+        let vertices_m = counter_clockwise(section, "vertices_m")?;
+        let shape = Shape::Polygon { vertices: vertices_m.clone() };
+        if boundary.is_some_and(|boundary| is_wholly_outside(boundary, &shape)) {
+            section.complain_whole(Complaint::WhollyOutside);
+        }
+        Some(DrawnPlate { name: name?, vertices_m })
+    };
+    Some(sections.iter().filter_map(&mut read).collect())
 }
 
 /// Reads `[[obstacles]]` and how they move; those that are wrong are left out.

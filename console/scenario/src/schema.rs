@@ -248,7 +248,10 @@ static PLATES: &[Key] = &[
     key("annular_count", "", Kind::Whole(1, 1000)).or_none("one for every `plate_length_m` of shell"),
     number("plate_length_m", "m", at_least(0.1).up_to(1000.0)).or(6.0),
     number("plate_width_m", "m", at_least(0.1).up_to(1000.0)).or(1.8),
+    key("outlines", "", Kind::Tables(PLATE_OUTLINES)).or_none("laid by the sizes"),
 ];
+
+static PLATE_OUTLINES: &[Key] = &[key("name", "", Kind::Text), key("vertices_m", "m", Kind::Points(3))];
 
 /// The outlines an obstacle or a zone may have.
 pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];

@@ -593,3 +593,32 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn plates_have_sizes_or_outlines() {
+    let with = |plates: &str| format!("{SMALL}[plates]\n{plates}\n");
+    let two = r#"outlines = [
+    { name = "P-01", vertices_m = [[0, 0], [0, 2], [3, 2], [1, 1], [3, 0]] },
+    { name = "P-02", vertices_m = [[-2, -2], [0, -2], [0, 0]] },
+]"#;
+    let Some(PlateLayout::Drawn { plates }) = read(&with(two)).plates else { panic!("they are drawn") };
+    assert_eq!((plates.len(), plates[0].name.as_str(), plates[0].vertices_m.len()), (2, "P-01", 5));
+    assert!(matches!(read(&with("")).plates, Some(PlateLayout::Regular(_))));
+    let cases = [
+        (format!("plate_width_m = 2\n{two}"), "plates.plate_width_m = 2"),
+        (two.replace("P-02", "P-01"), "the same as that of plates.outlines.0.name"),
+        (two.replace("P-02", "no plate"), "the same as that of the floor on no plate"),
+        (two.replace("[0, -2], [0, 0]", "[0, 0], [0, -2], [-2, 0]"), "sides 1 and 3 cross"),
+        (
+            two.replace("[[-2, -2], [0, -2], [0, 0]]", "[[7, 7], [8, 7], [8, 8]]"),
+            "lies wholly outside the tank",
+        ),
+        (two.replace("name = \"P-02\", ", ""), "plates.outlines.1.name: missing"),
+        ("outlines = []".into(), "plates.outlines"),
+    ];
+    for (plates, wanted) in cases {
+        let shown = errors(&with(&plates)).render();
+        assert!(shown.starts_with("error: x.toml:") && shown.contains(wanted), "{wanted}: {shown}");
+        assert_eq!(errors(&with(&plates)).problems.len(), 1, "{shown}");
+    }
+}

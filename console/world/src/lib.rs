@@ -24,7 +24,7 @@ pub use coverage::{
 pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Amphibious, Medium, Mode, Pace};
 pub use obstacles::{Near, ObstacleMap};
-pub use plates::{Plate, PlateKind, PlateLayout, PlateMap};
+pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};
 pub use tank::{Obstacle, ObstacleId, Station, StationId, World, Zone, ZoneKind};
 pub use tiles::Tiles;

@@ -1,9 +1,13 @@
 //! The plates that a tank floor is made of.
 //!
 //! A ring of annular plates lies along the shell; the rest is covered by rows of rectangular plates from south to north,
-//! every second row shifted by half a plate. The rest of a rectangle that the ring cuts is a sketch plate.
+//! every second row shifted by half a plate. The rest of a rectangle that the ring cuts is a sketch plate. A floor that is laid
+//! otherwise has its plates from a drawing.
+
+mod drawn;
 
 use crate::coverage::Floor;
+pub use drawn::{DrawnPlate, NO_PLATE};
 use geometry::{Boundary, Point, Vector, shape::rectangle, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, f64::consts::TAU};
@@ -11,12 +15,68 @@ use std::{collections::BTreeMap, f64::consts::TAU};
 /// The layout of the plates of a floor.
 ///
 /// ```
-/// use world::PlateLayout;
-/// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+/// use world::{PlateLayout, RegularPlates};
+/// let layout = RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+/// let old = r#"{"annular_m":0.75,"n_annular":12,"length_m":6.0,"width_m":1.8}"#;
+/// assert_eq!(serde_json::from_str::<PlateLayout>(old).unwrap(), PlateLayout::Regular(layout));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum PlateLayout {
+    /// By its sizes.
+    Regular(RegularPlates),
+    /// By the outline of each plate.
+    Drawn {
+        /// Where plates overlap, the first one counts.
+        plates: Vec<DrawnPlate>,
+    },
+}
+
+impl PlateLayout {
+    /// The plates of a floor, and the plate of each of its cells.
+    ///
+    /// ```
+    /// use world::{Boundary, DrawnPlate, Floor, PlateLayout, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 10.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
+    /// let vertices_m = vec![Point::new(0.0, 0.0), Point::new(6.0, 0.0), Point::new(6.0, 1.8), Point::new(0.0, 1.8)];
+    /// let layout = PlateLayout::Drawn { plates: vec![DrawnPlate { name: "P-01".into(), vertices_m }] };
+    /// let map = layout.map(&tank.boundary, &floor);
+    /// assert_eq!((&*map.plates[0].name, &*map.plates[1].name), ("no plate", "P-01"));
+    /// ```
+    pub fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
+        match self {
+            Self::Regular(regular) => regular.map(boundary, floor),
+            Self::Drawn { plates } => drawn::map(plates, boundary, floor),
+        }
+    }
+
+    /// The seams between the plates of a floor, as lines, tank frame: the outlines of drawn ones.
+    ///
+    /// ```
+    /// use world::{Boundary, PlateLayout, RegularPlates};
+    /// let layout = RegularPlates { annular_m: 0.0, n_annular: 0, length_m: 6.0, width_m: 1.8 };
+    /// let seams = PlateLayout::Regular(layout).seams(&Boundary::Circle { radius_m: 1.7 });
+    /// assert_eq!(seams[0].len(), 2, "one seam across the middle");
+    /// ```
+    pub fn seams(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
+        match self {
+            Self::Regular(regular) => regular.seams(boundary),
+            Self::Drawn { plates } => plates.iter().map(DrawnPlate::outline).collect(),
+        }
+    }
+}
+
+/// The sizes of the plates of a floor that is laid in rows.
+///
+/// ```
+/// use world::RegularPlates;
+/// let layout = RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
 /// assert!((layout.length_m * layout.width_m - 10.8).abs() < 1e-9);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PlateLayout {
+pub struct RegularPlates {
     /// Width of the annular ring from the shell inwards, metres; 0 without one.
     pub annular_m: f64,
     /// Number of plates in the ring; the first one begins due east.
@@ -45,7 +105,7 @@ pub struct Plate {
     /// Its kind.
     pub kind: PlateKind,
     /// `A-07`: the seventh annular plate, counter-clockwise from east; `R-03-05`, `S-03-01`: a rectangular or sketch plate
-    /// of the third row from the south, fifth or first from the west.
+    /// of the third row from the south, fifth or first from the west; as in the drawing if one shows it.
     pub name: String,
 }
 
@@ -64,7 +124,7 @@ const NONE: u32 = u32::MAX;
 /// Where a plate lies: its kind, its row from 1 (0 in the ring), its number from 1.
 type Place = (PlateKind, i64, i64);
 
-impl PlateLayout {
+impl RegularPlates {
     /// The plate under a point of the floor; `last`: that of its neighbour, with which it mostly shares the plate.
     fn place_of(&self, boundary: &Boundary, point: Point, last: Option<Place>) -> Place {
         if boundary.wall_distance_m(point) < self.annular_m {
@@ -100,16 +160,7 @@ impl PlateLayout {
     }
 
     /// The plates of a floor, and the plate of each of its cells.
-    ///
-    /// ```
-    /// use world::{Boundary, Floor, PlateLayout, Point, World};
-    /// # let boundary = Boundary::Circle { radius_m: 10.0 };
-    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
-    /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
-    /// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
-    /// assert_eq!(layout.map(&tank.boundary, &floor).plates[0].name, "A-01");
-    /// ```
-    pub fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
+    fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
         // In the order in which they are met; there are millions of cells, and neighbours mostly share a plate.
         let mut order: BTreeMap<Place, u32> = BTreeMap::new();
         let mut last: Option<(Place, u32)> = None;
@@ -154,16 +205,9 @@ impl PlateLayout {
 /// Steps in which a seam is followed to where it ends, metres.
 const SEAM_STEP_M: f64 = 0.1;
 
-impl PlateLayout {
+impl RegularPlates {
     /// The seams between the plates of a floor, as lines, tank frame.
-    ///
-    /// ```
-    /// use world::{Boundary, PlateLayout};
-    /// let layout = PlateLayout { annular_m: 0.0, n_annular: 0, length_m: 6.0, width_m: 1.8 };
-    /// let seams = layout.seams(&Boundary::Circle { radius_m: 1.7 });
-    /// assert_eq!(seams[0].len(), 2, "one seam across the middle");
-    /// ```
-    pub fn seams(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
+    fn seams(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
         let (low, high) = boundary.bounds();
         let middle = nalgebra::center(&low, &high);
         let n_rows = ((high.y - low.y) / self.width_m).ceil();
@@ -267,11 +311,12 @@ impl PlateMap {
     /// Index of a cell's plate; `None` where there is no floor.
     ///
     /// ```
-    /// use world::{Boundary, Floor, PlateLayout, Point, World};
+    /// use world::{Boundary, Floor, PlateLayout, Point, RegularPlates, World};
     /// # let boundary = Boundary::Circle { radius_m: 10.0 };
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
-    /// let layout = PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+    /// let sizes = RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 };
+    /// let layout = PlateLayout::Regular(sizes);
     /// let east = floor.cell_at(Point::new(9.5, 0.1)).unwrap();
     /// assert_eq!(layout.map(&tank.boundary, &floor).plate_of(east), Some(0));
     /// ```
@@ -285,11 +330,11 @@ mod tests {
     use super::*;
     use crate::World;
 
-    fn layout() -> PlateLayout {
-        PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 }
+    fn layout() -> RegularPlates {
+        RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 }
     }
 
-    fn plates(boundary: &Boundary, layout: PlateLayout) -> (Floor, PlateMap) {
+    fn plates(boundary: &Boundary, layout: RegularPlates) -> (Floor, PlateMap) {
         let world = World { boundary: boundary.clone(), obstacles: vec![], stations: vec![], zones: vec![] };
         let floor = Floor::new(&world, 0.1, 0.3, 0.6, Point::origin());
         let map = layout.map(boundary, &floor);
@@ -325,7 +370,7 @@ mod tests {
     fn a_tank_with_straight_walls_and_no_ring_has_whole_plates_too() {
         let corners = [(-6.0, -1.8), (6.0, -1.8), (6.0, 1.8), (-6.0, 1.8)];
         let boundary = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
-        let (_, map) = plates(&boundary, PlateLayout { annular_m: 0.0, ..layout() });
+        let (_, map) = plates(&boundary, RegularPlates { annular_m: 0.0, ..layout() });
         assert!(map.plates.iter().any(|plate| plate.kind == PlateKind::Rectangular), "{:?}", map.plates);
         assert!(map.plates.iter().all(|plate| plate.kind != PlateKind::Annular));
     }

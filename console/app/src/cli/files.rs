@@ -64,7 +64,7 @@ pub(crate) struct MapArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
-    /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP and NOGO, or list of columns (.csv) with the fields `x_m`, `y_m`,
+    /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES, or list of columns (.csv) with the fields `x_m`, `y_m`,
     /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name.
     pub file: PathBuf,
     /// Scenario file to write; must not exist.
@@ -76,7 +76,7 @@ pub(crate) struct ImportArgs {
     /// Unit of the drawing; needed if its header names none, and counts more than the header.
     #[arg(long, value_name = "UNIT")]
     pub units: Option<UnitArg>,
-    /// What a layer of the drawing holds: SHELL, COLUMNS, PIPES, SUMP, NOGO or IGNORE, as in COLUMNS=Posts; repeatable. A
+    /// What a layer of the drawing holds: SHELL, COLUMNS, PIPES, SUMP, NOGO, PLATES or IGNORE, as in COLUMNS=Posts; repeatable. A
     /// layer named for SHELL and COLUMNS holds the shell and what stands within.
     #[arg(long, value_name = "WHAT=LAYER", value_parser = layer)]
     pub layer: Vec<(Role, String)>,
@@ -133,9 +133,9 @@ fn place(text: &str) -> Result<[f64; 2], String> {
 
 fn layer(text: &str) -> Result<(Role, String), String> {
     let (what, name) = text.split_once('=').unwrap_or((text, ""));
-    let role = Role::named(what.trim()).filter(|role| *role != Role::Plates && !name.trim().is_empty());
+    let role = Role::named(what.trim()).filter(|_| !name.trim().is_empty());
     role.map(|role| (role, name.trim().to_owned())).ok_or_else(|| {
-        "write SHELL, COLUMNS, PIPES, SUMP, NOGO or IGNORE, =, and the layer's name, as in COLUMNS=Posts"
+        "write SHELL, COLUMNS, PIPES, SUMP, NOGO, PLATES or IGNORE, =, and the layer's name, as in COLUMNS=Posts"
             .into()
     })
 }

@@ -3,7 +3,7 @@
 use super::{
     curves::{along_arc, arc, chain, ellipse, spline, through},
     groups::{Block, Drawing, Entity},
-    hatch,
+    hatch, labels,
 };
 use nalgebra::{Affine2, Rotation2, Translation2};
 use std::{collections::HashMap, f64::consts::TAU};
@@ -27,6 +27,8 @@ pub(super) struct Drawn {
     /// What programs call it.
     pub kind: String,
     pub outlines: Vec<Outline>,
+    /// Its text and where that stands, metres.
+    pub label: Option<(Point, String)>,
 }
 
 /// Everything in the model space of a drawing with some metres to the unit; none if that is more than [`MOST`].
@@ -85,7 +87,8 @@ fn collect(
     let block = block.and_then(|name| blocks.get(&name.to_uppercase()));
     let Some(block) = block.filter(|_| depth < DEEPEST) else {
         let outlines = outlines(entity, &place.map);
-        unfolded.found.push(Drawn { layer, kind: entity.kind.clone(), outlines });
+        let label = label(entity, &place.map);
+        unfolded.found.push(Drawn { layer, kind: entity.kind.clone(), outlines, label });
         return Some(());
     };
     let at = Vector::new(entity.number(10, 0.0), entity.number(20, 0.0));
@@ -112,6 +115,20 @@ fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     let (columns, rows) = (count(70), count(71));
     let (dx, dy) = (insert.number(44, 0.0), insert.number(45, 0.0));
     (0..columns * rows).map(move |k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy))
+}
+
+/// A text and where it stands.
+fn label(entity: &Entity, map: &Affine2<f64>) -> Option<(Point, String)> {
+    let text = labels::text(entity)?;
+    let is_aligned = entity.number(72, 0.0) > 0.5 || entity.number(73, 0.0) > 0.5;
+    if entity.kind == "MTEXT" || !is_aligned {
+        let at = Point::new(entity.number(10, 0.0), entity.number(20, 0.0));
+        let map = if entity.kind == "MTEXT" { *map } else { *map * mirroring(entity.number(230, 1.0)) };
+        return Some((map * at, text));
+    }
+    // A text that is not aligned to the left has a second point, by which it is.
+    let [x, y] = [(11, 10), (21, 20)].map(|(own, first)| entity.number(own, entity.number(first, 0.0)));
+    Some((*map * mirroring(entity.number(230, 1.0)) * Point::new(x, y), text))
 }
 
 fn outlines(entity: &Entity, map: &Affine2<f64>) -> Vec<Outline> {

@@ -217,7 +217,7 @@ fn code_page_of(bytes: &[u8]) -> Option<&str> {
 }
 
 /// A name in which letters stand as `\U+00FC`.
-fn unescaped(name: &str) -> String {
+pub(super) fn unescaped(name: &str) -> String {
     let mut parts = name.split("\\U+");
     let mut whole = parts.next().unwrap_or_default().to_owned();
     for part in parts {

@@ -19,7 +19,7 @@ pub enum Role {
     Sump,
     /// No-go zones.
     NoGo,
-    /// Plates of the floor, which are not read.
+    /// Plates of the floor, or the seams between them.
     Plates,
     /// Nothing of the floor.
     Ignored,

@@ -3,16 +3,20 @@
 use super::{
     Assumed, areas,
     entities::{Drawn, Outline},
+    plates::{Label, plates},
     roles::Role,
 };
+use nalgebra::Isometry2;
 use std::collections::{BTreeMap, BTreeSet};
-use world::Shape;
+use world::{Boundary, DrawnPlate, Shape};
 
 /// What lies on the layers of each role.
 pub(super) struct Sorted {
     by_role: BTreeMap<Role, Vec<Outline>>,
     /// Whether a layer holds columns besides the shell.
     is_shared: bool,
+    /// Texts, if there are plates that they may name.
+    labels: Vec<Label>,
 }
 
 impl Sorted {
@@ -22,15 +26,23 @@ impl Sorted {
         hidden: &[String],
         notes: &mut Vec<String>,
     ) -> Self {
-        let mut sorted = Self { by_role: BTreeMap::new(), is_shared: false };
+        let mut sorted = Self { by_role: BTreeMap::new(), is_shared: false, labels: Vec::new() };
+        let is_of_plates = |drawn: &Drawn| assumed.layers.roles(&drawn.layer).contains(&Role::Plates);
+        let has_plates = all.iter().any(|drawn| is_of_plates(drawn) && !drawn.outlines.is_empty());
         let mut unused: BTreeMap<String, usize> = BTreeMap::new();
         let mut in_the_dark = BTreeSet::new();
         for drawn in all {
             let roles = assumed.layers.roles(&drawn.layer);
-            let role = roles.iter().min().copied().filter(|role| *role < Role::Plates);
+            let role = roles.iter().min().copied().filter(|role| *role < Role::Ignored);
             if role.is_none() || drawn.outlines.is_empty() {
                 let is_ignored = roles.contains(&Role::Ignored);
                 let what = format!("layer {}: {}", drawn.layer, drawn.kind);
+                let is_name = has_plates && !is_ignored;
+                if let Some((at, text)) = drawn.label.filter(|_| is_name) {
+                    let is_of_plates = roles.contains(&Role::Plates);
+                    sorted.labels.push(Label { at, text, is_of_plates, what });
+                    continue;
+                }
                 *unused.entry(what).or_default() += usize::from(!is_ignored);
                 continue;
             }
@@ -41,8 +53,7 @@ impl Sorted {
             sorted.is_shared |= role == Role::Shell && roles.contains(&Role::Columns);
             sorted.by_role.entry(role).or_default().extend(drawn.outlines);
         }
-        let unused = unused.into_iter().filter(|(_, n)| *n > 0);
-        notes.extend(unused.map(|(what, n)| format!("not used: {what}, {n} of them")));
+        note_unused(unused, notes);
         let used = |layer| {
             format!("layer {layer} is off or frozen in the drawing; what lies on it was used all the same")
         };
@@ -85,6 +96,26 @@ impl Sorted {
         shapes
     }
 
+    /// The plates of the floor; texts that name none are noted.
+    pub(super) fn plates(
+        &mut self,
+        boundary: &Boundary,
+        moved: &Isometry2<f64>,
+        notes: &mut Vec<String>,
+    ) -> Vec<DrawnPlate> {
+        let outlines: Vec<Outline> = self.take(Role::Plates).collect();
+        if outlines.is_empty() {
+            return Vec::new();
+        }
+        let found = plates(outlines, &mut self.labels, boundary, moved, notes);
+        let mut unused: BTreeMap<String, usize> = BTreeMap::new();
+        for label in self.labels.drain(..) {
+            *unused.entry(label.what).or_default() += 1;
+        }
+        note_unused(unused, notes);
+        found
+    }
+
     pub(super) fn pipes(&mut self, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
         let mut n_thin = 0;
         let mut shape = |outline: Outline| match outline {
@@ -104,6 +135,11 @@ impl Sorted {
         }
         shapes
     }
+}
+
+fn note_unused(unused: BTreeMap<String, usize>, notes: &mut Vec<String>) {
+    let unused = unused.into_iter().filter(|(_, n)| *n > 0);
+    notes.extend(unused.map(|(what, n)| format!("not used: {what}, {n} of them")));
 }
 
 fn note_open(role: Role, n_open: usize, notes: &mut Vec<String>) {

@@ -1,5 +1,6 @@
 use super::*;
 use std::{fmt::Write, fs};
+use world::shape::ring_area_m2;
 
 /// Nothing assumed but a width of pipes.
 fn plain() -> Assumed {
@@ -68,9 +69,9 @@ fn a_round_tank_in_millimetres_is_centred_and_scaled() {
     assert_eq!(
         plan.notes,
         [
-            "not used: layer PLATES: LINE, 1 of them",
             "(20.000, 15.000) m of the drawing is [0, 0] here",
             "PIPES: 1 lines without a width were taken as 0.1 m wide",
+            "PLATES: 1 lines that divide no floor are left out; draw seams from seam to seam or to the shell",
             "column 2 lies outside the shell and is left out",
         ]
     );
@@ -365,5 +366,67 @@ fn old_encodings_hidden_layers_and_coordinates_of_a_survey() {
             "layer SHELL is off or frozen in the drawing; what lies on it was used all the same",
             "(3500010.000, 5800005.000) m of the drawing is [0, 0] here",
         ]
+    );
+}
+
+/// Names of plates with their areas, in their order.
+fn plates(plan: &FloorPlan) -> Vec<(&str, f64)> {
+    let area = |plate: &world::DrawnPlate| (ring_area_m2(&plate.vertices_m) * 1e3).round() / 1e3;
+    plan.plates.iter().map(|plate| (plate.name.as_str(), area(plate))).collect()
+}
+
+#[test]
+fn seams_and_the_shell_enclose_plates_that_texts_name() {
+    let entities = [
+        "0 LWPOLYLINE,8 SHELL,90 4,70 1,10 0,20 0,10 6,20 0,10 6,20 4,10 0,20 4,",
+        "0 LINE,8 PLATES,10 0,20 2,11 6,21 2.003,",
+        "0 LINE,8 PLATES,10 2,20 0,11 2,21 1.996,",
+        "0 ARC,8 PLATES,10 6,20 4,40 1,50 180,51 270,",
+        "0 TEXT,8 PLATES,10 0.2,20 0.2,40 0.1,1 %%uW-7,",
+        "0 TEXT,8 TEXTS,10 0,20 0,11 4,21 1,72 1,1 E-7,",
+        // Two plates would have this name, so neither does.
+        "0 MTEXT,8 TEXTS,10 1,20 3,1 {\\fArial;t = 8},",
+        "0 MTEXT,8 TEXTS,10 5.8,20 3.8,1 t = 8,",
+        "0 TEXT,8 TEXTS,10 9,20 9,1 Tank 7",
+    ];
+    let plan = read_text(",9 $INSUNITS,70 6", "", &entities.concat(), &plain()).unwrap();
+    let quarter_m2 = std::f64::consts::PI / 4.0;
+    let [a, b, c, d] = plates(&plan)[..] else { panic!("{:?}", plates(&plan)) };
+    assert!(a.0 == "P-02" && (a.1 - quarter_m2).abs() < 0.002, "{a:?}");
+    assert!(b.0 == "W-7" && (b.1 - 4.0).abs() < 0.01, "{b:?}");
+    assert!(c.0 == "E-7" && (c.1 - 8.0).abs() < 0.01, "{c:?}");
+    assert!(d.0 == "P-01" && (d.1 - 12.0 + quarter_m2).abs() < 0.02, "{d:?}");
+    assert!(plan.notes.contains(&"not used: layer TEXTS: MTEXT, 2 of them".into()), "{:?}", plan.notes);
+    assert!(plan.notes.contains(&"not used: layer TEXTS: TEXT, 1 of them".into()), "{:?}", plan.notes);
+    // The scenario's outlines are those of the plan.
+    let text = plan.scenario("t", "d.dxf");
+    assert!(text.contains("[plates]\noutlines = [\n    { name = \"P-02\", vertices_m = [["), "{text}");
+}
+
+#[test]
+fn closed_outlines_are_plates_as_they_are_drawn() {
+    let entities = [
+        "0 CIRCLE,8 SHELL,10 10000,20 0,40 5000,",
+        "0 LWPOLYLINE,8 Bleche,90 2,70 1,10 8000,20 0,42 1,10 10000,20 0,42 0,",
+        "0 CIRCLE,8 Bleche,10 12000,20 0,40 1000,",
+        "0 LWPOLYLINE,8 Bleche,90 4,70 1,10 9000,20 -3000,10 9000,20 -1000,10 13000,20 -1000,10 13000,20 -3000,",
+        "0 CIRCLE,8 Bleche,10 30000,20 0,40 1000",
+    ];
+    let layers = Layers::new(vec![(Role::Plates, "Bleche".into())]);
+    let assumed = Assumed { layers, ..plain() };
+    let plan = read_text(",9 $INSUNITS,70 4", "", &entities.concat(), &assumed).unwrap();
+    let found = plates(&plan);
+    let names: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
+    assert_eq!(names, ["P-02", "P-03", "P-01"], "small ones first, numbered from the south");
+    assert!((found[0].1 - std::f64::consts::FRAC_PI_2).abs() < 0.01, "a half disc: {found:?}");
+    assert!((found[1].1 - std::f64::consts::PI).abs() < 0.01 && (found[2].1 - 8.0).abs() < 1e-3, "{found:?}");
+    assert_eq!(plan.plates[2].vertices_m.len(), 4);
+    assert!(
+        plan.plates[1].vertices_m.iter().all(|at| ((at - Point::new(2.0, 0.0)).norm() - 1.0).abs() < 1e-3)
+    );
+    assert!(
+        plan.notes.contains(&"PLATES: 1 outlines outside the shell are left out".into()),
+        "{:?}",
+        plan.notes
     );
 }

@@ -86,7 +86,7 @@ fn draw_zones(stream: &Stream, run: &RunOpened) -> Done {
 
 /// The seams of the plates, and their names where most of each plate is.
 fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
-    let Some(layout) = run.plates else { return Ok(()) };
+    let Some(layout) = &run.plates else { return Ok(()) };
     let seams = layout.seams(&run.world.boundary);
     let seams = seams.iter().map(|seam| seam.iter().map(|point| flat(*point)).collect());
     stream.always(paths::PLATES, &lines(seams, style::PLATE, 0.6).with_draw_order(-8.0))?;

@@ -65,8 +65,9 @@ impl<'a> Layers<'a> {
         let map = plate_map(run, floor);
         let plates = run
             .plates
+            .as_ref()
             .zip(map.as_ref())
-            .map(|(layout, map)| PlateLines::new(&layout, &run.world.boundary, floor, map));
+            .map(|(layout, map)| PlateLines::new(layout, &run.world.boundary, floor, map));
         let classes = (0..floor.len()).map(|cell| Class::of(scanned, cell)).collect();
         let (gaps, plate_map) = (Vec::new(), map);
         let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, classes };

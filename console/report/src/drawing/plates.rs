@@ -1,7 +1,10 @@
 //! Plates on a map: their seams and names.
 
-use super::sheet::Sheet;
-use world::{Boundary, Floor, PlateKind, PlateLayout, PlateMap, Point};
+use super::sheet::{Sheet, escaped};
+use world::{
+    Boundary, DrawnPlate, Floor, PlateKind, PlateLayout, PlateMap, Point,
+    shape::{bounds_of, mean_of},
+};
 
 /// The seams of the plates of a floor, and where their names stand.
 pub(crate) struct PlateLines {
@@ -22,6 +25,23 @@ struct PlateName {
 type Sum = (usize, Point, Option<(Point, Point)>);
 
 impl PlateLines {
+    /// The outlines and names of drawn plates.
+    pub(crate) fn of_outlines(plates: &[DrawnPlate]) -> Self {
+        let name = |plate: &DrawnPlate| {
+            let (low, high) = bounds_of(&plate.vertices_m);
+            PlateName {
+                name: plate.name.clone(),
+                at: mean_of(&plate.vertices_m),
+                turn_deg: 0.0,
+                room_m: [high.x - low.x, high.y - low.y],
+            }
+        };
+        Self {
+            seams: plates.iter().map(DrawnPlate::outline).collect(),
+            names: plates.iter().map(name).collect(),
+        }
+    }
+
     /// The seams and names of a layout on a floor.
     pub(crate) fn new(layout: &PlateLayout, boundary: &Boundary, floor: &Floor, map: &PlateMap) -> Self {
         let mut sums: Vec<Sum> = vec![(0, Point::origin(), None); map.plates.len()];
@@ -36,18 +56,21 @@ impl PlateLines {
         let name = |(plate, (count, sum, bounds)): (&world::Plate, &Sum)| {
             let mean = Point::from(sum.coords / (*count).max(1) as f64);
             let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
-            match boundary {
-                Boundary::Circle { radius_m } if plate.kind == PlateKind::Annular => {
+            match (boundary, layout) {
+                // Along the ring.
+                (Boundary::Circle { radius_m }, PlateLayout::Regular(sizes))
+                    if plate.kind == PlateKind::Annular =>
+                {
                     let angle = mean.y.atan2(mean.x);
-                    let at = radius_m - layout.annular_m / 2.0;
+                    let at = radius_m - sizes.annular_m / 2.0;
                     let turn = if angle.sin() >= 0.0 { 90.0 } else { 270.0 } - angle.to_degrees();
-                    let arc_m = std::f64::consts::TAU * radius_m / f64::from(layout.n_annular.max(1));
+                    let arc_m = std::f64::consts::TAU * radius_m / f64::from(sizes.n_annular.max(1));
                     let at = Point::new(at * angle.cos(), at * angle.sin());
                     PlateName {
                         name: plate.name.clone(),
                         at,
                         turn_deg: turn,
-                        room_m: [arc_m, layout.annular_m],
+                        room_m: [arc_m, sizes.annular_m],
                     }
                 }
                 _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
@@ -68,10 +91,10 @@ impl Sheet {
     /// The names of the plates that have room for them, in letters of so many millimetres; returns their boxes.
     pub(crate) fn plate_names(&mut self, plates: Option<&PlateLines>, letters_mm: f64) -> Vec<[Point; 2]> {
         let mut boxes = Vec::new();
-        self.draw(format_args!(r#"<g class="pn" font-size="{letters_mm}">"#));
+        self.draw(format_args!(r#"<g class="pn" text-anchor="middle" font-size="{letters_mm}">"#));
         for plate in plates.iter().flat_map(|plates| &plates.names) {
             let [width_mm, height_mm] = plate.room_m.map(|m| m * self.scale);
-            let needed_mm = 0.62 * letters_mm * plate.name.len() as f64;
+            let needed_mm = 0.62 * letters_mm * plate.name.chars().count() as f64;
             if width_mm < needed_mm || height_mm < 0.8 * letters_mm {
                 continue;
             }
@@ -79,7 +102,7 @@ impl Sheet {
             self.draw(format_args!(
                 r#"<text x="{x:.2}" y="{y:.2}" transform="rotate({:.1} {x:.2} {y:.2})" dy=".35em" font-size="{letters:.2}">{}</text>"#,
                 plate.turn_deg,
-                plate.name,
+                escaped(&plate.name),
                 x = at.x,
                 y = at.y
             ));

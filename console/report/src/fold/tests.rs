@@ -78,7 +78,7 @@ pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
         stations: Vec::new(),
         zones: Vec::new(),
     };
-    let plates = world::PlateLayout { annular_m: 0.6, n_annular: 6, length_m: 3.0, width_m: 1.5 };
+    let plates = world::RegularPlates { annular_m: 0.6, n_annular: 6, length_m: 3.0, width_m: 1.5 };
     let mission = &mut run["mission"];
     mission["limits"]["motion"] = json!("unicycle");
     (mission["limits"]["radius_m"], mission["clearance_m"]) = (json!(0.25), json!(0.2));

@@ -151,7 +151,7 @@ impl Run {
             mission: run.mission.clone(),
             preset_m,
             checklist: run.checklist.clone(),
-            plates: run.plates,
+            plates: run.plates.clone(),
         });
         self.coverage = Some(Raster::new(run.floor.clone()));
         let (low, high) = run.world.boundary.bounds();

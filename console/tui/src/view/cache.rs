@@ -28,7 +28,7 @@ pub struct Places {
 }
 
 /// What the plates of cells depend on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct PlateMapKey {
     layout: world::PlateLayout,
     cells: usize,
@@ -81,11 +81,11 @@ impl Cache {
     /// The plate of every cell of a floor.
     pub(super) fn plate_map(
         &mut self,
-        layout: world::PlateLayout,
+        layout: &world::PlateLayout,
         boundary: &world::Boundary,
         floor: &Floor,
     ) -> Rc<PlateMap> {
-        let key = PlateMapKey { layout, cells: floor.len(), origin: floor.origin };
+        let key = PlateMapKey { layout: layout.clone(), cells: floor.len(), origin: floor.origin };
         kept(&mut self.plate_map, key, || Rc::new(layout.map(boundary, floor)))
     }
 }

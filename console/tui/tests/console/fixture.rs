@@ -539,7 +539,8 @@ impl Screen {
     /// The same with the plates of the floor known.
     pub(crate) fn plated() -> Self {
         let mut screen = Self::running();
-        let plates = world::PlateLayout { annular_m: 0.75, n_annular: 12, length_m: 4.0, width_m: 1.6 };
+        let sizes = world::RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 4.0, width_m: 1.6 };
+        let plates = world::PlateLayout::Regular(sizes);
         if let Some(run) = &mut screen.model.live.run.about {
             run.plates = Some(plates);
         }

@@ -13,7 +13,7 @@ use world::{Floor, PlateMap, Point, Vector};
 const FROM_ZOOM: u8 = 1;
 
 /// What the drawing depends on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Key(world::PlateLayout, usize, Window, bool);
 
 /// The plates in a window.
@@ -33,7 +33,7 @@ pub(super) fn plates(look: &Look, window: Window) -> Option<Rc<PlateDrawing>> {
     let map = map(look)?;
     let (about, floor) = (look.run.about.as_ref()?, look.run.coverage.as_ref()?.floor());
     let has_dots = look.caps.glyphs.has_dots();
-    let key = Key(about.plates?, floor.len(), window, has_dots);
+    let key = Key(about.plates.clone()?, floor.len(), window, has_dots);
     Some(look.cache.borrow_mut().plates(key, || Rc::new(drawing(&map, floor, window, has_dots))))
 }
 
@@ -41,7 +41,7 @@ pub(super) fn plates(look: &Look, window: Window) -> Option<Rc<PlateDrawing>> {
 fn map(look: &Look) -> Option<Rc<PlateMap>> {
     let (about, raster) = (look.run.about.as_ref()?, look.run.coverage.as_ref()?);
     let mut cache = look.cache.borrow_mut();
-    Some(cache.plate_map(about.plates?, &about.world.boundary, raster.floor()))
+    Some(cache.plate_map(about.plates.as_ref()?, &about.world.boundary, raster.floor()))
 }
 
 /// Name of the plate under a point.

@@ -1,0 +1,71 @@
+//! Texts of a drawing, which may be names of plates.
+
+use super::groups::{Entity, unescaped};
+
+/// Letters of a name that are kept.
+const LONGEST: usize = 40;
+
+/// The text of an entity on one line and without its formatting; none if it has none.
+pub(super) fn text(entity: &Entity) -> Option<String> {
+    let plain = match entity.kind.as_str() {
+        "TEXT" => signs(entity.text(1)?),
+        // Long ones come in pieces.
+        "MTEXT" => {
+            let pieces = entity.groups().iter().filter(|(code, _)| *code == 3 || *code == 1);
+            unformatted(&signs(&pieces.map(|(_, piece)| piece.as_str()).collect::<String>()))
+        }
+        _ => return None,
+    };
+    let plain = plain.replace(char::is_control, " ");
+    let words: Vec<&str> = plain.split_whitespace().collect();
+    let name: String = words.join(" ").chars().take(LONGEST).collect();
+    (!name.is_empty()).then_some(name)
+}
+
+/// Letters and signs that stand as `\U+00FC` and `%%c`; underlining is left out.
+fn signs(text: &str) -> String {
+    let mut text = unescaped(text);
+    let all = [("%%c", "Ø"), ("%%d", "°"), ("%%p", "±"), ("%%u", ""), ("%%o", ""), ("%%k", ""), ("%%%", "%")];
+    for (code, sign) in all {
+        text = text.replace(code, sign).replace(&code.to_uppercase(), sign);
+    }
+    text
+}
+
+/// A formatted text without its codes: `{\fArial|b1;P-\H2x;07}` is `P-07`.
+fn unformatted(text: &str) -> String {
+    let mut plain = String::new();
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '{' | '}' => {}
+            '\\' => match letters.next() {
+                Some(sign @ ('\\' | '{' | '}')) => plain.push(sign),
+                Some('P' | 'N' | 'X' | '~') => plain.push(' '),
+                Some('A' | 'C' | 'c' | 'F' | 'f' | 'H' | 'p' | 'Q' | 'T' | 'W') => {
+                    letters.by_ref().take_while(|letter| *letter != ';').for_each(drop);
+                }
+                Some('S') => {
+                    let stacked = letters.by_ref().take_while(|letter| *letter != ';');
+                    plain
+                        .extend(stacked.map(|letter| if matches!(letter, '^' | '#') { '/' } else { letter }));
+                }
+                _ => {}
+            },
+            _ => plain.push(letter),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formatting_is_no_part_of_a_name() {
+        assert_eq!(unformatted(r"{\fArial|b1|i0;P-\H2x;07}\PS235"), "P-07 S235");
+        assert_eq!(unformatted(r"\A1;\LA\l \S1^2; \{B\} \\"), r"A 1/2 {B} \");
+        assert_eq!(signs("%%uPL%%u 7 %%C 3 \\U+00FC"), "PL 7 Ø 3 ü");
+    }
+}
