@@ -117,17 +117,13 @@ impl fmt::Display for Findings {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::findings::tests::example;
 
     #[test]
     fn findings_are_read_on_a_terminal() {
         insta::assert_snapshot!(example().to_string());
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn long_names_keep_the_values_in_which_they_differ() {
