@@ -216,7 +216,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
 }
 
 #[test]
-fn a_worker_that_is_told_to_stop_leaves_no_part_of_the_block_that_it_was_in() {
+fn a_worker_that_is_asked_to_stop_leaves_no_part_of_the_block_that_it_was_in() {
     let bench = Bench::new();
     let plan = plan(&bench, "plan.toml", "block = 1000", 8);
     assert_eq!(campaign(&bench, "run --out quiet", &[&plan]).code, Some(0));

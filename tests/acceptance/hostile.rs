@@ -1,4 +1,4 @@
-//! Planners that attack while they fly: what is told of them, what can be proven afterwards, and what the operator still has.
+//! Planners that attack while they fly: what is reported about them, what can be proven afterwards, and what the operator still has.
 
 use crate::{
     bench::{Bench, Ended, journal, of_kind, scenario, workspace},
@@ -235,7 +235,7 @@ fn a_plan_that_the_mission_refuses_for_its_tank_is_no_difference() {
 #[test]
 fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_different() {
     let bench = Bench::new();
-    // All that a planner is told of the console's environment.
+    // All that a planner receives of the console's environment.
     let attack = r#"if (getenv("RUST_BACKTRACE") && *getenv("RUST_BACKTRACE") == 'f') abort()"#;
     let plugins = hostile(&bench, "IN_STEP", attack);
     let more = ["--planner", "hostile", "--set", "mission.time_limit_s=2", "--plugin-dir"];

@@ -31,7 +31,7 @@ fn digest(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
-/// Changes a line of the journal that no figure depends on, and writes every digest anew, as a forger would.
+/// Changes a line of the journal that no figure depends on, and recomputes every digest, as a forger would.
 fn forge(run: &Path) {
     let before = journal_text(run);
     let after = before.replacen("certified", "certifies", 1);

@@ -110,7 +110,7 @@ pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
 }
 
 /// Refuses runs whose journal does not come out again when it is recomputed: its digests prove nothing to whoever can write
-/// `report.json` anew. `folders`: of the runs that were flown; readings that were located are not the simulator's.
+/// `report.json` again. `folders`: of the runs that were flown; readings that were located are not the simulator's.
 pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<()> {
     for folder in folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();

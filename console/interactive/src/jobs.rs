@@ -29,7 +29,7 @@ pub(super) fn begin(job: Job, tools: &Tools) {
     }
 }
 
-/// Tells the operator that something beside the screen failed.
+/// Informs the operator that something beside the screen failed.
 pub(super) fn report(outbox: &Outbox, text: &str) {
     outbox.send(Msg::Notice { severity: Severity::Warn, text: text.to_owned() });
 }

@@ -43,7 +43,7 @@ impl Session {
         Some(self.began + Duration::from_secs_f64(at_s.max(0.0)) + Duration::from_millis(1))
     }
 
-    /// Tells the model the time.
+    /// Sends the time to the model.
     pub(super) fn update_time(&mut self) {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let now =

@@ -124,7 +124,7 @@ impl Tether {
     }
 
     /// The way home for the hull. Where the robot was believed to be in a place without room for it, its line may have come to lie
-    /// on a wrong side: then it is laid anew along the cable.
+    /// on a wrong side: then it is laid again along the cable.
     fn home(&mut self, map: &ObstacleMap) -> Option<Vec<Point>> {
         let room_m = home_room_m(self.hull_m);
         let dragged = self.hull.as_ref().and_then(|hull| self.cable.return_path_of(hull, map, room_m));

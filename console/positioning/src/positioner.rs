@@ -258,8 +258,8 @@ impl Positioner {
         let sigma_m = (first.covariance + last.covariance).trace().sqrt();
         let (way_m, off_m) = (by_odometry.norm(), (by_fixes.norm() - by_odometry.norm()).abs());
         let sigma_rad = sigma_m / way_m;
-        let is_told = sigma_rad < RESTART_HEADING_SIGMA_RAD && off_m < 3.0 * sigma_m;
-        is_told.then(|| (by_odometry.perp(&by_fixes).atan2(by_odometry.dot(&by_fixes)), sigma_rad))
+        let is_known = sigma_rad < RESTART_HEADING_SIGMA_RAD && off_m < 3.0 * sigma_m;
+        is_known.then(|| (by_odometry.perp(&by_fixes).atan2(by_odometry.dot(&by_fixes)), sigma_rad))
     }
 
     /// Corrects the filter where the geometry is better known.

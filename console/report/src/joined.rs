@@ -77,7 +77,7 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     Ok(all)
 }
 
-/// Name of what was found in one of so many runs, which each begin to count anew.
+/// Name of what was found in one of so many runs, each of which counts from 1.
 pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
     if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }

@@ -222,11 +222,11 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
         let reading = scope.spawn(move || read_ahead(ticks, &sender));
         let (again, asking) = plugins
             .map(|plugins| {
-                let ((again, told), scenario) = (sync_channel(BEHIND), &scenario);
-                (again, scope.spawn(move || Asked::of(host(scenario, plugins), &told)))
+                let ((again, updates), scenario) = (sync_channel(BEHIND), &scenario);
+                (again, scope.spawn(move || Asked::of(host(scenario, plugins), &updates)))
             })
             .unzip();
-        let findings = recompute(flight, Replayed::told_to(again), read.into_iter().flatten());
+        let findings = recompute(flight, Replayed::sending_to(again), read.into_iter().flatten());
         let no_end = reading.join().map_err(|_| anyhow::anyhow!("reading the journal panicked"))?;
         let asked = asking.map(ScopedJoinHandle::join).transpose();
         let planners = asked.map_err(|_| anyhow::anyhow!("asking the planners panicked"))?;

@@ -1,4 +1,4 @@
-//! What a planner is told about a file, looked up by the console: the kernel would look at a path that may have changed.
+//! What a planner may know about a file, looked up by the console: the kernel would look at a path that may have changed.
 
 use std::fs::Metadata;
 use std::mem::offset_of;
@@ -7,7 +7,7 @@ use std::os::unix::fs::MetadataExt;
 /// The kernel's structure.
 type Bytes = [u8; size_of::<libc::stat>()];
 
-/// What is told, and where in its memory the planner wants to read it.
+/// What a call returns about a file, and where in its memory the planner wants to read it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct About {
     pub(super) to: u64,
@@ -19,7 +19,7 @@ pub(crate) struct About {
 /// # Errors
 /// The number of the system's error; so below.
 pub(super) fn descriptor(thread: u32, number: i32) -> Result<Bytes, i32> {
-    told(std::fs::metadata(format!("/proc/{thread}/fd/{number}")), libc::EBADF)
+    status(std::fs::metadata(format!("/proc/{thread}/fd/{number}")), libc::EBADF)
 }
 
 /// About a file by its path.
@@ -28,10 +28,10 @@ pub(super) fn file(path: &str, flags: i32) -> Result<Bytes, i32> {
         0 => std::fs::metadata(path),
         _ => std::fs::symlink_metadata(path),
     };
-    told(about, libc::ENOENT)
+    status(about, libc::ENOENT)
 }
 
-fn told(about: std::io::Result<Metadata>, otherwise: i32) -> Result<Bytes, i32> {
+fn status(about: std::io::Result<Metadata>, otherwise: i32) -> Result<Bytes, i32> {
     about.map(|about| bytes_of(&about)).map_err(|_| otherwise)
 }
 
@@ -75,11 +75,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_told_is_what_the_system_says() {
+    fn the_status_is_that_of_the_system() {
         let program = std::env::current_exe().expect("this program");
-        let (told, known) =
-            (file(&program.to_string_lossy(), 0).expect("told"), std::fs::metadata(program).expect("known"));
-        let at = |at: usize| u64::from_ne_bytes(told[at..at + 8].try_into().expect("eight bytes"));
+        let (status, known) = (
+            file(&program.to_string_lossy(), 0).expect("status"),
+            std::fs::metadata(program).expect("known"),
+        );
+        let at = |at: usize| u64::from_ne_bytes(status[at..at + 8].try_into().expect("eight bytes"));
         assert_eq!(at(offset_of!(libc::stat, st_size)), known.len());
         assert_eq!(at(offset_of!(libc::stat, st_ino)), known.ino());
         assert_eq!(file("/nonexistent", 0), Err(libc::ENOENT));

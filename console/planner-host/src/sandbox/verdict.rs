@@ -36,7 +36,7 @@ const CURIOUS: [&str; 10] = [
 pub(crate) enum Verdict {
     /// It may be made.
     Allow,
-    /// It is not made, and succeeds: this is what the planner is told about a file.
+    /// It is not made, and succeeds: this is what it returns about a file.
     Tell(About),
     /// It fails with this error of the system, and the planner goes on.
     Refuse(i32),
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn open_files_are_told_about_and_others_are_not() {
+    fn the_status_of_open_files_is_given_and_of_others_is_not() {
         for stage in [Stage::Loading, LOADED] {
             assert!(matches!(ask_about("", libc::AT_EMPTY_PATH, stage), Verdict::Tell(_)));
             assert_eq!(ask_about("/etc/shadow", 0, stage), forbidden("newfstatat of /etc/shadow"));

@@ -263,7 +263,7 @@ fn the_end_of_the_main_thread_is_silence_and_its_process_is_killed() {
 }
 
 #[test]
-fn ways_to_end_are_told_apart() {
+fn ways_to_end_are_distinguished() {
     let ends = [
         ("exit(3)", "planner hostile ended its own process with exit code 3 during step 3"),
         ("quick_exit(4)", "planner hostile ended its own process with exit code 4 during step 3"),

@@ -16,7 +16,7 @@ pub(crate) struct Tick {
     pub drawings: Vec<Drawing>,
     pub truth: Option<Truth>,
     pub estimate: Option<Estimate>,
-    /// What the planner commands; a robot that is held is told to stand, which no event says.
+    /// What the planner commands; a held robot is commanded to stand, which no event states.
     commanded_m_per_s: Option<f64>,
     is_held: bool,
     /// Scanned share of the reachable floor.
@@ -159,7 +159,7 @@ mod tests {
     use mission::{HoldReason, Resumes};
 
     #[test]
-    fn a_held_robot_is_told_to_stand_until_it_is_resumed() {
+    fn a_held_robot_is_commanded_to_stand_until_it_is_resumed() {
         let held = EventKind::Held { by: HoldReason::Operator, resumes: Resumes::Never };
         let mut tick = Tick::first(At::default(), Point::origin(), None);
         assert_eq!(tick.speed_sent_m_per_s(), None);

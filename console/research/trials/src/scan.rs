@@ -14,7 +14,7 @@ use world::{
 const TOOL: Tool = Tool::Bar { swath_m: SWATH_M };
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 const CRITICAL_ZONE_M: f64 = 0.075;
-/// Speeds of the robot by which a path is judged: 0.4 m/s and 60 degrees a second.
+/// Speeds of the robot by which the time of a path is computed: 0.4 m/s and 60 degrees a second.
 const SPEED_M_PER_S: f64 = 0.4;
 const TURN_RAD_PER_S: f64 = std::f64::consts::PI / 3.0;
 /// Step along a lane that may touch something, metres.

@@ -16,16 +16,16 @@ use std::{
 /// How many asks and answers the planners may be behind.
 pub(super) const BEHIND: usize = 512;
 
-/// Answers asks from the journal, and tells of both who has planners answer them, too.
+/// Answers asks from the journal, and sends both to the thread in which planners answer them, too.
 pub(crate) struct Replayed {
     recorded: RecordedAnswers,
     /// `None` when planners are not asked.
-    again: Option<SyncSender<Told>>,
+    again: Option<SyncSender<Update>>,
     tick: u64,
 }
 
 /// What happened in the journal.
-pub(super) enum Told {
+pub(super) enum Update {
     /// A planner was asked.
     Ask(Ask),
     /// An answer was recorded.
@@ -49,8 +49,8 @@ impl Replayed {
         Self { recorded: RecordedAnswers::default(), again: None, tick: 0 }
     }
 
-    /// Tells [`Asking`] of everything.
-    pub(super) fn told_to(again: Option<SyncSender<Told>>) -> Self {
+    /// Sends everything to [`Asking`].
+    pub(super) fn sending_to(again: Option<SyncSender<Update>>) -> Self {
         Self { again, ..Self::from_journal() }
     }
 
@@ -60,10 +60,10 @@ impl Replayed {
         self.recorded.begin_tick(recorded.events());
     }
 
-    fn tell(&self, told: impl FnOnce() -> Told) {
+    fn send(&self, update: impl FnOnce() -> Update) {
         if let Some(again) = &self.again {
-            // Who does not listen any more has panicked, and whoever waits for its findings sees that.
-            let _ = again.send(told());
+            // A receiver that is gone has panicked, and whoever waits for its findings sees that.
+            let _ = again.send(update());
         }
     }
 }
@@ -71,14 +71,14 @@ impl Replayed {
 impl Answers for Replayed {
     fn submit(&mut self, ask: Ask) {
         self.recorded.submit(&ask);
-        self.tell(|| Told::Ask(ask));
+        self.send(|| Update::Ask(ask));
     }
 
     fn next(&mut self, mission: &Mission) -> Option<Answer> {
         let (answer, is_used) = self.recorded.next_answer()?;
-        self.tell(|| {
+        self.send(|| {
             let (answer, sending) = (answer.clone(), mission.sending());
-            Told::Answered(Box::new(Recorded { answer, tick: self.tick, is_used, sending }))
+            Update::Answered(Box::new(Recorded { answer, tick: self.tick, is_used, sending }))
         });
         Some(answer)
     }
@@ -102,20 +102,20 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// Asks the planners of a host all that is told, until nobody tells anything any more or one answers otherwise: from
-    /// there on it would know other things than it did then.
-    pub(super) fn of(mut host: Host, told: &Receiver<Told>) -> Self {
+    /// Asks the planners of a host everything that arrives, until the sender is gone or a planner answers otherwise: from then
+    /// on it would know other things than it did in the run.
+    pub(super) fn of(mut host: Host, updates: &Receiver<Update>) -> Self {
         host.share_processor();
         let mut asking = Asking { host, early: Vec::new(), failed: BTreeMap::new(), asked: Self::default() };
-        let is_same = told.iter().all(|told| {
-            match told {
-                Told::Ask(ask) => asking.ask(ask),
-                Told::Answered(recorded) => asking.compare(&recorded),
+        let is_same = updates.iter().all(|update| {
+            match update {
+                Update::Ask(ask) => asking.ask(ask),
+                Update::Answered(recorded) => asking.compare(&recorded),
             }
             asking.asked.difference.is_none()
         });
         if !is_same {
-            told.iter().for_each(drop);
+            updates.iter().for_each(drop);
         }
         asking.asked.unproven = asking.failed.into_values().next();
         asking.asked

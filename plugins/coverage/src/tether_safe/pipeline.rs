@@ -81,14 +81,14 @@ impl<'a> Pipeline<'a> {
             job.stage(0.25);
             let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
             let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
-            Ok(Some(self.judged(candidate.name(), draft)))
+            Ok(Some(self.estimated(candidate.name(), draft)))
         };
         let drafts = run_all(Candidate::all(workspace, preferences, alpha_rad), stage, drafted)?;
         Ok(cheapest_first(drafts.into_iter().flatten()))
     }
 
     /// A draft with what it promises.
-    fn judged(&self, name: String, draft: Draft<'a>) -> Drafted<'a> {
+    fn estimated(&self, name: String, draft: Draft<'a>) -> Drafted<'a> {
         let Self { site, preferences, cable, .. } = *self;
         let estimate_m = draft.estimate_m(preferences.choice_turn_m);
         let tethered = Tethered { domain: draft.domain(), path: &draft.path(), cable };
@@ -148,7 +148,7 @@ impl<'a> Pipeline<'a> {
     ) -> Result<()> {
         let end = stages.end;
         stages.end = stages.toward(end, share);
-        let roughed = |Drafted { name, draft, .. }, job: &Job| Ok(self.judged(name, draft.roughed(job)?));
+        let roughed = |Drafted { name, draft, .. }, job: &Job| Ok(self.estimated(name, draft.roughed(job)?));
         let roughed = run_all(drafts, &stages.next(0.6, what), roughed)?;
         let (mut close, mut rest): (Vec<_>, Vec<_>) = roughed.into_iter().partition(|draft| draft.may_meet);
         close = cheapest_first(close.into_iter());

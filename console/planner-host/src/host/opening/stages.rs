@@ -188,7 +188,7 @@ impl Host {
     }
 
     /// A planner that was not made. In a process that has served an earlier mission it may have been the instance of that one
-    /// which did not end well: that is not the fault of this mission, and a new process tells.
+    /// which did not end well: that is not the fault of this mission, and a new process shows it.
     fn part_or_load_again(
         &mut self,
         id: AskId,

@@ -19,7 +19,7 @@ pub trait Parts: Sync {
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String>;
     /// Takes a part for this process alone; false if another one has it.
     fn claim(&self, name: &str) -> bool;
-    /// Is told that this process waits for a part that another one has.
+    /// Called while this process waits for a part that another one has.
     fn wait_for(&self, name: &str);
     /// Says that the holder of a claim is alive.
     fn keep_claim(&self, name: &str);
@@ -43,7 +43,7 @@ pub(super) struct Kept<'a> {
 
 impl Kept<'_> {
     /// The answers of all cases, in their order: those of parts that are there, and of the others that are computed here.
-    /// `is_done` is told how many cases a part had that did not have to be computed.
+    /// `is_done` is called with the number of cases of a part that did not have to be computed.
     ///
     /// # Errors
     /// The first error in the order of the cases, or of the folder.
