@@ -198,7 +198,7 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
 
 /// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong.
 fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
-    let (first, error_95_m) = tally.first_fix_m?;
+    let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;
     let off_m = (first - scenario.mission.start.position).norm();
     (off_m > 2.0 * error_95_m + 3.0 * scenario.mission.start_sigma_m).then_some(off_m)
 }

@@ -16,8 +16,10 @@ pub struct Tally {
     pub fixes: BTreeMap<&'static str, u64>,
     /// Emissions that gave none, by the reason.
     pub failed: BTreeMap<String, u64>,
-    /// Position of the first fix, metres, and the longer half axis of its 95 % ellipse.
-    pub first_fix_m: Option<(Point, f64)>,
+    /// Position of the first fix, tank frame, metres.
+    pub first_fix_m: Option<Point>,
+    /// Longer half axis of the 95 % ellipse of the first fix, metres.
+    pub first_fix_error_95_m: Option<f64>,
     /// How often each station was left out by its residual, by number.
     pub left_out: BTreeMap<u32, u64>,
     /// 95 % error of the track by its covariance, metres: mean and largest.
@@ -63,7 +65,8 @@ impl Tally {
                 EventKind::Ranged { .. } => self.emissions += 1,
                 EventKind::Fixed { fix } => {
                     *self.fixes.entry(word(fix.integrity)).or_default() += 1;
-                    self.first_fix_m.get_or_insert_with(|| (fix.position, fix.ellipse_95().0));
+                    self.first_fix_m.get_or_insert(fix.position);
+                    self.first_fix_error_95_m.get_or_insert_with(|| fix.ellipse_95().0);
                     for (station, reason) in &fix.excluded {
                         if matches!(reason, positioning::Exclusion::Residual { .. }) {
                             *self.left_out.entry(station.0).or_default() += 1;

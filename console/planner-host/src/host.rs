@@ -3,6 +3,8 @@
 mod config;
 mod fault;
 mod find;
+mod kept;
+mod leaving;
 mod opening;
 mod planner;
 mod said_limit;
@@ -20,29 +22,15 @@ use crate::discovery::PluginDirs;
 use crate::remains::{BadEnd, Crash, Printed, is_crash};
 use crate::stats::{Durations, HostStats, Memory};
 use crate::supervisor::{Failure, Ready, WakeReceiver, Waker, Worker, wait};
-use crate::wire::SHUT_DOWN_WITHIN;
 use find::Catalog;
+use kept::Kept;
+use leaving::Leaving;
 use mission::{Answer, Ask, AskId, Fault, Given, Said, What, WorkerId};
 use planner::{Asked, Doing, Outcome, Planner};
 use saved::SavedStates;
-use spare::{Spare, Spares};
+use spare::Spares;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
-
-/// So many lines of planners are kept for those who do not take them.
-const MOST_PRINTED: usize = 256;
-/// What is left of so many planners is kept for those who do not take it.
-const MOST_CRASHES: usize = 4;
-
-/// So many planners that did not end well are kept for those who do not take them.
-const MOST_BAD_ENDS: usize = 16;
-
-/// A worker that is being ended.
-struct Leaving {
-    /// The planner that it had; empty if it had none yet.
-    planner: String,
-    worker: Worker,
-}
 
 /// Runs planners for missions, each in a worker process.
 ///
@@ -67,9 +55,7 @@ pub struct Host {
     step_times: Durations,
     n_faults: u64,
     on_progress: Option<OnProgress>,
-    printed: Vec<Printed>,
-    crashes: Vec<Crash>,
-    bad_ends: Vec<BadEnd>,
+    kept: Kept,
     /// Last requests and output of a worker that failed while its planner was being opened.
     remains: Option<(Vec<u8>, String)>,
     #[cfg(target_os = "linux")]
@@ -93,9 +79,7 @@ impl Host {
             step_times: Durations::default(),
             n_faults: 0,
             on_progress: None,
-            printed: Vec::new(),
-            crashes: Vec::new(),
-            bad_ends: Vec::new(),
+            kept: Kept::default(),
             remains: None,
             #[cfg(target_os = "linux")]
             together: None,
@@ -133,17 +117,17 @@ impl Host {
 
     /// What planners printed since the last time.
     pub fn take_printed(&mut self) -> Vec<Printed> {
-        std::mem::take(&mut self.printed)
+        std::mem::take(&mut self.kept.printed)
     }
 
     /// What is left of the planners that failed since the last time.
     pub fn take_crashes(&mut self) -> Vec<Crash> {
-        std::mem::take(&mut self.crashes)
+        std::mem::take(&mut self.kept.crashes)
     }
 
     /// Which planners did not end well since the last time.
     pub fn take_bad_ends(&mut self) -> Vec<BadEnd> {
-        std::mem::take(&mut self.bad_ends)
+        std::mem::take(&mut self.kept.bad_ends)
     }
 
     /// How long a plan may take.
@@ -187,9 +171,7 @@ impl Host {
             }
         }
         self.answers.clear();
-        self.printed.clear();
-        self.crashes.clear();
-        self.bad_ends.clear();
+        self.kept = Kept::default();
         self.remains = None;
         self.saved = SavedStates::default();
         (self.plan_times, self.step_times, self.n_faults) = Default::default();
@@ -240,63 +222,6 @@ impl Host {
         }
     }
 
-    /// Ends a worker and drops what it was asked.
-    pub(crate) fn close(&mut self, id: WorkerId) {
-        if let Some(index) = self.planners.iter().position(|planner| planner.id == id) {
-            let mut planner = self.planners.swap_remove(index);
-            if let Some(worker) = planner.worker.take() {
-                self.dismiss(planner.name(), worker);
-            }
-        }
-        self.answers.retain(|answer| answer.ask.worker != id);
-    }
-
-    /// Asks a worker to exit by itself, and leaves it to its end.
-    fn dismiss(&mut self, planner: &str, mut worker: Worker) {
-        worker.shut_down();
-        self.leave(planner, worker);
-    }
-
-    /// Leaves a worker to its end.
-    fn leave(&mut self, planner: &str, mut worker: Worker) {
-        self.note_printed(planner, worker.take_printed());
-        if !worker.is_gone() {
-            self.leaving.push(Leaving { planner: planner.to_owned(), worker });
-        }
-    }
-
-    fn note_bad_end(&mut self, end: BadEnd) {
-        if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
-            self.bad_ends.push(end);
-        }
-    }
-
-    fn note_printed(&mut self, planner: &str, lines: Vec<String>) {
-        let printed = |line| Printed { planner: planner.to_owned(), line };
-        self.printed.extend(lines.into_iter().map(printed));
-        let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
-        self.printed.drain(..surplus);
-    }
-
-    /// Asks all workers to exit by themselves, and waits until they have: a moment, or as long as they are given for it.
-    pub fn finish(&mut self) {
-        self.place(None);
-        self.answers.clear();
-        for mut planner in std::mem::take(&mut self.planners) {
-            if let Some(worker) = planner.worker.take() {
-                self.dismiss(planner.name(), worker);
-            }
-        }
-        for Spare { worker, loaded } in self.spares.take_all() {
-            self.dismiss(&loaded.info.id, worker);
-        }
-        let until = Instant::now() + 2 * SHUT_DOWN_WITHIN;
-        while !self.leaving.is_empty() && Instant::now() < until {
-            self.clear_wake_ups();
-            self.look(Some(until));
-        }
-    }
-
     /// The next answer, as soon as there is one. None when the given time is reached, when the host was woken, or when no
     /// ask is open; without a time it waits as long as it takes. What has already arrived is always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
@@ -316,16 +241,6 @@ impl Host {
                 return None;
             }
         }
-    }
-
-    /// Looks after workers that are being ended, without waiting; whether there are any left.
-    ///
-    /// [`Self::next`] does so as well: this is for times when nothing is asked.
-    pub fn look_after_leaving(&mut self) -> bool {
-        if !self.leaving.is_empty() {
-            self.look(Some(Instant::now()));
-        }
-        !self.leaving.is_empty()
     }
 
     fn is_asked(&self) -> bool {
@@ -349,26 +264,11 @@ impl Host {
                 }
             };
             outcomes.extend(worker.advance(ready, now, forward).map(|outcome| (planner.id, outcome)));
-            let lines = worker.take_printed().into_iter();
-            let name = planner.ready.as_ref().map_or("", |ready| &ready.loaded.info.id);
-            self.printed.extend(lines.map(|line| Printed { planner: name.to_owned(), line }));
+            let lines = worker.take_printed();
+            self.kept.note_printed(planner.name(), lines);
         }
-        let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
-        self.printed.drain(..surplus);
-        let mut ended = Vec::new();
-        for mut leaving in std::mem::take(&mut self.leaving) {
-            if let Some(ready) = ready.next() {
-                leaving.worker.advance(ready, now, &mut |_| {});
-            }
-            let list = if leaving.worker.is_gone() { &mut ended } else { &mut self.leaving };
-            list.push(leaving);
-        }
-        for Leaving { planner, mut worker } in ended {
-            self.note_printed(&planner, worker.take_last_printed());
-            if let Some(how) = worker.take_bad_end() {
-                self.note_bad_end(BadEnd { planner, how });
-            }
-        }
+        let ready: Vec<Ready> = ready.collect();
+        self.advance_leaving(&ready, now);
         for (id, outcome) in outcomes {
             self.take(id, outcome);
         }
@@ -420,22 +320,8 @@ impl Host {
         let planner = self.planners.iter_mut().find(|planner| planner.id == id);
         let of_worker = planner.and_then(|planner| planner.worker.as_mut()).map(Worker::remains);
         let remains = of_worker.or(self.remains.take());
-        if let Some((frames, output)) =
-            remains.filter(|_| is_crash(fault.cause) && self.crashes.len() < MOST_CRASHES)
-        {
-            self.crashes.push(Crash { fault: fault.clone(), frames, output });
-        }
-    }
-
-    /// Removes a worker that cannot be asked any more.
-    fn retire(&mut self, id: WorkerId) {
-        let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
-        let ended = unasked.and_then(|planner| {
-            let worker = planner.worker.take_if(|worker| !worker.is_idle())?;
-            Some((planner.name().to_owned(), worker))
-        });
-        if let Some((planner, worker)) = ended {
-            self.leave(&planner, worker);
+        if let Some((frames, output)) = remains.filter(|_| is_crash(fault.cause)) {
+            self.kept.note_crash(Crash { fault: fault.clone(), frames, output });
         }
     }
 }

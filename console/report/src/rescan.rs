@@ -6,6 +6,7 @@ use crate::{
     account::{
         Area, MissReason,
         areas::{area_of, areas as areas_of},
+        plate_map,
     },
     joined::{Joined, PastRun, joined, updated_floor},
 };
@@ -63,7 +64,7 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
         (0..floor.len()).map(|index| is_asked(index).then(|| no_lane(index)).flatten()).collect();
     let is_wanted = |index: usize| is_asked(index) && no_lane[index].is_none();
     let not_asked = (0..floor.len()).filter(|index| is_missed(*index) && !evidence.is_asked(*index)).count();
-    let plates = run.plates.as_ref().map(|layout| layout.map(&run.world.boundary, floor));
+    let plates = plate_map(run, floor);
     let measure = |why, cells: &[usize]| reasons.measure(grid, why, cells);
     let (out_of_reach, _) = areas_of(floor, plates.as_ref(), |index| no_lane[index], measure);
     let (mut taken, mut areas, mut left) = (vec![false; floor.len()], Vec::new(), Vec::new());

@@ -39,7 +39,7 @@ pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<
     let section = root.table("plates")?;
     if section.has("outlines") {
         section.refuse(&["annular_width_m", "annular_count", "plate_length_m", "plate_width_m"], "outlines");
-        return Some(PlateLayout::Drawn { plates: drawn_plates(&section, boundary)? });
+        return Some(PlateLayout::Drawn { plates: drawn_plates(&section, boundary)?.into() });
     }
     let (annular_m, length_m) = (section.number("annular_width_m")?, section.number("plate_length_m")?);
     let width_m = section.number("plate_width_m")?;

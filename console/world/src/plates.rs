@@ -10,7 +10,7 @@ use crate::coverage::Floor;
 pub use drawn::{DrawnPlate, NO_PLATE};
 use geometry::{Boundary, Point, Vector, shape::rectangle, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, f64::consts::TAU};
+use std::{collections::BTreeMap, f64::consts::TAU, sync::Arc};
 
 /// The layout of the plates of a floor.
 ///
@@ -27,8 +27,8 @@ pub enum PlateLayout {
     Regular(RegularPlates),
     /// By the outline of each plate.
     Drawn {
-        /// Where plates overlap, the first one counts.
-        plates: Vec<DrawnPlate>,
+        /// Where plates overlap, the first one counts. Shared: there may be thousands.
+        plates: Arc<[DrawnPlate]>,
     },
 }
 
@@ -41,7 +41,7 @@ impl PlateLayout {
     /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
     /// let floor = Floor::new(&tank, 0.2, 0.3, 0.6, Point::origin());
     /// let vertices_m = vec![Point::new(0.0, 0.0), Point::new(6.0, 0.0), Point::new(6.0, 1.8), Point::new(0.0, 1.8)];
-    /// let layout = PlateLayout::Drawn { plates: vec![DrawnPlate { name: "P-01".into(), vertices_m }] };
+    /// let layout = PlateLayout::Drawn { plates: vec![DrawnPlate { name: "P-01".into(), vertices_m }].into() };
     /// let map = layout.map(&tank.boundary, &floor);
     /// assert_eq!((&*map.plates[0].name, &*map.plates[1].name), ("no plate", "P-01"));
     /// ```

@@ -17,6 +17,7 @@ pub(crate) use track::{Terms, Track};
 /// How far a round of polish is when the path is shortened and when it is bent, as shares of its time, about.
 const SHORTENED: f64 = 0.63;
 const BENT: f64 = 0.92;
+
 /// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough. A second round pays:
 /// what was bent and tied in sweeps floor on its way that other parts need not sweep any more. `time` is the share of the
 /// candidate's time that the round takes.
@@ -43,7 +44,7 @@ pub(crate) fn polish(
     track.pass_along_shell(terms)
 }
 
-/// Brings the coverage that other cells than the path's tell to what is enough: by bends and ties, or by shortcuts as long as
+/// Brings the coverage, counted in other cells than the path was fitted to, to what is enough: by bends and ties, or by shortcuts as long as
 /// it is more than that.
 pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &ReachableFloor) -> Result<()> {
     let enough = track.enough_here(terms.enough, other);

@@ -192,13 +192,13 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     let mut sorted: Vec<(Point, Vec<Point>)> = rings.into_iter().map(|ring| (mean_of(&ring), ring)).collect();
     let row = |at: &Point| (at.y / ROW_M).round() as i64;
     sorted.sort_by(|(a, _), (b, _)| row(a).cmp(&row(b)).then(a.x.total_cmp(&b.x)));
-    let mut sized: Vec<(usize, i64)> = sorted
+    let mut by_size: Vec<(usize, i64)> = sorted
         .iter()
         .enumerate()
         .map(|(k, (_, ring))| (k, (ring_area_m2(ring).abs() * 1e3).round() as i64))
         .collect();
-    sized.sort_by_key(|(_, litres)| *litres);
-    let order: Vec<usize> = sized.into_iter().map(|(k, _)| k).collect();
+    by_size.sort_by_key(|(_, size)| *size);
+    let order: Vec<usize> = by_size.into_iter().map(|(k, _)| k).collect();
     let given = given(&sorted, &order, labels);
     let taken: BTreeSet<String> =
         given.values().map(|label| labels[*label].text.clone()).chain([NO_PLATE.into()]).collect();

@@ -151,7 +151,7 @@ mod tests {
             plate("beyond a gap", &[(2.15, -2.0), (3.0, -2.0), (3.0, 0.0), (2.15, 0.0)]),
         ];
         let (boundary, floor) = floor(0.1);
-        let map = PlateLayout::Drawn { plates: plates.clone() }.map(&boundary, &floor);
+        let map = PlateLayout::Drawn { plates: plates.clone().into() }.map(&boundary, &floor);
         let name = |x: f64, y: f64| {
             let plate = map.plate_of(floor.cell_at(Point::new(x, y)).unwrap()).unwrap();
             map.plates[plate].name.as_str()
@@ -184,7 +184,7 @@ mod tests {
             plate("outer", &[(4.0, 0.0), (5.0, 0.0), (4.0, 1.0)]),
             plate("under a column", &[(7.0, 0.0), (8.0, 0.0), (8.0, 1.0)]),
         ];
-        let map = PlateLayout::Drawn { plates }.map(&boundary, &floor);
+        let map = PlateLayout::Drawn { plates: plates.into() }.map(&boundary, &floor);
         let kinds: Vec<(&str, PlateKind)> =
             map.plates.iter().map(|plate| (plate.name.as_str(), plate.kind)).collect();
         assert_eq!(kinds, [("outer", Annular), ("cut", Sketch), (NO_PLATE, Sketch), ("inner", Rectangular)]);
@@ -192,7 +192,8 @@ mod tests {
 
     #[test]
     fn both_layouts_are_read_back_as_they_were_written() {
-        let drawn = PlateLayout::Drawn { plates: vec![plate("P-01", &[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])] };
+        let drawn =
+            PlateLayout::Drawn { plates: vec![plate("P-01", &[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])].into() };
         let text = serde_json::to_string(&drawn).unwrap();
         assert_eq!(serde_json::from_str::<PlateLayout>(&text).unwrap(), drawn);
         let old = r#"{"annular_m":0.75,"n_annular":12,"length_m":6.0,"width_m":1.8}"#;

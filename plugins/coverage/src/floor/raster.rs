@@ -7,9 +7,9 @@ use crate::plane::{direction, extent, left_of};
 use std::ops::Range;
 use world::{Boundary, Point, Vector, polyline::edges, shape::bounds_of};
 
-/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan. Where a path was fitted to
-/// the cells of such rows, those of other rows tell what it is worth.
+/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
 const ROWS_RAD: f64 = 0.3;
+/// Another such direction. A path that was fitted to cells seems to sweep more of them than it does; others show what it sweeps.
 const OTHER_ROWS_RAD: f64 = 0.9;
 /// Corners of the largest polygon that is filled: a fan of wedges over half a turn, and its middle.
 pub(super) const MOST_CORNERS: usize = 11;

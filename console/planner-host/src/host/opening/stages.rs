@@ -201,7 +201,7 @@ impl Host {
             return self.part(worker, loaded.fault(failure, Phase::Configure));
         }
         self.dismiss(&loaded.info.id, worker);
-        self.note_bad_end(BadEnd { planner: loaded.info.id.clone(), how: failure.how() });
+        self.kept.note_bad_end(BadEnd { planner: loaded.info.id.clone(), how: failure.how() });
         self.load_next(id, opening)
     }
 

@@ -1,0 +1,40 @@
+//! What planners leave beside their answers, until somebody takes it.
+
+use crate::remains::{BadEnd, Crash, Printed};
+
+/// So many lines are kept, the newest.
+const MOST_PRINTED: usize = 256;
+/// Crashes that are kept.
+const MOST_CRASHES: usize = 4;
+/// Bad ends that are kept.
+const MOST_BAD_ENDS: usize = 16;
+
+/// What was left since the last time.
+#[derive(Default)]
+pub(super) struct Kept {
+    pub(super) printed: Vec<Printed>,
+    pub(super) crashes: Vec<Crash>,
+    pub(super) bad_ends: Vec<BadEnd>,
+}
+
+impl Kept {
+    pub(super) fn note_printed(&mut self, planner: &str, lines: Vec<String>) {
+        let printed = |line| Printed { planner: planner.to_owned(), line };
+        self.printed.extend(lines.into_iter().map(printed));
+        let surplus = self.printed.len().saturating_sub(MOST_PRINTED);
+        self.printed.drain(..surplus);
+    }
+
+    pub(super) fn note_crash(&mut self, crash: Crash) {
+        if self.crashes.len() < MOST_CRASHES {
+            self.crashes.push(crash);
+        }
+    }
+
+    /// Notes how a planner ended; a worker that had none yet has no author who has to know.
+    pub(super) fn note_bad_end(&mut self, end: BadEnd) {
+        if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
+            self.bad_ends.push(end);
+        }
+    }
+}
