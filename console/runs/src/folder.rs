@@ -94,7 +94,23 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
         .filter(|path| SIGNS.iter().any(|name| path.join(name).exists()))
         .collect();
     folders.sort();
+    for same_second in folders.chunk_by_mut(|a, b| second_of(a) == second_of(b)) {
+        if same_second.len() > 1 {
+            same_second.sort_by_key(|folder| made(folder));
+        }
+    }
     Ok(folders)
+}
+
+/// The second in which a run began, as its name says.
+fn second_of(folder: &Path) -> &[u8] {
+    let name = folder.file_name().unwrap_or_default().as_encoded_bytes();
+    name.split(|byte| *byte == b'-').next().unwrap_or_default()
+}
+
+/// When a run began, from its lock, which is written once; none if that is missing.
+fn made(folder: &Path) -> Option<SystemTime> {
+    fs::metadata(folder.join(LOCK_FILE)).and_then(|lock| lock.modified()).ok()
 }
 
 /// The folder of a run that the user named by path, by name, by the beginning of its name, or as `latest`.

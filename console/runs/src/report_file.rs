@@ -75,7 +75,7 @@ const NOT_THE_ONE: &str =
     "the journal is not the one that the report was made from: their SHA-256 digests differ";
 
 /// What is said of a recording that its report was not made with.
-const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; `tankops export` makes it again";
+const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; put the file back, or write another one with `tankops export`";
 
 /// The report of a run as it is on disk, and what it says against the files beside it.
 pub(crate) struct Reported {

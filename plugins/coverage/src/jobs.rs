@@ -63,6 +63,9 @@ pub(crate) fn run_all<T: Send, R: Send>(
     let next = || waiting.lock().ok()?.pop_front();
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let mut results: Vec<Option<Result<R>>> = (0..n).map(|_| None).collect();
+    if n > 0 {
+        report(stage, &jobs, &results);
+    }
     thread::scope(|scope| {
         let (sender, receiver) = channel();
         for _ in 0..cores.min(n) {
@@ -134,8 +137,9 @@ mod tests {
         };
         run_all(vec![0; 3], &stage(&bench), work).unwrap();
         let progress = bench.progress();
+        assert_eq!(progress.first(), Some(&(0.0, "items, 0 of 3 done".to_owned())));
         assert!(
-            progress.len() >= 3 && progress.windows(2).all(|pair| pair[0].0 <= pair[1].0),
+            progress.len() >= 4 && progress.windows(2).all(|pair| pair[0].0 <= pair[1].0),
             "{progress:?}"
         );
         assert_eq!(progress.last(), Some(&(0.5, "items, 3 of 3 done".to_owned())));

@@ -30,6 +30,21 @@ fn two_runs_in_one_second_get_two_folders() {
 }
 
 #[test]
+fn the_latest_of_the_runs_of_one_second_is_the_one_that_began_last() {
+    let logs = tempfile::tempdir().unwrap();
+    let [first, last, second] = [("a", 1), ("b", 3), ("c", 2)].map(|(name, began_s)| {
+        let folder = logs.path().join(format!("20261125T080000Z-{name}-rpf-1"));
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join(JOURNAL_FILE), "").unwrap();
+        let lock = File::create(folder.join(LOCK_FILE)).unwrap();
+        lock.set_modified(UNIX_EPOCH + Duration::from_secs(began_s)).unwrap();
+        folder
+    });
+    assert_eq!(past_runs(logs.path()).unwrap(), [first, second, last.clone()]);
+    assert_eq!(find(Path::new("latest"), logs.path()).unwrap(), last);
+}
+
+#[test]
 fn a_clock_out_of_range_is_clamped() {
     assert_eq!(utc(UNIX_EPOCH), "19700101T000000Z");
     assert_eq!(utc(UNIX_EPOCH - Duration::from_secs(1)), "19700101T000000Z");
