@@ -157,8 +157,10 @@ fn a_plan_that_is_cut_short_by_an_interrupt_ends_the_mission_at_once_and_is_prov
 
 #[test]
 fn a_plan_that_ran_out_of_time_is_proven_without_waiting_again() {
+    let began = Instant::now();
     let flying = Flying::start(&["fault=plan_hang", "planner.fallback.id=apf"], &[]);
     let (bench, flown) = flying.end();
+    let flight = began.elapsed();
     assert_eq!(flown.json()["outcome"], "complete", "{flown:?}");
     let run = bench.runs().remove(0);
     let events = journal(&run);
@@ -168,8 +170,8 @@ fn a_plan_that_ran_out_of_time_is_proven_without_waiting_again() {
         let verified = bench.verify(&run, more);
         let took = began.elapsed();
         assert!(verified.code == Some(0) && verified.out.contains("equal: "), "{verified:?}");
-        // The budget of the plan alone is 5 s.
-        assert!(took < Duration::from_secs(4), "verify took {took:?}");
+        // The flight waited for the budget of the plan, 5 s.
+        assert!(took < flight, "verify took {took:?}, the flight {flight:?}");
     }
 }
 

@@ -55,8 +55,9 @@ fn a_thousand_planners_take_over_in_one_mission() {
     assert_eq!(of_kind(&events, "held").len(), 0, "{flown:?}");
     let driven = driven(&events);
     assert!(driven.windows(2).all(|pair| pair[1] == pair[0] + 1), "a command in every tick");
-    // Two drive and fly in shadow; those that are left take a moment to end.
-    assert!(fds < 80 && children <= 8, "{fds} descriptors, {children} children");
+    // Two drive and fly in shadow; those that were replaced take a moment to end, longer on a busy machine. A leak would
+    // leave one behind for each of the thousand.
+    assert!(fds < 200 && children < 50, "{fds} descriptors, {children} children");
     bench.prove(&run);
 }
 
