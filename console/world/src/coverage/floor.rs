@@ -335,9 +335,9 @@ impl Floor {
             if passage.is_convex() {
                 // One piece: only the cells beside its two ends are looked at.
                 let first = columns.clone().find(is_under);
-                let ends = first.zip(columns.rfind(is_under));
-                ends.into_iter()
-                    .for_each(|(first, last)| CellRun::append(&mut runs, index(first)..index(last) + 1));
+                if let Some((first, last)) = first.zip(columns.rfind(is_under)) {
+                    CellRun::append(&mut runs, index(first)..index(last) + 1);
+                }
             } else {
                 columns
                     .filter(is_under)
