@@ -21,6 +21,7 @@ pub fn length_m(path: &[Point]) -> f64 {
 /// assert_eq!(nearest_on_segment(a, b, Point::new(1.0, 2.0)), Point::new(1.0, 0.0));
 /// assert_eq!(nearest_on_segment(a, b, Point::new(9.0, 2.0)), b);
 /// ```
+#[inline]
 pub fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
     let along = b - a;
     let squared = along.norm_squared();

@@ -1,12 +1,12 @@
 //! Floor that the tool came back to, worked out from the estimated track: the events name a cell only the first time.
 
 use serde::{Deserialize, Serialize};
-use world::Tiles;
+use world::{CellRun, Tiles};
 
-/// Coming back to a cell counts as scanning it again after this many swaths of way.
-const AGAIN_SWATHS: f64 = 2.0;
 /// The way is kept in steps of half a swath: 65 535 of them are 19 km for a swath of 0.6 m.
 const STEPS_PER_SWATH: f64 = 2.0;
+/// Coming back to a cell counts as scanning it again after more than this many steps of way, two swaths.
+const AGAIN_STEPS: u16 = 4;
 
 /// How often each cell was scanned again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -34,7 +34,7 @@ impl Overlap {
         &mut self,
         way_m: f64,
         swath_m: f64,
-        cells: &[usize],
+        cells: &[CellRun],
         is_scanned: impl Fn(usize) -> bool,
     ) -> Vec<(usize, bool)> {
         let step = |way_m: f64| (way_m * STEPS_PER_SWATH / swath_m) as u16;
@@ -42,14 +42,18 @@ impl Overlap {
         self.way_m += way_m;
         let now = step(self.way_m).saturating_add(1);
         let mut returned = Vec::new();
-        for cell in cells {
-            let last = std::mem::replace(self.last.at_mut(*cell), now);
-            let since = f64::from(before.saturating_sub(last)) / STEPS_PER_SWATH;
-            if last > 0 && since > AGAIN_SWATHS && is_scanned(*cell) {
-                let again = self.again.at_mut(*cell);
-                returned.push((*cell, *again == 0));
-                *again = again.saturating_add(1);
-            }
+        let again = &mut self.again;
+        for cells in cells {
+            self.last.change(cells.range(), |first, lasts| {
+                for (last, cell) in lasts.iter_mut().zip(first..) {
+                    let last = std::mem::replace(last, now);
+                    if last > 0 && before.saturating_sub(last) > AGAIN_STEPS && is_scanned(cell) {
+                        let again = again.at_mut(cell);
+                        returned.push((cell, *again == 0));
+                        *again = again.saturating_add(1);
+                    }
+                }
+            });
         }
         returned
     }
@@ -71,7 +75,10 @@ mod tests {
     #[test]
     fn only_coming_back_after_two_swaths_counts() {
         let mut overlap = Overlap::new(3, 3);
-        let mut pass = |way_m, cells: &[usize]| overlap.pass(way_m, 0.6, cells, |cell| cell != 2);
+        let mut pass = |way_m, cells: &[usize]| {
+            let cells: Vec<CellRun> = cells.iter().map(|cell| CellRun(*cell as u32, 1)).collect();
+            overlap.pass(way_m, 0.6, &cells, |cell| cell != 2)
+        };
         assert_eq!(pass(0.0, &[0, 1, 2]), []);
         assert_eq!(pass(0.3, &[0]), [], "still under the tool");
         assert_eq!(pass(3.0, &[]), []);

@@ -39,7 +39,7 @@ impl Passes {
         error_m: f64,
     ) {
         let floor = believed.floor();
-        let cells = floor.cells_under(self.tool, from, to);
+        let cells = floor.runs_under(self.tool, from, to);
         let way_m = (to.position - from.position).norm();
         if way_m.is_finite() {
             self.overlap.pass(way_m, self.tool.swath_m(), &cells, |cell| {
@@ -47,16 +47,16 @@ impl Passes {
             });
         }
         let error_mm = (1000.0 * error_m).ceil().min(f64::from(NEVER - 1)) as u16;
-        for cell in cells {
-            self.error_mm[cell] = self.error_mm[cell].min(error_mm);
+        for run in cells {
+            self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
         let across_m = match self.tool {
             Tool::Bar { .. } => estimate.across_95_m(to.heading_rad),
             Tool::Disc { .. } => estimate.error_95_m(),
         };
         if let Some(narrowed) = self.tool.narrowed(across_m) {
-            for cell in floor.cells_under(narrowed, from, to) {
-                self.guaranteed[cell] = true;
+            for run in floor.runs_under(narrowed, from, to) {
+                self.guaranteed[run.range()].fill(true);
             }
         }
     }

@@ -68,8 +68,8 @@ impl Scanned {
     /// The robot truly went from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
-        for cell in self.believed.floor().cells_under(self.tool, a, b) {
-            self.truth[cell] = true;
+        for run in self.believed.floor().runs_under(self.tool, a, b) {
+            self.truth[run.range()].fill(true);
         }
     }
 

@@ -191,8 +191,15 @@ impl CoverageGrid {
     /// assert_eq!(new.len(), 6, "one run in each row");
     /// ```
     pub fn not_covered_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<CellRun> {
-        let is_new = |index: &usize| !self.covered.at(*index) && self.floor.is_floor(*index);
-        runs_of(self.floor.cells_under(tool, a, b).into_iter().filter(is_new))
+        let mut new = Vec::new();
+        for cells in self.floor.runs_under(tool, a, b).into_iter().map(CellRun::range) {
+            for (first, covered) in self.covered.slices(cells) {
+                let is_new = |index: &usize| !covered[*index - first] && self.floor.is_floor(*index);
+                let cells = (first..first + covered.len()).filter(is_new);
+                cells.for_each(|cell| CellRun::append(&mut new, cell..cell + 1));
+            }
+        }
+        new
     }
 
     /// Marks cells as scanned; cells beyond the grid are ignored.
@@ -309,13 +316,8 @@ fn share(part: usize, whole: usize) -> f64 {
 /// assert_eq!(runs_of([3, 4, 5, 9]), [CellRun(3, 3), CellRun(9, 1)]);
 /// ```
 pub fn runs_of(sorted: impl IntoIterator<Item = usize>) -> Vec<CellRun> {
-    let mut runs: Vec<CellRun> = Vec::new();
-    for index in sorted {
-        match runs.last_mut() {
-            Some(CellRun(first, count)) if *first as usize + *count as usize == index => *count += 1,
-            _ => runs.push(CellRun(index as u32, 1)),
-        }
-    }
+    let mut runs = Vec::new();
+    sorted.into_iter().for_each(|index| CellRun::append(&mut runs, index..index + 1));
     runs
 }
 

@@ -1,7 +1,7 @@
 //! One value for every cell of a grid, in square tiles: a copy shares the tiles that neither side has changed since.
 
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 /// Cells along the edge of a tile, as a power of two.
 const SHIFT: usize = 5;
@@ -47,6 +47,7 @@ impl<T: Copy> Tiles<T> {
     }
 
     /// Which tile a cell is in, and where.
+    #[inline]
     fn place(&self, index: usize) -> (usize, usize) {
         assert!(index < self.len, "cell {index} of {}", self.len);
         let (row, column) = (index / self.width, index % self.width);
@@ -55,15 +56,54 @@ impl<T: Copy> Tiles<T> {
     }
 
     /// The value of a cell. Panics beyond the last one, as a slice does.
+    #[inline]
     pub fn at(&self, index: usize) -> T {
         let (tile, cell) = self.place(index);
         self.squares[tile][cell]
     }
 
     /// The value of a cell, to be changed. Panics beyond the last one, as a slice does.
+    #[inline]
     pub fn at_mut(&mut self, index: usize) -> &mut T {
         let (tile, cell) = self.place(index);
         &mut Arc::make_mut(&mut self.squares[tile])[cell]
+    }
+
+    /// The values of some cells, piece by piece, each with the index of its first. Panics beyond the last one, as a slice does.
+    #[inline]
+    pub fn slices(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, &[T])> {
+        self.pieces(cells).map(|(first, tile, cells)| (first, &self.squares[tile][cells]))
+    }
+
+    /// Has the values of some cells changed, piece by piece, each with the index of its first. Panics beyond the last one, as a
+    /// slice does.
+    #[inline]
+    pub fn change(&mut self, cells: Range<usize>, mut change: impl FnMut(usize, &mut [T])) {
+        for (first, tile, cells) in self.pieces(cells) {
+            change(first, &mut Arc::make_mut(&mut self.squares[tile])[cells]);
+        }
+    }
+
+    /// Pieces of some cells that each lie in one row of one tile: index of the first, tile, places in it.
+    #[inline]
+    fn pieces(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<T> {
+        assert!(cells.end <= self.len, "cell {} of {}", cells.end, self.len);
+        let (width, mut first) = (self.width, cells.start);
+        let (mut row, mut column) = (first / width, first % width);
+        std::iter::from_fn(move || {
+            if first >= cells.end {
+                return None;
+            }
+            let count = (cells.end - first).min(width - column).min(EDGE - column % EDGE);
+            let tile = (row >> SHIFT) * width.div_ceil(EDGE) + (column >> SHIFT);
+            let place = ((row % EDGE) << SHIFT) + column % EDGE;
+            let piece = (first, tile, place..place + count);
+            (first, column) = (first + count, column + count);
+            if column == width {
+                (row, column) = (row + 1, 0);
+            }
+            Some(piece)
+        })
     }
 
     /// How many cells there are.
@@ -128,6 +168,29 @@ mod tests {
             prop_assert_eq!(before.0.iter().collect::<Vec<_>>(), &before.1[..]);
             let text = serde_json::to_string(&tiles).unwrap();
             prop_assert_eq!(serde_json::from_str::<Tiles<u16>>(&text).unwrap(), tiles);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_are_the_cells_one_by_one(
+            width in 1..90_usize,
+            len in 1..5000_usize,
+            ends in (any::<prop::sample::Index>(), any::<prop::sample::Index>()),
+        ) {
+            let (a, b) = (ends.0.index(len + 1), ends.1.index(len + 1));
+            let range = a.min(b)..a.max(b);
+            let mut tiles = Tiles::new(width, len, 0_u16);
+            (0..len).for_each(|index| *tiles.at_mut(index) = index as u16);
+            let met: Vec<u16> = tiles.slices(range.clone()).flat_map(|(_, values)| values).copied().collect();
+            prop_assert!(met.iter().copied().map(usize::from).eq(range.clone()));
+            let before = tiles.clone();
+            tiles.change(range.clone(), |first, values| {
+                values.iter_mut().zip(first..).for_each(|(value, index)| *value = index as u16 + 1);
+            });
+            for index in 0..len {
+                prop_assert_eq!(tiles.at(index), before.at(index) + u16::from(range.contains(&index)));
+            }
         }
     }
 

@@ -100,7 +100,7 @@ impl Raster {
         if !way_m.is_finite() {
             return;
         }
-        let cells = self.grid.floor().cells_under(tool, a, b);
+        let cells = self.grid.floor().runs_under(tool, a, b);
         let grid = &self.grid;
         let is_scanned = |cell| grid.is_covered(cell) && grid.floor().is_floor(cell);
         for (cell, is_first) in self.overlap.pass(way_m, tool.swath_m(), &cells, is_scanned) {

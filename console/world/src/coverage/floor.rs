@@ -5,8 +5,8 @@ use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
-/// Cells for which room is made before it is known how many there are.
-const MOST_RESERVED: usize = 1024;
+/// Centres this far outside a box are still looked at, as a share of a cell: whatever rounding does, none is overlooked.
+const BESIDE_CELLS: f64 = 1e-3;
 
 /// What a cell of the floor is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -58,6 +58,27 @@ pub struct Floor {
 /// Some cells of one row: index of the first and how many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellRun(pub u32, pub u32);
+
+impl CellRun {
+    /// The indices of the cells.
+    ///
+    /// ```
+    /// assert_eq!(world::CellRun(3, 2).range(), 3..5);
+    /// ```
+    #[inline]
+    pub fn range(self) -> Range<usize> {
+        self.0 as usize..(self.0 as usize).saturating_add(self.1 as usize)
+    }
+
+    /// Appends cells behind all that are in the list.
+    #[inline]
+    pub(super) fn append(runs: &mut Vec<Self>, cells: Range<usize>) {
+        match runs.last_mut() {
+            Some(last) if last.range().end == cells.start => last.1 += cells.len() as u32,
+            _ => runs.push(Self(cells.start as u32, cells.len() as u32)),
+        }
+    }
+}
 
 /// Some neighbouring cells and what they are: kind, index of the first, how many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -116,6 +137,7 @@ impl Floor {
         self.center_of(index % self.width, index / self.width)
     }
 
+    #[inline]
     fn center_of(&self, column: usize, row: usize) -> Point {
         self.origin + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
@@ -130,6 +152,7 @@ impl Floor {
     /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
     /// assert_eq!(floor.kind(0), world::Cell::Outside);
     /// ```
+    #[inline]
     pub fn kind(&self, index: usize) -> Cell {
         self.cells[index]
     }
@@ -145,6 +168,7 @@ impl Floor {
     /// let n_floor = (0..floor.len()).filter(|cell| floor.is_floor(*cell)).count();
     /// assert!((n_floor as f64 * floor.cell_m2() - 78.54).abs() < 0.5);
     /// ```
+    #[inline]
     pub fn is_floor(&self, index: usize) -> bool {
         self.cells[index] != Cell::Outside
     }
@@ -160,6 +184,7 @@ impl Floor {
     /// let is_reachable = |x| floor.is_reachable(floor.cell_at(Point::new(x, 0.0)).unwrap());
     /// assert!(is_reachable(4.5) && !is_reachable(4.9));
     /// ```
+    #[inline]
     pub fn is_reachable(&self, index: usize) -> bool {
         self.cells[index] == Cell::Reachable
     }
@@ -280,27 +305,54 @@ impl Floor {
     /// assert!((cells.len() as f64 * floor.cell_m2() - 0.6).abs() < 0.05);
     /// ```
     pub fn cells_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<usize> {
+        self.runs_under(tool, a, b).into_iter().flat_map(CellRun::range).collect()
+    }
+
+    /// The same as runs, one in each row; several where the tool turned about a point of it.
+    ///
+    /// ```
+    /// use world::{Boundary, CellRun, Floor, Point, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// # let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// // A round tank of radius 5 m, cells of 0.1 m, 0.5 m of room for the hull, a swath of 0.6 m.
+    /// let floor = Floor::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// use world::{Pose, Tool};
+    /// let (a, b) = (Pose::new(0.0, 0.0, 0.0), Pose::new(1.0, 0.0, 0.0));
+    /// let runs = floor.runs_under(Tool::Bar { swath_m: 0.6 }, a, b);
+    /// assert_eq!((runs.len(), runs[0]), (6, CellRun(47 * 100 + 50, 10)));
+    /// ```
+    pub fn runs_under(&self, tool: Tool, a: Pose, b: Pose) -> Vec<CellRun> {
         let passage = tool.passage(a, b);
         let (low, high) = passage.bounds();
-        let (columns, rows) = self.spans(low, high);
-        // All that fits in the box: growing step by step costs more than the cells.
-        let mut cells = Vec::with_capacity((columns.len() * rows.len()).min(MOST_RESERVED));
+        let rows = self.centers(low.y - self.origin.y, high.y - self.origin.y, self.height);
+        let mut runs = Vec::with_capacity(rows.len());
         for row in rows {
-            let y = self.center_of(0, row).y;
-            let (west, east) = passage.ends_at(y);
-            let (columns, _) = self.spans(Point::new(low.x.max(west), y), Point::new(high.x.min(east), y));
+            let (west, east) = passage.ends_at(self.center_of(0, row).y);
+            let (west, east) = (low.x.max(west) - self.origin.x, high.x.min(east) - self.origin.x);
+            let mut columns = self.centers(west, east, self.width);
             let is_under = |column: &usize| passage.contains(self.center_of(*column, row));
             let index = |column: usize| row * self.width + column;
             if passage.is_convex() {
                 // One piece: only the cells beside its two ends are looked at.
-                let first = columns.clone().find(is_under).unwrap_or(columns.end);
-                let last = (first..columns.end).rev().find(is_under);
-                cells.extend(last.into_iter().flat_map(|last| first..=last).map(index));
+                let first = columns.clone().find(is_under);
+                if let Some((first, last)) = first.zip(columns.rfind(is_under)) {
+                    CellRun::append(&mut runs, index(first)..index(last) + 1);
+                }
             } else {
-                cells.extend(columns.filter(is_under).map(index));
+                columns
+                    .filter(is_under)
+                    .map(index)
+                    .for_each(|cell| CellRun::append(&mut runs, cell..cell + 1));
             }
         }
-        cells
+        runs
+    }
+
+    /// Which of so many rows or columns have their centres between two distances from the origin, perhaps with one beside them.
+    fn centers(&self, from_m: f64, to_m: f64, count: usize) -> Range<usize> {
+        let first = (from_m / self.cell_m - 0.5 - BESIDE_CELLS).ceil().max(0.0);
+        let past = ((to_m / self.cell_m - 0.5 + BESIDE_CELLS).floor() + 1.0).max(0.0);
+        first as usize..(past as usize).min(count)
     }
 
     /// The cells of a box, perhaps with some beside it, in order of their index.

@@ -6,8 +6,9 @@ use geometry::Point;
 pub(super) type Span = (f64, f64);
 
 /// Where a convex polygon lies at a height.
+#[inline]
 pub(super) fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
-    span_of(crossings(corners, y))
+    somewhere(crossings(corners, y).fold(NOWHERE, widened))
 }
 
 /// Everything within a distance of a segment.
@@ -25,25 +26,48 @@ impl Capsule {
         Self { ends: [a, b], reach_m, sides }
     }
 
-    /// Where it lies at a height.
+    /// Where it lies at a height. A tool is asked for it at a hundred heights a tick.
+    #[inline]
     pub(super) fn span(&self, y: f64) -> Option<Span> {
-        let disc = |center: Point| {
+        let mut span = NOWHERE;
+        for center in &self.ends {
             let half_m = self.reach_m * self.reach_m - (y - center.y).powi(2);
-            (half_m >= 0.0).then(|| [center.x - half_m.sqrt(), center.x + half_m.sqrt()])
-        };
-        let of_sides = self.sides.iter().flat_map(|sides| crossings(sides, y));
-        span_of(self.ends.into_iter().filter_map(disc).flatten().chain(of_sides))
+            if half_m >= 0.0 {
+                let half_m = half_m.sqrt();
+                span = widened(widened(span, center.x - half_m), center.x + half_m);
+            }
+        }
+        if let Some([a, b, c, d]) = &self.sides {
+            for (from, to) in [(a, b), (b, c), (c, d), (d, a)] {
+                span = crossing(from, to, y).map_or(span, |x| widened(span, x));
+            }
+        }
+        somewhere(span)
     }
 }
 
-fn span_of(crossed: impl IntoIterator<Item = f64>) -> Option<Span> {
-    let ends = |(low, high): Span, x: f64| (low.min(x), high.max(x));
-    Some(crossed.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends)).filter(|(low, high)| low <= high)
+/// Less than any place.
+const NOWHERE: Span = (f64::INFINITY, f64::NEG_INFINITY);
+
+#[inline]
+fn widened((low, high): Span, x: f64) -> Span {
+    (low.min(x), high.max(x))
+}
+
+#[inline]
+fn somewhere((low, high): Span) -> Option<Span> {
+    (low <= high).then_some((low, high))
+}
+
+/// Where an edge crosses a height.
+#[inline]
+fn crossing(a: &Point, b: &Point, y: f64) -> Option<f64> {
+    ((a.y <= y) != (b.y <= y)).then(|| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)))
 }
 
 /// Where the outline of a polygon crosses a height.
+#[inline]
 pub(super) fn crossings(corners: &[Point], y: f64) -> impl Iterator<Item = f64> {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    let crossed = edges.filter(move |(a, b)| (a.y <= y) != (b.y <= y));
-    crossed.map(move |(a, b)| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)))
+    edges.filter_map(move |(a, b)| crossing(a, b, y))
 }

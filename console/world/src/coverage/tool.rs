@@ -121,6 +121,7 @@ impl Passage {
     }
 
     /// West and east ends of all of it that lies at a height, or a little further out.
+    #[inline]
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
             Self::Bar(swept) => swept.ends_at(y),
@@ -129,6 +130,7 @@ impl Passage {
     }
 
     /// Whether what lies of it at any height is one piece.
+    #[inline]
     pub(super) fn is_convex(&self) -> bool {
         match self {
             Self::Bar(swept) => swept.is_convex,
@@ -136,6 +138,7 @@ impl Passage {
         }
     }
 
+    #[inline]
     pub(super) fn contains(&self, point: Point) -> bool {
         match self {
             Self::Bar(swept) => swept.contains(point),
@@ -182,6 +185,7 @@ impl Swept {
     }
 
     /// Where the band begins and ends at a height.
+    #[inline]
     fn ends_at(&self, y: f64) -> (f64, f64) {
         let at = |along: f64| (along - self.ahead.y * y) / self.ahead.x;
         let (one, other) = (at(self.band.0), at(self.band.1));
@@ -192,6 +196,7 @@ impl Swept {
         }
     }
 
+    #[inline]
     fn contains(&self, point: Point) -> bool {
         self.triangles.iter().any(|triangle| triangle.contains(point))
     }
@@ -217,6 +222,7 @@ impl Triangle {
         Self((area != 0.0).then(|| [(a, b), (b, c), (c, a)].map(|(from, to)| (from, (to - from) * turned))))
     }
 
+    #[inline]
     fn contains(&self, point: Point) -> bool {
         let is_left = |(from, edge): &(Point, Vector)| edge.perp(&(point - from)) >= -SEAM_M;
         self.0.as_ref().is_some_and(|edges| edges.iter().all(is_left))
