@@ -7,7 +7,7 @@
 
 mod current;
 
-use crate::cuts::Extension;
+use crate::cuts::{Extension, cuts_up_to_found};
 use crate::floor::ReachableFloor;
 use crate::jobs::Job;
 use crate::polish::{Terms, Track, polish_again};
@@ -74,17 +74,28 @@ impl<'a> Repair<'a, '_> {
 
     /// The domains that a repair may use, with different cuts for what was found; none where all of them seal floor off.
     pub(crate) fn domains(&self) -> Vec<Extended<'a>> {
+        let cuts = &self.current.cuts;
+        let domains = self.domains_between(cuts);
+        if !domains.is_empty() {
+            return domains;
+        }
+        // What was found may stand in a cut and plug the way between that and another one, or the wall: the cut ends there then.
+        let shortened = cuts_up_to_found(self.workspace, cuts).into_iter();
+        shortened.flat_map(|cuts| self.domains_between(&cuts)).collect()
+    }
+
+    /// The domains between some cuts, with different ones for what these do not hold.
+    fn domains_between(&self, cuts: &[Vec<Point>]) -> Vec<Extended<'a>> {
         let path: Vec<(Point, Point)> = self.current.rest().iter().map(|side| (side.from, side.to)).collect();
-        let (workspace, cuts) = (self.workspace, &self.current.cuts);
-        let extension = Extension { workspace, cuts, tether: &self.tether, path: &path };
+        let extension = Extension { workspace: self.workspace, cuts, tether: &self.tether, path: &path };
         let mut all: Vec<Vec<Vec<Point>>> =
             tuned::ANGLES_RAD.into_iter().filter_map(|angle_rad| extension.new_cuts(angle_rad)).collect();
         all.dedup();
-        all.into_iter().filter_map(|new_cuts| self.domain(new_cuts)).collect()
+        all.into_iter().filter_map(|new_cuts| self.domain(cuts, new_cuts)).collect()
     }
 
-    fn domain(&self, new_cuts: Vec<Vec<Point>>) -> Option<Extended<'a>> {
-        let mut domain = SlitDomain::new(self.workspace, [&self.current.cuts[..], &new_cuts].concat())?;
+    fn domain(&self, cuts: &[Vec<Point>], new_cuts: Vec<Vec<Point>>) -> Option<Extended<'a>> {
+        let mut domain = SlitDomain::new(self.workspace, [cuts, &new_cuts].concat())?;
         domain.close_up();
         (domain.sealed.area_m2 <= SLIVER_M2).then_some(Extended { domain, new_cuts })
     }
