@@ -40,7 +40,8 @@ pub(crate) struct Extended<'a> {
 /// A repaired path.
 pub(crate) struct Repaired<'a> {
     pub scan: Scan<'a>,
-    /// Share of the floor left that is enough: what the first plan might leave of all floor, this one may.
+    /// Share of the floor left that is enough: what the first plan might leave of all floor, this one may, and a little more
+    /// about what was found.
     pub enough: f64,
 }
 
@@ -60,9 +61,11 @@ impl<'a> Repair<'a, '_> {
         let whole = ReachableFloor::new(&domain, self.scope.cell_m);
         let n_whole = whole.n;
         let floor = whole.within(self.scope.regions);
-        let left = (1.0 - self.scope.enough) * n_whole as f64 / floor.n.max(1) as f64;
-        let enough = (1.0 - left).max(tuning::polish::KEPT);
-        let scope = Scope { enough, ..self.scope };
+        let share = |of_all: f64| of_all * n_whole as f64 / floor.n.max(1) as f64;
+        let left = share(1.0 - self.scope.enough);
+        let (wanted, enough) = (1.0 - left, 1.0 - left - share(tuned::MORE_LEFT));
+        let [wanted, enough] = [wanted, enough].map(|share| share.max(tuning::polish::KEPT));
+        let scope = Scope { enough: wanted, ..self.scope };
         let (pieces, is_new): (Vec<Piece>, Vec<bool>) = laid.into_iter().unzip();
         let is_wanted = |at| scope.is_in_reach(&domain, at);
         let terms = Terms::of(&scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
