@@ -8,7 +8,7 @@
 mod current;
 
 use crate::cuts::{Extension, cuts_up_to_found};
-use crate::floor::ReachableFloor;
+use crate::floor::{ReachableFloor, SweptFloor};
 use crate::jobs::Job;
 use crate::polish::{Terms, Track, polish_again};
 use crate::scan::{Piece, Scan};
@@ -40,8 +40,8 @@ pub(crate) struct Extended<'a> {
 /// A repaired path.
 pub(crate) struct Repaired<'a> {
     pub scan: Scan<'a>,
-    /// Share of the floor left that is enough: what the first plan might leave of all floor, this one may, and a little more
-    /// about what was found.
+    /// Share of the floor left that is enough: what the first plan might leave of all floor, or would have left of this, and a
+    /// little more about what was found.
     pub enough: f64,
 }
 
@@ -62,9 +62,11 @@ impl<'a> Repair<'a, '_> {
         let n_whole = whole.n;
         let floor = whole.within(self.scope.regions);
         let share = |of_all: f64| of_all * n_whole as f64 / floor.n.max(1) as f64;
-        let left = share(1.0 - self.scope.enough);
-        let (wanted, enough) = (1.0 - left, 1.0 - left - share(tuned::MORE_LEFT));
-        let [wanted, enough] = [wanted, enough].map(|share| share.max(tuning::polish::KEPT));
+        let wanted = (1.0 - share(1.0 - self.scope.enough)).max(tuning::polish::KEPT);
+        // What the robot has missed so far was to be left anyway.
+        let mut as_before = SweptFloor::new(floor.clone());
+        as_before.sweep(&self.current.path_left());
+        let enough = wanted.min(as_before.coverage()) - share(tuned::MORE_LEFT);
         let scope = Scope { enough: wanted, ..self.scope };
         let (pieces, is_new): (Vec<Piece>, Vec<bool>) = laid.into_iter().unzip();
         let is_wanted = |at| scope.is_in_reach(&domain, at);

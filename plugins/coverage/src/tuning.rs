@@ -220,7 +220,7 @@ pub(crate) mod repair {
     pub(crate) const MORE_LEFT: f64 = 0.0005;
     /// A repaired path that is longer than the rest of the old one by this share, and by so many metres, gives way
     /// to a new plan.
-    pub(crate) const LONGER: f64 = 0.03;
+    pub(crate) const LONGER: f64 = 0.06;
     pub(crate) const LONGER_M: f64 = 12.0;
 }
 
