@@ -15,7 +15,7 @@ use crate::slit_domain::SlitDomain;
 use crate::triangulation::{SNAPPED_M, SealedRegion};
 use crate::tuning::cuts::{SLIVER_M2, TRIES};
 use crate::workspace::Workspace;
-pub(crate) use extension::Extension;
+pub(crate) use extension::{Extension, cuts_up_to_found};
 pub(crate) use forest::CutRule;
 use forest::{Ban, cuts};
 use world::{Point, polyline};

@@ -38,7 +38,7 @@ pub(crate) fn polish(
         *track = whole;
         track.shorten(&careful)?;
     }
-    bend(track, terms, &careful, &at)?;
+    bend(track, terms, &careful, tuning::BENDS, &at)?;
     track.pass_along_shell(terms)?;
     tie(track, terms, &careful, &at)?;
     track.pass_along_shell(terms)
@@ -50,7 +50,7 @@ pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &Reachable
     let enough = track.enough_here(terms.enough, other);
     let terms = Terms { enough, keep: enough, ..*terms };
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..terms };
-    bend(track, &terms, &careful, &|_| 1.0)?;
+    bend(track, &terms, &careful, tuning::BENDS, &|_| 1.0)?;
     tie(track, &terms, &careful, &|_| 1.0)?;
     for price in tuning::PRICES {
         if track.coverage() > enough {
@@ -68,7 +68,7 @@ pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<(
     let at = |share: f64| share;
     terms.job.stage(SHORTENED);
     track.shorten(terms)?;
-    bend(track, terms, &careful, &at)?;
+    bend(track, terms, &careful, tuning::BENDS_AGAIN, &at)?;
     tie(track, terms, &careful, &at)
 }
 
@@ -77,6 +77,7 @@ fn bend(
     track: &mut Track<'_>,
     terms: &Terms<'_>,
     careful: &Terms<'_>,
+    rounds: usize,
     at: &dyn Fn(f64) -> f64,
 ) -> Result<()> {
     let (mut share, mut vain) = (SHORTENED, BTreeSet::new());
@@ -84,7 +85,7 @@ fn bend(
         share += (BENT - share) * 0.35;
         terms.job.stage(at(share));
     };
-    for _ in 0..tuning::BENDS {
+    for _ in 0..rounds {
         next_stage();
         if track.bend(terms, &mut vain)? == 0 {
             break;

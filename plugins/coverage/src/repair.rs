@@ -7,8 +7,8 @@
 
 mod current;
 
-use crate::cuts::Extension;
-use crate::floor::ReachableFloor;
+use crate::cuts::{Extension, cuts_up_to_found};
+use crate::floor::{ReachableFloor, SweptFloor};
 use crate::jobs::Job;
 use crate::polish::{Terms, Track, polish_again};
 use crate::scan::{Piece, Scan};
@@ -40,7 +40,8 @@ pub(crate) struct Extended<'a> {
 /// A repaired path.
 pub(crate) struct Repaired<'a> {
     pub scan: Scan<'a>,
-    /// Share of the floor left that is enough: what the first plan might leave of all floor, this one may.
+    /// Share of the floor left that is enough: what the first plan might leave of all floor, or would have left of this, and a
+    /// little more about what was found.
     pub enough: f64,
 }
 
@@ -60,9 +61,13 @@ impl<'a> Repair<'a, '_> {
         let whole = ReachableFloor::new(&domain, self.scope.cell_m);
         let n_whole = whole.n;
         let floor = whole.within(self.scope.regions);
-        let left = (1.0 - self.scope.enough) * n_whole as f64 / floor.n.max(1) as f64;
-        let enough = (1.0 - left).max(tuning::polish::KEPT);
-        let scope = Scope { enough, ..self.scope };
+        let share = |of_all: f64| of_all * n_whole as f64 / floor.n.max(1) as f64;
+        let wanted = (1.0 - share(1.0 - self.scope.enough)).max(tuning::polish::KEPT);
+        // What the robot has missed so far was to be left anyway.
+        let mut as_before = SweptFloor::new(floor.clone());
+        as_before.sweep(&self.current.path_left());
+        let enough = wanted.min(as_before.coverage()) - share(tuned::MORE_LEFT);
+        let scope = Scope { enough: wanted, ..self.scope };
         let (pieces, is_new): (Vec<Piece>, Vec<bool>) = laid.into_iter().unzip();
         let is_wanted = |at| scope.is_in_reach(&domain, at);
         let terms = Terms::of(&scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
@@ -74,17 +79,28 @@ impl<'a> Repair<'a, '_> {
 
     /// The domains that a repair may use, with different cuts for what was found; none where all of them seal floor off.
     pub(crate) fn domains(&self) -> Vec<Extended<'a>> {
+        let cuts = &self.current.cuts;
+        let domains = self.domains_between(cuts);
+        if !domains.is_empty() {
+            return domains;
+        }
+        // What was found may stand in a cut and plug the way between that and another one, or the wall: the cut ends there then.
+        let shortened = cuts_up_to_found(self.workspace, cuts).into_iter();
+        shortened.flat_map(|cuts| self.domains_between(&cuts)).collect()
+    }
+
+    /// The domains between some cuts, with different ones for what these do not hold.
+    fn domains_between(&self, cuts: &[Vec<Point>]) -> Vec<Extended<'a>> {
         let path: Vec<(Point, Point)> = self.current.rest().iter().map(|side| (side.from, side.to)).collect();
-        let (workspace, cuts) = (self.workspace, &self.current.cuts);
-        let extension = Extension { workspace, cuts, tether: &self.tether, path: &path };
+        let extension = Extension { workspace: self.workspace, cuts, tether: &self.tether, path: &path };
         let mut all: Vec<Vec<Vec<Point>>> =
             tuned::ANGLES_RAD.into_iter().filter_map(|angle_rad| extension.new_cuts(angle_rad)).collect();
         all.dedup();
-        all.into_iter().filter_map(|new_cuts| self.domain(new_cuts)).collect()
+        all.into_iter().filter_map(|new_cuts| self.domain(cuts, new_cuts)).collect()
     }
 
-    fn domain(&self, new_cuts: Vec<Vec<Point>>) -> Option<Extended<'a>> {
-        let mut domain = SlitDomain::new(self.workspace, [&self.current.cuts[..], &new_cuts].concat())?;
+    fn domain(&self, cuts: &[Vec<Point>], new_cuts: Vec<Vec<Point>>) -> Option<Extended<'a>> {
+        let mut domain = SlitDomain::new(self.workspace, [cuts, &new_cuts].concat())?;
         domain.close_up();
         (domain.sealed.area_m2 <= SLIVER_M2).then_some(Extended { domain, new_cuts })
     }

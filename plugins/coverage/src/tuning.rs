@@ -79,6 +79,8 @@ pub(crate) mod polish {
     pub(crate) const KEPT: f64 = 0.9;
     /// Rounds of bends and of ties, early rounds of ties, and by how much less coverage is enough after these.
     pub(crate) const BENDS: usize = 5;
+    /// Rounds of bends of a path that has changed in places: somebody waits for it, and ties gain as much in a tenth of the time.
+    pub(crate) const BENDS_AGAIN: usize = 1;
     pub(crate) const TIES: usize = 8;
     pub(crate) const EARLY_TIES: usize = 3;
     pub(crate) const LATE_SHARE: f64 = 0.0001;
@@ -214,9 +216,11 @@ pub(crate) mod repair {
     /// bend does.
     pub(crate) const AHEAD_M: f64 = 1.0;
     pub(crate) const AS_BEFORE_M: f64 = 0.35;
+    /// Share of all floor that a repaired path may leave beyond what the plan before it might.
+    pub(crate) const MORE_LEFT: f64 = 0.0005;
     /// A repaired path that is longer than the rest of the old one by this share, and by so many metres, gives way
     /// to a new plan.
-    pub(crate) const LONGER: f64 = 0.03;
+    pub(crate) const LONGER: f64 = 0.06;
     pub(crate) const LONGER_M: f64 = 12.0;
 }
 

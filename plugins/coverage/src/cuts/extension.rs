@@ -112,3 +112,25 @@ impl Extension<'_> {
         broken as f64 + COST_PER_M * polyline::length_m(line)
     }
 }
+
+/// The cuts of a plan under way with one of them shortened, for each that goes on beyond what was found in it: cuts keep off
+/// all obstacles that were known when they were laid, but those at their ends.
+pub(crate) fn cuts_up_to_found(workspace: &Workspace, cuts: &[Vec<Point>]) -> Vec<Vec<Vec<Point>>> {
+    let shortened = |k: usize| {
+        let ends = workspace.parts.iter().filter_map(move |part| up_to(part, &cuts[k], workspace.keep_m));
+        ends.map(move |cut| [&cuts[..k], &[cut], &cuts[k + 1..]].concat())
+    };
+    (0..cuts.len()).flat_map(shortened).collect()
+}
+
+/// A cut as far as the middle of a part that stands in it; `None` where the room of the part holds an end of the cut, or none
+/// of it.
+fn up_to(part: &Part, cut: &[Point], keep_m: f64) -> Option<Vec<Point>> {
+    let is_in = |at: &Point| part.distance(*at).0 < keep_m;
+    if cut.first().is_some_and(is_in) || cut.last().is_some_and(is_in) {
+        return None;
+    }
+    let side = cut.windows(2).position(|w| part.segment_distance_m(w[0], w[1]) < keep_m)?;
+    let beside = polyline::nearest_on_segment(cut[side], cut[side + 1], part.middle());
+    Some([&cut[..=side], &[beside, part.middle()]].concat())
+}

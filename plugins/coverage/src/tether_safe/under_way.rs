@@ -30,18 +30,31 @@ pub(super) fn repaired<'a>(
     let tried = run_all(repair.domains(), &stages.next(1.0, "repair"), |domain, job| {
         let Some(repaired) = repair.scan(domain, job)? else { return Ok(None) };
         let worth = Worth::of(site, preferences, &repaired.scan, Some(cable));
-        let is_good = worth.certificate.certified
-            && (worth.meets(&lenient) || !current.is_preferred)
-            && worth.coverage >= repaired.enough.min(COMPLETE)
-            && worth.length_m <= most_m;
-        // A robot that cannot go on must not be asked to go on.
-        let is_stuck = *reason == Reason::Blocked && goes_on(current, &repaired.scan.path());
-        Ok((is_good && !is_stuck).then_some((worth, repaired)))
+        let objection = if !worth.certificate.certified {
+            Some(worth.certificate.reasons.join("; "))
+        } else if current.is_preferred && !worth.meets(&lenient) {
+            Some("the cable would be too long or wind too much".to_owned())
+        } else if worth.coverage < repaired.enough.min(COMPLETE) {
+            Some(format!("it should scan {:.2} %", 100.0 * repaired.enough.min(COMPLETE)))
+        } else if worth.length_m > most_m {
+            Some(format!("it should be no longer than {most_m:.0} m"))
+        } else {
+            // A robot that cannot go on must not be asked to go on.
+            let is_stuck = *reason == Reason::Blocked && goes_on(current, &repaired.scan.path());
+            is_stuck.then(|| "it leads on where the robot was blocked".to_owned())
+        };
+        Ok(Some((worth, repaired, objection)))
     })?;
+    let (good, refused): (Vec<_>, Vec<_>) = tried.into_iter().flatten().partition(|tried| tried.2.is_none());
+    if good.is_empty() {
+        let why = refused.first().and_then(|(worth, _, why)| Some((worth.summary("repair"), why.as_ref()?)));
+        let why = why.map_or("the cuts leave no way".to_owned(), |(what, why)| format!("{what}; {why}"));
+        stages.ctx.log(LogLevel::Info, &format!("a new plan instead of a repair: {why}"));
+    }
     let better = |a: (Worth, Repaired<'a>), b: (Worth, Repaired<'a>)| {
         if b.0.is_before(&a.0, preferences) { b } else { a }
     };
-    let best = tried.into_iter().flatten().reduce(better);
+    let best = good.into_iter().map(|(worth, repaired, _)| (worth, repaired)).reduce(better);
     if let Some((worth, _)) = &best {
         stages.ctx.log(LogLevel::Info, &worth.summary("plan under way, repaired"));
     }

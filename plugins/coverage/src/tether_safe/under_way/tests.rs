@@ -1,5 +1,8 @@
 use super::*;
+use crate::slit_domain::SlitDomain;
 use crate::tether_safe::TetherSafe;
+use crate::tuning::cuts::SLIVER_M2;
+use crate::workspace::Workspace;
 use planner_api::testing::Bench;
 use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Sensed, Task};
 use proptest::prelude::*;
@@ -106,6 +109,40 @@ fn a_column_that_is_found_changes_the_plan_only_round_itself() {
     assert!(case.first.cuts.iter().all(|cut| case.second.cuts.contains(cut)));
     let (before_m, after_m) = (polyline::length_m(&case.rest), polyline::length_m(&case.second.path));
     assert!(after_m < 1.03 * before_m, "{before_m} m became {after_m} m");
+}
+
+/// A tank with one more column, which stands in a cut of its plan and closes the way between that and another one.
+fn with_a_plug(tank: &Tank, values: &[(&str, f64)]) -> Option<Tank> {
+    let (bench, obstacles) = (Bench::new(), tank.obstacles());
+    let mut planner: TetherSafe = bench.configure(values, &tank.site(&obstacles)).unwrap();
+    let plan = asked(&mut planner, tank, &bench, (&Reason::Start, tank.anchor), &[], &[]);
+    let with = |at: Point| Tank { columns: [&tank.columns[..], &[(at, 0.2)]].concat(), ..tank.clone() };
+    let is_free = |at: &Point| {
+        tank.boundary.wall_distance_m(*at) > 0.8
+            && tank.columns.iter().all(|(other, radius_m)| (other - at).norm() > radius_m + 0.5)
+    };
+    let is_plugged = |tank: &Tank| {
+        let obstacles = tank.obstacles();
+        let workspace = Workspace::new(&tank.site(&obstacles), tank.anchor).unwrap();
+        SlitDomain::new(&workspace, plan.cuts.clone()).is_some_and(|domain| domain.sealed.area_m2 > SLIVER_M2)
+    };
+    let places = plan.cuts.iter().flat_map(|cut| polyline::resampled(cut, 0.1));
+    places.filter(is_free).map(with).find(is_plugged)
+}
+
+#[test]
+fn a_column_that_is_found_between_two_cuts_seals_no_floor_off() {
+    let values = [("pattern", 1.0), ("kicks", 0.5)];
+    let tanks: Vec<Tank> =
+        (33..45).filter_map(|seed| with_a_plug(&Known::E2.tank(seed), &values)).take(2).collect();
+    assert_eq!(tanks.len(), 2);
+    for tank in tanks {
+        let case = UnderWay::find(tank, &values);
+        assert!(case.is_repaired() && case.second.complete, "{:?}", case.bench.logs());
+        let scan = case.tank.score(&case.driven(), &[], CELL_M).unwrap();
+        assert!(scan.certificate.collisions == 0 && scan.certificate.end_length_m.is_some_and(|m| m < 1e-6));
+        assert!(scan.coverage_reachable > 0.99, "{}", scan.coverage_reachable);
+    }
 }
 
 #[test]
