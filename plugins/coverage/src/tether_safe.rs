@@ -60,12 +60,24 @@ impl Planner for TetherSafe {
         let pipeline = Pipeline { site, workspace, preferences, scope, cable };
         let mut stages = Stages::new(ctx);
         let repaired = under_way::repaired(&pipeline, self.current.as_ref(), request.reason, &mut stages)?;
-        let (worth, scan, lead_in, enough) = if let Some((worth, Repaired { scan, enough })) = repaired {
-            (worth, scan, Vec::new(), enough)
-        } else {
-            let (tried, lead_in) = tried_from_here_or_home(&pipeline, &mut stages)?;
-            let (worth, scan) = tried.chosen(ctx).ok_or_else(|| workspace.no_room())?;
-            (worth, scan, lead_in, scope.enough)
+        let (worth, scan, lead_in, enough) = match repaired {
+            under_way::Outcome::Repaired((worth, Repaired { scan, enough })) => {
+                (worth, scan, Vec::new(), enough)
+            }
+            other => {
+                let (tried, lead_in) = tried_from_here_or_home(&pipeline, &mut stages)?;
+                let (worth, scan) = tried.chosen(ctx).ok_or_else(|| workspace.no_room())?;
+                match other.if_shorter_than(&worth, &lead_in) {
+                    Some((worth, Repaired { scan, enough })) => {
+                        ctx.log(
+                            LogLevel::Info,
+                            &worth.summary("repaired after all, for the new plan is longer"),
+                        );
+                        (worth, scan, Vec::new(), enough)
+                    }
+                    None => (worth, scan, lead_in, scope.enough),
+                }
+            }
         };
         stages.end = 1.0;
         stages.next(1.0, "floor out of reach").begin();
