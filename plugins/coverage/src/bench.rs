@@ -25,8 +25,7 @@ pub(crate) fn plan_from<P: Planner>(tank: &Tank, start: Point) -> Result<Plan> {
     ask_from(&mut planner, tank, start, None, &bench)
 }
 
-/// Asserts that the progress a planner reports rises from zero, in more than a few steps. How many more depends on how
-/// busy the machine is: the planner looks at its threads every so often.
+/// Asserts that the progress a planner reports rises from zero, in more than a few steps.
 pub(crate) fn assert_progress_rises(bench: &Bench) {
     let progress = bench.progress();
     let shares: Vec<f64> = progress.iter().map(|(share, _)| *share).collect();
@@ -34,7 +33,7 @@ pub(crate) fn assert_progress_rises(bench: &Bench) {
     assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{progress:?}");
     let distinct =
         shares.iter().map(|share| (share * 1e3) as u64).collect::<std::collections::BTreeSet<_>>().len();
-    assert!(distinct > 3 && shares[0] == 0.0 && shares[shares.len() - 1] > 0.3, "{distinct}: {progress:?}");
+    assert!(distinct > 10 && shares[0] == 0.0 && shares[shares.len() - 1] > 0.3, "{distinct}: {progress:?}");
     assert!(progress.iter().all(|(_, what)| !what.is_empty() && what.len() <= 80), "{progress:?}");
 }
 
