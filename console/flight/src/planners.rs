@@ -1,6 +1,7 @@
 //! The planners that there are, and whether a scenario can be flown with them.
 
 use crate::failure::bad_input;
+use anyhow::anyhow;
 use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
 use planner_host::{
     PluginDirs, Survey, Surveyor, WorkerCommand, check_descriptors, parameter_problems, survey,
@@ -38,7 +39,13 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
     let worker = WorkerCommand::default();
     let surveyor = Surveyor::new(plugins, &worker);
     let chosen = Found { planners: surveyor.find(&ids), refused: Vec::new() };
-    check_choices(scenario, &chosen).or_else(|_| check_choices(scenario, &Found::from(&surveyor.survey())))
+    check_choices(scenario, &chosen).or_else(|_| {
+        let found = Found::from(&surveyor.survey());
+        match surveyor.no_worker() {
+            Some(why) => Err(anyhow!("a planner plugin {why}")),
+            None => check_choices(scenario, &found),
+        }
+    })
 }
 
 /// The planners of a scenario, with the sections that name them.

@@ -24,6 +24,7 @@ pub(crate) use {
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
 use planner_api::Code;
 use std::ffi::OsString;
+use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -92,6 +93,17 @@ pub(crate) enum Failure {
     Gone,
     /// A worker could not be started, or the request is too long for it.
     Console(String),
+}
+
+/// Why a worker does not run: what cannot be done with its process, and what would let it.
+pub(crate) fn no_worker(cannot: &str, error: &io::Error) -> String {
+    // What fork and clone say at the limit of processes and threads.
+    let limit = if error.kind() == io::ErrorKind::WouldBlock {
+        "; `ulimit -u` limits processes and threads"
+    } else {
+        ""
+    };
+    format!("cannot be run, its process {cannot}: {error}{limit}")
 }
 
 impl Failure {

@@ -89,6 +89,14 @@ impl<'a> Surveyor<'a> {
         ids.iter().filter_map(find).collect()
     }
 
+    /// Why this machine lets no planner run, if a worker could not be run for a plugin that was looked at.
+    pub fn no_worker(&self) -> Option<String> {
+        self.probing.refused.borrow().values().find_map(|failure| match failure {
+            Failure::Console(why) => Some(why.clone()),
+            _ => None,
+        })
+    }
+
     /// Every plugin.
     pub fn survey(&self) -> Survey {
         let mut known: Vec<String> = Vec::new();

@@ -49,4 +49,6 @@ pub(crate) mod kind {
     pub(crate) const PROGRESS: u8 = 0x83;
     /// The worker is closed off, how far, and for which file; the descriptor that reports its calls comes along.
     pub(crate) const SEALED: u8 = 0x84;
+    /// The machine does not let the worker run; nothing is said about the library.
+    pub(crate) const UNABLE: u8 = 0x85;
 }

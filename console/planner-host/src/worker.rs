@@ -71,6 +71,9 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
         Err(Trouble::Refused(why)) => {
             writer.begin(kind::REFUSED, sequence, 0).text(&why);
         }
+        Err(Trouble::Unable(why)) => {
+            writer.begin(kind::UNABLE, sequence, 0).text(&why);
+        }
         // The console sent something that its own build does not send.
         Err(Trouble::Malformed) => return Err(io::ErrorKind::InvalidData.into()),
     }

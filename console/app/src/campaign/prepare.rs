@@ -1,12 +1,12 @@
 //! From a plan to a frozen campaign: everything is checked before the first mission.
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
 use flight::{
     failure::bad_input,
     planners::{Found, check_choices, choice_of},
 };
-use planner_host::{PluginDirs, WorkerCommand, check_descriptors, survey};
+use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_descriptors};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -21,7 +21,12 @@ impl Here {
     /// Looks at the program and at every plugin.
     pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
         check_descriptors().map_err(anyhow::Error::msg)?;
-        let survey = survey(plugins, &WorkerCommand::default());
+        let worker = WorkerCommand::default();
+        let surveyor = Surveyor::new(plugins, &worker);
+        let survey = surveyor.survey();
+        if let Some(why) = surveyor.no_worker() {
+            return Err(anyhow!("a planner plugin {why}"));
+        }
         let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
         let sound = survey.plugins.iter().filter(|plugin| plugin.refused.is_none());
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();

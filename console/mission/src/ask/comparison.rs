@@ -3,6 +3,7 @@
 use super::{Answer, Given};
 use crate::planner::{Cause, Fault, PlannerInfo};
 use planner_api::Command;
+use std::borrow::Cow;
 
 /// What comes of comparing a planner's own answer with the recorded one.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,9 +28,10 @@ impl Comparison {
             (Ok(Given::Plan(_)), Err(Fault { cause: Cause::BadOutput, .. })) => return Self::NotComparable,
             (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
                 .or_else(|| {
-                    (own.said.clone().rounded() != recorded.said).then_some("logs or draws something else")
+                    (own.said.clone().rounded() != recorded.said)
+                        .then_some(Cow::Borrowed("logs or draws something else"))
                 })
-                .map(str::to_owned),
+                .map(Cow::into_owned),
             (Err(own), Err(fault)) => (own != fault)
                 .then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message)),
             (Ok(_), Err(fault)) => Some(format!("does not fail (\"{}\" then)", fault.message)),
@@ -39,24 +41,34 @@ impl Comparison {
     }
 }
 
-fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) -> Option<&'static str> {
+/// How a planner that opened is another one than then.
+fn another_planner(own: &PlannerInfo, then: &PlannerInfo) -> String {
+    if own.sha256 == then.sha256 {
+        return "offers something else".to_owned();
+    }
+    let start = |info: &PlannerInfo| info.sha256.chars().take(12).collect::<String>();
+    format!("is another build (SHA-256 {}... of {}, {}... then)", start(own), own.plugin, start(then))
+}
+
+fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) -> Option<Cow<'static, str>> {
+    let is = |differs: bool, how: &'static str| differs.then_some(Cow::Borrowed(how));
     match (own, recorded) {
         (Given::Opened(own), Given::Opened(then)) => {
             // What encloses a planner is the machine's, not its own.
             let own = PlannerInfo { sandbox: then.sandbox.clone(), ..(**own).clone() };
-            (own != **then).then_some("is another build or offers something else")
+            (own != **then).then(|| another_planner(&own, then).into())
         }
         (Given::Command(own), Given::Command(then)) => {
-            (as_sent(*own) != as_sent(*then)).then_some("commands something else")
+            is(as_sent(*own) != as_sent(*then), "commands something else")
         }
         (Given::Plan(own), Given::Plan(then)) => {
             let is_same = own.path == then.path
                 && own.complete == then.complete
                 && own.legs == then.legs
                 && own.cuts == then.cuts;
-            (!is_same).then_some("plans another path")
+            is(!is_same, "plans another path")
         }
-        (own, then) => (own != then).then_some("gives something else"),
+        (own, then) => is(own != then, "gives something else"),
     }
 }
 
@@ -102,6 +114,31 @@ mod tests {
         assert_eq!(compared(Ok(Given::Plan(dearer)), Ok(Given::Plan(plan.clone()))), Comparison::Same);
         let other = compared(Ok(Given::Plan(Plan::default())), Ok(Given::Plan(plan)));
         assert!(is_different(&other, "plans another path"));
+    }
+
+    #[test]
+    fn another_build_is_named_with_both_digests() {
+        let opened = |sha256: &str, about: &str| PlannerInfo {
+            id: "apf".into(),
+            name: "APF".into(),
+            version: "0.1.0".into(),
+            about: about.into(),
+            plugin: "libplanner_apf.so".into(),
+            sha256: sha256.into(),
+            abi: "1.2".into(),
+            covers: false,
+            snapshots: false,
+            sandbox: None,
+            parameters: Vec::new(),
+        };
+        let against = |own: PlannerInfo| {
+            let then = Box::new(opened("0123456789abcdef", "fields"));
+            compared(Ok(Given::Opened(Box::new(own))), Ok(Given::Opened(then)))
+        };
+        let other = against(opened("fedcba9876543210", "fields"));
+        let text = "is another build (SHA-256 fedcba987654... of libplanner_apf.so, 0123456789ab... then)";
+        assert!(is_different(&other, text), "{other:?}");
+        assert!(is_different(&against(opened("0123456789abcdef", "others")), "offers something else"));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::load::memory_of;
 use super::process::Process;
 use super::ready::{Ready, Source, Watched};
 use super::tape::Tape;
-use super::{Failure, WorkerCommand, soft};
+use super::{Failure, WorkerCommand, no_worker, soft};
 use crate::Progress;
 use crate::stats::Memory;
 use crate::wire::answer::{Described, Sealed, planners_of};
@@ -53,9 +53,8 @@ impl Worker {
             socket.set_nonblocking(true)?;
             Ok((Process::spawn(command, theirs)?, socket))
         };
-        let (process, socket) = start().map_err(|error: std::io::Error| {
-            Failure::Console(format!("cannot be run, no worker process could be started: {error}"))
-        })?;
+        let (process, socket) = start()
+            .map_err(|error: std::io::Error| Failure::Console(no_worker("cannot be started", &error)))?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
         let guard = Guard::default();
         let (state, tape) = (State::Idle, Tape::default());

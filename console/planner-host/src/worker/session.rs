@@ -5,6 +5,7 @@ use super::confine::{close_off, die_with_the_console, limit_memory};
 use super::deadline::Deadline;
 use crate::loader::{File, Instance, Sink, Table};
 use crate::sandbox::close_files;
+use crate::supervisor::no_worker;
 use crate::survey::{Load, load_of};
 use crate::wire::answer::Refusal;
 use crate::wire::body::{Body, Malformed, Writer};
@@ -16,6 +17,8 @@ use std::sync::Arc;
 pub(super) enum Trouble {
     /// The library is no plugin, or does not describe itself.
     Refused(String),
+    /// The machine does not let the worker run.
+    Unable(String),
     /// The planner said no.
     Failed(Refusal),
     /// The request is not what its kind says.
@@ -95,7 +98,7 @@ impl<'a> Session<'a> {
 
     /// From here on the process can only compute. Whether files are still to be closed.
     fn close_off(&self, sequence: u32, file: &File, requires_sandbox: bool) -> Result<bool, Trouble> {
-        let lost = |error| Trouble::Refused(format!("the worker cannot be closed off: {error}"));
+        let lost = |error| Trouble::Unable(no_worker("cannot be closed off", &error));
         let (sandbox, reads_libraries) = close_off(self.socket, sequence, file).map_err(lost)?;
         if requires_sandbox && sandbox != Sandbox::Full {
             return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));

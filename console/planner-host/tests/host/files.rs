@@ -2,7 +2,7 @@
 
 use crate::stand::{assert_refused, built, choose, compile, config, direct_c, folder_with, worker};
 use mission::planner::Parameters;
-use planner_host::{BlockingHost, PluginDirs, Survey, survey};
+use planner_host::{BlockingHost, PluginDirs, Survey, Surveyor, WorkerCommand, survey};
 use std::path::Path;
 
 fn refusal(dirs: &PluginDirs) -> String {
@@ -177,4 +177,17 @@ fn a_survey_can_be_written_down() {
     assert_eq!((faulty.plugin.starts_with("libplanner_faulty."), faulty.abi.as_str()), (true, "1.2"));
     let json = serde_json::to_string(&found).unwrap();
     assert!(json.contains("\"faulty\"") && json.contains(&faulty.sha256));
+}
+
+#[test]
+fn a_machine_without_workers_is_not_a_fault_of_plugins() {
+    let (dirs, sound, none) = (built(), worker(), WorkerCommand::new("/nowhere/worker"));
+    let surveyor = |worker| {
+        let surveyor = Surveyor::new(&dirs, worker);
+        surveyor.survey();
+        surveyor.no_worker()
+    };
+    assert_eq!(surveyor(&sound), None);
+    let why = surveyor(&none).expect("no process is started");
+    assert!(why.starts_with("cannot be run, its process cannot be started: No such file"), "{why}");
 }

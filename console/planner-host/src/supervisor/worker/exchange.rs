@@ -163,6 +163,7 @@ fn interpret<T>(
         kind::DONE => Ok(read(&mut body)?),
         kind::FAILED => Err(Failure::Planner(body.refusal()?)),
         kind::REFUSED => Err(Failure::Refused(body.text()?)),
+        kind::UNABLE => Err(Failure::Console(body.text()?)),
         _ => return Err(Malformed),
     };
     body.end()?;
