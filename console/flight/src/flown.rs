@@ -100,7 +100,7 @@ impl Flight {
     /// Flies one tick: sense, ask and be answered, act. The truth goes into the events first, and nowhere else.
     pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
         self.readings = self.simulator.sense();
-        let mut events = self.truth();
+        let truth = self.truth();
         self.mission.sense(&Input { readings: &self.readings, orders });
         loop {
             while let Some(ask) = self.mission.poll_ask() {
@@ -112,9 +112,8 @@ impl Flight {
         let step = self.mission.act();
         self.simulator.act(step.drive);
         self.inject_faults(&step.events);
-        events.extend(step.events);
         self.tick += 1;
-        events.into_iter().map(Event::rounded).collect()
+        truth.chain(step.events).map(Event::rounded).collect()
     }
 
     /// Faults of stations that the mission accepted begin with the next tick.
@@ -133,19 +132,17 @@ impl Flight {
     }
 
     /// What only the simulator knows of this tick.
-    fn truth(&self) -> Vec<Event> {
+    fn truth(&self) -> impl Iterator<Item = Event> + use<> {
         let truth = self.simulator.truth();
-        let event = |kind| Event { tick: self.tick, t_s: self.tick as f64 * self.tick_s, kind };
+        let (tick, t_s) = (self.tick, self.tick as f64 * self.tick_s);
         let (pose, clearance_m, collided) = (truth.pose, truth.clearance_m, truth.collided);
-        let mut events = vec![event(EventKind::Truth { pose, clearance_m, collided })];
-        events.extend(truth.tether.map(|tether| {
-            event(EventKind::TetherTruth {
-                length_m: tether.length_m,
-                wrap_max_rad: tether.wrap_max_rad,
-                wrap_total_rad: tether.wrap_total_rad,
-                detour_m: tether.detour_m,
-            })
-        }));
-        events
+        let of_tether = truth.tether.map(|tether| EventKind::TetherTruth {
+            length_m: tether.length_m,
+            wrap_max_rad: tether.wrap_max_rad,
+            wrap_total_rad: tether.wrap_total_rad,
+            detour_m: tether.detour_m,
+        });
+        let kinds = std::iter::once(EventKind::Truth { pose, clearance_m, collided }).chain(of_tether);
+        kinds.map(move |kind| Event { tick, t_s, kind })
     }
 }

@@ -91,10 +91,12 @@ impl PathFollower {
     pub fn advance(&mut self, position: Point, has_room: impl Fn(Point) -> bool) {
         let free = |index: &usize| has_room(self.path[*index]);
         let window_end_m = (self.stations_m[self.nearest] + self.window_m).max(self.stations_m[self.target]);
-        self.nearest = (self.nearest..=self.next_corner())
-            .take_while(|index| self.stations_m[*index] <= window_end_m)
-            .min_by(|a, b| (self.path[*a] - position).norm().total_cmp(&(self.path[*b] - position).norm()))
-            .unwrap_or(self.nearest);
+        let ahead = self.nearest..=self.next_corner();
+        let n_in_window = self.stations_m[ahead.clone()].partition_point(|at_m| *at_m <= window_end_m);
+        let away_m = |index: usize| ((self.path[index] - position).norm(), index);
+        self.nearest = (ahead.map(away_m).take(n_in_window))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(self.nearest, |(_, index)| index);
         if self.corners.front().is_some_and(|corner| self.has_reached(*corner, position)) {
             self.nearest = self.corners.pop_front().unwrap_or(self.nearest);
         }

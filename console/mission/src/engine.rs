@@ -201,10 +201,10 @@ impl Mission {
         let drive = self.drive();
         self.end_step();
         let (tick, t_s) = (self.tick, self.now_s());
-        let mut happened = std::mem::take(&mut self.happened.events);
-        happened.append(&mut self.happened.of_shadow);
-        happened.extend(self.happened.ending.take());
-        let events = happened.into_iter().map(|kind| Event { tick, t_s, kind }).collect();
+        // What it has grown to is kept for the next tick.
+        let happened = self.happened.events.drain(..).chain(self.happened.of_shadow.drain(..));
+        let happened = happened.chain(self.happened.ending.take());
+        let events = happened.map(|kind| Event { tick, t_s, kind }).collect();
         self.tick += 1;
         self.happened.last_drive = drive;
         Step { drive, events }

@@ -249,9 +249,33 @@ impl Host {
 
     /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
+        if self.is_answered_at_once() {
+            return false;
+        }
         let asked = self.planners.iter().filter_map(|planner| planner.worker.as_ref());
         let leaving = self.leaving.iter().map(|leaving| &leaving.worker);
         let woken = wait(Some(&self.wake_ups), asked.chain(leaving), until, &mut self.ready);
+        self.go_on();
+        woken
+    }
+
+    /// Whether a planner on the processor of this thread has answered by the time that this thread has it again, as mostly. Then
+    /// the system need not be asked what else has happened; that is done every millisecond.
+    fn is_answered_at_once(&mut self) -> bool {
+        #[cfg(target_os = "linux")]
+        if let (Some(together), [_], true) = (&mut self.together, &self.planners[..], self.leaving.is_empty())
+            && together.may_look_later()
+        {
+            self.ready.clear();
+            self.ready.push(Ready::PERHAPS_ANSWERED);
+            self.go_on();
+            return !self.answers.is_empty();
+        }
+        false
+    }
+
+    /// Does what is due after what has happened.
+    fn go_on(&mut self) {
         let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();
         for planner in &mut self.planners {
@@ -272,7 +296,6 @@ impl Host {
         for (id, outcome) in outcomes {
             self.take(id, outcome);
         }
-        woken
     }
 
     /// Takes the outcome of what a worker was asked.

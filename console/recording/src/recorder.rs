@@ -22,7 +22,7 @@ pub(crate) use account::FIGURES;
 
 use crate::{
     error::RecordingError,
-    file::{FileChange, FileWatch},
+    file::{self, FileChange, FileWatch},
     identity::Identity,
     merge,
     sink::{SafeSink, SinkHealth},
@@ -158,12 +158,16 @@ impl Recorder {
     }
 
     /// Writes everything and closes the recording of a run, of which the summary is given. Then its chunks are merged
-    /// into larger ones, unless that takes until the moment given.
+    /// into larger ones, unless that takes until the moment given. Returns the SHA-256 of the file, hexadecimal, if it is known.
     ///
     /// # Errors
     /// The first error, also if it has been reported before: the recording is not whole.
     /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length or content.
-    pub fn finish(mut self, summary: &Summary, until: Option<Instant>) -> Result<(), RecordingError> {
+    pub fn finish(
+        mut self,
+        summary: &Summary,
+        until: Option<Instant>,
+    ) -> Result<Option<String>, RecordingError> {
         if let Some(stream) = &self.stream {
             self.fold.finish(summary, stream)?;
             self.fold.send(stream)?;
@@ -173,15 +177,17 @@ impl Recorder {
         if let Some(why) = self.health.error() {
             return Err(RecordingError::Write { why });
         }
-        let Some(watch) = &self.watch else { return Ok(()) };
-        watch.check_content(self.health.bytes(), &self.health.sha256())?;
-        if self.has_sent
-            && let Err(error) = merge::merge(watch.path(), until)
-        {
+        let Some(watch) = &self.watch else { return Ok(None) };
+        let sha256 = self.health.sha256();
+        watch.check_content(self.health.bytes(), &sha256)?;
+        if !self.has_sent {
+            return Ok(Some(sha256));
+        }
+        if let Err(error) = merge::merge(watch.path(), until) {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
         }
-        Ok(())
+        Ok(file::sha256(watch.path()).ok())
     }
 
     fn send(&mut self, now: Instant) -> Result<(), RecordingError> {

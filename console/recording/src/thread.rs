@@ -7,7 +7,7 @@ mod writer;
 use crate::{
     error::RecordingError,
     identity::Identity,
-    journal::{JOURNAL_FILE, JournalEnd, JournalWriter},
+    journal::{JOURNAL_FILE, JournalWriter},
     marker::FailureMarker,
     recorder::{RECORDING_FILE, Recorder},
     sink::SinkHealth,
@@ -26,7 +26,7 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use writer::Writer;
+use writer::{Ended, Writer};
 
 /// Batches of events that may wait; when so many do, the sender waits.
 const QUEUE: usize = 8192;
@@ -73,6 +73,8 @@ pub struct Finished {
     pub journal: Option<PathBuf>,
     /// The recording, if one was begun.
     pub recording: Option<PathBuf>,
+    /// SHA-256 of the recording, hexadecimal; absent if it is not whole.
+    pub recording_sha256: Option<String>,
     /// Why journal or recording is not whole or not there, as a sentence. Absent, each is the file that was opened,
     /// in its place, with every byte that was written to it.
     pub error: Option<String>,
@@ -87,7 +89,7 @@ pub struct Finished {
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
     /// Behind a lock so that screens may ask for the health from other threads; only `close` takes it.
-    ended: Mutex<Receiver<(Option<JournalEnd>, Summary)>>,
+    ended: Mutex<Receiver<Ended>>,
     shared: Arc<Shared>,
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
@@ -194,17 +196,20 @@ impl RunRecorder {
     ///
     /// After `timeout` the files are left to the thread, and the error says so.
     pub fn finish(mut self, timeout: Duration) -> Finished {
-        let (end, summary) = self.close(timeout).unzip();
+        let ended = self.close(timeout);
+        let journal_end = ended.as_ref().and_then(|ended| ended.journal.clone());
+        let recording_sha256 = ended.as_ref().and_then(|ended| ended.recording_sha256.clone());
         Finished {
-            summary: summary.map(Box::new),
-            events_sha256: end.flatten().map(|end| end.events_sha256),
+            summary: ended.map(|ended| Box::new(ended.summary)),
+            events_sha256: journal_end.map(|end| end.events_sha256),
             journal: self.journal.take(),
             recording: self.recording.take(),
+            recording_sha256,
             error: self.shared.error(),
         }
     }
 
-    fn close(&mut self, timeout: Duration) -> Option<(Option<JournalEnd>, Summary)> {
+    fn close(&mut self, timeout: Duration) -> Option<Ended> {
         let sender = self.sender.take()?;
         // The other half is for what still waits to be written, and for slow disks.
         self.shared.set_merge_until(Instant::now() + timeout / 2);

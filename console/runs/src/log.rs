@@ -119,7 +119,10 @@ impl RunLog {
         let summary = Summary {
             wall_time_s: Some(began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
-            recording_sha256: finished.recording.as_ref().and_then(|path| sha256(path).ok()),
+            recording_sha256: finished.recording_sha256.clone().or_else(|| {
+                // Not whole, but perhaps of use.
+                finished.recording.as_ref().and_then(|path| sha256(path).ok())
+            }),
             planner_calls: Some(calls),
             stops,
             logs,

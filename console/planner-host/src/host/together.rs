@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 /// So long the two stay where they are; then the system may move them to a processor that has less to do.
 const STAYS_FOR: Duration = Duration::from_millis(100);
+/// As long as its answers come at once, this is how often a worker is looked at for anything else.
+const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The thread that asks, and perhaps the worker that shares its processor.
 pub(super) struct Together {
@@ -16,17 +18,23 @@ pub(super) struct Together {
     all: Option<CpuSet>,
     /// Until when they stay together.
     until: Option<Instant>,
+    /// When the last command was asked for, and when the worker was looked at for anything but answers.
+    asked: Instant,
+    looked: Instant,
 }
 
 impl Together {
     /// For the thread that calls this. They are apart.
     pub(super) fn new() -> Self {
-        Self { all: sched_getaffinity(None).ok().filter(|all| all.count() > 1), until: None }
+        let now = Instant::now();
+        let all = sched_getaffinity(None).ok().filter(|all| all.count() > 1);
+        Self { all, until: None, asked: now, looked: now }
     }
 
     /// A command is about to be asked of a worker, which is the only one.
     pub(super) fn gather(&mut self, worker: &Worker) {
         let now = Instant::now();
+        self.asked = now;
         match self.until {
             Some(until) if now < until => {}
             // This command finds them apart, and each may wake up on another processor.
@@ -41,6 +49,15 @@ impl Together {
             }
             None => {}
         }
+    }
+
+    /// Whether the two share a processor and only an answer is to be expected for now; if not, everything has to be looked at.
+    pub(super) fn may_look_later(&mut self) -> bool {
+        let may = self.until.is_some() && self.asked.saturating_duration_since(self.looked) < LOOK_EVERY;
+        if !may {
+            self.looked = self.asked;
+        }
+        may
     }
 
     /// Something else is about to be done, for which all processors may be used, by new processes and threads, too.

@@ -36,6 +36,10 @@ impl Ready {
     pub(super) const NOTHING: Self =
         Self { socket: PollFlags::empty(), exited: false, printed: false, called: false };
 
+    /// Nobody has asked the system, but an answer may have come, and lines before it.
+    pub(crate) const PERHAPS_ANSWERED: Self =
+        Self { socket: PollFlags::IN, exited: false, printed: true, called: false };
+
     /// Something arrived, or the other side hung up.
     pub(super) fn readable(self) -> bool {
         !self.socket.difference(PollFlags::OUT).is_empty()

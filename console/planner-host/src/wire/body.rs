@@ -116,6 +116,9 @@ impl Writer {
 
 /// A text of strangers for people.
 pub(crate) fn plain(text: &str) -> String {
+    if text.chars().all(is_plain) {
+        return text.to_owned();
+    }
     text.chars().map(|c| if is_plain(c) { c } else { ' ' }).collect()
 }
 

@@ -28,6 +28,16 @@ const GATHER: Duration = Duration::from_millis(2);
 /// after which a screen asks, an operator knows within a second.
 const WATCH_PERIOD: Duration = Duration::from_millis(300);
 
+/// What the thread leaves.
+pub(super) struct Ended {
+    /// How the journal ended, if it is whole.
+    pub(super) journal: Option<JournalEnd>,
+    /// What the run came to.
+    pub(super) summary: Summary,
+    /// SHA-256 of the recording, hexadecimal, if it is whole.
+    pub(super) recording_sha256: Option<String>,
+}
+
 /// What the thread owns.
 pub(super) struct Writer {
     account: Fold,
@@ -51,8 +61,8 @@ impl Writer {
         Self { account, journal, recorder, marker, shared, watched: Instant::now(), changed: None }
     }
 
-    /// Writes until nobody sends any more; returns how the journal ended, if it is whole, and what the run came to.
-    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> (Option<JournalEnd>, Summary) {
+    /// Writes until nobody sends any more.
+    pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Ended {
         loop {
             match batches.recv_timeout(IDLE) {
                 Ok(events) => self.write(&events),
@@ -125,24 +135,25 @@ impl Writer {
         }
     }
 
-    fn close(&mut self) -> (Option<JournalEnd>, Summary) {
+    fn close(&mut self) -> Ended {
         let journal = self.journal.take().map(JournalWriter::finish).transpose();
         let summary = self.account.summary();
         let until = self.shared.merge_until();
-        let recording = self.recorder.take().map_or(Ok(()), |recorder| recorder.finish(&summary, until));
-        let end = journal.unwrap_or_else(|error| {
+        let recording = self.recorder.take().map_or(Ok(None), |recorder| recorder.finish(&summary, until));
+        let journal = journal.unwrap_or_else(|error| {
             self.shared.lose(&error);
             None
         });
-        if let Err(error) = recording {
+        let recording_sha256 = recording.unwrap_or_else(|error| {
             self.shared.lose(&error);
-        }
-        if let Some(end) = &end {
+            None
+        });
+        if let Some(end) = &journal {
             self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
         }
         // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
         self.shared.set_trouble(None);
         self.mark();
-        (end, summary)
+        Ended { journal, summary, recording_sha256 }
     }
 }

@@ -166,7 +166,7 @@ fn a_call_that_fails_once_costs_the_recording_nothing_whichever_it_is() {
         let path = tempfile::NamedTempFile::new().expect("a file");
         // A fault in the last calls of all has nobody to try again, and is said.
         match recorder.finish(&Summary::default(), None) {
-            Ok(()) => {
+            Ok(_) => {
                 std::fs::write(path.path(), disk.written()).expect("writable");
                 assert!(recording::inspect(path.path()).expect("readable").is_complete(), "call {fails_at}");
             }

@@ -350,9 +350,13 @@ impl Floor {
 
     /// Which of so many rows or columns have their centres between two distances from the origin, perhaps with one beside them.
     fn centers(&self, from_m: f64, to_m: f64, count: usize) -> Range<usize> {
-        let first = (from_m / self.cell_m - 0.5 - BESIDE_CELLS).ceil().max(0.0);
-        let past = ((to_m / self.cell_m - 0.5 + BESIDE_CELLS).floor() + 1.0).max(0.0);
-        first as usize..(past as usize).min(count)
+        let first = (from_m / self.cell_m - 0.5 - BESIDE_CELLS).max(0.0);
+        let last = to_m / self.cell_m - 0.5 + BESIDE_CELLS;
+        // Without calls of the C library, which rounds as slowly as a row is looked at.
+        let whole = first as usize;
+        let first = whole.saturating_add(usize::from((whole as f64) < first));
+        let past = if last >= 0.0 { (last as usize).saturating_add(1) } else { 0 };
+        first..past.min(count)
     }
 
     /// The cells of a box, perhaps with some beside it, in order of their index.
