@@ -24,6 +24,14 @@ use corner::Corner;
 use geometry::{Point, polyline::nearest_on_segment};
 use search::Search;
 
+/// The first length within which a shortest path is looked for: this share of the straight way, and so many metres more.
+const FIRST_SHARE: f64 = 1.2;
+const FIRST_M: f64 = 1.0;
+/// A search among less than this fraction of all corners is worth a try.
+const FEW: usize = 8;
+/// More than rounding may do to the length of a path, metres.
+const SURE_M: f64 = 1e-6;
+
 impl GrownFloor {
     /// The shortest path from a start to a goal; `keep_going` is asked now and then whether the answer is still wanted.
     ///
@@ -44,8 +52,30 @@ impl GrownFloor {
         keep_going: &mut dyn FnMut() -> bool,
     ) -> Result<Way, NoWay> {
         self.check_ends(start, goal)?;
+        // Among many corners those far from both ends are left out first: a way that is shorter than any way to them is the
+        // shortest of all.
+        let mut within_m = FIRST_SHARE * (goal - start).norm() + FIRST_M;
+        loop {
+            let near = self.corners_within(within_m, start, goal);
+            if near.len() * FEW >= self.corners.len() {
+                break;
+            }
+            match self.search(start, goal, &near, keep_going) {
+                Ok(way) if way.length_m + SURE_M < within_m => return Ok(way),
+                Err(NoWay::Stopped) => return Err(NoWay::Stopped),
+                _ => within_m *= 2.0,
+            }
+        }
         let all: Vec<usize> = (0..self.corners.len()).collect();
         self.search(start, goal, &all, keep_going)
+    }
+
+    /// The corners about which a way of this length can turn, metres.
+    fn corners_within(&self, within_m: f64, start: Point, goal: Point) -> Vec<usize> {
+        let least_m = |Corner { center, radius_m, .. }: &Corner| {
+            (center - start).norm() + (goal - center).norm() - 2.0 * radius_m
+        };
+        (0..self.corners.len()).filter(|index| least_m(&self.corners[*index]) <= within_m).collect()
     }
 
     /// A path pulled taut: the shortest one that turns only about discs and corners within `reach_m` of it.

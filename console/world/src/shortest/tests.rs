@@ -179,6 +179,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
+    fn among_many_corners_the_way_is_that_of_a_search_among_all(
+        columns in prop::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64, 0.05..0.5_f64), 60..140),
+        from in (-8.0..8.0_f64, -8.0..8.0_f64),
+        step in (-4.0..4.0_f64, -4.0..4.0_f64),
+    ) {
+        let shapes: Vec<Shape> = columns.iter().map(|(x, y, radius_m)| disc(*x, *y, *radius_m)).collect();
+        let floor = floor(&ROUND, &shapes, 0.1);
+        let (start, goal) = (Point::new(from.0, from.1), Point::new(from.0 + step.0, from.1 + step.1));
+        let all: Vec<usize> = (0..floor.corners.len()).collect();
+        if floor.check_ends(start, goal).is_ok() {
+            let among_all = floor.search(start, goal, &all, &mut || true);
+            prop_assert_eq!(floor.shortest(start, goal, &mut || true), among_all);
+        }
+    }
+
+    #[test]
     fn a_shortest_way_is_clear_and_no_polygonised_way_is_shorter(
         shapes in prop::collection::vec(any_shape(), 1..9),
         straight in any::<bool>(),
