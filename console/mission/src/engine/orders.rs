@@ -2,7 +2,8 @@
 
 use super::{
     Mission,
-    slot::{PlannerSlot, Prepare},
+    candidate::NEAR_PLAN_M,
+    slot::{LeftPlan, PlannerSlot, Prepare},
 };
 use crate::{
     event::EventKind,
@@ -10,7 +11,7 @@ use crate::{
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
     planner::{ParamValue, PlannerChoice},
 };
-use planner_api::Reason;
+use planner_api::{Plan, Reason};
 
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
@@ -98,6 +99,7 @@ impl Mission {
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
+        slot.keep = self.plan_left_here(&slot.choice);
         slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
         if self.active.is_ready && !waiting && !self.has_active_failed() {
@@ -120,8 +122,19 @@ impl Mission {
         snapshots && self.active.is_ready && slot.choice.id == self.active.choice.id
     }
 
+    /// The plan that a planner flew with the same values when another one took over, if the robot is still there: whoever is
+    /// called back goes on with it.
+    fn plan_left_here(&self, choice: &PlannerChoice) -> Option<Plan> {
+        let left = self.left.as_ref().filter(|left| left.choice == *choice)?;
+        let is_here = (left.at - self.locator.position()).norm() < NEAR_PLAN_M;
+        is_here.then(|| left.plan.clone())
+    }
+
     /// Puts a planner in the place of the active one, whose worker is closed.
     pub(super) fn replace_active(&mut self, slot: PlannerSlot) {
+        let at = self.locator.position();
+        let plan = self.active.has_plan().then(|| self.task.under_way()).flatten();
+        self.left = plan.map(|plan| LeftPlan { choice: self.active.choice.clone(), plan, at });
         self.close_active();
         self.active = slot;
     }

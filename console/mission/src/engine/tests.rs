@@ -6,6 +6,7 @@ mod covering;
 mod shadow;
 mod stopping;
 mod tethered;
+mod under_way;
 
 use super::*;
 use crate::{
@@ -41,6 +42,8 @@ struct Straight {
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
     regions_m2: Vec<f64>,
+    /// The plans that it was given to keep to, request by request.
+    kept: Vec<Option<Plan>>,
     /// What plans to cover keep to.
     cut: Option<Vec<Point>>,
     /// Its plans end so far from the middle of the tank, metres.
@@ -127,6 +130,7 @@ impl Straight {
 
     fn plan(&mut self, request: &PlanAsk) -> Plan {
         self.plans += 1;
+        self.kept.push(request.under_way.clone());
         if let TaskLeft::Cover { anchor, regions, .. } = &request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
             let cuts = self.cut.iter().cloned().collect();
