@@ -21,6 +21,7 @@ mod slot;
 mod stepping;
 mod tethering;
 mod workers;
+mod zones;
 
 use crate::{
     chart::Chart,

@@ -14,6 +14,7 @@ use crate::scope::Scope;
 use crate::stages::Stages;
 use crate::tether::{laid_cable, least_cable_m, return_path};
 use crate::tuning::choice::{BY_REEL, COMPLETE, FAR, MOST_CELLS};
+use crate::tuning::rooms;
 use crate::unreachable;
 use crate::workspace::Workspace;
 use candidate::Worth;
@@ -89,7 +90,8 @@ impl Planner for TetherSafe {
         }
         let mut plan = scan.plan(scope.start, &lead_in);
         // A reel near the least that can do may still reach all there is.
-        let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { scope.of_rest(COMPLETE) };
+        let complete = if workspace.is_room { rooms::COMPLETE } else { COMPLETE };
+        let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { scope.of_rest(complete) };
         let scans_enough = worth.coverage >= enough.min(least) && is_all_in_reach;
         warn(&worth, preferences, &scope, scans_enough, ctx);
         plan.complete = scans_enough && worth.is_safe(scope.tether.is_some());

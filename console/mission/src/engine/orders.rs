@@ -16,8 +16,9 @@ use planner_api::{Plan, Reason};
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
         // The order stands in the journal before its effects.
-        if let Err(why) = self.standing().allows(order) {
-            self.happened.push(EventKind::OrderRefused { order: order.clone(), why: why.to_string() });
+        let allowed = self.standing().allows(order).map_err(|why| why.to_string());
+        if let Err(why) = allowed.and_then(|()| self.check_place(order)) {
+            self.happened.push(EventKind::OrderRefused { order: order.clone(), why });
             return;
         }
         self.happened.push(EventKind::Ordered { order: order.clone() });
@@ -31,6 +32,7 @@ impl Mission {
                 self.locator.use_station(*station, *used);
                 self.stay_held();
             }
+            Order::DrawZone(zone) => self.draw_zone(zone),
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
@@ -53,6 +55,12 @@ impl Mission {
                 self.resume(Gait::Steady);
             }
         }
+    }
+
+    /// Refuses what cannot be where it is ordered.
+    fn check_place(&self, order: &Order) -> Result<(), String> {
+        let Order::DrawZone(zone) = order else { return Ok(()) };
+        self.check_zone(zone)
     }
 
     /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.

@@ -7,6 +7,7 @@ mod shadow;
 mod stopping;
 mod tethered;
 mod under_way;
+mod zones;
 
 use super::*;
 use crate::{
@@ -18,6 +19,7 @@ use crate::{
     },
 };
 use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
+use std::sync::Arc;
 use world::tether::Cable;
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
@@ -42,6 +44,8 @@ struct Straight {
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
     regions_m2: Vec<f64>,
+    /// The tank as it was known at each request.
+    sites: Vec<Arc<crate::ask::Site>>,
     /// The plans that it was given to keep to, request by request.
     kept: Vec<Option<Plan>>,
     /// What plans to cover keep to.
@@ -131,6 +135,7 @@ impl Straight {
     fn plan(&mut self, request: &PlanAsk) -> Plan {
         self.plans += 1;
         self.kept.push(request.under_way.clone());
+        self.sites.push(Arc::clone(&request.site));
         if let TaskLeft::Cover { anchor, regions, .. } = &request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
             let cuts = self.cut.iter().cloned().collect();

@@ -3,7 +3,7 @@
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::{preset, replay, shadow, stations, typing};
+use super::{preset, replay, shadow, stations, typing, zones};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -36,6 +36,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Parameters | ActionId::SetParameter | ActionId::PresetSave => parameters(model),
         ActionId::PresetLoad => preset::can_load(model),
         ActionId::SetSpeed => simulating(model),
+        ActionId::DrawZone => zones::can(model),
         ActionId::Inject | ActionId::Exclude | ActionId::Include => stations::can(model, id),
         ActionId::Open => nothing_under_way(model),
         ActionId::Acknowledge
