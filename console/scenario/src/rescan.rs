@@ -35,7 +35,9 @@ pub fn rescan(
     mission["kind"] = value("cover");
     mission["boxes_m"] = value(boxes.iter().map(numbers).collect::<Array>());
     put_on_drawing(&mut document, found);
-    drawn.iter().for_each(|zone| add_zone(&mut document, zone));
+    for zone in drawn {
+        add_zone(&mut document, zone);
+    }
     Ok(document.to_string())
 }
 

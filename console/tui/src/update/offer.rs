@@ -25,9 +25,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step | ActionId::StepLane | ActionId::StepEvent => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
-        ActionId::Shadow => shadow::can_begin(model),
-        ActionId::Promote => accepted(model, &Order::Promote),
-        ActionId::DropShadow => accepted(model, &Order::DropShadow),
+        ActionId::Shadow | ActionId::Promote | ActionId::DropShadow => of_shadow(model, id),
         ActionId::Accept => accept(model),
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight | ActionId::Compare | ActionId::PlanAgain | ActionId::CancelPlan => {
@@ -340,5 +338,13 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
         | Refusal::ShadowNotReady { .. } => None,
+    }
+}
+
+fn of_shadow(model: &Model, id: ActionId) -> Result<(), String> {
+    match id {
+        ActionId::Promote => accepted(model, &Order::Promote),
+        ActionId::DropShadow => accepted(model, &Order::DropShadow),
+        _ => shadow::can_begin(model),
     }
 }

@@ -28,7 +28,8 @@ pub(super) fn order(model: &Model, corner: Point, mut values: impl Iterator<Item
 fn zone(model: &Model, a: Point, b: Point) -> Zone {
     let drawn = model.live.run.about.iter().flat_map(|about| &about.world.zones);
     let names: Vec<&str> = drawn.map(|zone| zone.name.as_str()).collect();
-    let name = (1..).map(|n| format!("no-go {n}")).find(|name| !names.contains(&name.as_str()));
+    let name =
+        (1..=names.len() + 1).map(|n| format!("no-go {n}")).find(|name| !names.contains(&name.as_str()));
     let (low, high) = (a.inf(&b), a.sup(&b));
     let vertices = vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
     Zone { name: name.unwrap_or_default(), kind: ZoneKind::NoGo, shape: Shape::Polygon { vertices } }
