@@ -162,6 +162,18 @@ impl PathFollower {
         self.path[self.target]
     }
 
+    /// Distance along the path from its start to the point to drive to, metres.
+    ///
+    /// ```
+    /// use geometry::{PathFollower, Point};
+    /// let mut follower = PathFollower::exact(&[Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
+    /// follower.advance(Point::new(0.5, 0.1), |_| true);
+    /// assert!((follower.target_m() - 0.8).abs() < 1e-9);
+    /// ```
+    pub fn target_m(&self) -> f64 {
+        self.stations_m[self.target]
+    }
+
     /// The points of the path from the target on, within `length_m` of it along the path; at least the target.
     ///
     /// ```

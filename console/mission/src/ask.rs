@@ -127,6 +127,8 @@ pub struct PlanAsk {
     pub site: Arc<Site>,
     /// The path flown so far, and a return path before the plan.
     pub previous: Vec<Point>,
+    /// What is left of the plan that it is to keep to, if there is one.
+    pub under_way: Option<Plan>,
 }
 
 /// The inputs of a command; the owned form of [`planner_api::Sensed`].
@@ -175,8 +177,9 @@ impl PlanAsk {
                 tolerance_m: *tolerance_m,
             },
         };
-        let (reason, start, previous) = (&self.reason, self.start, self.previous.as_slice());
-        self.site.lend(|site| call(&api::PlanRequest { reason, start, task, site, previous }))
+        let Self { reason, start, previous, under_way, .. } = self;
+        let (start, under_way) = (*start, under_way.as_ref());
+        self.site.lend(|site| call(&api::PlanRequest { reason, start, task, site, previous, under_way }))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
 use nalgebra::{Isometry2, Translation2};
 use planner_api as api;
 use std::sync::Arc;
-use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, ZoneKind};
+use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
 
 /// A found obstacle must turn out to stand this much elsewhere before it is reported again, metres.
 const MOVED_M: f64 = 0.05;
@@ -149,6 +149,12 @@ impl Chart {
         let obstacle = Obstacle { id, name, shape, known: false };
         self.world.obstacles.push(obstacle.clone());
         EventKind::ObstacleFound { obstacle }
+    }
+
+    /// Draws a zone.
+    pub(crate) fn draw(&mut self, zone: Zone) {
+        self.world.zones.push(zone);
+        self.revision += 1;
     }
 
     /// The whole chart in the form that planners read.

@@ -21,6 +21,7 @@ mod slot;
 mod stepping;
 mod tethering;
 mod workers;
+mod zones;
 
 use crate::{
     chart::Chart,
@@ -39,7 +40,7 @@ pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
 use shadow::Shadow;
-use slot::PlannerSlot;
+use slot::{LeftPlan, PlannerSlot};
 use stepping::PlaceOnPlan;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
@@ -86,6 +87,8 @@ pub struct Mission {
     candidate: Option<PlannerSlot>,
     /// A planner that flies beside the one that drives, and moves nothing.
     shadow: Option<Shadow>,
+    /// The plan that was flown when the planner that drives took over.
+    left: Option<LeftPlan>,
     workers: Workers,
     /// Where the robot was let go that moves until something happens.
     stepped_from: Option<PlaceOnPlan>,
@@ -135,6 +138,7 @@ impl Mission {
             active: PlannerSlot::new(config.planner.clone(), Reason::Start),
             candidate: None,
             shadow: None,
+            left: None,
             workers: Workers::default(),
             stepped_from: None,
             happened: Happened {

@@ -28,7 +28,7 @@ use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason}
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
-use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World};
+use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -186,6 +186,11 @@ pub enum EventKind {
     ObstacleFound {
         /// Its outline as estimated, tank frame.
         obstacle: Obstacle,
+    },
+    /// The operator drew a zone that the robot must not enter.
+    ZoneDrawn {
+        /// Its name and outline.
+        zone: Zone,
     },
     /// A found obstacle turned out to stand elsewhere than first thought.
     ObstacleMoved {

@@ -5,7 +5,7 @@ use crate::{
     planner::{ParamValue, PlannerChoice},
 };
 use serde::{Deserialize, Serialize};
-use world::StationId;
+use world::{StationId, Zone};
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,6 +48,8 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
+    /// The robot must not enter this part of the floor from now on: plans keep off it, and what lies in it is not scanned.
+    DrawZone(Zone),
     /// For training: a station of the simulation fails for a while. The mission only notes it, and locates without knowing.
     Inject(Injection),
     /// Whether the ranges of a station are used; without them the robot is located by the others.

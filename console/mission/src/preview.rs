@@ -20,5 +20,12 @@ pub fn preview(config: &MissionConfig, drawing: &World, seed: u64) -> PlanAsk {
         covariance: Matrix3::from_diagonal(&nalgebra::Vector3::new(position_m2, position_m2, heading_rad2)),
     };
     let task = task.left(&CoverageGrid::new(floor), config.lane_m(), config.tether_limits());
-    PlanAsk { reason: Reason::Start, start, task, site: Arc::new(chart.site()), previous: Vec::new() }
+    PlanAsk {
+        reason: Reason::Start,
+        start,
+        task,
+        site: Arc::new(chart.site()),
+        previous: Vec::new(),
+        under_way: None,
+    }
 }

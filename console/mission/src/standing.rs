@@ -120,7 +120,7 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
-            (Order::Abort | Order::Terminate | Order::UseStation { .. }, _)
+            (Order::Abort | Order::Terminate | Order::UseStation { .. } | Order::DrawZone(_), _)
             | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_) | Order::Shadow(_), Phase::Running(_) | Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))

@@ -1,9 +1,11 @@
 //! The task while it is being done: where to go, how far it is, whether it is done.
 
 mod cover;
+mod rest;
 
 use cover::Cover;
 pub(crate) use geometry::PathFollower;
+pub(crate) use rest::rest_of;
 
 use crate::{ask::TaskLeft, config::TaskConfig};
 use planner_api as api;
@@ -92,6 +94,14 @@ impl Task {
     pub(crate) fn take_plan(&mut self, plan: &api::Plan) {
         if let Self::Cover(cover) = self {
             cover.take_plan(plan);
+        }
+    }
+
+    /// What is left of the plan from the place that it leads to next; `None` unless it is for floor.
+    pub(crate) fn under_way(&self) -> Option<api::Plan> {
+        match self {
+            Self::Cover(cover) => cover.under_way(),
+            Self::Goto(_) | Self::Follow { .. } => None,
         }
     }
 

@@ -106,6 +106,9 @@ impl Fold {
             EventKind::Progressed { done, along_m, .. } => self.progress(*done, *along_m),
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
             EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
+            EventKind::ZoneDrawn { zone } => {
+                self.run.iter_mut().for_each(|run| run.world.zones.push(zone.clone()));
+            }
             EventKind::ObstacleFound { obstacle } => {
                 self.known.obstacles_found += 1;
                 self.find(obstacle);

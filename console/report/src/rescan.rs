@@ -11,7 +11,7 @@ use crate::{
     joined::{Joined, PastRun, joined, updated_floor},
 };
 use std::collections::{BTreeSet, VecDeque};
-use world::{Floor, ObstacleId, Point, coverage::regions};
+use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 
 /// Missed floor this near to other missed floor belongs to it, as a share of the swath.
 const TOGETHER_SWATHS: f64 = 0.5;
@@ -35,6 +35,8 @@ pub struct Rescan {
     pub not_asked_m2: f64,
     /// Obstacles that the runs found.
     pub found: BTreeSet<ObstacleId>,
+    /// All zones of the last run.
+    pub zones: Vec<Zone>,
 }
 
 /// Finds what is to be scanned again.
@@ -94,6 +96,7 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
         out_of_reach,
         not_asked_m2: not_asked as f64 * floor.cell_m2(),
         found: evidence.found().map(|(id, _)| id).collect(),
+        zones: run.world.zones.clone(),
     })
 }
 

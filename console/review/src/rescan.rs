@@ -48,7 +48,9 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
     }
     let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
     let last = opened.last().context("there is no run")?;
-    let text = scenario::rescan(last, &names, &missed.boxes, &missed.found);
+    let drawn: Vec<_> =
+        missed.zones.iter().filter(|zone| !last.world.zones.contains(zone)).cloned().collect();
+    let text = scenario::rescan(last, &names, &missed.boxes, &missed.found, &drawn);
     let text = text.context("reading the scenario again")?;
     let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
     Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))

@@ -3,11 +3,11 @@
 use crate::renamed::with_todays_keys;
 use mission::RunOpened;
 use std::collections::BTreeSet;
-use toml_edit::{Array, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
-use world::{ObstacleId, Point};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
+use world::{ObstacleId, Point, Shape, Zone};
 
 /// The scenario of a past run, changed into a mission that scans some boxes, from south west to north east, metres; obstacles
-/// that were found are on the drawing now. `names` are the runs that missed what is in the boxes.
+/// that were found and zones that were drawn under way are on the drawing now. `names` are the runs that missed what is in the boxes.
 ///
 /// # Errors
 /// The scenario of the run cannot be parsed: its journal was changed.
@@ -16,6 +16,7 @@ pub fn rescan(
     names: &[&str],
     boxes: &[[Point; 2]],
     found: &BTreeSet<ObstacleId>,
+    drawn: &[Zone],
 ) -> Result<String, TomlError> {
     let mut document: DocumentMut = with_todays_keys(&opened.scenario_toml).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
@@ -34,6 +35,9 @@ pub fn rescan(
     mission["kind"] = value("cover");
     mission["boxes_m"] = value(boxes.iter().map(numbers).collect::<Array>());
     put_on_drawing(&mut document, found);
+    for zone in drawn {
+        add_zone(&mut document, zone);
+    }
     Ok(document.to_string())
 }
 
@@ -57,6 +61,22 @@ fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
                 }
             });
         }
+        _ => {}
+    }
+}
+
+/// Adds a zone to those of the scenario, however these are written.
+fn add_zone(document: &mut DocumentMut, zone: &Zone) {
+    let Shape::Polygon { vertices } = &zone.shape else { return };
+    let corners: Array = vertices.iter().map(|p| Value::Array([p.x, p.y].into_iter().collect())).collect();
+    let mut table = Table::new();
+    table["name"] = value(&zone.name);
+    table["kind"] = value("no_go");
+    table["shape"] = value("polygon");
+    table["vertices_m"] = value(corners);
+    match document.entry("zones").or_insert(Item::ArrayOfTables(ArrayOfTables::new())) {
+        Item::ArrayOfTables(tables) => tables.push(table),
+        Item::Value(Value::Array(list)) => list.push(table.into_inline_table()),
         _ => {}
     }
 }

@@ -95,6 +95,8 @@ pub enum ActionId {
     Inject,
     /// Locate the robot without a station.
     Exclude,
+    /// Draws a no-go zone.
+    DrawZone,
     /// Locate the robot with a station again.
     Include,
     /// Run an action of an alarm, by its number.
@@ -269,6 +271,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[Context::Result]).label("plan again"),
     action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[Context::Alarms]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]),
     action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]),
+    action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]),
     action(ActionId::Exclude, "exclude", "Locate the robot without a station", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]),
     action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]),
     action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[Context::Alarms, Context::Events]).label("map"),

@@ -25,6 +25,7 @@ mod shadow;
 mod stations;
 mod typing;
 mod what_if;
+mod zones;
 
 pub use act::act;
 pub use message::{Effect, Job, Mouse, Msg, ReplayMsg, Rows, RunMsg, Signal, Target, Transport};

@@ -62,6 +62,16 @@ impl SweptFloor {
         swept as f64 / part.n.max(1) as f64
     }
 
+    /// Number of reachable cells outside a part of the floor that were swept.
+    pub(crate) fn n_swept_beside(&self, part: &ReachableFloor) -> usize {
+        let is_swept = |n: u16| (1..OUT_OF_REACH).contains(&n);
+        self.swept
+            .iter()
+            .zip(part.cells.iter())
+            .filter(|(n, is_in_part)| is_swept(**n) && !**is_in_part)
+            .count()
+    }
+
     /// Groups of neighbouring cells that the tool could reach and has not swept, largest first.
     pub(crate) fn missed(&self) -> Vec<Vec<usize>> {
         self.raster().groups(|cell| self.is_missed(cell))

@@ -45,36 +45,58 @@ pub(crate) struct Repaired<'a> {
     pub enough: f64,
 }
 
+/// A repaired path before it is polished.
+pub(crate) struct Laid<'a> {
+    pub domain: SlitDomain<'a>,
+    /// Its pieces, each with whether it is new.
+    pieces: Vec<(Piece, bool)>,
+    /// Length of the lanes that the plan before had and this one has not, metres.
+    lost_m: f64,
+}
+
+impl Laid<'_> {
+    /// The whole path.
+    pub(crate) fn path(&self) -> Vec<Point> {
+        self.pieces.iter().flat_map(|(piece, _)| piece.points.iter().copied()).collect()
+    }
+
+    /// Length that it will have about when what it misses has been tied in, metres.
+    pub(crate) fn estimate_m(&self) -> f64 {
+        polyline::length_m(&self.path()) + tuning::touch_ups::MISSED * self.lost_m
+    }
+}
+
 impl<'a> Repair<'a, '_> {
-    /// The repaired path in one of these domains; `None` where the robot stands outside it.
-    pub(crate) fn scan(
+    /// The repaired path in one of these domains before it is polished; `None` where the robot stands outside it.
+    pub(crate) fn laid(
         &self,
         Extended { domain, new_cuts }: Extended<'a>,
         job: &Job,
-    ) -> Result<Option<Repaired<'a>>> {
-        let rest = self.current.rest();
+    ) -> Result<Option<Laid<'a>>> {
         let Some(start) = domain.beside(self.scope.start) else { return Ok(None) };
-        let sections = sections(&domain, &rest, &new_cuts);
-        job.stage(0.3);
-        let laid = self.laid(&domain, &sections, start, job)?;
+        let sections = sections(&domain, self.current.sides(), &new_cuts);
         job.stage(0.5);
-        let whole = ReachableFloor::new(&domain, self.scope.cell_m);
-        let n_whole = whole.n;
-        let floor = whole.within(self.scope.regions);
-        let share = |of_all: f64| of_all * n_whole as f64 / floor.n.max(1) as f64;
-        let wanted = (1.0 - share(1.0 - self.scope.enough)).max(tuning::polish::KEPT);
+        let pieces = self.joined(&domain, &sections, start, job)?;
+        let lost_m = lanes_m(self.current.sides()) - sections.iter().map(|kept| lanes_m(kept)).sum::<f64>();
+        Ok(Some(Laid { domain, pieces, lost_m }))
+    }
+
+    /// A repaired path in its final form.
+    pub(crate) fn polished(&self, laid: Laid<'a>, job: &Job) -> Result<Repaired<'a>> {
+        let Laid { domain, pieces, .. } = laid;
+        let scope = &self.scope;
+        let floor = ReachableFloor::new(&domain, scope.cell_m).within(scope.regions);
         // What the robot has missed so far was to be left anyway.
         let mut as_before = SweptFloor::new(floor.clone());
-        as_before.sweep(&self.current.path_left());
-        let enough = wanted.min(as_before.coverage()) - share(tuned::MORE_LEFT);
-        let scope = Scope { enough: wanted, ..self.scope };
-        let (pieces, is_new): (Vec<Piece>, Vec<bool>) = laid.into_iter().unzip();
+        as_before.sweep(&self.current.path());
+        let enough = scope.enough.min(as_before.coverage()) - scope.whole * tuned::MORE_LEFT;
+        let (pieces, is_new): (Vec<Piece>, Vec<bool>) = pieces.into_iter().unzip();
         let is_wanted = |at| scope.is_in_reach(&domain, at);
-        let terms = Terms::of(&scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
+        let terms = Terms::of(scope, self.effort, domain.workspace.swath_m, &is_wanted, job);
         let mut track = Track::new(&domain, &pieces, |piece| is_new[piece], floor);
         polish_again(&mut track, &terms)?;
         let (pieces, swept) = track.into_pieces();
-        Ok(Some(Repaired { scan: Scan { pieces, domain, swept }, enough }))
+        Ok(Repaired { scan: Scan { pieces, domain, swept }, enough })
     }
 
     /// The domains that a repair may use, with different cuts for what was found; none where all of them seal floor off.
@@ -91,7 +113,8 @@ impl<'a> Repair<'a, '_> {
 
     /// The domains between some cuts, with different ones for what these do not hold.
     fn domains_between(&self, cuts: &[Vec<Point>]) -> Vec<Extended<'a>> {
-        let path: Vec<(Point, Point)> = self.current.rest().iter().map(|side| (side.from, side.to)).collect();
+        let path: Vec<(Point, Point)> =
+            self.current.sides().iter().map(|side| (side.from, side.to)).collect();
         let extension = Extension { workspace: self.workspace, cuts, tether: &self.tether, path: &path };
         let mut all: Vec<Vec<Vec<Point>>> =
             tuned::ANGLES_RAD.into_iter().filter_map(|angle_rad| extension.new_cuts(angle_rad)).collect();
@@ -106,7 +129,7 @@ impl<'a> Repair<'a, '_> {
     }
 
     /// Sections and ways between them in a good order, from the start to home; each with whether it is new.
-    fn laid(
+    fn joined(
         &self,
         domain: &SlitDomain<'_>,
         sections: &[Vec<Side>],
@@ -151,6 +174,11 @@ fn sections(domain: &SlitDomain<'_>, rest: &[Side], new_cuts: &[Vec<Point>]) -> 
     let runs = bits.chunk_by(|a, b| is_kept(a) && is_kept(b));
     let runs = runs.filter(|run| is_kept(&run[0])).map(|run| run.iter().map(|(bit, _)| *bit).collect());
     runs.filter(|section: &Vec<Side>| polyline::length_m(&points(section)) >= least_m).collect()
+}
+
+/// Length of the lanes among some sides, metres.
+fn lanes_m(sides: &[Side]) -> f64 {
+    sides.iter().filter(|side| side.is_lane).map(|side| (side.to - side.from).norm()).sum()
 }
 
 fn points(section: &[Side]) -> Vec<Point> {

@@ -1,6 +1,9 @@
 //! What is to be scanned.
 
+use crate::floor::{ReachableFloor, SweptFloor};
 use crate::slit_domain::SlitDomain;
+use crate::tuning::polish::KEPT;
+use crate::workspace::Workspace;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Task, TetherLimits};
 use world::Point;
 
@@ -18,8 +21,10 @@ pub(crate) struct Scope<'a> {
     pub tolerance_m: f64,
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],
-    /// Coverage that is enough, as a share of the reachable floor.
+    /// Coverage that is enough, as a share of the reachable floor that is left.
     pub enough: f64,
+    /// All floor that is or was to be scanned, as a multiple of what is left.
+    pub whole: f64,
     /// Edge of a cell of the floor, metres.
     pub cell_m: f64,
 }
@@ -48,13 +53,58 @@ impl<'a> Scope<'a> {
             tolerance_m,
             regions,
             enough: 1.0,
+            whole: 1.0,
             cell_m,
         })
+    }
+
+    /// The same for a robot that has flown a path already: what it scanned belongs to the whole.
+    pub(crate) fn after(self, flown: &[Point], workspace: &Workspace) -> Self {
+        if self.regions.is_empty() || flown.is_empty() {
+            return self;
+        }
+        let Some(domain) = SlitDomain::new(workspace, Vec::new()) else { return self };
+        let all = ReachableFloor::new(&domain, self.cell_m);
+        let left = all.clone().within(self.regions);
+        let mut scanned = SweptFloor::new(all);
+        scanned.sweep(flown);
+        let n_whole = left.n + scanned.n_swept_beside(&left);
+        Self { whole: n_whole as f64 / left.n.max(1) as f64, ..self }
+    }
+
+    /// The share of the floor left that is enough where a share of the whole is: late in a mission, when little is left, more
+    /// of it may be missed.
+    pub(crate) fn of_rest(&self, enough_of_whole: f64) -> f64 {
+        (1.0 - self.whole * (1.0 - enough_of_whole)).max(KEPT.min(enough_of_whole))
     }
 
     /// Whether the reel lets the robot be at a place of a domain.
     pub(crate) fn is_in_reach(&self, domain: &SlitDomain<'_>, at: Point) -> bool {
         let way_m = || domain.way_home_m(at);
         self.reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= self.reel_length_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_enough_of_the_rest_is_what_is_enough_of_the_whole_and_most_of_it_at_least() {
+        let scope = |whole| Scope {
+            start: Point::origin(),
+            anchor: Point::origin(),
+            tether: None,
+            reel_length_m: f64::INFINITY,
+            tolerance_m: 0.3,
+            regions: &[],
+            enough: 1.0,
+            whole,
+            cell_m: 0.05,
+        };
+        assert!((scope(1.0).of_rest(0.995) - 0.995).abs() < 1e-12);
+        assert!((scope(10.0).of_rest(0.995) - 0.95).abs() < 1e-12);
+        assert!((scope(100.0).of_rest(0.995) - KEPT).abs() < 1e-12);
+        assert!((scope(100.0).of_rest(0.6) - 0.6).abs() < 1e-12);
     }
 }

@@ -7,6 +7,9 @@ use std::sync::Arc;
 use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
+/// A cable that is no longer than this at the anchor is in, metres.
+const IN_M: f64 = 1e-3;
+
 /// Longest straight way from the anchor to where the robot can be, about: the least cable that can do, metres.
 pub(crate) fn least_cable_m(workspace: &Workspace) -> f64 {
     let Workspace { wall, anchor, keep_m, .. } = workspace;
@@ -35,6 +38,17 @@ pub(crate) fn return_path(workspace: &Workspace, site: &Site<'_>, cable: &Cable)
     let (obstacles, keep_m) = (obstacles(site), workspace.keep_m);
     let roomy = Arc::new(tether::CableObstacles::grown(&workspace.wall, &shapes(&obstacles), keep_m));
     cable.return_path(&roomy, &ObstacleMap::new(&workspace.wall, &obstacles), keep_m)
+}
+
+/// Whether a cable comes in when the robot drives home through a domain: if it lies across a cut it stays round an obstacle.
+pub(crate) fn comes_in(domain: &SlitDomain<'_>, cable: &Cable) -> bool {
+    let Workspace { home, anchor, .. } = *domain.workspace;
+    let start = domain.beside(cable.tip());
+    let Some(way) = start.and_then(|start| domain.path(start, home)) else { return true };
+    let mut left = cable.clone();
+    left.drag_along(&way);
+    left.drag_to(anchor);
+    left.length_m() < IN_M
 }
 
 /// A path that returns to the anchor, and how the cable lies at its start.

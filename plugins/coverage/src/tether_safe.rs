@@ -14,6 +14,7 @@ use crate::scope::Scope;
 use crate::stages::Stages;
 use crate::tether::{laid_cable, least_cable_m, return_path};
 use crate::tuning::choice::{BY_REEL, COMPLETE, FAR, MOST_CELLS};
+use crate::tuning::rooms;
 use crate::unreachable;
 use crate::workspace::Workspace;
 use candidate::Worth;
@@ -29,8 +30,8 @@ use world::Point;
 pub struct TetherSafe {
     preferences: Preferences,
     follow: Follow,
-    /// The plan that was given last.
-    current: Option<CurrentPlan>,
+    /// Whether the tether of the plan that was given last was as short and straight as is preferred.
+    is_preferred: bool,
 }
 
 impl Planner for TetherSafe {
@@ -43,7 +44,7 @@ impl Planner for TetherSafe {
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         let preferences = Preferences::of(config, site);
-        Ok(Self { preferences, follow: Follow::new(config, site), current: None })
+        Ok(Self { preferences, follow: Follow::new(config, site), is_preferred: true })
     }
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
@@ -54,12 +55,14 @@ impl Planner for TetherSafe {
         if let Some(why) = no_lane(&workspace, preferences.limits.reel_length_m) {
             return Err(PlannerError::new(Code::Config, why));
         }
-        let scope = limited(scope, &workspace, &preferences);
+        let scope = limited(scope, &workspace, &preferences).after(request.previous, &workspace);
+        let scope = Scope { enough: scope.of_rest(preferences.enough), ..scope };
         let cable = laid_cable(&workspace, request);
         let (site, workspace, preferences, cable) = (request.site, &workspace, &preferences, cable.as_ref());
-        let pipeline = Pipeline { site, workspace, preferences, scope, cable };
+        let pipeline = Pipeline { site, workspace, preferences, scope, cable, must_come_in: false };
         let mut stages = Stages::new(ctx);
-        let repaired = under_way::repaired(&pipeline, self.current.as_ref(), request.reason, &mut stages)?;
+        let current = request.under_way.map(|plan| CurrentPlan::new(plan, self.is_preferred));
+        let repaired = under_way::repaired(&pipeline, current.as_ref(), request.reason, &mut stages)?;
         let (worth, scan, lead_in, enough) = match repaired {
             under_way::Outcome::Repaired((worth, Repaired { scan, enough })) => {
                 (worth, scan, Vec::new(), enough)
@@ -87,7 +90,8 @@ impl Planner for TetherSafe {
         }
         let mut plan = scan.plan(scope.start, &lead_in);
         // A reel near the least that can do may still reach all there is.
-        let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { COMPLETE };
+        let complete = if workspace.is_room { rooms::COMPLETE } else { COMPLETE };
+        let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { scope.of_rest(complete) };
         let scans_enough = worth.coverage >= enough.min(least) && is_all_in_reach;
         warn(&worth, preferences, &scope, scans_enough, ctx);
         plan.complete = scans_enough && worth.is_safe(scope.tether.is_some());
@@ -96,19 +100,16 @@ impl Planner for TetherSafe {
             plan.cuts.clear();
         }
         self.follow.take(&plan, workspace);
-        self.current = Some(CurrentPlan::new(&scan.pieces, &scan.domain.cuts, worth.meets(preferences)));
+        self.is_preferred = worth.meets(preferences);
         Ok(plan)
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
-        if let (Some(current), Some(target)) = (&mut self.current, sensed.path_ahead.first()) {
-            current.aim(*target);
-        }
         self.follow.step(sensed, ctx)
     }
 }
 
-/// A scope as far as the reel goes with the coverage that is asked for, in cells that are no smaller than a large tank allows.
+/// A scope as far as the reel goes, in cells that are no smaller than a large tank allows.
 fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preferences) -> Scope<'a> {
     let (low, high) = workspace.wall.bounds();
     let least_cell_m = ((high.x - low.x) * (high.y - low.y) / MOST_CELLS).sqrt();
@@ -119,7 +120,7 @@ fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preference
         reel_length_m > least_cable_m(workspace) * preferences.cable_share
     };
     let reel_length_m = if is_long { f64::INFINITY } else { reel_length_m };
-    Scope { reel_length_m, enough: preferences.enough, cell_m: scope.cell_m.max(least_cell_m), ..scope }
+    Scope { reel_length_m, cell_m: scope.cell_m.max(least_cell_m), ..scope }
 }
 
 /// The candidates from where the robot is, or, where the cable as it lies rules all of them out, from home after a way back
@@ -130,17 +131,14 @@ fn tried_from_here_or_home<'a>(
 ) -> Result<(Tried<'a>, Vec<Point>)> {
     let Pipeline { site, workspace, scope, cable, .. } = *pipeline;
     let away_m = (scope.start - workspace.home).norm();
-    // A cable that is well out may have to come in first, and then all is tried again.
+    let is_away = away_m > scope.tolerance_m;
+    // Under way the cable may lie as no cut of the new map allows: then it is taken in first.
+    let way = cable.filter(|_| is_away).and_then(|cable| return_path(workspace, site, cable));
+    // A cable that is well out may have to, and then all is tried again.
     let is_far_out = cable.is_some() && away_m > FAR * workspace.swath_m;
     stages.end = if is_far_out { 0.49 } else { 0.98 };
-    let tried = pipeline.run(stages)?;
-    if away_m <= scope.tolerance_m || tried.is_certified() {
-        return Ok((tried, Vec::new()));
-    }
-    // Under way the cable may lie as no cut of the new map allows: take it in first.
-    let Some(way) = cable.and_then(|cable| return_path(workspace, site, cable)) else {
-        return Ok((tried, Vec::new()));
-    };
+    let tried = Pipeline { must_come_in: way.is_some(), ..*pipeline }.run(stages)?;
+    let Some(way) = way.filter(|_| !tried.is_certified()) else { return Ok((tried, Vec::new())) };
     stages
         .ctx
         .log(LogLevel::Warn, "the tether lies across a cut of the new plan: back along the tether first");

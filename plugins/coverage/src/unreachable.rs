@@ -8,7 +8,10 @@ use crate::scope::Scope;
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel};
 use std::f64::consts::TAU;
-use world::{Point, polyline, shape::mean_of};
+use world::{
+    Point, polyline,
+    shape::{mean_of, ring_area_m2},
+};
 
 /// Floor out of reach below this is not worth a line, square metres.
 const LEAST_M2: f64 = 0.05;
@@ -58,10 +61,12 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         log(&why, &|cell| scan.swept.is_missed(cell) && is_far(raster.center(cell)));
     }
     let whole = ReachableFloor::new(&scan.domain, scope.cell_m);
+    // Under way what is left comes in blocks of cells, slivers among them that only the whole width of the tool reaches.
+    let least_m2 = if scope.whole > 1.0 { LEAST_M2 } else { 0.0 };
     let closed: Vec<Point> = scope
         .regions
         .iter()
-        .filter(|ring| whole.cells_in(ring).is_empty())
+        .filter(|ring| ring_area_m2(ring).abs() >= least_m2 && whole.cells_in(ring).is_empty())
         .map(|ring| mean_of(ring))
         .collect();
     for at in closed.iter().take(MOST_PLACES) {

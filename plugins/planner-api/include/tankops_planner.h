@@ -35,7 +35,7 @@ extern "C" {
 #endif
 
 #define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
-#define TP_ABI_MINOR 2u /* raised when something is added at the end of a struct */
+#define TP_ABI_MINOR 3u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
 
@@ -151,6 +151,12 @@ typedef struct tp_plan_in {
   double reel;              /* length on the reel */
   double max_wrap;          /* largest wrap angle on one obstacle, radians */
   double max_sum_wrap;      /* largest sum of the wrap angles, radians */
+  /* since 1.3, with TP_COVER: the plan to be kept to, as what is left of the one that the robot flies */
+  const tp_vec2 *way;       /* its path; no points: plan anew */
+  const tp_leg *way_legs;
+  uint32_t n_way, n_way_legs;
+  const tp_outline *way_cuts; /* polylines */
+  uint32_t n_way_cuts, way_complete;
 } tp_plan_in;
 
 typedef struct tp_step_in {
@@ -282,9 +288,10 @@ TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zon
 TP_ASSERT(sizeof(tp_site) == 128 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
-TP_ASSERT(sizeof(tp_plan_in) == 184 && offsetof(tp_plan_in, covariance) == 48, "layout");
+TP_ASSERT(sizeof(tp_plan_in) == 224 && offsetof(tp_plan_in, covariance) == 48, "layout");
 TP_ASSERT(offsetof(tp_plan_in, targets) == 104 && offsetof(tp_plan_in, site) == 136, "layout");
 TP_ASSERT(offsetof(tp_plan_in, regions) == 144 && offsetof(tp_plan_in, reel) == 160, "layout");
+TP_ASSERT(offsetof(tp_plan_in, way) == 184 && offsetof(tp_plan_in, way_cuts) == 208, "layout");
 TP_ASSERT(sizeof(tp_step_in) == 176 && offsetof(tp_step_in, target) == 120, "layout");
 TP_ASSERT(offsetof(tp_step_in, targets_ahead) == 136 && offsetof(tp_step_in, obstacles) == 160, "layout");
 TP_ASSERT(sizeof(tp_plan_out) == 16 && sizeof(tp_step_out) == 32 && sizeof(tp_draw) == 48, "layout");

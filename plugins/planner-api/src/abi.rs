@@ -19,7 +19,7 @@ pub const MAGIC: [u8; 8] = *b"TANKPLAN";
 /// Libraries of another major version are refused.
 pub const MAJOR: u32 = 1;
 /// Raised when something is added at the end of a struct.
-pub const MINOR: u32 = 2;
+pub const MINOR: u32 = 3;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
 /// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
@@ -144,9 +144,10 @@ const _: () = {
     assert!(
         offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72
     );
-    assert!(size_of::<PlanIn>() == 184 && offset_of!(PlanIn, covariance) == 48);
+    assert!(size_of::<PlanIn>() == 224 && offset_of!(PlanIn, covariance) == 48);
     assert!(offset_of!(PlanIn, targets) == 104 && offset_of!(PlanIn, site) == 136);
     assert!(offset_of!(PlanIn, regions) == 144 && offset_of!(PlanIn, reel) == 160);
+    assert!(offset_of!(PlanIn, way) == 184 && offset_of!(PlanIn, way_cuts) == 208);
     assert!(size_of::<StepIn>() == 176 && offset_of!(StepIn, target) == 120);
     assert!(offset_of!(StepIn, targets_ahead) == 136 && offset_of!(StepIn, obstacles) == 160);
     assert!(size_of::<PlanOut>() == 16 && size_of::<StepOut>() == 32 && size_of::<Draw>() == 48);

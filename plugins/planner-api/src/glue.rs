@@ -11,7 +11,9 @@ use crate::abi::{self, Str, output};
 use crate::{Code, Config, Ctx, Kind, ParamSpec, Planner, PlannerError, Result, Stopping, params};
 pub use guard::on_own_thread;
 use guard::{quietly, run};
-use inputs::{SensedParts, SiteParts, config_values, plan_request, regions_of, task_of};
+use inputs::{
+    SensedParts, SiteParts, config_values, plan_request, reason_of, regions_of, task_of, under_way_of,
+};
 use services::HostServices;
 use std::ffi::c_void;
 
@@ -163,11 +165,11 @@ pub unsafe extern "C" fn plan<P: Planner>(
         let parts = unsafe { SiteParts::read(input.site)? };
         let site = parts.site()?;
         // SAFETY: as above.
-        let (reason, regions) = unsafe { (inputs::reason_of(&input), regions_of(&input)?) };
+        let (reason, regions) = unsafe { (reason_of(&input), regions_of(&input)?) };
         // SAFETY: as above.
-        let task = unsafe { task_of(&input, &regions)? };
+        let (task, under_way) = unsafe { (task_of(&input, &regions)?, under_way_of(&input)?) };
         // SAFETY: as above.
-        let request = unsafe { plan_request(&input, &reason, task, &site) };
+        let request = unsafe { plan_request(&input, &reason, task, &site, under_way.as_ref()) };
         let plan = planner
             .plan(&request, &Ctx::new(&services))
             .inspect_err(|error| services.points(&error.partial))?;

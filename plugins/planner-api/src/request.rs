@@ -103,6 +103,10 @@ pub struct PlanRequest<'a> {
     pub site: &'a Site<'a>,
     /// The path flown so far, oldest first; empty at the start.
     pub previous: &'a [Point2<f64>],
+    /// On coverage missions: the plan to be kept to as far as it can be, which is what is left of the one that the robot flies,
+    /// from the place that it is led to, or one that this planner made a moment ago; without its cost. It may lead through
+    /// what was found since. `None`: plan anew.
+    pub under_way: Option<&'a Plan>,
 }
 
 /// A path to fly.

@@ -11,7 +11,7 @@ use crate::{
     task::Task,
 };
 use geometry::PathFollower;
-use planner_api::{Drive, PoseEstimate, Reason};
+use planner_api::{Drive, Plan, PoseEstimate, Reason};
 use std::sync::Arc;
 use world::Point;
 
@@ -79,7 +79,8 @@ impl Mission {
             if !is_running && self.active.prepare < Prepare::Plan {
                 return None;
             }
-            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor, self.trail.len());
+            let keep = self.active.keep.clone().or_else(|| under_way(&self.task, reason));
+            let (kind, what) = self.plan_ask(reason.clone(), *from_anchor, self.trail.len(), keep);
             self.active.found_since.clear();
             return self.ask_of_active(kind, what);
         }
@@ -123,7 +124,8 @@ impl Mission {
             return Some(slot.open(worker, self.tick, site));
         }
         let PlanState::Due { reason, from_anchor } = slot.plan.clone() else { return None };
-        let (kind, what) = self.plan_ask(reason, from_anchor, self.trail.len());
+        let keep = slot.keep.clone();
+        let (kind, what) = self.plan_ask(reason, from_anchor, self.trail.len(), keep);
         let slot = self.candidate.as_mut()?;
         slot.found_since.clear();
         slot.ask(self.tick, kind, what)
@@ -142,14 +144,21 @@ impl Mission {
     /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
     /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are given
     /// of the first `n_flown` points of the path flown.
-    pub(super) fn plan_ask(&self, reason: Reason, from_anchor: bool, n_flown: usize) -> (PendingKind, What) {
+    pub(super) fn plan_ask(
+        &self,
+        reason: Reason,
+        from_anchor: bool,
+        n_flown: usize,
+        keep: Option<Plan>,
+    ) -> (PendingKind, What) {
         let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
         let here = self.locator.pose_estimate();
         let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
         let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
         let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
         let site = Arc::new(self.chart.site());
-        let what = What::Plan(Box::new(PlanAsk { reason: reason.clone(), start, task, site, previous }));
+        let ask = PlanAsk { reason: reason.clone(), start, task, site, previous, under_way: keep };
+        let what = What::Plan(Box::new(ask));
         (PendingKind::Plan(AskedPlan { reason, return_path, from_anchor, here: here.position }), what)
     }
 
@@ -190,4 +199,10 @@ impl Mission {
             obstacles: self.chart.near(pose.position),
         }
     }
+}
+
+/// What is left of a plan that goes on being flown with a change, for the same planner.
+pub(super) fn under_way(task: &Task, reason: &Reason) -> Option<Plan> {
+    let goes_on = matches!(reason, Reason::MapChanged | Reason::Blocked | Reason::Recover);
+    goes_on.then(|| task.under_way()).flatten()
 }

@@ -9,11 +9,14 @@ use super::{
 use crate::{
     ask::{Answer, AskId, Given, Said},
     event::EventKind,
+    task::Task,
 };
 use planner_api::Plan;
 
 /// A candidate whose plan begins further from the robot than this plans again, metres.
-const NEAR_PLAN_M: f64 = 0.5;
+pub(super) const NEAR_PLAN_M: f64 = 0.5;
+/// It keeps to that plan if the robot has gone no further, metres: more floor would be scanned twice.
+const MOST_GONE_M: f64 = 3.0;
 
 impl Mission {
     /// Takes an answer of the planner that is being prepared; gives it back unless it has taken over or is closed.
@@ -53,11 +56,14 @@ impl Mission {
         said: Said,
     ) -> Option<PlannerSlot> {
         let id = slot.choice.id.clone();
-        if (self.locator.position() - asked.here).norm() > NEAR_PLAN_M {
+        let gone_m = (self.locator.position() - asked.here).norm();
+        if gone_m > NEAR_PLAN_M {
             // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
             self.pass_on(said, &id);
             self.happened.push(EventKind::Discarded { ask });
             slot.robot_waits = true;
+            let is_kept = gone_m <= MOST_GONE_M && matches!(self.task, Task::Cover(_));
+            slot.keep = is_kept.then_some(Plan { cost: 0.0, ..plan });
             return Some(slot);
         }
         let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);

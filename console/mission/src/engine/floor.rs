@@ -20,19 +20,29 @@ impl ScannedFloor {
     /// Takes in shapes that were found: what stands where is no floor, and what is beside it cannot be reached. Gives the
     /// cells that have changed.
     pub(super) fn survey(&mut self, config: &MissionConfig, chart: &Chart, found: &[Shape]) -> Vec<KindRun> {
+        let changes = self.surveyor(config, chart).update(chart.world(), chart.map(), found);
+        self.coverage.change(&changes);
+        changes
+    }
+
+    /// Forbids what lies in an outline, which is not on the chart yet. Gives the cells that have changed.
+    pub(super) fn forbid(&mut self, config: &MissionConfig, chart: &Chart, outline: &Shape) -> Vec<KindRun> {
+        let changes = self.surveyor(config, chart).forbid(chart.world(), outline);
+        self.coverage.change(&changes);
+        changes
+    }
+
+    fn surveyor(&mut self, config: &MissionConfig, chart: &Chart) -> &mut FloorMaker {
         let Self { coverage, surveyor } = self;
-        let surveyor = surveyor.get_or_insert_with(|| {
+        surveyor.get_or_insert_with(|| {
             FloorMaker::of(
                 coverage.floor(),
-                // As it was before the first find; finds are applied below.
+                // As it was before the first find; finds are applied afterwards.
                 &chart.world().as_drawn(),
                 config.room_m(),
                 config.swath_m,
                 config.start.position,
             )
-        });
-        let changes = surveyor.update(chart.world(), chart.map(), found);
-        coverage.change(&changes);
-        changes
+        })
     }
 }

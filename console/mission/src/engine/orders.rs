@@ -2,7 +2,8 @@
 
 use super::{
     Mission,
-    slot::{PlannerSlot, Prepare},
+    candidate::NEAR_PLAN_M,
+    slot::{LeftPlan, PlannerSlot, Prepare},
 };
 use crate::{
     event::EventKind,
@@ -10,13 +11,14 @@ use crate::{
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
     planner::{ParamValue, PlannerChoice},
 };
-use planner_api::Reason;
+use planner_api::{Plan, Reason};
 
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
         // The order stands in the journal before its effects.
-        if let Err(why) = self.standing().allows(order) {
-            self.happened.push(EventKind::OrderRefused { order: order.clone(), why: why.to_string() });
+        let allowed = self.standing().allows(order).map_err(|why| why.to_string());
+        if let Err(why) = allowed.and_then(|()| self.check_place(order)) {
+            self.happened.push(EventKind::OrderRefused { order: order.clone(), why });
             return;
         }
         self.happened.push(EventKind::Ordered { order: order.clone() });
@@ -30,6 +32,7 @@ impl Mission {
                 self.locator.use_station(*station, *used);
                 self.stay_held();
             }
+            Order::DrawZone(zone) => self.draw_zone(zone),
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
@@ -52,6 +55,12 @@ impl Mission {
                 self.resume(Gait::Steady);
             }
         }
+    }
+
+    /// Refuses what cannot be where it is ordered.
+    fn check_place(&self, order: &Order) -> Result<(), String> {
+        let Order::DrawZone(zone) = order else { return Ok(()) };
+        self.check_zone(zone)
     }
 
     /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.
@@ -98,6 +107,7 @@ impl Mission {
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
+        slot.keep = self.plan_left_here(&slot.choice);
         slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
         if self.active.is_ready && !waiting && !self.has_active_failed() {
@@ -120,8 +130,19 @@ impl Mission {
         snapshots && self.active.is_ready && slot.choice.id == self.active.choice.id
     }
 
+    /// The plan that a planner flew with the same values when another one took over, if the robot is still there: whoever is
+    /// called back goes on with it.
+    fn plan_left_here(&self, choice: &PlannerChoice) -> Option<Plan> {
+        let left = self.left.as_ref().filter(|left| left.choice == *choice)?;
+        let is_here = (left.at - self.locator.position()).norm() < NEAR_PLAN_M;
+        is_here.then(|| left.plan.clone())
+    }
+
     /// Puts a planner in the place of the active one, whose worker is closed.
     pub(super) fn replace_active(&mut self, slot: PlannerSlot) {
+        let at = self.locator.position();
+        let plan = self.active.has_plan().then(|| self.task.under_way()).flatten();
+        self.left = plan.map(|plan| LeftPlan { choice: self.active.choice.clone(), plan, at });
         self.close_active();
         self.active = slot;
     }

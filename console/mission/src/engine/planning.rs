@@ -149,7 +149,7 @@ impl Mission {
         let boundary = &self.chart.world().boundary;
         let solids = Solids { boundary, map: self.chart.map(), room_m: self.config.room_m() };
         let slot = &mut self.active;
-        slot.plan = PlanState::Flying { is_whole: plan.complete };
+        (slot.plan, slot.keep) = (PlanState::Flying { is_whole: plan.complete }, None);
         slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here, &solids);
         slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
         slot.outdate_step();

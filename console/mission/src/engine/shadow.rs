@@ -3,10 +3,10 @@
 
 mod answers;
 mod promotion;
-mod rest;
 
 use super::{
     Mission,
+    asks::under_way,
     slot::{AskedPlan, PendingKind, PlanState, PlannerSlot},
 };
 use crate::{
@@ -146,7 +146,8 @@ impl Mission {
             if !shadow.now.may_plan {
                 return None;
             }
-            let (kind, what) = self.plan_ask(reason, from_anchor, shadow.now.n_flown);
+            let keep = under_way(&shadow.task, &reason);
+            let (kind, what) = self.plan_ask(reason, from_anchor, shadow.now.n_flown, keep);
             (shadow.n_flown, shadow.asked_at_s) = (shadow.now.n_flown, self.now_s());
             shadow.slot.found_since.clear();
             return shadow.slot.ask(tick, kind, what);

@@ -6,7 +6,7 @@ use crate::{
     planner::{PlannerChoice, PlannerInfo},
 };
 use geometry::PathFollower;
-use planner_api::{Command, Reason};
+use planner_api::{Command, Plan, Reason};
 use std::sync::Arc;
 use world::{Point, Shape};
 
@@ -21,6 +21,8 @@ pub(super) struct PlannerSlot {
     /// Whether it is loaded, configured and has not failed since.
     pub is_ready: bool,
     pub plan: PlanState,
+    /// A plan of its own that it is to keep to, other than the one that is flown.
+    pub keep: Option<Plan>,
     /// How far it is to be prepared while it does not drive.
     pub prepare: Prepare,
     /// The instance that runs; `None` before the first, and after a fault.
@@ -54,6 +56,17 @@ pub(super) struct PlannerSlot {
     pub cuts: CutsRule,
     /// Whether it says that it cannot go on.
     pub blocked: BlockedRule,
+}
+
+/// A plan that was being flown when another planner took over.
+#[derive(Clone)]
+pub(super) struct LeftPlan {
+    /// Who flew it, with which values.
+    pub choice: PlannerChoice,
+    /// What was left of it.
+    pub plan: Plan,
+    /// Where the robot was.
+    pub at: Point,
 }
 
 /// How far a planner is to be prepared without driving.

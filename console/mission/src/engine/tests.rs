@@ -6,6 +6,8 @@ mod covering;
 mod shadow;
 mod stopping;
 mod tethered;
+mod under_way;
+mod zones;
 
 use super::*;
 use crate::{
@@ -17,6 +19,7 @@ use crate::{
     },
 };
 use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
+use std::sync::Arc;
 use world::tether::Cable;
 use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
 
@@ -41,6 +44,10 @@ struct Straight {
     plans: usize,
     /// Area of the regions of every request to cover, square metres.
     regions_m2: Vec<f64>,
+    /// The tank as it was known at each request.
+    sites: Vec<Arc<crate::ask::Site>>,
+    /// The plans that it was given to keep to, request by request.
+    kept: Vec<Option<Plan>>,
     /// What plans to cover keep to.
     cut: Option<Vec<Point>>,
     /// Its plans end so far from the middle of the tank, metres.
@@ -127,6 +134,8 @@ impl Straight {
 
     fn plan(&mut self, request: &PlanAsk) -> Plan {
         self.plans += 1;
+        self.kept.push(request.under_way.clone());
+        self.sites.push(Arc::clone(&request.site));
         if let TaskLeft::Cover { anchor, regions, .. } = &request.task {
             self.regions_m2.push(regions.iter().map(|r| world::shape::ring_area_m2(r)).sum());
             let cuts = self.cut.iter().cloned().collect();

@@ -72,6 +72,11 @@ impl Event {
                     format!("new obstacle at {:.2}, {:.2} m, not on the drawing", at.x, at.y),
                 )
             }
+            EventKind::ZoneDrawn { zone } => {
+                let (low, high) = zone.shape.bounds();
+                let corners = format!("{:.2}, {:.2} to {:.2}, {:.2} m", low.x, low.y, high.x, high.y);
+                line(Severity::Watch, "map", format!("{} drawn: {corners}", zone.name))
+            }
             EventKind::PlannerChosen { .. }
             | EventKind::PlannerPrepared { .. }
             | EventKind::PlannerRejected { .. }
@@ -243,6 +248,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Promote => "promote the planner in shadow".into(),
         Order::DropShadow => "end the shadow".into(),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
+        Order::DrawZone(zone) => format!("draw {}", zone.name),
         Order::Inject(injection) => injection_text(injection, stations),
         Order::UseStation { station, used } => {
             let word = if *used { "use" } else { "exclude" };

@@ -1,8 +1,10 @@
 //! Scanning the floor along the legs of a plan, and coming back to the anchor.
 
+use super::rest_of;
 use crate::ask::TaskLeft;
 use geometry::PathFollower;
 use planner_api::{self as api, LegTag, Plan};
+use std::sync::Arc;
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
 /// Blocks of floor handed to planners are this share of a lane wide.
@@ -33,9 +35,10 @@ pub(crate) struct Cover {
 /// A plan under way.
 #[derive(Clone)]
 struct Lanes {
+    plan: Arc<Plan>,
     follower: PathFollower,
-    /// What the stretches are for, with the stations at which they end, metres.
-    legs: Vec<(LegTag, f64)>,
+    /// Stations at which its stretches end, metres.
+    ends_m: Vec<f64>,
 }
 
 impl Cover {
@@ -56,10 +59,13 @@ impl Cover {
     pub(crate) fn take_plan(&mut self, plan: &Plan) {
         self.before_m += self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let stations_m = polyline::stations_m(&plan.path);
-        let legs = plan.legs.iter().map(|leg| (leg.tag, stations_m[leg.last])).collect();
+        let ends_m = plan.legs.iter().map(|leg| stations_m[leg.last]).collect();
         self.at_corner = (f64::INFINITY, 0.0);
-        self.lanes =
-            (!plan.path.is_empty()).then(|| Lanes { follower: PathFollower::exact(&plan.path), legs });
+        self.lanes = (!plan.path.is_empty()).then(|| Lanes {
+            plan: Arc::new(plan.clone()),
+            follower: PathFollower::exact(&plan.path),
+            ends_m,
+        });
     }
 
     /// Takes the robot's position.
@@ -107,6 +113,13 @@ impl Cover {
         self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
     }
 
+    /// What is left of the plan from the target on, without its cost.
+    pub(crate) fn under_way(&self) -> Option<Plan> {
+        let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
+        let rest = rest_of(plan, follower.target_m(), &[follower.target()]);
+        Some(Plan { cost: 0.0, ..rest })
+    }
+
     /// Progress along the plan.
     pub(crate) fn lanes(&self) -> Option<&PathFollower> {
         self.lanes.as_ref().map(|lanes| &lanes.follower)
@@ -115,7 +128,7 @@ impl Cover {
     /// What the stretch under the robot is for.
     pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;
-        lanes.legs.get(self.leg_index()?).map(|(tag, _)| *tag)
+        lanes.plan.legs.get(self.leg_index()?).map(|leg| leg.tag)
     }
 
     /// Number of the stretch under the robot; the last one at the end.
@@ -123,8 +136,8 @@ impl Cover {
         let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
         // The ends of the stretches come one after the other along the plan.
-        let here = lanes.legs.partition_point(|(_, end_m)| *end_m <= along_m);
-        Some(here.min(lanes.legs.len().checked_sub(1)?))
+        let here = lanes.ends_m.partition_point(|end_m| *end_m <= along_m);
+        Some(here.min(lanes.ends_m.len().checked_sub(1)?))
     }
 
     /// Whether the rest of the plan comes nearer than `room_m` to an outline.

@@ -85,8 +85,8 @@ impl Instance {
         let site = request.site;
         let (obstacles, zones) = (lend::obstacles(site.obstacles), lend::zones(site.zones));
         let site = lend::site(site, &obstacles, &zones);
-        let regions = lend::regions(&request.task);
-        let input = lend::plan(request, &site, &regions);
+        let parts = lend::PlanParts::of(request);
+        let input = lend::plan(request, &site, &parts);
         let mut out = PlanOut::UNSET;
         // SAFETY: as above.
         let code = sink.during(|host| unsafe { plan(self.planner, host, &raw const input, &raw mut out) });

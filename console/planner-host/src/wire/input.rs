@@ -70,7 +70,11 @@ impl Writer {
                 })
             }
         };
-        self.site(request.site).points(request.previous)
+        self.site(request.site).points(request.previous).flag(request.under_way.is_some());
+        if let Some(plan) = request.under_way {
+            self.plan(plan);
+        }
+        self
     }
 
     fn tether(&mut self, limits: Option<&TetherLimits>) -> &mut Self {
@@ -197,7 +201,9 @@ impl Body<'_> {
             },
             _ => return Err(Malformed),
         };
-        Ok(PlanAsk { reason, start, task, site: Arc::new(self.site()?), previous: self.points()? })
+        let (site, previous) = (Arc::new(self.site()?), self.points()?);
+        let under_way = if self.flag()? { Some(self.plan()?) } else { None };
+        Ok(PlanAsk { reason, start, task, site, previous, under_way })
     }
 
     pub(crate) fn sensed(&mut self) -> Read<StepAsk> {

@@ -89,7 +89,7 @@ pub(crate) fn opening(planner: &str, parameters: &Parameters, restore: Option<As
 pub(crate) fn plan() -> What {
     let task = TaskLeft::Goto { goal: GOAL, tolerance_m: 0.1 };
     let (reason, start) = (Reason::Start, pose(Point2::origin()));
-    What::Plan(Box::new(PlanAsk { reason, start, task, site: site(), previous: Vec::new() }))
+    What::Plan(Box::new(PlanAsk { reason, start, task, site: site(), previous: Vec::new(), under_way: None }))
 }
 
 pub(crate) fn step(tick: u64) -> What {

@@ -152,6 +152,7 @@ impl Opened {
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {
                 draw_found(stream, at, obstacle)?;
             }
+            EventKind::ZoneDrawn { zone } => scene::draw_zone(stream, at, zone)?,
             EventKind::PlannerChosen { choice, info, .. } => {
                 self.document.planner_chosen(choice, info);
                 stream.property("planners", &self.document.planner_properties())?;

@@ -3,13 +3,13 @@
 use super::{
     lane::{Flat, flat},
     paths,
-    stream::Stream,
+    stream::{At, Stream},
     style,
 };
 use crate::{error::RecordingError, rr};
 use mission::{TaskConfig, event::RunOpened};
 use std::f64::consts::TAU;
-use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, ZoneKind};
+use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, Zone, ZoneKind};
 
 type Done = Result<(), RecordingError>;
 
@@ -70,18 +70,27 @@ fn draw_zones(stream: &Stream, run: &RunOpened) -> Done {
     if zones.is_empty() {
         return Ok(());
     }
+    stream.always(paths::ZONES, &drawn_zones(zones))
+}
+
+/// A zone that was drawn under way.
+pub(super) fn draw_zone(stream: &Stream, at: At, zone: &Zone) -> Done {
+    let path = format!("{}/{}", paths::ZONES, zone.name.replace(' ', "-"));
+    stream.once(&path, at, &drawn_zones(std::slice::from_ref(zone)))
+}
+
+fn drawn_zones(zones: &[Zone]) -> rr::LineStrips2D {
     let color = |kind| match kind {
         ZoneKind::NoGo => [235, 100, 90, 140],
         ZoneKind::Land => [200, 180, 120, 110],
         ZoneKind::Underwater => [80, 150, 200, 110],
     };
-    let drawn = lines(zones.iter().map(|zone| outline(&zone.shape)), style::WALL, 1.0)
+    lines(zones.iter().map(|zone| outline(&zone.shape)), style::WALL, 1.0)
         .with_radii(zones.iter().map(|zone| thickness(&zone.shape, 1.0)))
         .with_colors(zones.iter().map(|zone| style::color(color(zone.kind))))
         .with_labels(zones.iter().map(|zone| zone.name.as_str()))
         .with_show_labels(zones.len() <= MOST_LABELS)
-        .with_draw_order(-5.0);
-    stream.always(paths::ZONES, &drawn)
+        .with_draw_order(-5.0)
 }
 
 /// The seams of the plates, and their names where most of each plate is.

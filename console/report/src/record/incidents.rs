@@ -102,6 +102,7 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
             ("shadow", None, None)
         }
         EventKind::ObstacleFound { .. } => ("obstacle", None, None),
+        EventKind::ZoneDrawn { .. } => ("zone", None, None),
         EventKind::Planned { .. } | EventKind::Certified { .. } => ("plan", None, None),
         EventKind::StationRejected { station, .. } => {
             ("station", key(&format!("station {}", station.0)), None)

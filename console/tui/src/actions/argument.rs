@@ -35,6 +35,8 @@ pub enum Kind {
     Station,
     /// What is wrong with a station.
     Fault,
+    /// A corner of a box: x and y, metres.
+    Corner,
     /// Any text.
     Text,
 }

@@ -49,6 +49,9 @@ impl Run {
             | EventKind::RangesInconsistent { .. }
             | EventKind::RangesConsistent => self.locate(event, &mut change),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
+            EventKind::ZoneDrawn { zone } => {
+                self.about.iter_mut().for_each(|about| about.world.zones.push(zone.clone()));
+            }
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
             EventKind::PlannerPrepared { .. }
             | EventKind::PlannerChosen { .. }

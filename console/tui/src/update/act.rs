@@ -109,6 +109,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         | ActionId::Theme
         | ActionId::Inject
         | ActionId::Exclude
+        | ActionId::DrawZone
         | ActionId::Include
         | ActionId::PresetSave
         | ActionId::PresetLoad

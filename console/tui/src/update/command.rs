@@ -18,6 +18,7 @@ use super::replay;
 use super::send::send;
 use super::stations;
 use super::typing;
+use super::zones;
 use crate::actions::{Action, ActionId, Arg, find};
 use crate::model::{
     Model,
@@ -154,6 +155,10 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Severity(least) => events::set_least(model, least),
         Value::Theme(theme) => model.ui.theme = theme,
         Value::Duration(for_s) => return shelve(model, for_s, values),
+        Value::Corner(corner) => {
+            let order = zones::order(model, corner, values);
+            return order.map_or_else(Vec::new, |order| give(model, order));
+        }
         Value::Station(station) => {
             let order = stations::order(model, action.id, station, values);
             return order.map_or_else(Vec::new, |order| give(model, order));

@@ -42,14 +42,15 @@ fn opens(id: ActionId) -> bool {
 /// Whether an action does something to a mission or its files.
 fn acts(id: ActionId) -> bool {
     use ActionId::{
-        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, DropShadow, Exclude,
-        Faster, FlyUncertified, Hold, Include, Inject, PlanAgain, Preflight, Promote, Reload, Resume,
-        SetParameter, SetSpeed, Shadow, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
+        Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, DrawZone, DropShadow,
+        Exclude, Faster, FlyUncertified, Hold, Include, Inject, PlanAgain, Preflight, Promote, Reload,
+        Resume, SetParameter, SetSpeed, Shadow, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
     };
     let moves = matches!(id, Hold | Start | Resume | FlyUncertified | Step | StepLane | StepEvent | Abort);
     let plans = matches!(id, ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload);
     let shadows = matches!(id, Shadow | Promote | DropShadow);
-    let sets = matches!(id, SetParameter | SetSpeed | Slower | Faster | Inject | Exclude | Include);
+    let sets =
+        matches!(id, SetParameter | SetSpeed | Slower | Faster | Inject | Exclude | Include | DrawZone);
     let alarms = matches!(id, Acknowledge | AcknowledgeAll | Shelve);
     moves || plans || shadows || sets || alarms || id == Again
 }

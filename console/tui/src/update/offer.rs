@@ -3,7 +3,7 @@
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::{preset, replay, shadow, stations, typing};
+use super::{preset, replay, shadow, stations, typing, zones};
 use crate::actions::ActionId;
 use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
@@ -25,9 +25,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Step | ActionId::StepLane | ActionId::StepEvent => accepted(model, &Order::Step),
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
-        ActionId::Shadow => shadow::can_begin(model),
-        ActionId::Promote => accepted(model, &Order::Promote),
-        ActionId::DropShadow => accepted(model, &Order::DropShadow),
+        ActionId::Shadow | ActionId::Promote | ActionId::DropShadow => of_shadow(model, id),
         ActionId::Accept => accept(model),
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight | ActionId::Compare | ActionId::PlanAgain | ActionId::CancelPlan => {
@@ -36,6 +34,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Parameters | ActionId::SetParameter | ActionId::PresetSave => parameters(model),
         ActionId::PresetLoad => preset::can_load(model),
         ActionId::SetSpeed => simulating(model),
+        ActionId::DrawZone => zones::can(model),
         ActionId::Inject | ActionId::Exclude | ActionId::Include => stations::can(model, id),
         ActionId::Open => nothing_under_way(model),
         ActionId::Acknowledge
@@ -339,5 +338,13 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
         | Refusal::ShadowNotReady { .. } => None,
+    }
+}
+
+fn of_shadow(model: &Model, id: ActionId) -> Result<(), String> {
+    match id {
+        ActionId::Promote => accepted(model, &Order::Promote),
+        ActionId::DropShadow => accepted(model, &Order::DropShadow),
+        _ => shadow::can_begin(model),
     }
 }

@@ -9,7 +9,7 @@ use tui::model::ui::{Ask, MapLayer};
 use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
 use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
-use world::StationId;
+use world::{Point, Shape, StationId, Zone, ZoneKind};
 
 /// A screen with scenarios and runs.
 fn with_home(mut screen: Screen) -> Screen {
@@ -183,6 +183,8 @@ fn a_wrong_value_is_underlined_with_what_would_be_right() {
         ),
         ("inject S9 dead 20s", "S9", "no station `S9`; did you mean S1?"),
         ("inject S3 dead", "", "usage: inject STATION FAULT TIME"),
+        ("no-go 1,2", "", "usage: no-go CORNER OPPOSITE"),
+        ("no-go 1,2 3", "3", "no corner `3`; write x and y in metres, such as -1.5,2"),
         (
             "inject S3 noise 20s",
             "noise",
@@ -242,6 +244,21 @@ fn tab_completes_names_and_values() {
         let Overlay::Commands(palette) = &screen.model.ui.overlay else { panic!("the line is open") };
         assert_eq!(palette.line.text(), completed, "{typed}");
     }
+}
+
+#[test]
+fn a_no_go_zone_is_a_box_with_a_name_of_its_own() {
+    let mut screen = Screen::running();
+    let drawn = |effects: Vec<Effect>| match effects.as_slice() {
+        [Effect::Order(Order::DrawZone(zone))] => (zone.name.clone(), zone.shape.bounds()),
+        other => panic!("{other:?}"),
+    };
+    let bounds = (Point::new(-1.5, 0.5), Point::new(2.0, 3.0));
+    assert_eq!(drawn(run(&mut screen, "no-go 2,0.5 -1.5,3")), ("no-go 1".into(), bounds));
+    let shape = Shape::Disc { center: Point::new(4.0, 4.0), radius_m: 0.5 };
+    let zone = Zone { name: "no-go 1".into(), kind: ZoneKind::NoGo, shape };
+    screen.model.live.run.about.as_mut().expect("a run").world.zones.push(zone);
+    assert_eq!(drawn(run(&mut screen, "no-go 2,0.5 -1.5,3")).0, "no-go 2");
 }
 
 #[test]

@@ -60,6 +60,7 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Alarm => "name of an alarm, as the list of alarms shows it",
         Kind::Station => "name of an AE station",
         Kind::Fault => "`dead`: not heard; `offset=METRES`: ranges too long by more than 0 to 1000 m",
+        Kind::Corner => "x and y in metres: `-1.5,2`",
         Kind::Text => "any text",
     }
 }

@@ -78,9 +78,7 @@ impl FloorMaker {
         let clearance_m = clearances_m(grid, &map, room_m);
         let mut forbidden = vec![false; grid.len()];
         for zone in world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
-            for index in around(grid, &zone.shape, room_m) {
-                forbidden[index] |= zone.shape.distance_m(grid.center(index)) < room_m;
-            }
+            forbid(grid, &zone.shape, room_m, &mut forbidden);
         }
         let mut maker = Self { floor: grid.clone(), clearance_m, forbidden, room_m, swath_m, start };
         maker.classify(world);
@@ -100,6 +98,23 @@ impl FloorMaker {
         self.floor
     }
 
+    /// Updates the floor after a no-go zone with this outline was drawn; returns the cells that changed.
+    ///
+    /// Costs a flood fill.
+    ///
+    /// ```
+    /// use world::{Boundary, FloorMaker, Point, Shape, World};
+    /// # let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let mut maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// let outline = Shape::Disc { center: Point::new(2.0, 0.0), radius_m: 0.3 };
+    /// assert!(!maker.forbid(&tank, &outline).is_empty());
+    /// ```
+    pub fn forbid(&mut self, world: &World, outline: &Shape) -> Vec<KindRun> {
+        forbid(&self.floor, outline, self.room_m, &mut self.forbidden);
+        self.classified(world)
+    }
+
     /// Updates the floor after obstacles with these outlines appeared or moved slightly; returns the cells that changed.
     /// `world` and `map` are the tank as it is now.
     ///
@@ -116,7 +131,6 @@ impl FloorMaker {
     /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
     /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
-        let before = Arc::clone(&self.floor.cells);
         // Wide enough for the former outline of a moved obstacle too: it moved only slightly.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
@@ -124,6 +138,12 @@ impl FloorMaker {
                 self.clearance_m[index] = map.clearance_m(self.floor.center(index)) as f32;
             }
         }
+        self.classified(world)
+    }
+
+    /// Classifies the floor anew; the cells that changed.
+    fn classified(&mut self, world: &World) -> Vec<KindRun> {
+        let before = Arc::clone(&self.floor.cells);
         self.classify(world);
         let changed = |(index, cell): &(usize, Cell)| before[*index] != *cell;
         kind_runs(self.floor.cells.iter().copied().enumerate().filter(changed))
@@ -224,6 +244,13 @@ fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
         }
     }
     clearances_m
+}
+
+/// Marks the cells from which the middle of the robot would be in a zone, or too near to it.
+fn forbid(grid: &Floor, outline: &Shape, room_m: f64, forbidden: &mut [bool]) {
+    for index in around(grid, outline, room_m) {
+        forbidden[index] |= outline.distance_m(grid.center(index)) < room_m;
+    }
 }
 
 /// The cells of the box around an outline, with some margin.

@@ -54,8 +54,14 @@ fn plan(values: &[(&str, f64)], task: Task<'_>) -> (Result<Plan>, Bench) {
     let (bench, obstacles) = (Bench::new(), cup());
     let site = site(&obstacles, Motion::Point);
     let mut planner: BvoApf = bench.configure(values, &site).unwrap();
-    let request =
-        PlanRequest { reason: &Reason::Start, start: exact_pose(START), task, site: &site, previous: &[] };
+    let request = PlanRequest {
+        reason: &Reason::Start,
+        start: exact_pose(START),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: None,
+    };
     let plan = planner.plan(&request, &bench.ctx());
     (plan, bench)
 }
@@ -102,6 +108,7 @@ fn it_stops_planning_when_the_console_says_so() {
         task: task(),
         site: &site,
         previous: &[],
+        under_way: None,
     };
     assert_eq!(planner.plan(&request, &bench.ctx()).unwrap_err().code, Code::Timeout);
 }

@@ -1,10 +1,7 @@
-//! The plan under way, and how far the robot has come.
+//! The plan under way.
 
-use crate::scan::Piece;
+use planner_api::{LegTag, Plan};
 use world::{Point, polyline};
-
-/// What lies nearer to the path is on it, metres.
-const ON_PATH_M: f64 = 1e-6;
 
 /// A straight bit of a path.
 #[derive(Clone, Copy)]
@@ -24,75 +21,55 @@ impl Side {
     }
 }
 
-/// A plan under way.
+/// A plan under way, from the place on that the robot is led to.
 pub(crate) struct CurrentPlan {
     pub cuts: Vec<Vec<Point>>,
     /// Whether its tether was as short and straight as is preferred.
     pub is_preferred: bool,
     sides: Vec<Side>,
-    /// The side that the mission aims at, and how far along it, metres.
-    at: (usize, f64),
 }
 
 impl CurrentPlan {
-    /// A plan of some pieces at its start.
-    pub(crate) fn new(pieces: &[Piece], cuts: &[Vec<Point>], is_preferred: bool) -> Self {
-        let side = |w: &[Point], is_lane| Side { from: w[0], to: w[1], is_lane };
-        let sides = pieces.iter().flat_map(|piece| piece.points.windows(2).map(|w| side(w, piece.is_lane)));
-        Self { cuts: cuts.to_vec(), is_preferred, sides: sides.collect(), at: (0, 0.0) }
+    /// What is left of a plan, without a way back along the tether.
+    pub(crate) fn new(plan: &Plan, is_preferred: bool) -> Self {
+        let tag = |k: usize| plan.legs.iter().find(|leg| leg.first <= k && k < leg.last).map(|leg| leg.tag);
+        let tagged = plan.path.windows(2).enumerate().map(|(k, w)| (w, tag(k)));
+        let ahead = tagged.filter(|(_, tag)| *tag != Some(LegTag::Retract));
+        let side =
+            |(w, tag): (&[Point], _)| Side { from: w[0], to: w[1], is_lane: tag == Some(LegTag::Swath) };
+        Self { cuts: plan.cuts.clone(), is_preferred, sides: ahead.map(side).collect() }
     }
 
-    /// Takes the place of the path that the mission aims at; places off the path mean nothing.
-    pub(crate) fn aim(&mut self, target: Point) {
-        let along = |(k, side): (usize, &Side)| {
-            let nearest = polyline::nearest_on_segment(side.from, side.to, target);
-            let along_m = (nearest - side.from).norm();
-            let is_on = (nearest - target).norm() < ON_PATH_M && (k > self.at.0 || along_m >= self.at.1);
-            is_on.then_some((k, along_m))
-        };
-        if let Some(at) = self.sides.iter().enumerate().skip(self.at.0).find_map(along) {
-            self.at = at;
-        }
+    /// The path.
+    pub(super) fn sides(&self) -> &[Side] {
+        &self.sides
     }
 
-    /// The path from the place that the mission aims at.
-    pub(super) fn rest(&self) -> Vec<Side> {
-        let (first, along_m) = self.at;
-        let mut rest = self.sides[first..].to_vec();
-        if let Some(side) = rest.first_mut() {
-            let way = side.to - side.from;
-            side.from += way * (along_m / way.norm().max(1e-9)).min(1.0);
-        }
-        rest
+    /// The points of the path.
+    pub(crate) fn path(&self) -> Vec<Point> {
+        super::points(&self.sides)
     }
 
-    /// The path from there on.
-    pub(crate) fn path_left(&self) -> Vec<Point> {
-        super::points(&self.rest())
-    }
-
-    /// Length of the path from there on, metres.
-    pub(crate) fn left_m(&self) -> f64 {
-        polyline::length_m(&self.path_left())
+    /// Length of the path, metres.
+    pub(crate) fn length_m(&self) -> f64 {
+        polyline::length_m(&self.path())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use planner_api::Leg;
 
     #[test]
-    fn the_aim_goes_on_where_the_path_comes_by_again() {
-        let points = [(0.0, 0.0), (4.0, 0.0), (0.0, 0.0), (0.0, 2.0)].map(|(x, y)| Point::new(x, y)).to_vec();
-        let mut current = CurrentPlan::new(&[Piece { points, is_lane: true }], &[], true);
-        let mut left_m = |x: f64, y: f64| {
-            current.aim(Point::new(x, y));
-            current.left_m()
-        };
-        assert!((left_m(1.0, 0.0) - 9.0).abs() < 1e-9);
-        assert!((left_m(1.0, 0.5) - 9.0).abs() < 1e-9, "off the path");
-        assert!((left_m(4.0, 0.0) - 6.0).abs() < 1e-9);
-        assert!((left_m(1.0, 0.0) - 3.0).abs() < 1e-9, "on the way back");
-        assert!(left_m(0.0, 2.0).abs() < 1e-9);
+    fn lanes_are_told_from_ways_and_a_way_back_is_left_out() {
+        let path = (0..5).map(|k| Point::new(f64::from(k), 0.0)).collect();
+        let leg = |tag, first, last| Leg { tag, first, last };
+        let legs = vec![leg(LegTag::Retract, 0, 1), leg(LegTag::Swath, 2, 3), leg(LegTag::Connector, 3, 4)];
+        let current = CurrentPlan::new(&Plan { path, legs, ..Plan::default() }, true);
+        let is_lane: Vec<bool> = current.sides().iter().map(|side| side.is_lane).collect();
+        assert_eq!(is_lane, [false, true, false]);
+        assert_eq!(current.path()[0], Point::new(1.0, 0.0));
+        assert!((current.length_m() - 3.0).abs() < 1e-9);
     }
 }

@@ -4,8 +4,9 @@ use crate::draft::Draft;
 use crate::jobs::{Job, run_all};
 use crate::scan::Scan;
 use crate::scope::Scope;
+use crate::slit_domain::SlitDomain;
 use crate::stages::{Stage, Stages};
-use crate::tether::Tethered;
+use crate::tether::{Tethered, comes_in};
 use crate::tether_safe::candidate::{Candidate, Worth};
 use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::choice::{ANGLES, CLOSE, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
@@ -22,6 +23,8 @@ pub(super) struct Pipeline<'a> {
     pub scope: Scope<'a>,
     /// The cable as it lies; none at the anchor.
     pub cable: Option<&'a Cable>,
+    /// Whether only cuts count that the cable does not lie across.
+    pub must_come_in: bool,
 }
 
 /// A candidate with its first tour.
@@ -79,7 +82,12 @@ impl<'a> Pipeline<'a> {
         let Self { workspace, preferences, scope, .. } = *self;
         let drafted = |candidate: Candidate, job: &Job| {
             job.stage(0.25);
-            let Some(domain) = candidate.domain(workspace, preferences) else { return Ok(None) };
+            let comes_in = |domain: &SlitDomain<'_>| {
+                !self.must_come_in || self.cable.is_none_or(|cable| comes_in(domain, cable))
+            };
+            let Some(domain) = candidate.domain(workspace, preferences).filter(comes_in) else {
+                return Ok(None);
+            };
             let draft = Draft::new(&candidate.pattern, domain, scope, preferences.effort, job)?;
             Ok(Some(self.estimated(candidate.name(), draft)))
         };

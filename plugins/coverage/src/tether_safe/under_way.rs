@@ -4,8 +4,9 @@
 mod tests;
 
 use crate::jobs::run_all;
-use crate::repair::{CurrentPlan, Repair, Repaired};
+use crate::repair::{CurrentPlan, Laid, Repair, Repaired};
 use crate::stages::Stages;
+use crate::tether::Tethered;
 use crate::tether_safe::candidate::Worth;
 use crate::tether_safe::parameters::Preferences;
 use crate::tether_safe::pipeline::Pipeline;
@@ -36,17 +37,14 @@ impl<'a> Outcome<'a> {
     }
 }
 
-/// Repairs the plan under way, if there is one and the reason for planning again is that the map has changed.
+/// Repairs the plan under way, if one is to be kept to.
 pub(super) fn repaired<'a>(
     pipeline: &Pipeline<'a>,
     current: Option<&CurrentPlan>,
     reason: &Reason,
     stages: &mut Stages<'_>,
 ) -> Result<Outcome<'a>> {
-    let is_change = matches!(reason, Reason::MapChanged | Reason::Blocked);
-    let (Some(current), Some(cable), true) = (current, pipeline.cable, is_change) else {
-        return Ok(Outcome::Lost);
-    };
+    let (Some(current), Some(cable)) = (current, pipeline.cable) else { return Ok(Outcome::Lost) };
     let Pipeline { workspace, preferences, scope, site, .. } = *pipeline;
     let repair = Repair { workspace, scope, effort: preferences.effort, current, tether: cable.taut_line() };
     let limits = RepairLimits {
@@ -55,34 +53,45 @@ pub(super) fn repaired<'a>(
         is_blocked: *reason == Reason::Blocked,
     };
     stages.end = stages.toward(1.0, 0.3);
-    let tried = run_all(repair.domains(), &stages.next(1.0, "repair"), |domain, job| {
-        let Some(repaired) = repair.scan(domain, job)? else { return Ok(None) };
-        let worth = Worth::of(site, preferences, &repaired.scan, Some(cable));
-        Ok(Some(match limits.exceeded(&worth, &repaired) {
-            None => Ok((worth, repaired)),
-            Some(why) => Err(format!("{}; {why}", worth.summary("repair"))),
-        }))
-    })?;
+    let laid =
+        run_all(repair.domains(), &stages.next(0.4, "repair"), |domain, job| repair.laid(domain, job))?;
+    let laid = likeliest_first(laid.into_iter().flatten(), &limits, pipeline);
+    let ctx = stages.ctx;
+    let log = |message: &str| ctx.log(LogLevel::Info, message);
     let mut why = "the cuts leave no way".to_owned();
-    let good = tried.into_iter().flatten().filter_map(|repair| repair.map_err(|refused| why = refused).ok());
-    let best = good.reduce(|best, other| if other.0.is_before(&best.0, preferences) { other } else { best });
-    let log = |message: &str| stages.ctx.log(LogLevel::Info, message);
-    let longest_m = current.left_m() * (1.0 + LONGER) + LONGER_M;
-    Ok(match best {
-        None => {
-            log(&format!("a new plan instead of a repair: {why}"));
-            Outcome::Lost
+    for laid in laid {
+        let polished = run_all(vec![laid], &stages.next(0.7, "repair"), |laid, job| {
+            let repaired = repair.polished(laid, job)?;
+            Ok((Worth::of(site, preferences, &repaired.scan, Some(cable)), repaired))
+        })?;
+        for (worth, repaired) in polished {
+            match limits.exceeded(&worth, &repaired) {
+                None => return Ok(limits.outcome((worth, repaired), &log)),
+                Some(refused) => why = format!("{}; {refused}", worth.summary("repair")),
+            }
         }
-        Some(best) if best.0.length_m > longest_m => {
-            let what = best.0.summary("repair");
-            log(&format!("a new plan may be shorter than a repair: {what}; limit {longest_m:.0} m"));
-            Outcome::Long(best)
-        }
-        Some(best) => {
-            log(&best.0.summary("plan under way, repaired"));
-            Outcome::Repaired(best)
-        }
-    })
+    }
+    log(&format!("a new plan instead of a repair: {why}"));
+    Ok(Outcome::Lost)
+}
+
+/// Repairs in the order in which they are polished, until one will do: those whose tether will be as short and straight as it must,
+/// and of these the shortest first.
+fn likeliest_first<'a>(
+    laid: impl Iterator<Item = Laid<'a>>,
+    limits: &RepairLimits<'_>,
+    pipeline: &Pipeline<'a>,
+) -> Vec<Laid<'a>> {
+    let Pipeline { site, preferences, cable, .. } = *pipeline;
+    let rank = |laid: &Laid<'_>| {
+        let path = laid.path();
+        let tethered = Tethered { domain: &laid.domain, path: &path, cable };
+        let strain = tethered.strain(site, preferences.demanded);
+        (!strain.is_some_and(|strain| limits.tether.allow(&strain)), laid.estimate_m())
+    };
+    let mut ranked: Vec<_> = laid.map(|laid| (rank(&laid), laid)).collect();
+    ranked.sort_by(|((a, a_m), _), ((b, b_m), _)| a.cmp(b).then(a_m.total_cmp(b_m)));
+    ranked.into_iter().map(|(_, laid)| laid).collect()
 }
 
 /// What a repaired plan must keep to; a new plan takes its place where it does not.
@@ -95,6 +104,18 @@ struct RepairLimits<'a> {
 }
 
 impl RepairLimits<'_> {
+    /// What becomes of a plan under way with a repair that keeps to the limits.
+    fn outcome<'a>(&self, repair: RepairedPlan<'a>, log: &dyn Fn(&str)) -> Outcome<'a> {
+        let longest_m = self.current.length_m() * (1.0 + LONGER) + LONGER_M;
+        if repair.0.length_m > longest_m {
+            let what = repair.0.summary("repair");
+            log(&format!("a new plan may be shorter than a repair: {what}; limit {longest_m:.0} m"));
+            return Outcome::Long(repair);
+        }
+        log(&repair.0.summary("plan under way, repaired"));
+        Outcome::Repaired(repair)
+    }
+
     /// The limit that a repaired plan exceeds.
     fn exceeded(&self, worth: &Worth, repaired: &Repaired<'_>) -> Option<String> {
         let Self { current, tether, is_blocked } = self;
@@ -122,5 +143,5 @@ fn goes_on(current: &CurrentPlan, path: &[Point]) -> bool {
         fine[..n].to_vec()
     };
     let begin = first(path, AHEAD_M + AS_BEFORE_M);
-    first(&current.path_left(), AHEAD_M).iter().all(|p| polyline::distance_m(&begin, *p) < AS_BEFORE_M)
+    first(&current.path(), AHEAD_M).iter().all(|p| polyline::distance_m(&begin, *p) < AS_BEFORE_M)
 }

@@ -1,7 +1,7 @@
 //! What the console hands to a planner.
 #![allow(missing_docs, reason = "the header explains the fields")]
 
-use super::{Pose, Sized32, Str, Vec2};
+use super::{Leg, Pose, Sized32, Str, Vec2};
 
 /// An outline is a disc: `points[0]` is its centre, `size_m` its radius.
 pub const OUTLINE_DISC: u32 = 0;
@@ -102,6 +102,14 @@ pub struct PlanIn {
     pub reel: f64,
     pub max_wrap: f64,
     pub max_sum_wrap: f64,
+    // Since 1.3.
+    pub way: *const Vec2,
+    pub way_legs: *const Leg,
+    pub n_way: u32,
+    pub n_way_legs: u32,
+    pub way_cuts: *const Outline,
+    pub n_way_cuts: u32,
+    pub way_complete: u32,
 }
 
 /// What is known in one tick.

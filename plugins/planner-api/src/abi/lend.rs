@@ -2,7 +2,7 @@
 //!
 //! Every struct made here points into the values it was made from and is good for as long as they stay in place.
 
-use super::{Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
+use super::{Leg, Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
 use crate::{PoseEstimate, Reason, Task, TetherLimits, site};
 use nalgebra::{Matrix3, Point2};
 
@@ -87,13 +87,34 @@ pub fn covariance(from: &Matrix3<f64>) -> [f64; 6] {
 }
 
 /// The regions of a task for the table; none unless it is to cover.
-pub fn regions(task: &Task<'_>) -> Vec<Outline> {
+fn regions(task: &Task<'_>) -> Vec<Outline> {
     let Task::Cover { regions, .. } = task else { return Vec::new() };
     regions.iter().map(|vertices| outline(&site::Outline::Polygon { vertices })).collect()
 }
 
-/// A request for the table; `site` and `regions` are those of `from`, already lent.
-pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> PlanIn {
+/// What a request borrows besides its site, as the structs of the table.
+pub struct PlanParts {
+    regions: Vec<Outline>,
+    way_legs: Vec<Leg>,
+    way_cuts: Vec<Outline>,
+}
+
+impl PlanParts {
+    /// The parts of a request.
+    pub fn of(from: &crate::PlanRequest<'_>) -> Self {
+        let legs = from.under_way.map_or(&[][..], |way| &way.legs);
+        let cuts = from.under_way.map_or(&[][..], |way| &way.cuts);
+        let cut = |points: &Vec<Point2<f64>>| outline(&site::Outline::Polyline { points, half_width_m: 0.0 });
+        Self {
+            regions: regions(&from.task),
+            way_legs: legs.iter().map(Leg::from).collect(),
+            way_cuts: cuts.iter().map(cut).collect(),
+        }
+    }
+}
+
+/// A request for the table; `site` and `parts` are those of `from`, already lent.
+pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> PlanIn {
     let (reason, swap_from) = match from.reason {
         Reason::Start => (input::REASON_START, ""),
         Reason::Blocked => (input::REASON_BLOCKED, ""),
@@ -122,6 +143,8 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> 
     };
     let TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = tether.unwrap_or(free);
     let (previous, n_previous) = points(from.previous);
+    let (way, n_way) = points(from.under_way.map_or(&[], |way| &way.path));
+    let PlanParts { regions, way_legs, way_cuts } = parts;
     PlanIn {
         size: size_of::<PlanIn>() as u32,
         reason,
@@ -142,6 +165,13 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, regions: &[Outline]) -> 
         reel: reel_length_m,
         max_wrap: wrap_max_rad,
         max_sum_wrap: wrap_total_max_rad,
+        way,
+        way_legs: way_legs.as_ptr(),
+        n_way,
+        n_way_legs: way_legs.len() as u32,
+        way_cuts: way_cuts.as_ptr(),
+        n_way_cuts: way_cuts.len() as u32,
+        way_complete: u32::from(from.under_way.is_some_and(|way| way.complete)),
     }
 }
 

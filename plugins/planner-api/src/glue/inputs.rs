@@ -3,8 +3,8 @@
 use super::invalid;
 use crate::abi::{self, input};
 use crate::{
-    Boundary, Limits, Motion, Obstacle, Outline, PlanRequest, PoseEstimate, Reason, Result, Sensed, Site,
-    Task, TetherLimits, Value, Zone, ZoneKind,
+    Boundary, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Result, Sensed,
+    Site, Task, TetherLimits, Value, Zone, ZoneKind,
 };
 use nalgebra::{Matrix3, Point2};
 
@@ -244,6 +244,34 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
     }
 }
 
+/// The plan to be kept to, if there is one.
+///
+/// # Safety
+/// Path, legs and cuts of `raw` point at what it says.
+pub(super) unsafe fn under_way_of(raw: &abi::PlanIn) -> Result<Option<Plan>> {
+    // SAFETY: promised by the caller, as everywhere below.
+    let path = unsafe { points(raw.way, raw.n_way) }.to_vec();
+    if path.is_empty() {
+        return Ok(None);
+    }
+    // SAFETY: as above.
+    let legs: &[abi::Leg] = unsafe { abi::slice(raw.way_legs, raw.n_way_legs as usize) };
+    let legs: Vec<_> = legs.iter().filter_map(|leg| leg.get().ok()).collect();
+    // SAFETY: as above.
+    let cuts: &[abi::Outline] = unsafe { abi::slice(raw.way_cuts, raw.n_way_cuts as usize) };
+    // SAFETY: as above.
+    let cut = |raw: &abi::Outline| unsafe { points(raw.points, raw.n_points) }.to_vec();
+    let plan = Plan {
+        path,
+        legs,
+        cuts: cuts.iter().map(cut).collect(),
+        complete: raw.way_complete != 0,
+        ..Plan::default()
+    };
+    plan.check().map_err(|what| invalid(&format!("the console {what}")))?;
+    Ok(Some(plan))
+}
+
 /// A request from its parts.
 ///
 /// # Safety
@@ -253,6 +281,7 @@ pub(super) unsafe fn plan_request<'a>(
     reason: &'a Reason,
     task: Task<'a>,
     site: &'a Site<'a>,
+    under_way: Option<&'a Plan>,
 ) -> PlanRequest<'a> {
     PlanRequest {
         reason,
@@ -261,6 +290,7 @@ pub(super) unsafe fn plan_request<'a>(
         site,
         // SAFETY: promised by the caller.
         previous: unsafe { points(raw.previous, raw.n_previous) },
+        under_way,
     }
 }
 

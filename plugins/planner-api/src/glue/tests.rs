@@ -1,7 +1,8 @@
 #![allow(clippy::unwrap_used, clippy::borrow_as_ptr, clippy::float_cmp, reason = "tests")]
 
 use super::*;
-use crate::abi::{Draw, Entry, Host, Param, PlanOut, StepOut, Vec2, lend};
+use crate::abi::lend::{self, PlanParts};
+use crate::abi::{Draw, Entry, Host, Param, PlanOut, StepOut, Vec2};
 use crate::{Boundary, Limits, Obstacle, Zone, ZoneKind, choice, float};
 use crate::{
     Caps, Command, Layer, Leg, LegTag, Motion, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed,
@@ -287,10 +288,23 @@ fn a_request_for_a_plan_arrives_whole() {
     let raw = lend::site(&site, &lent, &lent_zones);
     let reason = Reason::Swap { from: "apf".to_owned() };
     let task = Task::Follow { targets: &CORNERS, tolerance_m: 0.2 };
-    let request = PlanRequest { reason: &reason, start: pose(), task, site: &site, previous: &CORNERS[..1] };
+    let request = PlanRequest {
+        reason: &reason,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &CORNERS[..1],
+        under_way: None,
+    };
     let mut out = PlanOut::UNSET;
-    let code =
-        unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw, &[]), &mut out) };
+    let code = unsafe {
+        plan::<Probe>(
+            planner,
+            &host(&mut sink),
+            &lend::plan(&request, &raw, &PlanParts::of(&request)),
+            &mut out,
+        )
+    };
     assert_eq!((code, out.complete, out.cost), (0, 1, 3.5));
     assert_eq!(sink.points, [Vec2 { x: 0.5, y: -0.5 }, Vec2 { x: 9.0, y: 9.0 }]);
     assert_eq!(sink.legs, [abi::Leg { tag: 0, first: 0, last: 1, reserved: 0 }]);
@@ -312,11 +326,48 @@ fn a_request_to_cover_arrives_with_its_regions_and_the_limits_of_the_tether() {
     ];
     for (tether, regions) in tethers.into_iter().zip([&[] as &[&[_]], &[&CORNERS, &CORNERS[1..]]]) {
         let task = Task::Cover { anchor: CORNERS[1], regions, tether, tolerance_m: 0.2 };
-        let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
-        let lent = lend::regions(&task);
-        let input = lend::plan(&request, &raw, &lent);
+        let request = PlanRequest {
+            reason: &Reason::Start,
+            start: pose(),
+            task,
+            site: &site,
+            previous: &[],
+            under_way: None,
+        };
+        let parts = PlanParts::of(&request);
+        let input = lend::plan(&request, &raw, &parts);
         let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
         assert_eq!((code, sink.logs.pop()), (0, Some(format!("{request:?}"))));
+    }
+    unsafe { destroy::<Probe>(planner) };
+}
+
+#[test]
+fn a_plan_to_keep_to_arrives_whole_and_not_from_an_older_console() {
+    let mut sink = Sink::default();
+    let planner = instance(&mut sink, 0.0);
+    let site = site(&[], &[]);
+    let raw = lend::site(&site, &[], &[]);
+    let task = Task::Cover { anchor: CORNERS[1], regions: &[], tether: None, tolerance_m: 0.2 };
+    let legs =
+        vec![Leg { tag: LegTag::Travel, first: 0, last: 1 }, Leg { tag: LegTag::Swath, first: 1, last: 2 }];
+    let cuts = vec![CORNERS.to_vec(), CORNERS[..2].to_vec()];
+    let way = Plan { path: CORNERS.to_vec(), legs, cuts, complete: true, cost: 0.0 };
+    let reason = Reason::MapChanged;
+    let request = PlanRequest {
+        reason: &reason,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: Some(&way),
+    };
+    let parts = PlanParts::of(&request);
+    let input = lend::plan(&request, &raw, &parts);
+    let older = abi::PlanIn { size: std::mem::offset_of!(abi::PlanIn, way) as u32, ..input };
+    for (input, seen) in [(input, request), (older, PlanRequest { under_way: None, ..request })] {
+        let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
+        assert_eq!((code, sink.logs.pop()), (0, Some(format!("{seen:?}"))));
     }
     unsafe { destroy::<Probe>(planner) };
 }
@@ -328,10 +379,18 @@ fn a_region_that_is_no_polygon_is_refused() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Cover { anchor: CORNERS[1], regions: &[&CORNERS], tether: None, tolerance_m: 0.2 };
-    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
-    let mut lent = lend::regions(&task);
-    lent[0].kind = abi::input::OUTLINE_POLYLINE;
-    let input = lend::plan(&request, &raw, &lent);
+    let request = PlanRequest {
+        reason: &Reason::Start,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: None,
+    };
+    let parts = PlanParts::of(&request);
+    let mut input = lend::plan(&request, &raw, &parts);
+    let line = abi::Outline { kind: abi::input::OUTLINE_POLYLINE, ..unsafe { *input.regions } };
+    input.regions = &raw const line;
     let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
     assert_eq!((code, sink.error.contains("no polygon")), (Code::Invalid as i32, true));
     unsafe { destroy::<Probe>(planner) };
@@ -344,12 +403,18 @@ fn a_console_of_version_1_0_gets_a_plan_without_legs_and_cuts() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
-    let older = Host { size: std::mem::offset_of!(Host, legs) as u32, ..host(&mut sink) };
-    let input = abi::PlanIn {
-        size: std::mem::offset_of!(abi::PlanIn, regions) as u32,
-        ..lend::plan(&request, &raw, &[])
+    let request = PlanRequest {
+        reason: &Reason::Start,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: None,
     };
+    let older = Host { size: std::mem::offset_of!(Host, legs) as u32, ..host(&mut sink) };
+    let parts = PlanParts::of(&request);
+    let size = std::mem::offset_of!(abi::PlanIn, regions) as u32;
+    let input = abi::PlanIn { size, ..lend::plan(&request, &raw, &parts) };
     let code = unsafe { plan::<Probe>(planner, &older, &input, &mut { PlanOut::UNSET }) };
     assert_eq!((code, sink.points.len(), sink.legs.len(), sink.cuts.len()), (0, 2, 0, 0));
     assert_eq!(sink.logs, [format!("{request:?}")]);
@@ -363,9 +428,17 @@ fn a_console_of_version_1_1_gets_the_same_plan_and_no_progress() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+    let request = PlanRequest {
+        reason: &Reason::Start,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: None,
+    };
     let older = Host { size: std::mem::offset_of!(Host, progress) as u32, ..host(&mut sink) };
-    let input = lend::plan(&request, &raw, &[]);
+    let parts = PlanParts::of(&request);
+    let input = lend::plan(&request, &raw, &parts);
     let code = unsafe { plan::<Probe>(planner, &older, &input, &mut { PlanOut::UNSET }) };
     assert_eq!((code, sink.points.len(), sink.legs.len(), sink.cuts.len()), (0, 2, 1, 2));
     assert_eq!(sink.progress, []);
@@ -378,11 +451,24 @@ fn a_plan_that_got_part_of_the_way_hands_that_part_over() {
     let planner = instance(&mut sink, 4.0);
     let site = site(&[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest { reason: &Reason::Start, start: pose(), task, site: &site, previous: &[] };
+    let request = PlanRequest {
+        reason: &Reason::Start,
+        start: pose(),
+        task,
+        site: &site,
+        previous: &[],
+        under_way: None,
+    };
     let raw = lend::site(&site, &[], &[]);
     let mut out = PlanOut::UNSET;
-    let code =
-        unsafe { plan::<Probe>(planner, &host(&mut sink), &lend::plan(&request, &raw, &[]), &mut out) };
+    let code = unsafe {
+        plan::<Probe>(
+            planner,
+            &host(&mut sink),
+            &lend::plan(&request, &raw, &PlanParts::of(&request)),
+            &mut out,
+        )
+    };
     assert_eq!((code, sink.error.as_str(), sink.points.len()), (Code::NoPath as i32, "walled in", 2));
     unsafe { destroy::<Probe>(planner) };
 }

@@ -7,9 +7,14 @@ use super::{
         slot::{AskedPlan, PendingKind, PlanState, Prepare},
     },
     Promotion, Shadow,
-    rest::rest_of,
 };
-use crate::{event::EventKind, order::Order, phase::Phase, standing::Standing, task::Task};
+use crate::{
+    event::EventKind,
+    order::Order,
+    phase::Phase,
+    standing::Standing,
+    task::{Task, rest_of},
+};
 use planner_api::{Plan, Reason};
 use world::{Point, polyline};
 

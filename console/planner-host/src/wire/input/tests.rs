@@ -2,7 +2,7 @@
 
 use super::*;
 use nalgebra::{Matrix3, Point2};
-use planner_api::PoseEstimate;
+use planner_api::{Plan, PoseEstimate};
 use proptest::prelude::*;
 
 fn written(write: impl FnOnce(&mut Writer)) -> Vec<u8> {
@@ -101,11 +101,15 @@ fn every_request_arrives_as_it_was_sent() {
     with_site(&[], |site| {
         for (reason, task) in reasons.iter().flat_map(|reason| tasks.iter().map(move |task| (reason, *task)))
         {
-            let request = PlanRequest { reason, start: pose(0.5), task, site, previous: &CORNERS };
-            let bytes = written(|w| {
-                w.request(&request);
-            });
-            Body(&bytes).request().unwrap().lend(|arrived| assert_eq!(*arrived, request));
+            let way = Plan { path: CORNERS.to_vec(), cuts: vec![CORNERS.to_vec()], ..Plan::default() };
+            for under_way in [None, Some(&way)] {
+                let request =
+                    PlanRequest { reason, start: pose(0.5), task, site, previous: &CORNERS, under_way };
+                let bytes = written(|w| {
+                    w.request(&request);
+                });
+                Body(&bytes).request().unwrap().lend(|arrived| assert_eq!(*arrived, request));
+            }
         }
     });
 }

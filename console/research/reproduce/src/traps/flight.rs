@@ -94,7 +94,14 @@ impl Journey<'_> {
         let revision = self.known.len() as u32;
         let site = Site { revision, ..Trap::site(&corners, &self.known, self.range_m) };
         let task = Task::Goto { goal: self.trap.goal, tolerance_m: TOLERANCE_M };
-        let request = PlanRequest { reason, start: self.pose(), task, site: &site, previous: &self.flown };
+        let request = PlanRequest {
+            reason,
+            start: self.pose(),
+            task,
+            site: &site,
+            previous: &self.flown,
+            under_way: None,
+        };
         let asked = Instant::now();
         let answer = host.plan(&request);
         self.plan_times_ms.push(asked.elapsed().as_secs_f64() * 1e3);

@@ -41,6 +41,8 @@ pub(in crate::update) enum Value {
     Station(StationId),
     /// What is wrong with a station.
     Fault(RangeFault),
+    /// A corner of a box, tank frame, metres.
+    Corner(Point),
     /// A moment of a run: mission time, seconds.
     Moment(f64),
     /// Any text.
@@ -65,7 +67,7 @@ pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> 
         Kind::Alarm => alarms(model).map(|(name, _)| name).collect(),
         Kind::Station => model.live.run.stations().iter().map(|station| station.name.clone()).collect(),
         Kind::Fault => ["dead", "offset="].map(str::to_owned).into(),
-        Kind::Moment | Kind::Text => Vec::new(),
+        Kind::Moment | Kind::Text | Kind::Corner => Vec::new(),
     };
     all.into_iter().map(|value| if value.contains(' ') { format!("\"{value}\"") } else { value }).collect()
 }
@@ -83,6 +85,7 @@ pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, Strin
         Kind::Duration => duration_s(text).map(Value::Duration),
         Kind::Moment => moment_s(text).map(Value::Moment),
         Kind::Fault => read_fault(text).map(Value::Fault),
+        Kind::Corner => read_corner(text).map(Value::Corner),
         _ => {
             named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
         }
@@ -128,6 +131,7 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
         | Kind::Text
         | Kind::Duration
         | Kind::Moment
+        | Kind::Corner
         | Kind::Fault => None,
     }
 }
@@ -211,6 +215,12 @@ fn read_fault(text: &str) -> Result<RangeFault, String> {
         Ok(metres) if metres > 0.0 && metres <= LONGEST_M => Ok(RangeFault::Offset(metres)),
         _ => Err(wrong()),
     }
+}
+
+fn read_corner(text: &str) -> Result<Point, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|metres: &f64| metres.is_finite());
+    let corner = text.split_once(',').and_then(|(x, y)| Some(Point::new(number(x)?, number(y)?)));
+    corner.ok_or_else(|| format!("no corner `{text}`; write x and y in metres, such as -1.5,2"))
 }
 
 /// The scenarios that can be opened.

@@ -4,7 +4,7 @@ use crate::tether_safe::TetherSafe;
 use crate::tuning::cuts::SLIVER_M2;
 use crate::workspace::Workspace;
 use planner_api::testing::Bench;
-use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Sensed, Task};
+use planner_api::{Leg, Plan, PlanRequest, Planner, PoseEstimate, Task};
 use proptest::prelude::*;
 use trials::tanks::{CELL_M, CLEARANCE_M, HULL_M, Known, SWATH_M, Tank};
 use world::{CoverageGrid, Floor, coverage::regions};
@@ -36,15 +36,18 @@ impl UnderWay {
     fn between(before: &Tank, tank: Tank, values: &[(&str, f64)], near: Point, reason: &Reason) -> Self {
         let (bench, obstacles) = (Bench::new(), before.obstacles());
         let mut planner: TetherSafe = bench.configure(values, &before.site(&obstacles)).unwrap();
-        let first = asked(&mut planner, before, &bench, (&Reason::Start, tank.anchor), &[], &[]);
+        let first = asked(&mut planner, before, &bench, (&Reason::Start, tank.anchor), (&[], &[], None));
         let fine = polyline::resampled(&first.path, 0.1);
         let at = fine.iter().position(|p| (p - near).norm() < SEEN_M).unwrap();
         let (flown, rest) = (fine[..=at].to_vec(), fine[at..].to_vec());
         let left = left_to_scan(&tank, &flown);
         let left: Vec<&[Point]> = left.iter().map(Vec::as_slice).collect();
-        aim(&mut planner, &bench, fine[at], rest[2.min(rest.len() - 1)]);
+        let under_way = left_of(&first, rest[2.min(rest.len() - 1)]);
         bench.clear();
-        let second = asked(&mut planner, &tank, &bench, (reason, fine[at]), &left, &flown);
+        // Another worker knows as much about it.
+        let mut planner: TetherSafe = bench.configure(values, &tank.site(&tank.obstacles())).unwrap();
+        let kept = (&left[..], &flown[..], Some(&under_way));
+        let second = asked(&mut planner, &tank, &bench, (reason, fine[at]), kept);
         Self { tank, flown, first, rest, second, bench }
     }
 
@@ -63,31 +66,25 @@ fn asked(
     tank: &Tank,
     bench: &Bench,
     (reason, at): (&Reason, Point),
-    regions: &[&[Point]],
-    previous: &[Point],
+    (regions, previous, under_way): (&[&[Point]], &[Point], Option<&Plan>),
 ) -> Plan {
     let obstacles = tank.obstacles();
     let start = PoseEstimate { position: at, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions, tether: None, tolerance_m: 0.3 };
-    let request = PlanRequest { reason, start, task, site: &tank.site(&obstacles), previous };
+    let request = PlanRequest { reason, start, task, site: &tank.site(&obstacles), previous, under_way };
     planner.plan(&request, &bench.ctx()).unwrap()
 }
 
-fn aim(planner: &mut TetherSafe, bench: &Bench, at: Point, target: Point) {
-    let pose = PoseEstimate { position: at, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
-    let sensed = Sensed {
-        tick: 0,
-        t_s: 0.0,
-        dt_s: 0.1,
-        pose,
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target,
-        targets_ahead: &[],
-        path_ahead: &[target],
-        obstacles: &[],
+/// What is left of a plan from the first place on its path that is this one.
+fn left_of(plan: &Plan, from: Point) -> Plan {
+    let is_at = |w: &[Point]| (polyline::nearest_on_segment(w[0], w[1], from) - from).norm() < 1e-6;
+    let side = plan.path.windows(2).position(is_at).unwrap();
+    let path = std::iter::once(from).chain(plan.path[side + 1..].iter().copied()).collect();
+    let left = |leg: &Leg| {
+        let (first, last) = (leg.first.saturating_sub(side), leg.last.checked_sub(side)?);
+        (last > 0).then_some(Leg { first, last, ..*leg })
     };
-    planner.step(&sensed, &bench.ctx()).unwrap();
+    Plan { path, legs: plan.legs.iter().filter_map(left).collect(), ..plan.clone() }
 }
 
 fn left_to_scan(tank: &Tank, flown: &[Point]) -> Vec<Vec<Point>> {
@@ -115,7 +112,7 @@ fn a_column_that_is_found_changes_the_plan_only_round_itself() {
 fn with_a_plug(tank: &Tank, values: &[(&str, f64)]) -> Option<Tank> {
     let (bench, obstacles) = (Bench::new(), tank.obstacles());
     let mut planner: TetherSafe = bench.configure(values, &tank.site(&obstacles)).unwrap();
-    let plan = asked(&mut planner, tank, &bench, (&Reason::Start, tank.anchor), &[], &[]);
+    let plan = asked(&mut planner, tank, &bench, (&Reason::Start, tank.anchor), (&[], &[], None));
     let with = |at: Point| Tank { columns: [&tank.columns[..], &[(at, 0.2)]].concat(), ..tank.clone() };
     let is_free = |at: &Point| {
         tank.boundary.wall_distance_m(*at) > 0.8
@@ -154,7 +151,7 @@ fn a_repair_that_leads_a_long_way_round_is_taken_where_a_new_plan_is_longer_stil
         UnderWay::find(tank, &[("pattern", 1.0), ("kicks", 0.5)])
     };
     let long = "a new plan may be shorter than a repair";
-    let (taken, left) = (find(Known::E3, 36, 3), find(Known::E2, 31, 6));
+    let (taken, left) = (find(Known::E3, 36, 3), find(Known::E2, 36, 0));
     assert!(has(&taken, long) && has(&taken, "repaired after all"), "{:?}", taken.bench.logs());
     assert!(has(&left, long) && !has(&left, "repaired after all"), "{:?}", left.bench.logs());
     assert!(taken.second.complete);
@@ -163,6 +160,27 @@ fn a_repair_that_leads_a_long_way_round_is_taken_where_a_new_plan_is_longer_stil
         assert!(scan.certificate.collisions == 0 && scan.certificate.end_length_m.is_some_and(|m| m < 1e-6));
         assert!(scan.coverage_reachable > 0.985, "{}", scan.coverage_reachable);
     }
+}
+
+#[test]
+fn a_new_plan_late_in_a_mission_is_complete_by_all_floor_of_the_mission() {
+    let tank = Known::E2.tank(33);
+    let (bench, obstacles) = (Bench::new(), tank.obstacles());
+    let mut planner: TetherSafe = bench.configure(&[("pattern", 1.0)], &tank.site(&obstacles)).unwrap();
+    let first = asked(&mut planner, &tank, &bench, (&Reason::Start, tank.anchor), (&[], &[], None));
+    let fine = polyline::resampled(&first.path, 0.1);
+    let at = fine.len() * 97 / 100;
+    let left = left_to_scan(&tank, &fine[..=at]);
+    let left: Vec<&[Point]> = left.iter().map(Vec::as_slice).collect();
+    let place = (&Reason::MapChanged, fine[at]);
+    bench.clear();
+    let second = asked(&mut planner, &tank, &bench, place, (&left, &fine[..=at], None));
+    let coverage = |path: &[Point]| tank.score(path, &[], CELL_M).unwrap().coverage_reachable;
+    let all = coverage(&[&fine[..=at], &second.path].concat());
+    assert!(second.complete && all > 0.99, "{all} {:?}", bench.logs());
+    // The same floor is no less than what is asked for if nothing was scanned before.
+    let alone = asked(&mut planner, &tank, &bench, place, (&left, &[], None));
+    assert!(!alone.complete, "{:?}", bench.logs());
 }
 
 #[test]

@@ -1,10 +1,10 @@
-//! The rest of a plan, from where the robot is.
+//! The rest of a plan, from a place along it.
 
 use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
 /// A plan from a place along its path on, metres, after an approach, which begins where the robot is.
-pub(super) fn rest_of(plan: &Plan, along_m: f64, approach: &[Point]) -> Plan {
+pub(crate) fn rest_of(plan: &Plan, along_m: f64, approach: &[Point]) -> Plan {
     let (Some(end), Some(joined)) = (plan.path.len().checked_sub(1), approach.len().checked_sub(1)) else {
         return plan.clone();
     };

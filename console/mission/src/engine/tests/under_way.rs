@@ -1,0 +1,88 @@
+//! What planners are given of a plan that is being flown, or that they made a moment ago.
+
+use super::covering::covering;
+use super::*;
+use world::polyline;
+
+/// A flight over the floor that was held on the way.
+fn held_on_the_way() -> Flight {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    flight.tick(&[Order::Hold]);
+    flight
+}
+
+/// The last path that was planned.
+fn last_path(flight: &Flight) -> Vec<Point> {
+    let path = |event: &Event| match &event.kind {
+        EventKind::Planned { path, .. } => Some(path.clone()),
+        _ => None,
+    };
+    flight.events.iter().rev().find_map(path).unwrap()
+}
+
+/// Lengths of what was given to keep to, request by request, metres.
+fn kept_m(flight: &Flight) -> Vec<Option<f64>> {
+    let length_m = |plan: &Option<Plan>| plan.as_ref().map(|plan| polyline::length_m(&plan.path));
+    flight.planner.kept.iter().map(length_m).collect()
+}
+
+#[test]
+fn a_planner_that_starts_again_is_given_what_is_left_of_its_plan() {
+    let mut flight = Flight::new(covering());
+    flight.planner.fail_at_ticks = vec![200];
+    flight.planner.cut = Some(vec![Point::new(0.0, 1.0), Point::new(0.0, 2.0)]);
+    flight.tick(&[Order::Start]);
+    flight.fly(199);
+    let (path, target) = (last_path(&flight), flight.mission.task.target());
+    flight.fly(2);
+    assert!(flight.held_by().is_some());
+    flight.tick(&[Order::Resume]);
+    flight.fly(2);
+    let [None, Some(kept)] = &flight.planner.kept[..] else { panic!("{:?}", kept_m(&flight)) };
+    assert!((kept.path[0] - target).norm() < 0.1 && kept.path.last() == path.last());
+    let left_m = polyline::length_m(&path) - flight.mission.now_s() * 0.4;
+    assert!((polyline::length_m(&kept.path) - left_m).abs() < 1.5, "{left_m} m, {:?}", kept_m(&flight));
+    assert_eq!(kept.check(), Ok(()));
+    assert_eq!((kept.cuts.len(), kept.legs.last().map(|leg| leg.tag)), (1, Some(api::LegTag::Travel)));
+}
+
+#[test]
+fn another_planner_and_other_values_begin_anew() {
+    let mut flight = held_on_the_way();
+    flight.tick(&[swap_to("other")]);
+    let parameters = Parameters::from([("gain".to_owned(), ParamValue::Float(2.0))]);
+    flight.tick(&[Order::ChoosePlanner(PlannerChoice { id: "other".into(), parameters })]);
+    assert_eq!(kept_m(&flight), [None; 3]);
+}
+
+#[test]
+fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
+    let mut flight = held_on_the_way();
+    let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
+    flight.tick(&[swap_to("other")]);
+    flight.tick(&[swap_to("straight")]);
+    assert_eq!(kept_m(&flight), [None, None, left_m]);
+    // Once the other one has flown, the plan from before means nothing.
+    flight.tick(&[swap_to("other")]);
+    flight.tick(&[Order::Resume]);
+    flight.fly(30);
+    flight.tick(&[Order::Hold]);
+    flight.tick(&[swap_to("straight")]);
+    let kept: Vec<bool> = flight.planner.kept[3..].iter().map(Option::is_some).collect();
+    assert_eq!(kept, [true, false]);
+}
+
+#[test]
+fn a_plan_that_came_too_late_is_kept_to_in_the_next_one_unless_the_robot_is_far() {
+    for (delay, is_kept) in [(25, true), (90, false)] {
+        let mut flight = held_on_the_way();
+        flight.delay = Box::new(move |ask, _| if matches!(ask.what, What::Plan(_)) { delay } else { 0 });
+        flight.tick(&[swap_to("other")]);
+        flight.tick(&[Order::Resume]);
+        flight.fly(2 * delay as usize);
+        assert_eq!(kept_m(&flight).len(), 3);
+        assert_eq!(flight.planner.kept[2].is_some(), is_kept, "after {delay} ticks");
+    }
+}

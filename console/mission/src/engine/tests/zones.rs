@@ -1,0 +1,68 @@
+//! No-go zones that are drawn under way.
+
+use super::covering::covering;
+use super::*;
+use world::{Zone, ZoneKind};
+
+fn zone(name: &str, (west, south): (f64, f64), (east, north): (f64, f64)) -> Order {
+    let vertices = [(west, south), (east, south), (east, north), (west, north)];
+    let shape = Shape::Polygon { vertices: vertices.map(|(x, y)| Point::new(x, y)).to_vec() };
+    Order::DrawZone(Zone { name: name.into(), kind: ZoneKind::NoGo, shape })
+}
+
+fn under_way() -> Flight {
+    let mut flight = Flight::new(covering());
+    flight.tick(&[Order::Start]);
+    flight.fly(400);
+    flight
+}
+
+#[test]
+fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map() {
+    let mut flight = under_way();
+    let before = flight.mission.floor.coverage.counts().reachable;
+    let events = flight.tick(&[zone("no-go 1", (-1.0, 0.0), (1.0, 2.0))]);
+    assert!(
+        events.iter().any(|kind| matches!(kind, EventKind::ZoneDrawn { zone } if zone.name == "no-go 1"))
+    );
+    let lost = (before - flight.mission.floor.coverage.counts().reachable) as f64 * 0.01;
+    assert!(lost > 3.0 && lost < 12.0, "{lost} m2 of floor");
+    assert_eq!(flight.planner.chosen, ["straight", "straight"], "its steering has to know the zone, too");
+    let site = flight.planner.sites.last().unwrap();
+    assert_eq!((site.zones.len(), site.revision), (1, 1));
+    assert!(flight.planner.kept[1].is_some(), "it keeps to its plan");
+    assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
+    flight.fly(6000);
+    assert_eq!(flight.ended(), Some(Outcome::Complete));
+}
+
+#[test]
+fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves() {
+    let mut flight = under_way();
+    flight.tick(&[Order::Hold]);
+    let before = flight.pose;
+    flight.tick(&[swap_to("other"), zone("no-go 1", (-1.0, 0.0), (1.0, 2.0))]);
+    flight.fly(5);
+    assert_eq!((flight.pose, flight.held_by()), (before, Some(&HoldReason::Operator)));
+    assert_eq!(flight.mission.planner_id(), "other", "whoever was to take over does");
+    assert!(flight.planner.sites.iter().rev().take(2).all(|site| site.zones.len() == 1));
+}
+
+#[test]
+fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
+    let mut flight = under_way();
+    let here = flight.pose.position;
+    let around = |p: Point| zone("no-go 1", (p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
+    let orders = [
+        (around(here), "robot stands"),
+        (around(covering().start.position), "anchor"),
+        (zone("no-go 1", (1.0, 1.0), (1.0, 2.0)), "enclose"),
+    ];
+    for (order, why) in orders {
+        let events = flight.tick(std::slice::from_ref(&order));
+        assert!(refusal(&events).is_some_and(|text| text.contains(why)), "{why}: {events:?}");
+    }
+    let good = zone("no-go 1", (-1.0, 0.0), (1.0, 2.0));
+    assert_eq!(refusal(&flight.tick(std::slice::from_ref(&good))), None);
+    assert!(refusal(&flight.tick(&[good])).is_some_and(|text| text.contains("already")));
+}
