@@ -180,7 +180,7 @@ pub(crate) mod choice {
     pub(crate) const BETWEEN_WALLS: usize = 2;
     /// Most candidates that are roughed, and most of these that are finished: the order of first tours is nearly that of finished
     /// paths (tuning.md).
-    pub(crate) const MOST_ROUGHED: usize = 4;
+    pub(crate) const MOST_ROUGHED: usize = 2;
     pub(crate) const MOST_FINISHED: usize = 2;
     /// How far the tether of a first tour may exceed what is preferred, as multiples of its length and of its wraps:
     /// polishing changes them by less.

@@ -121,13 +121,11 @@ impl<'a> Pipeline<'a> {
             hopeless.truncate(MOST_ROUGHED);
             return self.finish(hopeless, stages, (1.0, what), tried);
         }
-        if let [next, .., last] = &hopeless[..] {
+        if let (Some(next), Some(last)) = (hopeless.first(), hopeless.last()) {
             let [from_m, to_m] = [next, last].map(|draft| draft.estimate_m - least_m);
             let n = hopeless.len();
-            let message = format!(
-                "{n} more candidates are not finished: about {from_m:.0} to {to_m:.0} m longer by their first tours"
-            );
-            ctx.log(LogLevel::Info, &message);
+            let longer = format!("about {from_m:.0} to {to_m:.0} m longer by their first tours");
+            ctx.log(LogLevel::Info, &format!("candidates not finished: {n}, {longer}"));
         }
         Ok(())
     }
