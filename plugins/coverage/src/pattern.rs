@@ -3,8 +3,10 @@
 use crate::inflation::SLACK_M;
 use crate::plane::{direction, extent, left_of};
 use crate::slit_domain::SlitDomain;
+use crate::tuning::choice::BENT_RAD;
 use crate::tuning::lanes::{INTO_LAP, SPACING};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, reach_m};
+use geometry::convex::Part;
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, Vector, polyline};
 
@@ -12,6 +14,8 @@ use world::{Boundary, Point, Vector, polyline};
 const STEP_M: f64 = 0.04;
 /// Chord of a lane along a round wall, metres.
 const CHORD_M: f64 = 0.15;
+/// Width from which on a sliver along the wall counts, metres.
+const LEAST_SLIVER_M: f64 = 0.02;
 
 /// How lanes lie on the floor.
 #[derive(Clone, Copy, PartialEq)]
@@ -167,6 +171,38 @@ impl Rows {
         // A floor that is slightly wider than a whole number of swaths gets no further lane.
         let n = (width_m / workspace.swath_m - 0.02).ceil().max(1.0);
         Self { angle_rad, shift_m: low + margin_m, spacing_m: width_m / n }
+    }
+
+    /// The same rows moved aside by a share of their distance.
+    pub(crate) fn aside(self, share: f64) -> Self {
+        Self { shift_m: self.shift_m + share * self.spacing_m, ..self }
+    }
+
+    /// How many rows obstacles break, about; one that would only graze an obstacle and bends round it counts as a part.
+    pub(crate) fn broken(&self, workspace: &Workspace) -> f64 {
+        let side = left_of(self.ahead());
+        let by = |part: &Part| {
+            let reach = (reach_m(part) + workspace.keep_m) / self.spacing_m;
+            let place = (part.middle().coords.dot(&side) - self.shift_m) / self.spacing_m;
+            let rows = (place - reach).ceil() as i64..=(place + reach).floor() as i64;
+            let broken = |row: i64| ((row as f64 - place).abs() / reach).min(1.0).acos() / BENT_RAD;
+            rows.map(|row| broken(row).min(1.0)).sum::<f64>()
+        };
+        workspace.parts.iter().map(by).sum()
+    }
+
+    /// Length of the slivers that rows inside a lap leave along a round wall, metres.
+    pub(crate) fn slivers_m(&self, workspace: &Workspace) -> f64 {
+        let Boundary::Circle { radius_m } = workspace.wall else { return 0.0 };
+        let half_m = workspace.swath_m / 2.0;
+        let inner_m = radius_m - workspace.keep_m - SLACK_M - half_m;
+        let beyond = |shift_m: f64| {
+            let last_m = shift_m + ((inner_m - shift_m) / self.spacing_m).floor() * self.spacing_m;
+            let swept_m = last_m + half_m;
+            let is_wide = swept_m + LEAST_SLIVER_M < inner_m;
+            if is_wide { 2.0 * (inner_m * inner_m - swept_m * swept_m).sqrt() } else { 0.0 }
+        };
+        beyond(self.shift_m) + beyond(-self.shift_m)
     }
 
     /// Unit vector along the lanes.

@@ -22,8 +22,8 @@ pub(crate) mod cuts {
     /// suggests.
     pub(crate) const SLACKS_ACROSS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
     pub(crate) const SLACKS_ALONG: [f64; 7] = [3.0, 2.2, 1.7, 1.3, 1.0, 0.8, 0.5];
-    /// The hull passes columns further out than the cable does; allowance as a share of the least cable.
-    pub(crate) const AROUND_SHARE: f64 = 0.026;
+    /// The hull passes columns further out than the cable does: allowance, metres, whatever the size of the tank.
+    pub(crate) const AROUND_M: f64 = 0.25;
 }
 
 /// Placement of lanes; distances are shares of the swath.
@@ -162,8 +162,26 @@ pub(crate) mod choice {
     /// Shares of the largest cut angle, tried until a candidate meets the preferences for the cable: the first suffices in
     /// about half of all tanks (tuning.md).
     pub(crate) const ANGLES: [f64; 3] = [1.0, 0.5, 0.0];
-    /// Directions of straight lanes that are looked at in a round tank before any lanes are laid.
-    pub(crate) const LOOKED_AT: usize = 12;
+    /// Directions of straight lanes that are looked at in a round tank before any lanes are laid, and places across each.
+    pub(crate) const LOOKED_AT: usize = 24;
+    pub(crate) const PLACES: usize = 6;
+    /// What a lane that an obstacle breaks counts, and a metre of a sliver along the wall, in lanes that a cut breaks. An
+    /// obstacle counts less: the way round it is short.
+    pub(crate) const BY_OBSTACLE: f64 = 0.5;
+    pub(crate) const SLIVER_PER_M: f64 = 0.5;
+    /// Angle from a lane to the side of an obstacle in its way, radians, from which on the lane is broken there rather than
+    /// bent round it: the way round takes four such turns, and half a turn is what it takes to turn back.
+    pub(crate) const BENT_RAD: f64 = std::f64::consts::FRAC_PI_4;
+    /// Length of all lanes that get a first tour, metres: so many candidates, but two at least. More take longer, and what is
+    /// gained by another one is least in large tanks.
+    pub(crate) const TOURED_M: f64 = 14_000.0;
+    pub(crate) const LEAST_TOURED: usize = 2;
+    /// The same between straight walls: along the longest, and across it.
+    pub(crate) const BETWEEN_WALLS: usize = 2;
+    /// Most candidates that are roughed, and most of these that are finished: the order of first tours is nearly that of finished
+    /// paths (tuning.md).
+    pub(crate) const MOST_ROUGHED: usize = 2;
+    pub(crate) const MOST_FINISHED: usize = 2;
     /// How far the tether of a first tour may exceed what is preferred, as multiples of its length and of its wraps:
     /// polishing changes them by less.
     pub(crate) const DRAFT_CABLE: f64 = 1.015;

@@ -7,8 +7,10 @@ use crate::scan::Scan;
 use crate::slit_domain::SlitDomain;
 use crate::tether::{Tethered, least_cable_m};
 use crate::tether_safe::parameters::{Choice, Preferences};
-use crate::tuning::choice::LOOKED_AT;
-use crate::tuning::cuts::{AROUND_SHARE, SLACKS_ACROSS, SLACKS_ALONG};
+use crate::tuning::choice::{
+    BETWEEN_WALLS, BY_OBSTACLE, LEAST_TOURED, LOOKED_AT, PLACES, SLIVER_PER_M, TOURED_M,
+};
+use crate::tuning::cuts::{AROUND_M, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
 use planner_api::Site;
 use std::f64::consts::PI;
@@ -60,30 +62,51 @@ impl Candidate {
                 (least_m + (least_m * preferences.cable_share - least_m) * slack).min(reel_length_m);
             domain(workspace, &self.pattern, &CutRule { alpha_rad: self.alpha_rad, cable_m })
         };
-        let is_short = |domain: &SlitDomain<'_>| domain.is_all_within(most_m + AROUND_SHARE * least_m);
+        let is_short = |domain: &SlitDomain<'_>| domain.is_all_within(most_m + AROUND_M);
         let slacks: &[f64] = if self.pattern == Pattern::Contours { &SLACKS_ACROSS } else { &SLACKS_ALONG };
         let mut domains = slacks.iter().map(|slack| made(*slack));
         domains.find(|domain| domain.as_ref().is_none_or(is_short)).unwrap_or_else(|| made(0.0))
     }
 }
 
-/// Straight lanes in different directions: in a round tank those of many in which the cuts break the fewest lanes.
+/// Straight lanes in different directions: in a round tank those of many in which cuts and obstacles break the fewest lanes,
+/// each where obstacles break the fewest of this direction.
 fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Pattern> {
-    let wanted = preferences.directions;
     let is_round = matches!(workspace.wall, Boundary::Circle { .. }) && !workspace.is_room;
+    let wanted = preferences.directions.min(most_directions(workspace, is_round));
     let looked_at = if is_round && wanted > 0 { wanted.max(LOOKED_AT) } else { wanted };
-    let pattern = |k: usize| {
+    let pattern = |rows: Rows| Pattern::Straight { rows, laps: 1 };
+    let rows = |k: usize| {
         let angle_rad = main_direction_rad(&workspace.wall) + PI * k as f64 / looked_at as f64;
-        Pattern::Straight { rows: Rows::new(workspace, angle_rad), laps: 1 }
+        Rows::new(workspace, angle_rad)
     };
-    let mut patterns: Vec<Pattern> = (0..looked_at).map(pattern).collect();
-    if wanted < looked_at {
-        let cable_m = least_cable_m(workspace) * preferences.cable_share.min(2.0);
-        let rule = CutRule { alpha_rad, cable_m: cable_m.min(preferences.limits.reel_length_m) };
-        patterns.sort_by_cached_key(|pattern| (broken_lanes(workspace, pattern, &rule) * 1e3) as i64);
-        patterns.truncate(wanted);
+    if !is_round {
+        return (0..looked_at).map(|k| pattern(rows(k))).collect();
     }
-    patterns
+    let cable_m = least_cable_m(workspace) * preferences.cable_share.min(2.0);
+    let rule = CutRule { alpha_rad, cable_m: cable_m.min(preferences.limits.reel_length_m) };
+    let best_place = |k: usize| {
+        let rows = rows(k);
+        let places = (0..PLACES).map(|place| rows.aside(place as f64 / PLACES as f64));
+        let priced = places.map(|rows| (broken_by_obstacles(workspace, &rows), rows));
+        let (cost, best) = priced.reduce(|best, other| if other.0 < best.0 { other } else { best })?;
+        Some((cost + broken_lanes(workspace, &pattern(best), &rule), best))
+    };
+    let mut found: Vec<(f64, Rows)> = (0..looked_at).filter_map(best_place).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().take(wanted).map(|(_, rows)| pattern(rows)).collect()
+}
+
+/// How many directions of straight lanes are worth their time.
+fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
+    let Boundary::Circle { radius_m } = workspace.wall else { return BETWEEN_WALLS };
+    let lanes_m = PI * radius_m * radius_m / workspace.swath_m;
+    if is_round { ((TOURED_M / lanes_m) as usize).max(LEAST_TOURED) } else { BETWEEN_WALLS }
+}
+
+/// What obstacles and slivers along the wall cost rows, in lanes that a cut breaks.
+fn broken_by_obstacles(workspace: &Workspace, rows: &Rows) -> f64 {
+    BY_OBSTACLE * rows.broken(workspace) + SLIVER_PER_M * rows.slivers_m(workspace)
 }
 
 /// The direction of the longest wall, radians; east in a round tank.

@@ -13,13 +13,14 @@ const UNLIMITED: Limits =
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
     .help("Which of the candidates within the limits is flown, shortest by length and turns. The log lists those that no other \
-           beats in length, turns and cable; those that would cost over 2 % more are left and listed with an estimate.")
+           beats in length, turns and cable; those that look worse by their first tours are not finished, and their number is logged.")
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
     .help("Lanes along the wall, straight lanes within a lap along the wall, or whichever is better.")
     .group("Plan");
-const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 2)
-    .help("Straight lanes are tried in this many directions: in a round tank those in which cuts break the fewest lanes.")
+const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 12)
+    .help("Straight lanes are tried in this many directions, fewer in large tanks: in a round tank those in which cuts and obstacles \
+           break the fewest lanes, between straight walls two.")
     .group("Plan");
 const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 50.0)
     .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path.")

@@ -9,7 +9,7 @@ use crate::stages::{Stage, Stages};
 use crate::tether::{Tethered, comes_in};
 use crate::tether_safe::candidate::{Candidate, Worth};
 use crate::tether_safe::parameters::{Choice, Preferences};
-use crate::tuning::choice::{ANGLES, CLOSE, DRAFT_CABLE, DRAFT_WRAP, HOPELESS};
+use crate::tuning::choice::{ANGLES, CLOSE, DRAFT_CABLE, DRAFT_WRAP, HOPELESS, MOST_FINISHED, MOST_ROUGHED};
 use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel, Result, Site};
 use world::tether::Cable;
@@ -106,8 +106,8 @@ impl<'a> Pipeline<'a> {
         Drafted { name, estimate_m, may_meet, draft }
     }
 
-    /// Finishes the drafts that may win, and those that look worse if none of the former meets the preferences. Those whose
-    /// tether is too long or winds too much are left for the time being.
+    /// Finishes the drafts that may win, and some that look worse if none of the former meets the preferences. The cheapest of
+    /// those whose tether is too long or winds too much are left for the time being.
     fn finish_promising(
         &self,
         mut drafts: Vec<Drafted<'a>>,
@@ -115,35 +115,38 @@ impl<'a> Pipeline<'a> {
         what: &'static str,
         tried: &mut Tried<'a>,
     ) -> Result<()> {
-        let left: Vec<Drafted<'a>> = drafts.extract_if(.., |draft| !draft.may_meet).collect();
-        tried.left.extend(left);
+        let left = drafts.extract_if(.., |draft| !draft.may_meet);
+        tried.left.extend(left.take(MOST_ROUGHED));
+        drafts.retain(|draft| draft.may_meet);
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
-        let hopeless = self.hopeless(&mut drafts, HOPELESS);
+        let mut hopeless = self.hopeless(&mut drafts, HOPELESS, MOST_ROUGHED);
         let (ctx, n) = (stages.ctx, drafts.len() as f64);
         ctx.scalar("candidates worked out", n, "");
-        // It is an even chance that those that look worse are finished as well.
-        let n_expected = n + hopeless.len() as f64 / 2.0;
+        // It is an even chance that some of those that look worse are finished as well.
+        let n_expected = n + hopeless.len().min(MOST_ROUGHED) as f64 / 2.0;
         self.finish(drafts, stages, (n / n_expected.max(1.0), what), tried)?;
         if !tried.is_enough(self.preferences) && !hopeless.is_empty() {
+            hopeless.truncate(MOST_ROUGHED);
             return self.finish(hopeless, stages, (1.0, what), tried);
         }
-        for Drafted { name, estimate_m, .. } in hopeless {
-            let more_m = estimate_m - least_m;
-            ctx.log(
-                LogLevel::Info,
-                &format!("{name}: not finished: about {more_m:.0} m longer by its first tour"),
-            );
+        if let (Some(next), Some(last)) = (hopeless.first(), hopeless.last()) {
+            let [from_m, to_m] = [next, last].map(|draft| draft.estimate_m - least_m);
+            let n = hopeless.len();
+            let longer = format!("about {from_m:.0} to {to_m:.0} m longer by their first tours");
+            ctx.log(LogLevel::Info, &format!("candidates not finished: {n}, {longer}"));
         }
         Ok(())
     }
 
-    /// Takes out the drafts that cost more than the cheapest by so much, if only the cheapest is wanted.
-    fn hopeless(&self, drafts: &mut Vec<Drafted<'a>>, share: f64) -> Vec<Drafted<'a>> {
+    /// Takes out the drafts behind so many, and those that cost more than the cheapest by so much, if only the cheapest is
+    /// wanted.
+    fn hopeless(&self, drafts: &mut Vec<Drafted<'a>>, share: f64, most: usize) -> Vec<Drafted<'a>> {
+        if self.preferences.choice != Choice::Shortest {
+            return Vec::new();
+        }
         let least_m = drafts.first().map_or(0.0, |draft| draft.estimate_m);
-        let may_win = |draft: &Drafted<'_>| {
-            self.preferences.choice != Choice::Shortest || draft.estimate_m <= least_m * (1.0 + share)
-        };
-        drafts.split_off(drafts.partition_point(may_win))
+        let n = drafts.partition_point(|draft| draft.estimate_m <= least_m * (1.0 + share));
+        drafts.split_off(n.min(most))
     }
 
     /// Roughs drafts, and finishes those that may win then: all of them if none of the others meets the preferences.
@@ -160,7 +163,7 @@ impl<'a> Pipeline<'a> {
         let roughed = run_all(drafts, &stages.next(0.6, what), roughed)?;
         let (mut close, mut rest): (Vec<_>, Vec<_>) = roughed.into_iter().partition(|draft| draft.may_meet);
         close = cheapest_first(close.into_iter());
-        rest.extend(self.hopeless(&mut close, CLOSE));
+        rest.extend(self.hopeless(&mut close, CLOSE, MOST_FINISHED));
         self.touch_up(close, &stages.next(0.6, what), tried)?;
         if !tried.is_enough(self.preferences) {
             self.touch_up(rest, &stages.next(1.0, what), tried)?;
