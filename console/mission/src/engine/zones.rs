@@ -62,7 +62,9 @@ impl Mission {
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { Reason::MapChanged };
         let mut again = self.active.successor(self.active.choice.clone(), reason);
-        again.prepare = if waiting { self.active.prepare } else { Prepare::Plan };
+        // Before the start it goes as far as it was: a plan that is on the screen already is made again.
+        let stays = waiting && !self.active.has_plan();
+        again.prepare = if stays { self.active.prepare } else { Prepare::Plan };
         self.replace_active(again);
         if let Some(choice) = next {
             let from = self.active.choice.id.clone();

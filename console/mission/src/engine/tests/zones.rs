@@ -37,6 +37,22 @@ fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map
 }
 
 #[test]
+fn a_plan_from_before_the_start_is_made_again_for_a_zone() {
+    let mut flight = Flight::new(covering());
+    let no_go = |name| zone(name, (-1.0, 0.0), (1.0, 2.0));
+    flight.tick(&[no_go("no-go 1")]);
+    flight.fly(5);
+    assert_eq!(flight.planner.plans, 0, "nobody has asked for one");
+    flight.tick(&[Order::Plan]);
+    flight.fly(5);
+    assert_eq!(flight.planner.plans, 1);
+    flight.tick(&[no_go("no-go 2")]);
+    flight.fly(5);
+    assert_eq!((flight.planner.plans, flight.mission.phase()), (2, &Phase::Waiting));
+    assert_eq!(flight.planner.sites.last().unwrap().zones.len(), 2);
+}
+
+#[test]
 fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves() {
     let mut flight = under_way();
     flight.tick(&[Order::Hold]);
