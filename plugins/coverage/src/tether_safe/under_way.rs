@@ -75,8 +75,8 @@ pub(super) fn repaired<'a>(
     Ok(Outcome::Lost)
 }
 
-/// Repairs in the order in which they are polished, until one will do: those whose tether will be as short and straight as it must,
-/// and of these the shortest first.
+/// Repairs in the order in which they are polished, until one will do: those first whose tether will be as short and straight as is
+/// preferred, then those where it is as it must be; of these the shortest.
 fn likeliest_first<'a>(
     laid: impl Iterator<Item = Laid<'a>>,
     limits: &RepairLimits<'_>,
@@ -87,7 +87,9 @@ fn likeliest_first<'a>(
         let path = laid.path();
         let tethered = Tethered { domain: &laid.domain, path: &path, cable };
         let strain = tethered.strain(site, preferences.demanded);
-        (!strain.is_some_and(|strain| limits.tether.allow(&strain)), laid.estimate_m())
+        let [is_preferred, is_allowed] = [preferences, &limits.tether]
+            .map(|tether| strain.as_ref().is_some_and(|strain| tether.allow(strain)));
+        ((!is_allowed, !is_preferred), laid.estimate_m())
     };
     let mut ranked: Vec<_> = laid.map(|laid| (rank(&laid), laid)).collect();
     ranked.sort_by(|((a, a_m), _), ((b, b_m), _)| a.cmp(b).then(a_m.total_cmp(b_m)));
