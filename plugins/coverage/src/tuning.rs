@@ -178,6 +178,9 @@ pub(crate) mod choice {
     pub(crate) const LEAST_TOURED: usize = 2;
     /// The same between straight walls: along the longest, and across it.
     pub(crate) const BETWEEN_WALLS: usize = 2;
+    /// A tank with more obstacles than this is crowded: only the best direction is tried, with straight cuts. With oblique ones the
+    /// tether was not as straight as is preferred there, and all would be planned in vain (tuning.md).
+    pub(crate) const CROWDED: usize = 800;
     /// Most candidates that are roughed, and most of these that are finished: the order of first tours is nearly that of finished
     /// paths (tuning.md).
     pub(crate) const MOST_ROUGHED: usize = 2;

@@ -4,6 +4,7 @@ use crate::floor::{Grain, ReachableFloor};
 use crate::inflation::SLACK_M;
 use crate::plane::direction;
 use crate::triangulation::Triangulation;
+use crate::tuning::choice::CROWDED;
 use crate::tuning::rooms::{FEW_PARTS, MOST_LANES_M, MOST_PARTS};
 use geometry::convex::{Part, parts_of};
 use planner_api::{Code, PlannerError, Result, Site};
@@ -88,6 +89,11 @@ impl Workspace {
     /// The floor for the middle of the hull in triangles; made when it is first asked for.
     pub(crate) fn triangulation(&self) -> &Triangulation {
         self.triangulation.get_or_init(|| Triangulation::new(&self.wall, &self.parts, self.keep_m))
+    }
+
+    /// Whether so many obstacles stand in a tank that fewer candidates are worth their time.
+    pub(crate) fn is_crowded(&self) -> bool {
+        !self.is_room && self.parts.len() > CROWDED
     }
 
     /// Whether the middle of the hull may be at a place, as far as wall and obstacles go.

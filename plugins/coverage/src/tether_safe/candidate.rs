@@ -27,8 +27,9 @@ pub(super) struct Candidate {
 impl Candidate {
     /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
     pub(super) fn all(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Self> {
-        // Contours of the outer wall are no lanes of a floor between inner walls.
-        let is_meant = preferences.contours && (preferences.directions == 0 || !workspace.is_room);
+        // Contours of the outer wall are no lanes of a floor between inner walls, and too many columns break them.
+        let is_other = workspace.is_room || workspace.is_crowded();
+        let is_meant = preferences.contours && (preferences.directions == 0 || !is_other);
         let contours = is_meant.then_some(Pattern::Contours);
         let straight = straight(workspace, preferences, alpha_rad);
         contours.into_iter().chain(straight).map(|pattern| Self { pattern, alpha_rad }).collect()
@@ -99,6 +100,9 @@ fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) ->
 
 /// How many directions of straight lanes are worth their time.
 fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
+    if workspace.is_crowded() {
+        return 1;
+    }
     let Boundary::Circle { radius_m } = workspace.wall else { return BETWEEN_WALLS };
     let lanes_m = PI * radius_m * radius_m / workspace.swath_m;
     if is_round { ((TOURED_M / lanes_m) as usize).max(LEAST_TOURED) } else { BETWEEN_WALLS }

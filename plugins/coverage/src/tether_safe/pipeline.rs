@@ -57,10 +57,11 @@ impl<'a> Pipeline<'a> {
     pub(super) fn run(&self, stages: &mut Stages<'_>) -> Result<Tried<'a>> {
         let end = stages.end;
         let mut tried = Tried::default();
-        for (k, share) in ANGLES.into_iter().enumerate() {
+        let skipped = if self.workspace.is_crowded() { ANGLES.len() - 1 } else { 0 };
+        for (k, share) in ANGLES.into_iter().enumerate().skip(skipped) {
             stages.end = stages.toward(end, 0.7);
             let (touring, finishing) = match k {
-                0 => ("first tours", "candidates"),
+                _ if k == skipped => ("first tours", "candidates"),
                 _ => ("first tours, straighter cuts", "candidates, straighter cuts"),
             };
             let drafts = self.drafts(self.preferences.alpha_rad * share, &stages.next(0.25, touring))?;
