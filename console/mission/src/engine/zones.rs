@@ -3,10 +3,11 @@
 use super::{Mission, slot::Prepare};
 use crate::{config::TaskConfig, event::EventKind, phase::Phase};
 use planner_api::Reason;
-use world::{Point, Shape, Zone, ZoneKind, shape::ring_area_m2};
+use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
 
-/// A smaller zone is a slip of the hand, square metres.
+/// A smaller zone is a slip of the hand, square metres, and so is one with a corner beyond this, metres: a scenario has none either.
 const LEAST_M2: f64 = 0.01;
+const FARTHEST_M: f64 = 1e4;
 
 impl Mission {
     /// Refuses a zone in which the robot stands already, or has to go.
@@ -17,37 +18,64 @@ impl Mission {
         let Shape::Polygon { vertices } = &zone.shape else {
             return Err("a no-go zone is drawn as a polygon".into());
         };
-        let is_finite = vertices.iter().all(|corner| corner.x.is_finite() && corner.y.is_finite());
-        let area_m2 = ring_area_m2(vertices).abs();
-        if zone.kind != ZoneKind::NoGo || !is_finite || area_m2 < LEAST_M2 {
+        let is_near = |corner: &Point| corner.x.abs() <= FARTHEST_M && corner.y.abs() <= FARTHEST_M;
+        if !vertices.iter().all(is_near) {
+            return Err(format!("a corner of a no-go zone is at most {FARTHEST_M} m from the origin"));
+        }
+        if zone.kind != ZoneKind::NoGo || ring_area_m2(vertices).abs() < LEAST_M2 {
             return Err(format!("a no-go zone needs corners that enclose at least {LEAST_M2} m²"));
         }
-        let is_taken = self.chart.world().zones.iter().any(|other| other.name == zone.name);
-        if is_taken {
-            return Err(format!("there is a zone with the name {} already", zone.name));
+        if is_outside(&zone.shape, &self.chart.world().boundary) {
+            return Err("the zone lies outside the tank: corners are in metres, tank frame".into());
         }
         let room_m = self.config.room_m();
         let is_within = |place: Point| zone.shape.distance_m(place) < room_m;
         let must_keep = format!("{room_m:.2} m (hull radius and clearance) have to be left");
-        if is_within(self.locator.position()) {
+        let here = self.locator.position();
+        if is_within(here) {
             return Err(format!("the robot stands in the zone or beside it: {must_keep}"));
         }
         let end = match &self.config.task {
-            TaskConfig::Cover { anchor, .. } => Some(("anchor", *anchor)),
-            TaskConfig::Goto { goal, .. } => Some(("goal", *goal)),
-            TaskConfig::Follow { .. } => None,
+            TaskConfig::Cover { .. } => "anchor",
+            TaskConfig::Goto { .. } => "goal",
+            TaskConfig::Follow { .. } => "end of the path",
         };
-        match end {
-            Some((what, place)) if is_within(place) => {
-                Err(format!("the {what} lies in the zone or beside it: {must_keep}"))
-            }
-            _ => Ok(()),
+        let end = self.config.task.end().map(|place| (end, place));
+        let anchor = self.config.tether.as_ref().map(|tether| ("anchor", tether.anchor));
+        let places: Vec<(&str, Point)> = end.into_iter().chain(anchor).collect();
+        if let Some((what, _)) = places.iter().find(|(_, place)| is_within(*place)) {
+            return Err(format!("the {what} lies in the zone or beside it: {must_keep}"));
         }
+        let (before, behind) = (self.floor_outside(None), self.floor_outside(Some(&zone.shape)));
+        let is_way = |floor: &GrownFloor, to| floor.shortest(here, to, &mut || true).is_ok();
+        let is_closed = |place: Point| !is_way(&behind, place) && is_way(&before, place);
+        match places.iter().find(|(_, place)| is_closed(*place)) {
+            Some((what, _)) => Err(format!("the zone closes every way from the robot to the {what}")),
+            None => Ok(()),
+        }
+    }
+
+    /// The floor for the middle of the hull outside no-go zones: those that are drawn, and perhaps another one.
+    fn floor_outside(&self, zone: Option<&Shape>) -> GrownFloor {
+        let (world, room_m) = (self.chart.world(), self.config.room_m());
+        let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo).map(|zone| &zone.shape);
+        let solids = world.obstacles.iter().map(|obstacle| &obstacle.shape).chain(zones).chain(zone);
+        GrownFloor::new(&world.boundary, room_m, solids.map(|shape| (shape, room_m)))
+    }
+
+    /// A name that no other zone has: the one wanted, or the next number that is free. Several zones may be drawn before the
+    /// console has heard of the first.
+    fn free_name(&self, wanted: &str) -> String {
+        let zones = &self.chart.world().zones;
+        let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
+        let numbered = (1..=zones.len() + 1).map(|n| format!("no-go {n}"));
+        std::iter::once(wanted.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
     }
 
     /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
     /// that drives keeps to its plan as far as it can.
     pub(super) fn draw_zone(&mut self, zone: &Zone) {
+        let zone = &Zone { name: self.free_name(&zone.name), ..zone.clone() };
         let changes = self.floor.forbid(&self.config, &self.chart, &zone.shape);
         self.chart.draw(zone.clone());
         self.happened.push(EventKind::ZoneDrawn { zone: zone.clone() });
@@ -73,4 +101,13 @@ impl Mission {
             self.candidate = Some(slot);
         }
     }
+}
+
+/// Whether a shape lies outside a wall; what lies beside straight walls, but within their bounds, counts as inside.
+fn is_outside(shape: &Shape, wall: &Boundary) -> bool {
+    if let Boundary::Circle { radius_m } = wall {
+        return shape.distance_m(Point::origin()) >= *radius_m;
+    }
+    let ((low, high), (wall_low, wall_high)) = (shape.bounds(), wall.bounds());
+    low.x >= wall_high.x || low.y >= wall_high.y || high.x <= wall_low.x || high.y <= wall_low.y
 }
