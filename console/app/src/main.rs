@@ -25,6 +25,7 @@ mod shared_folder;
 mod signing;
 mod stop_signal;
 mod study_folder;
+mod threads;
 mod trial;
 mod tune;
 
@@ -100,6 +101,10 @@ fn survive_file_size_limit() {
 fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
         return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
+    }
+    use Command::{Completions, Man, TakeTerminal};
+    if !matches!(cli.command, Some(TakeTerminal | Completions { .. } | Man { .. })) {
+        threads::check()?;
     }
     let plugins = PluginDirs {
         requires_sandbox: cli.plugins.require_sandbox,

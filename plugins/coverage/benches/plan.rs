@@ -12,8 +12,7 @@ fn plan(tank: &Tank) -> Plan {
     let start =
         PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     planner.plan(&request, &bench.ctx()).expect("there is a plan")
 }
 

@@ -66,7 +66,6 @@ fn ask_from<P: Planner>(
     let site = tank.site(&obstacles);
     let start = PoseEstimate { position, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = Task::Cover { anchor: tank.anchor, regions: &[], tether, tolerance_m: 0.3 };
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     planner.plan(&request, &bench.ctx())
 }

@@ -23,10 +23,7 @@ fn asked<P: Planner>(planner: &mut P, from: Point2<f64>, goal: Point2<f64>, site
     bench.look_away();
     let start = PoseEstimate { position: from, heading_rad: 0.0, covariance: Matrix3::zeros() };
     let task = Task::Goto { goal, tolerance_m: 0.1 };
-    planner.plan(
-        &PlanRequest { reason: &Reason::Start, start, task, site, previous: &[], under_way: None },
-        &bench.ctx(),
-    )
+    planner.plan(&PlanRequest::new(&Reason::Start, start, task, site), &bench.ctx())
 }
 
 fn planner<P: Planner>(values: &[(&str, f64)], site: &Site<'_>) -> P {

@@ -18,14 +18,7 @@ pub(crate) fn plan<P: Planner>(
     site: &Site<'_>,
 ) -> Result<Plan> {
     let task = Task::Goto { goal: to, tolerance_m: 0.1 };
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: exact_pose(from),
-        task,
-        site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, exact_pose(from), task, site);
     planner.plan(&request, &Bench::new().ctx())
 }
 

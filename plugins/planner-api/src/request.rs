@@ -109,6 +109,13 @@ pub struct PlanRequest<'a> {
     pub under_way: Option<&'a Plan>,
 }
 
+impl<'a> PlanRequest<'a> {
+    /// A request of a robot that has not driven yet.
+    pub fn new(reason: &'a Reason, start: PoseEstimate, task: Task<'a>, site: &'a Site<'a>) -> Self {
+        Self { reason, start, task, site, previous: &[], under_way: None }
+    }
+}
+
 /// A path to fly.
 ///
 /// ```

@@ -40,14 +40,7 @@ fn plans<P: Planner>(criterion: &mut Criterion, clearance_m: f64, values: &[(&st
                 bench.configure(values, &site).expect("the parameters are those of the planner");
             let task = Task::Follow { targets: &layout.path, tolerance_m: 0.2 };
             let start = exact_pose(layout.path[0]);
-            let request = PlanRequest {
-                reason: &Reason::Start,
-                start,
-                task,
-                site: &site,
-                previous: &[],
-                under_way: None,
-            };
+            let request = PlanRequest::new(&Reason::Start, start, task, &site);
             black_box(planner.plan(&request, &bench.ctx())).is_ok()
         });
     });

@@ -16,8 +16,7 @@ pub(crate) fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Resul
     let mut planner: P = bench.configure(values, &site)?;
     let task = Task::Follow { targets: &layout.path, tolerance_m: 0.2 };
     let start = exact_pose(layout.path[0]);
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     planner.plan(&request, &bench.ctx())
 }
 

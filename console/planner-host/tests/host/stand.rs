@@ -106,7 +106,7 @@ pub(crate) fn plan_to_cover(host: &mut BlockingHost) -> Result<Reply<Plan>, Faul
 fn plan_for(host: &mut BlockingHost, task: Task<'_>) -> Result<Reply<Plan>, Fault> {
     with_site(|site| {
         let start = pose(Point2::origin());
-        host.plan(&PlanRequest { reason: &Reason::Start, start, task, site, previous: &[], under_way: None })
+        host.plan(&PlanRequest::new(&Reason::Start, start, task, site))
     })
 }
 

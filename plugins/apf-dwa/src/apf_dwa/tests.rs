@@ -25,7 +25,7 @@ const GOAL: Point = Point::new(4.5, 4.5);
 
 fn request<'a>(site: &'a Site<'a>, task: Task<'a>) -> PlanRequest<'a> {
     let start = planner_api::PoseEstimate { heading_rad: 0.8, ..exact_pose(Point::new(-4.5, -4.5)) };
-    PlanRequest { reason: &Reason::Start, start, task, site, previous: &[], under_way: None }
+    PlanRequest::new(&Reason::Start, start, task, site)
 }
 
 #[test]

@@ -29,8 +29,7 @@ fn plan(layout: &Layout, values: &[(&str, f64)], task: Task<'_>) -> (Result<Plan
     let site = layout.site(&obstacles, Motion::Point);
     let mut planner: Apf = bench.configure(values, &site).unwrap();
     let start = exact_pose(layout.path[0]);
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     let plan = planner.plan(&request, &bench.ctx());
     (plan, bench)
 }
@@ -90,8 +89,7 @@ fn it_stops_planning_when_the_console_says_so() {
     bench.stop_with(StopReason::Timeout);
     let start = exact_pose(layout.path[0]);
     let task = goto(Point::new(5.0, 0.0));
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     assert_eq!(planner.plan(&request, &bench.ctx()).unwrap_err().code, Code::Timeout);
 }
 

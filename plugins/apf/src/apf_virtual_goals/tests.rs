@@ -23,8 +23,7 @@ fn plan(layout: &Layout, values: &[(&str, f64)], goal: Point) -> (Plan, Bench) {
         values.iter().copied().chain([("steps_max", 200.0), ("wall_gain", 0.0)]).collect();
     let mut planner: ApfVirtualGoals = bench.configure(&values, &site).unwrap();
     let (start, task) = (exact_pose(Point::origin()), Task::Goto { goal, tolerance_m: 0.0 });
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     let plan = planner.plan(&request, &bench.ctx()).unwrap();
     (plan, bench)
 }

@@ -22,8 +22,7 @@ fn plan(layout: &Layout, values: &[(&str, f64)], goal: Point) -> (Result<Plan>, 
     let site = layout.site(&obstacles, Motion::Point);
     let mut planner: Tapf = bench.configure(values, &site).unwrap();
     let (start, task) = (exact_pose(layout.path[0]), Task::Goto { goal, tolerance_m: 0.02 });
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     let plan = planner.plan(&request, &bench.ctx());
     (plan, bench)
 }
@@ -62,8 +61,7 @@ fn preset_paths_are_refused_with_the_reason() {
     let targets = [Point::new(1.0, 0.0)];
     let task = Task::Follow { targets: &targets, tolerance_m: 0.1 };
     let start = exact_pose(Point::origin());
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     assert_eq!(planner.plan(&request, &bench.ctx()).unwrap_err().code, Code::Unsupported);
 }
 

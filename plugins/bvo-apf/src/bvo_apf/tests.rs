@@ -54,14 +54,7 @@ fn plan(values: &[(&str, f64)], task: Task<'_>) -> (Result<Plan>, Bench) {
     let (bench, obstacles) = (Bench::new(), cup());
     let site = site(&obstacles, Motion::Point);
     let mut planner: BvoApf = bench.configure(values, &site).unwrap();
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: exact_pose(START),
-        task,
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, exact_pose(START), task, &site);
     let plan = planner.plan(&request, &bench.ctx());
     (plan, bench)
 }
@@ -102,14 +95,7 @@ fn it_stops_planning_when_the_console_says_so() {
     let site = site(&obstacles, Motion::Point);
     let mut planner: BvoApf = bench.configure(&[("mode", 0.0)], &site).unwrap();
     bench.stop_with(StopReason::Timeout);
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: exact_pose(START),
-        task: task(),
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, exact_pose(START), task(), &site);
     assert_eq!(planner.plan(&request, &bench.ctx()).unwrap_err().code, Code::Timeout);
 }
 

@@ -139,7 +139,7 @@ fn a_little_floor_far_away_is_scanned_if_nothing_else_is_asked_for() {
     let task =
         planner_api::Task::Cover { anchor: tank.anchor, regions: &[&little], tether: None, tolerance_m: 0.3 };
     let reason = planner_api::Reason::Start;
-    let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&reason, start, task, &site);
     let path = planner.plan(&request, &bench.ctx()).unwrap().path;
     let nearest_m = polyline::distance_m(&path, farthest);
     assert!(nearest_m < site.swath_m / 2.0, "{nearest_m} m off, {} m from the anchor", off_m(&farthest));
@@ -157,12 +157,7 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
         PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
     let reason = planner_api::Reason::Start;
-    planner
-        .plan(
-            &PlanRequest { reason: &reason, start, task, site: &site, previous: &[], under_way: None },
-            &bench.ctx(),
-        )
-        .unwrap();
+    planner.plan(&PlanRequest::new(&reason, start, task, &site), &bench.ctx()).unwrap();
     let logs = bench.logs();
     let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
     assert!(said.iter().any(|said| said.contains("along the shell is beyond lanes of")), "{said:?}");
@@ -222,7 +217,7 @@ fn a_swath_wider_than_the_gaps_still_gives_a_certified_plan() {
         PoseEstimate { position: tank.anchor, heading_rad: 0.0, covariance: nalgebra::Matrix3::zeros() };
     let task = planner_api::Task::Cover { anchor: tank.anchor, regions: &[], tether: None, tolerance_m: 0.3 };
     let reason = planner_api::Reason::Start;
-    let request = PlanRequest { reason: &reason, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&reason, start, task, &site);
     let plan = planner.plan(&request, &bench.ctx()).unwrap();
     let scan = tank.score(&plan.path, &plan.cuts, CELL_M).unwrap();
     assert!(scan.certificate.certified, "{:?}", scan.certificate.reasons);

@@ -106,8 +106,7 @@ fn what_is_discovered_on_the_goal_under_way_is_no_reason_to_stop() {
     let task = Task::Goto { goal: Point2::new(5.0, 0.0), tolerance_m: 0.1 };
     let start = exact_pose(Point2::new(-5.0, 0.0));
     let mut ask = |reason| {
-        let request =
-            PlanRequest { reason: &reason, start, task, site: &site, previous: &[], under_way: None };
+        let request = PlanRequest::new(&reason, start, task, &site);
         planner.plan(&request, &bench.ctx())
     };
     let plan = ask(Reason::MapChanged).unwrap();
@@ -126,14 +125,7 @@ fn a_long_obstacle_discovered_on_the_goal_is_not_planned_through() {
     let task = Task::Goto { goal: Point2::new(5.0, 0.0), tolerance_m: 0.1 };
     for from_m in [-5.0, 2.8] {
         let start = exact_pose(Point2::new(from_m, 0.0));
-        let request = PlanRequest {
-            reason: &Reason::MapChanged,
-            start,
-            task,
-            site: &site,
-            previous: &[],
-            under_way: None,
-        };
+        let request = PlanRequest::new(&Reason::MapChanged, start, task, &site);
         let plan = planner::<Shortest>(&[], &site).plan(&request, &Bench::new().ctx()).unwrap();
         assert!(!plan.complete && plan.path.iter().all(|at| at.x < 2.9), "{:?}", plan.path);
     }

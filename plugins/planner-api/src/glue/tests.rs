@@ -326,14 +326,7 @@ fn a_request_to_cover_arrives_with_its_regions_and_the_limits_of_the_tether() {
     ];
     for (tether, regions) in tethers.into_iter().zip([&[] as &[&[_]], &[&CORNERS, &CORNERS[1..]]]) {
         let task = Task::Cover { anchor: CORNERS[1], regions, tether, tolerance_m: 0.2 };
-        let request = PlanRequest {
-            reason: &Reason::Start,
-            start: pose(),
-            task,
-            site: &site,
-            previous: &[],
-            under_way: None,
-        };
+        let request = PlanRequest::new(&Reason::Start, pose(), task, &site);
         let parts = PlanParts::of(&request);
         let input = lend::plan(&request, &raw, &parts);
         let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
@@ -379,14 +372,7 @@ fn a_region_that_is_no_polygon_is_refused() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Cover { anchor: CORNERS[1], regions: &[&CORNERS], tether: None, tolerance_m: 0.2 };
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: pose(),
-        task,
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, pose(), task, &site);
     let parts = PlanParts::of(&request);
     let mut input = lend::plan(&request, &raw, &parts);
     let line = abi::Outline { kind: abi::input::OUTLINE_POLYLINE, ..unsafe { *input.regions } };
@@ -403,14 +389,7 @@ fn a_console_of_version_1_0_gets_a_plan_without_legs_and_cuts() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: pose(),
-        task,
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, pose(), task, &site);
     let older = Host { size: std::mem::offset_of!(Host, legs) as u32, ..host(&mut sink) };
     let parts = PlanParts::of(&request);
     let size = std::mem::offset_of!(abi::PlanIn, regions) as u32;
@@ -428,14 +407,7 @@ fn a_console_of_version_1_1_gets_the_same_plan_and_no_progress() {
     let site = site(&[], &[]);
     let raw = lend::site(&site, &[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: pose(),
-        task,
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, pose(), task, &site);
     let older = Host { size: std::mem::offset_of!(Host, progress) as u32, ..host(&mut sink) };
     let parts = PlanParts::of(&request);
     let input = lend::plan(&request, &raw, &parts);
@@ -451,14 +423,7 @@ fn a_plan_that_got_part_of_the_way_hands_that_part_over() {
     let planner = instance(&mut sink, 4.0);
     let site = site(&[], &[]);
     let task = Task::Goto { goal: CORNERS[1], tolerance_m: 0.2 };
-    let request = PlanRequest {
-        reason: &Reason::Start,
-        start: pose(),
-        task,
-        site: &site,
-        previous: &[],
-        under_way: None,
-    };
+    let request = PlanRequest::new(&Reason::Start, pose(), task, &site);
     let raw = lend::site(&site, &[], &[]);
     let mut out = PlanOut::UNSET;
     let code = unsafe {

@@ -28,8 +28,7 @@ fn plan(layout: &Layout, values: &[(&str, f64)]) -> Plan {
     let mut planner: Rpf = bench.configure(values, &site).unwrap();
     let task = Task::Follow { targets: &layout.path, tolerance_m: 0.2 };
     let start = exact_pose(layout.path[0]);
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     planner.plan(&request, &bench.ctx()).unwrap()
 }
 

@@ -116,8 +116,7 @@ fn a_robot_off_its_path_is_led_back_to_it() {
     let mut planner: SpiralLattice = bench.configure(&[], &site).unwrap();
     let task = Task::Follow { targets: &layout.path[1000..], tolerance_m: 0.2 };
     let start = exact_pose(layout.path[990] + Vector::new(0.3, 0.3));
-    let request =
-        PlanRequest { reason: &Reason::Start, start, task, site: &site, previous: &[], under_way: None };
+    let request = PlanRequest::new(&Reason::Start, start, task, &site);
     let plan = planner.plan(&request, &bench.ctx()).unwrap();
     assert_eq!(plan.path[0], start.position);
     assert!(plan.complete && polyline::distance_m(&plan.path, layout.path[1100]) < 1e-9);

@@ -93,8 +93,7 @@ impl Planners {
     ) -> Result<Planned> {
         let Pose { position, heading_rad } = start;
         let start = PoseEstimate { position, heading_rad, covariance: Matrix3::zeros() };
-        let request =
-            PlanRequest { reason: &Reason::Start, start, task, site, previous: &[], under_way: None };
+        let request = PlanRequest::new(&Reason::Start, start, task, site);
         let failed = |fault| StudyError::planner(&method.planner, fault);
         let mut host = match self.prepare(method, site) {
             Err(fault) if is_refusal(&fault) => return Ok(Planned::refused(fault, 0.0)),
