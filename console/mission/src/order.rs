@@ -5,7 +5,7 @@ use crate::{
     planner::{ParamValue, PlannerChoice},
 };
 use serde::{Deserialize, Serialize};
-use world::{StationId, Zone};
+use world::{Point, StationId};
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,8 +48,9 @@ pub enum Order {
         /// Its new value.
         value: ParamValue,
     },
-    /// The robot must not enter this part of the floor from now on: plans keep off it, and what lies in it is not scanned.
-    DrawZone(Zone),
+    /// The robot must not enter the floor between these corners (metres, tank frame) from now on: plans keep off it, and what lies
+    /// in it is not scanned. The mission gives the zone a name.
+    DrawZone(Vec<Point>),
     /// For training: a station of the simulation fails for a while. The mission only notes it, and locates without knowing.
     Inject(Injection),
     /// Whether the ranges of a station are used; without them the robot is located by the others.

@@ -32,7 +32,7 @@ impl Mission {
                 self.locator.use_station(*station, *used);
                 self.stay_held();
             }
-            Order::DrawZone(zone) => self.draw_zone(zone),
+            Order::DrawZone(corners) => self.draw_zone(corners),
             Order::Hold => self.hold_by_order(),
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
@@ -59,8 +59,8 @@ impl Mission {
 
     /// Refuses what cannot be where it is ordered.
     fn check_place(&self, order: &Order) -> Result<(), String> {
-        let Order::DrawZone(zone) = order else { return Ok(()) };
-        self.check_zone(zone)
+        let Order::DrawZone(corners) = order else { return Ok(()) };
+        self.check_zone(corners)
     }
 
     /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.

@@ -14,22 +14,20 @@ impl Mission {
     ///
     /// # Errors
     /// What is wrong, as a sentence.
-    pub(super) fn check_zone(&self, zone: &Zone) -> Result<(), String> {
-        let Shape::Polygon { vertices } = &zone.shape else {
-            return Err("a no-go zone is drawn as a polygon".into());
-        };
+    pub(super) fn check_zone(&self, corners: &[Point]) -> Result<(), String> {
         let is_near = |corner: &Point| corner.x.abs() <= FARTHEST_M && corner.y.abs() <= FARTHEST_M;
-        if !vertices.iter().all(is_near) {
+        if !corners.iter().all(is_near) {
             return Err(format!("a corner of a no-go zone is at most {FARTHEST_M} m from the origin"));
         }
-        if zone.kind != ZoneKind::NoGo || ring_area_m2(vertices).abs() < LEAST_M2 {
+        if corners.len() < 3 || ring_area_m2(corners).abs() < LEAST_M2 {
             return Err(format!("a no-go zone needs corners that enclose at least {LEAST_M2} m²"));
         }
-        if is_outside(&zone.shape, &self.chart.world().boundary) {
+        let shape = Shape::Polygon { vertices: corners.to_vec() };
+        if is_outside(&shape, &self.chart.world().boundary) {
             return Err("the zone lies outside the tank: corners are in metres, tank frame".into());
         }
         let room_m = self.config.room_m();
-        let is_within = |place: Point| zone.shape.distance_m(place) < room_m;
+        let is_within = |place: Point| shape.distance_m(place) < room_m;
         let must_keep = format!("{room_m:.2} m (hull radius and clearance) have to be left");
         let here = self.locator.position();
         if is_within(here) {
@@ -46,7 +44,7 @@ impl Mission {
         if let Some((what, _)) = places.iter().find(|(_, place)| is_within(*place)) {
             return Err(format!("the {what} lies in the zone or beside it: {must_keep}"));
         }
-        let (before, behind) = (self.floor_outside(None), self.floor_outside(Some(&zone.shape)));
+        let (before, behind) = (self.floor_outside(None), self.floor_outside(Some(&shape)));
         let is_way = |floor: &GrownFloor, to| floor.shortest(here, to, &mut || true).is_ok();
         let is_closed = |place: Point| !is_way(&behind, place) && is_way(&before, place);
         match places.iter().find(|(_, place)| is_closed(*place)) {
@@ -63,22 +61,21 @@ impl Mission {
         GrownFloor::new(&world.boundary, room_m, solids.map(|shape| (shape, room_m)))
     }
 
-    /// A name that no other zone has: the one wanted, or the next number that is free. Several zones may be drawn before the
-    /// console has heard of the first.
-    fn free_name(&self, wanted: &str) -> String {
+    /// A name that no other zone has.
+    fn free_name(&self) -> String {
         let zones = &self.chart.world().zones;
         let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
-        let numbered = (1..=zones.len() + 1).map(|n| format!("no-go {n}"));
-        std::iter::once(wanted.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
+        (1..).map(|n| format!("no-go {n}")).find(is_free).unwrap_or_default()
     }
 
     /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
     /// that drives keeps to its plan as far as it can.
-    pub(super) fn draw_zone(&mut self, zone: &Zone) {
-        let zone = &Zone { name: self.free_name(&zone.name), ..zone.clone() };
+    pub(super) fn draw_zone(&mut self, corners: &[Point]) {
+        let shape = Shape::Polygon { vertices: corners.to_vec() };
+        let zone = Zone { name: self.free_name(), kind: ZoneKind::NoGo, shape };
         let changes = self.floor.forbid(&self.config, &self.chart, &zone.shape);
         self.chart.draw(zone.clone());
-        self.happened.push(EventKind::ZoneDrawn { zone: zone.clone() });
+        self.happened.push(EventKind::ZoneDrawn { zone });
         if !changes.is_empty() {
             self.happened.push(EventKind::FloorChanged { changes });
         }

@@ -248,7 +248,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Promote => "promote the planner in shadow".into(),
         Order::DropShadow => "end the shadow".into(),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
-        Order::DrawZone(zone) => format!("draw {}", zone.name),
+        Order::DrawZone(_) => "draw no-go zone".into(),
         Order::Inject(injection) => injection_text(injection, stations),
         Order::UseStation { station, used } => {
             let word = if *used { "use" } else { "exclude" };

@@ -156,7 +156,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
         Value::Theme(theme) => model.ui.theme = theme,
         Value::Duration(for_s) => return shelve(model, for_s, values),
         Value::Corner(corner) => {
-            let order = zones::order(model, corner, values);
+            let order = zones::order(corner, values);
             return order.map_or_else(Vec::new, |order| give(model, order));
         }
         Value::Station(station) => {

@@ -9,7 +9,7 @@ use tui::model::ui::{Ask, MapLayer};
 use tui::model::{Overlay, Palette, PastRun, Screen as Name, home::Found};
 use tui::update::{Choice, choices};
 use tui::{Effect, Job, Key, Msg, RunId, Source, Speed, ThemeName};
-use world::{Point, Shape, StationId, Zone, ZoneKind};
+use world::{Point, StationId};
 
 /// A screen with scenarios and runs.
 fn with_home(mut screen: Screen) -> Screen {
@@ -247,18 +247,11 @@ fn tab_completes_names_and_values() {
 }
 
 #[test]
-fn a_no_go_zone_is_a_box_with_a_name_of_its_own() {
+fn a_no_go_zone_is_a_box_between_two_corners() {
     let mut screen = Screen::running();
-    let drawn = |effects: Vec<Effect>| match effects.as_slice() {
-        [Effect::Order(Order::DrawZone(zone))] => (zone.name.clone(), zone.shape.bounds()),
-        other => panic!("{other:?}"),
-    };
-    let bounds = (Point::new(-1.5, 0.5), Point::new(2.0, 3.0));
-    assert_eq!(drawn(run(&mut screen, "no-go 2,0.5 -1.5,3")), ("no-go 1".into(), bounds));
-    let shape = Shape::Disc { center: Point::new(4.0, 4.0), radius_m: 0.5 };
-    let zone = Zone { name: "no-go 1".into(), kind: ZoneKind::NoGo, shape };
-    screen.model.live.run.about.as_mut().expect("a run").world.zones.push(zone);
-    assert_eq!(drawn(run(&mut screen, "no-go 2,0.5 -1.5,3")).0, "no-go 2");
+    let corners = [(-1.5, 0.5), (2.0, 0.5), (2.0, 3.0), (-1.5, 3.0)].map(|(x, y)| Point::new(x, y));
+    let drawn = run(&mut screen, "no-go 2,0.5 -1.5,3");
+    assert_eq!(drawn, [Effect::Order(Order::DrawZone(corners.to_vec()))]);
 }
 
 #[test]

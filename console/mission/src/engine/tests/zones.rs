@@ -2,12 +2,10 @@
 
 use super::covering::covering;
 use super::*;
-use world::{Zone, ZoneKind};
 
-fn zone(name: &str, (west, south): (f64, f64), (east, north): (f64, f64)) -> Order {
-    let vertices = [(west, south), (east, south), (east, north), (west, north)];
-    let shape = Shape::Polygon { vertices: vertices.map(|(x, y)| Point::new(x, y)).to_vec() };
-    Order::DrawZone(Zone { name: name.into(), kind: ZoneKind::NoGo, shape })
+fn zone((west, south): (f64, f64), (east, north): (f64, f64)) -> Order {
+    let corners = [(west, south), (east, south), (east, north), (west, north)];
+    Order::DrawZone(corners.map(|(x, y)| Point::new(x, y)).to_vec())
 }
 
 fn under_way() -> Flight {
@@ -21,7 +19,7 @@ fn under_way() -> Flight {
 fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map() {
     let mut flight = under_way();
     let before = flight.mission.floor.coverage.counts().reachable;
-    let events = flight.tick(&[zone("no-go 1", (-1.0, 0.0), (1.0, 2.0))]);
+    let events = flight.tick(&[zone((-1.0, 0.0), (1.0, 2.0))]);
     assert!(
         events.iter().any(|kind| matches!(kind, EventKind::ZoneDrawn { zone } if zone.name == "no-go 1"))
     );
@@ -39,14 +37,14 @@ fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map
 #[test]
 fn a_plan_from_before_the_start_is_made_again_for_a_zone() {
     let mut flight = Flight::new(covering());
-    let no_go = |name| zone(name, (-1.0, 0.0), (1.0, 2.0));
-    flight.tick(&[no_go("no-go 1")]);
+    let no_go = || zone((-1.0, 0.0), (1.0, 2.0));
+    flight.tick(&[no_go()]);
     flight.fly(5);
     assert_eq!(flight.planner.plans, 0, "nobody has asked for one");
     flight.tick(&[Order::Plan]);
     flight.fly(5);
     assert_eq!(flight.planner.plans, 1);
-    flight.tick(&[no_go("no-go 2")]);
+    flight.tick(&[no_go()]);
     flight.fly(5);
     assert_eq!((flight.planner.plans, flight.mission.phase()), (2, &Phase::Waiting));
     assert_eq!(flight.planner.sites.last().unwrap().zones.len(), 2);
@@ -57,7 +55,7 @@ fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves
     let mut flight = under_way();
     flight.tick(&[Order::Hold]);
     let before = flight.pose;
-    flight.tick(&[swap_to("other"), zone("no-go 1", (-1.0, 0.0), (1.0, 2.0))]);
+    flight.tick(&[swap_to("other"), zone((-1.0, 0.0), (1.0, 2.0))]);
     flight.fly(5);
     assert_eq!((flight.pose, flight.held_by()), (before, Some(&HoldReason::Operator)));
     assert_eq!(flight.mission.planner_id(), "other", "whoever was to take over does");
@@ -68,20 +66,20 @@ fn a_zone_drawn_while_the_robot_is_held_is_planned_for_at_once_and_nothing_moves
 fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let mut flight = under_way();
     let here = flight.pose.position;
-    let around = |p: Point| zone("no-go 1", (p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
+    let around = |p: Point| zone((p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
     let orders = [
         (around(here), "robot stands"),
         (around(covering().start.position), "anchor"),
-        (zone("no-go 1", (1.0, 1.0), (1.0, 2.0)), "enclose"),
-        (zone("no-go 1", (1.0, 1.0), (1e308, 1e308)), "at most 10000 m"),
-        (zone("no-go 1", (15.0, 15.0), (16.0, 16.0)), "outside the tank"),
-        (zone("no-go 1", (-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "closes every way"),
+        (zone((1.0, 1.0), (1.0, 2.0)), "enclose"),
+        (zone((1.0, 1.0), (1e308, 1e308)), "at most 10000 m"),
+        (zone((15.0, 15.0), (16.0, 16.0)), "outside the tank"),
+        (zone((-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "closes every way"),
     ];
     for (order, why) in orders {
         let events = flight.tick(std::slice::from_ref(&order));
         assert!(refusal(&events).is_some_and(|text| text.contains(why)), "{why}: {events:?}");
     }
-    let good = zone("no-go 1", (-1.0, 0.0), (1.0, 2.0));
+    let good = zone((-1.0, 0.0), (1.0, 2.0));
     assert_eq!(refusal(&flight.tick(std::slice::from_ref(&good))), None);
     assert_eq!(refusal(&flight.tick(&[good])), None, "it gets another name");
     let names: Vec<&str> = flight.mission.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
