@@ -102,8 +102,8 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
         return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
     }
-    use Command::{Completions, Man, TakeTerminal};
-    if !matches!(cli.command, Some(TakeTerminal | Completions { .. } | Man { .. })) {
+    if !matches!(cli.command, Some(Command::TakeTerminal | Command::Completions { .. } | Command::Man { .. }))
+    {
         threads::check()?;
     }
     let plugins = PluginDirs {
