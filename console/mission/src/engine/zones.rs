@@ -65,7 +65,7 @@ impl Mission {
     fn free_name(&self) -> String {
         let zones = &self.chart.world().zones;
         let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
-        (1..).map(|n| format!("no-go {n}")).find(is_free).unwrap_or_default()
+        (1..=zones.len() + 1).map(|n| format!("no-go {n}")).find(is_free).unwrap_or_default()
     }
 
     /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
