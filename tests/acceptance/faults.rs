@@ -131,9 +131,9 @@ fn a_machine_that_lets_a_process_open_few_files_is_said_so_before_anything_is_fl
 fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
     use std::os::unix::fs::PermissionsExt;
     let bench = Bench::new();
-    let (program, corridor) = (bench.path().join("tankops"), bench.path().join("corridor.toml"));
+    let (program, mission) = (bench.path().join("tankops"), bench.path().join("mission.toml"));
     std::fs::copy(bench.command().get_program(), &program).unwrap();
-    std::fs::copy(scenario("corridor.toml"), &corridor).unwrap();
+    std::fs::copy(scenario("goto-single-obstacle.toml"), &mission).unwrap();
     std::fs::set_permissions(bench.path(), PermissionsExt::from_mode(0o755)).unwrap();
     // The limit holds for nobody, but not for root.
     let nobody = ["--reuid=65534", "--regid=65534", "--clear-groups"];
@@ -142,9 +142,9 @@ fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
         eprintln!("passed over: this is not root, or setpriv is not installed");
         return;
     }
-    for command in [["run", corridor.to_str().unwrap()], ["verify", "latest"], ["report", "latest"]] {
+    for command in [["run", mission.to_str().unwrap()], ["verify", "latest"], ["report", "latest"]] {
         let mut limited = std::process::Command::new("setpriv");
-        limited.args(nobody).args(["sh", "-c", "ulimit -u 4; exec \"$@\"", "sh"]).arg(&program).args(command);
+        limited.args(nobody).args(["prlimit", "--nproc=4"]).arg(&program).args(command);
         let ended = Ended::from(limited.env_clear().current_dir(bench.path()).output().unwrap());
         assert!(ended.code == Some(3) && ended.err.contains("`ulimit -u`"), "{ended:?}");
     }
