@@ -26,6 +26,19 @@ fn every_shipped_scenario_meets_its_expectations() {
 }
 
 #[test]
+fn a_complete_mission_that_does_not_keep_a_bound_does_not_exit_as_one_that_does() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
+    let (before, _) = text.split_once("[expect]").unwrap();
+    for (bound, code) in [("mission_time_max_s = 1000.0", 0), ("mission_time_max_s = 1.0", 1)] {
+        let bounded = bench.file("bounded.toml", format!("{before}[expect]\n{bound}\n"));
+        let flown = bench.fly(&bounded, &["--no-record"]);
+        assert_eq!(flown.json()["outcome"], "complete", "{flown:?}");
+        assert_eq!(flown.code, Some(code), "{bound}: {flown:?}");
+    }
+}
+
+#[test]
 fn a_plan_that_winds_the_tether_is_refused_with_the_reason_unless_the_scenario_says_otherwise() {
     let bench = Bench::new();
     let refused = bench.fly(&scenario("tether-refused.toml"), &["--no-record"]).json();

@@ -11,13 +11,13 @@ use crate::{
 use flight::{
     Flight,
     answers::{InOrder, Window, Windowed},
-    failure::{COMPLETE, ENDED_OTHERWISE, exit_code},
+    failure::{exit_code, mission_code},
     hosts::{self, host},
     plan_watch::{PlanWatch, Watched},
     planners, remains, scenarios,
 };
 use indicatif::{ProgressBar, ProgressStyle};
-use mission::{Event, EventKind, Order, Outcome, Phase};
+use mission::{Event, EventKind, Order, Phase};
 use planner_api::LogLevel;
 use planner_host::{Host, PluginDirs};
 use report::print::{say, say_line, warn_line};
@@ -103,8 +103,7 @@ fn fly_beside(
         Some(kept) if !options.json => say_line(&kept.text())?,
         _ => {}
     }
-    let code = if summary.outcome == Some(Outcome::Complete) { COMPLETE } else { ENDED_OTHERWISE };
-    Ok(ExitCode::from(exit_code(code, kept.as_ref())))
+    Ok(ExitCode::from(exit_code(mission_code(&summary), kept.as_ref())))
 }
 
 /// Reports on stderr, once each, that recording fails and that it has resumed.

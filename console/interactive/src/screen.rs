@@ -3,8 +3,8 @@
 use super::{measure::Measure, session::Session, watch::SharedPlaces};
 use crate::Drill;
 use anyhow::Context;
-use flight::failure::{COMPLETE, ENDED_OTHERWISE, exit_code};
-use mission::{EventKind, Outcome};
+use flight::failure::{COMPLETE, exit_code, mission_code};
+use mission::EventKind;
 use runs::Closed;
 use std::{
     io::Write,
@@ -257,10 +257,8 @@ impl Left {
         if let Some(signal) = self.signal {
             return ExitCode::from(128 + number(signal));
         }
-        let code = match closed.and_then(|closed| closed.summary.outcome) {
-            None | Some(Outcome::Complete) => COMPLETE,
-            Some(_) => ENDED_OTHERWISE,
-        };
+        let flown = closed.map(|closed| &closed.summary).filter(|summary| summary.outcome.is_some());
+        let code = flown.map_or(COMPLETE, mission_code);
         ExitCode::from(exit_code(code, kept))
     }
 }
