@@ -47,6 +47,24 @@ fn the_first_line_that_fails_is_named() {
 }
 
 #[test]
+fn a_command_that_the_mission_refuses_fails_at_its_line() {
+    let cases = [
+        (
+            "theme dark\nno-go 90,90 95,95\ntheme light\n",
+            "mission.txt:2: order refused: the zone lies outside the tank",
+        ),
+        (
+            "speed max\nstart\nkey enter\nwait until phase running\nno-go 90,90 95,95\nwait until phase ended\n",
+            "mission.txt:5: order refused: the zone lies outside the tank",
+        ),
+    ];
+    for (script, line) in cases {
+        let ended = scripted(&Bench::new(), script);
+        assert!(ended.code == Some(1) && ended.err.contains(line), "{script}: {ended:?}");
+    }
+}
+
+#[test]
 fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
     let bench = Bench::new();
     let mut command: Command = bench.command();

@@ -10,6 +10,7 @@
 //! picture result.svg
 //! ```
 
+mod answers;
 mod condition;
 mod read;
 
@@ -20,6 +21,7 @@ use super::{
     session::{Session, is_open},
     watch,
 };
+use answers::Answers;
 use anyhow::Context;
 use condition::Condition;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
@@ -39,6 +41,8 @@ const SIZE: (u16, u16) = (120, 36);
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// Time for which a command waits for what it needs to be opened.
 const OPENING: Duration = Duration::from_secs(30);
+/// Time for which a command waits for the mission to accept what it orders: the next tick, at any pace.
+const ANSWERING: Duration = Duration::from_secs(30);
 
 /// What a line of a script does.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +95,7 @@ impl Script {
         engine: &Current,
     ) -> anyhow::Result<Result<(), String>> {
         watch::signals(outbox, engine.clone(), Foreground::new())?;
-        let mut runner = Runner { session, is_left: false };
+        let mut runner = Runner { session, answers: Answers::default(), is_left: false };
         runner.session.take(Msg::Resize { width: SIZE.0, height: SIZE.1 });
         Ok(runner.carry_out(&self))
     }
@@ -110,6 +114,7 @@ pub(super) fn report(done: Result<(), String>) -> ExitCode {
 
 struct Runner {
     session: Session,
+    answers: Answers,
     is_left: bool,
 }
 
@@ -155,11 +160,28 @@ impl Runner {
         }
     }
 
-    /// Gives a command or a key to the console; what it refuses is a failure.
+    /// Gives a command or a key to the console; what it or the mission refuses is a failure.
     fn order(&mut self, msg: Msg) -> Result<(), String> {
         self.hear_until(Duration::ZERO, |_| false)?;
         self.session.model.console.notice = None;
+        self.answers = Answers::default();
         self.take(msg)?;
+        self.accepted()?;
+        if self.session.model.live.preflight.is_starting {
+            self.hear_until(ANSWERING, |model| !model.live.preflight.is_starting)?;
+            self.accepted()?;
+        }
+        let end = Instant::now() + ANSWERING;
+        while self.answers.is_waiting() && !self.is_left {
+            let next = self.session.next(Some(end)).ok_or("the mission does not answer the order")?;
+            self.session.update_time();
+            self.take(next)?;
+        }
+        self.answers.refusal().map_or(Ok(()), |why| Err(format!("order refused: {why}")))
+    }
+
+    /// Whether the console has taken what it was given.
+    fn accepted(&self) -> Result<(), String> {
         let model = &self.session.model;
         if let tui::model::Overlay::Commands(palette) = &model.ui.overlay
             && let Some(fault) = &palette.fault
@@ -202,7 +224,9 @@ impl Runner {
         if let Msg::Signal(signal @ (Signal::Interrupt | Signal::Terminate | Signal::Hangup)) = msg {
             return Err(format!("interrupted ({signal:?})"));
         }
+        self.answers.hear(&msg);
         let effects = self.session.take(msg);
+        self.answers.await_for(self.session.sent());
         self.is_left |= effects.iter().any(|effect| matches!(effect, Effect::Quit { .. }));
         Ok(())
     }

@@ -6,6 +6,7 @@ use super::{
     inbox::Inbox,
     line::Current,
 };
+use mission::Order;
 use std::time::{Duration, Instant, SystemTime};
 use tui::{Effect, Model, Msg, Times, is_typing, update};
 
@@ -18,12 +19,14 @@ pub(super) struct Session {
     began: Instant,
     /// The command line that was kept last; `None` if they are not kept.
     kept: Option<String>,
+    /// The orders that the last message led to.
+    sent: Vec<Order>,
 }
 
 impl Session {
     /// A session that begins now.
     pub(super) fn new(model: Model, inbox: Inbox, (engine, desk): (Current, DeskHandle)) -> Self {
-        Self { model, inbox, engine, desk, began: Instant::now(), kept: None }
+        Self { model, inbox, engine, desk, began: Instant::now(), kept: None, sent: Vec::new() }
     }
 
     /// Begins with the command lines of earlier sessions, and keeps those of this one for later ones.
@@ -63,10 +66,16 @@ impl Session {
         if let Some(engine) = self.engine.get() {
             engine.report(self.model.live.may_move(), is_typing(&self.model));
         }
+        self.sent.clear();
         effects.into_iter().filter_map(|effect| self.carry_out(effect)).collect()
     }
 
-    fn carry_out(&self, effect: Effect) -> Option<Effect> {
+    /// The orders that the last message led to; the mission accepts or refuses them in a later one.
+    pub(super) fn sent(&self) -> &[Order] {
+        &self.sent
+    }
+
+    fn carry_out(&mut self, effect: Effect) -> Option<Effect> {
         match effect {
             Effect::Open { id, source, planner, speed } => {
                 self.desk.request(Request::Open { id, source, planner, speed });
@@ -85,7 +94,8 @@ impl Session {
             Effect::Do(job) => self.desk.request(Request::Do(job)),
             Effect::Order(order) => {
                 if let Some(engine) = self.engine.get() {
-                    engine.order(order);
+                    engine.order(order.clone());
+                    self.sent.push(order);
                 }
             }
             Effect::Speed(speed) => match self.engine.get() {

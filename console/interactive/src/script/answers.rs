@@ -1,0 +1,79 @@
+//! What the mission says to the orders of a script.
+
+use mission::{EventKind, Order};
+use tui::{Msg, RunMsg};
+
+/// The orders that the mission has not answered yet, and why it refused one.
+#[derive(Debug, Default)]
+pub(super) struct Answers {
+    awaited: Vec<Order>,
+    refused: Option<String>,
+}
+
+impl Answers {
+    /// These orders were sent.
+    pub(super) fn await_for(&mut self, sent: &[Order]) {
+        self.awaited.extend_from_slice(sent);
+    }
+
+    /// Whether an order is not answered yet.
+    pub(super) fn is_waiting(&self) -> bool {
+        !self.awaited.is_empty()
+    }
+
+    /// Why the first order that was refused was refused.
+    pub(super) fn refusal(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// Takes in what a message says to the orders.
+    pub(super) fn hear(&mut self, msg: &Msg) {
+        let Msg::Run(_, msg) = msg else { return };
+        match msg {
+            RunMsg::Events(events) => events.iter().for_each(|event| self.take(&event.kind)),
+            RunMsg::OrderFailed { order, why } => self.answer(order, Some(why)),
+            // The mission is not there any more, and answers nothing.
+            RunMsg::Closed(_) | RunMsg::OpenFailed(_) => self.awaited.clear(),
+            _ => {}
+        }
+    }
+
+    fn take(&mut self, event: &EventKind) {
+        match event {
+            EventKind::Ordered { order } => self.answer(order, None),
+            EventKind::OrderRefused { order, why } => self.answer(order, Some(why)),
+            EventKind::RunOpened(_) => self.awaited.clear(),
+            _ => {}
+        }
+    }
+
+    fn answer(&mut self, order: &Order, refused: Option<&String>) {
+        let Some(index) = self.awaited.iter().position(|awaited| awaited == order) else { return };
+        self.awaited.remove(index);
+        if let Some(why) = refused {
+            self.refused.get_or_insert_with(|| why.clone());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::Event;
+    use tui::model::RunId;
+
+    fn says(kind: EventKind) -> Msg {
+        Msg::Run(RunId::default(), RunMsg::Events(vec![Event { tick: 1, t_s: 0.1, kind }]))
+    }
+
+    #[test]
+    fn every_order_is_waited_for_and_the_first_refusal_is_kept() {
+        let mut answers = Answers::default();
+        answers.await_for(&[Order::Hold, Order::Resume]);
+        answers.hear(&says(EventKind::Ordered { order: Order::Abort }));
+        answers.hear(&says(EventKind::Ordered { order: Order::Hold }));
+        assert!(answers.is_waiting() && answers.refusal().is_none());
+        answers.hear(&says(EventKind::OrderRefused { order: Order::Resume, why: "not held".into() }));
+        assert!(!answers.is_waiting() && answers.refusal() == Some("not held"));
+    }
+}
