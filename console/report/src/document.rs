@@ -250,7 +250,7 @@ fn of_run(layers: &Layers<'_>, past: &PastRun) -> [Option<Figure>; 3] {
 
 /// Whether an incident has a number on the chart.
 pub(crate) fn is_marked(incident: &crate::record::Incident) -> bool {
-    incident.needs_review() || matches!(incident.kind, "obstacle" | "end")
+    incident.needs_review() || matches!(incident.kind, "obstacle" | "zone" | "end")
 }
 
 /// Number of a document: the beginning of the first run's name, and its seed.

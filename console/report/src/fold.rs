@@ -3,6 +3,7 @@
 use crate::{
     account::{Account, Evidence, account},
     accuracy::{Accuracy, Claimed, Estimate},
+    drawn::DrawnZone,
     scanned::Scanned,
     summary::{Summary, Tether},
     tethered::Tethered,
@@ -14,7 +15,7 @@ use mission::{
     PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm},
 };
-use world::{Obstacle, Pose};
+use world::{Obstacle, Pose, Zone};
 
 /// So many faults are named.
 const MOST_FAULTS: usize = 20;
@@ -33,6 +34,8 @@ pub struct Fold {
     tethered: Option<Tethered>,
     pub(crate) run: Option<Box<RunOpened>>,
     pub(crate) evidence: Option<Evidence>,
+    /// Whether the event before drew a zone: the change of the floor that follows is its.
+    is_zone_new: bool,
     /// Whether the account of the floor is left out.
     leaves_out_floor: bool,
 }
@@ -102,13 +105,14 @@ impl Fold {
                 if let Some(scanned) = &mut self.scanned {
                     scanned.change(changes);
                 }
+                if let Some(evidence) = self.evidence.as_mut().filter(|_| self.is_zone_new) {
+                    evidence.shut(changes);
+                }
             }
             EventKind::Progressed { done, along_m, .. } => self.progress(*done, *along_m),
             EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
             EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
-            EventKind::ZoneDrawn { zone } => {
-                self.run.iter_mut().for_each(|run| run.world.zones.push(zone.clone()));
-            }
+            EventKind::ZoneDrawn { zone } => self.draw_zone(zone, event.t_s),
             EventKind::ObstacleFound { obstacle } => {
                 self.known.obstacles_found += 1;
                 self.find(obstacle);
@@ -131,6 +135,16 @@ impl Fold {
             }
             _ => {}
         }
+        self.is_zone_new = matches!(event.kind, EventKind::ZoneDrawn { .. });
+    }
+
+    fn draw_zone(&mut self, zone: &Zone, t_s: f64) {
+        self.run.iter_mut().for_each(|run| run.world.zones.push(zone.clone()));
+        let drawn = DrawnZone::new(zone, t_s, &self.standing.phase);
+        if let Some(evidence) = &mut self.evidence {
+            evidence.forbid(drawn.words(), &zone.shape);
+        }
+        self.known.zones_drawn.push(drawn);
     }
 
     fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {

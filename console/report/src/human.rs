@@ -32,6 +32,7 @@ pub fn human(run: &Summary) -> String {
     text.lines(run.positioning.iter().flat_map(positioning).map(|line| ("true position", line)));
     text.some("tether", run.tether.as_ref().map(tether));
     text.some("sandbox", run.sandbox.as_ref());
+    text.lines(run.zones_drawn.iter().map(|zone| ("zones drawn", zone.to_string())));
     text.lines(run.faults.iter().map(|fault| ("faults", fault.clone())));
     text.some("planner calls", run.planner_calls.as_ref().map(calls));
     text.some("stops", run.stops.as_ref().map(stops));

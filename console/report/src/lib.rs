@@ -8,6 +8,7 @@ pub mod account;
 mod accuracy;
 pub mod document;
 pub mod drawing;
+mod drawn;
 mod dxf;
 pub mod estimate;
 pub mod expect;
@@ -35,6 +36,7 @@ mod turning;
 
 pub use account::Account;
 pub use document::{Document, Inspection};
+pub use drawn::DrawnZone;
 pub use estimate::Estimate;
 pub use expect::{Expect, Miss};
 pub use fold::Fold;

@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::account::Account;
+use crate::{account::Account, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,9 @@ pub struct Summary {
     pub collisions: Option<u64>,
     /// Obstacles found that are not on the drawing.
     pub obstacles_found: u64,
+    /// No-go zones that were drawn before or during the mission, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub zones_drawn: Vec<DrawnZone>,
     /// What was checked before the start, by the console and by hand; empty for a run without an operator.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checks: Vec<Check>,

@@ -75,7 +75,7 @@ impl Event {
             EventKind::ZoneDrawn { zone } => {
                 let (low, high) = zone.shape.bounds();
                 let corners = format!("{:.2}, {:.2} to {:.2}, {:.2} m", low.x, low.y, high.x, high.y);
-                line(Severity::Watch, "map", format!("{} drawn: {corners}", zone.name))
+                line(Severity::Watch, "map", format!("{} drawn by the operator: {corners}", zone.name))
             }
             EventKind::PlannerChosen { .. }
             | EventKind::PlannerPrepared { .. }

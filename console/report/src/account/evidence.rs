@@ -4,14 +4,16 @@ use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    Boundary, CellRun, Floor, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch, ShellZone, SweptArea,
-    Tool, tether::Reach,
+    Boundary, Cell, CellRun, Floor, KindRun, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch,
+    ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
 /// The error of a cell over which nothing passed without counting.
 const NEVER: u16 = u16::MAX;
+/// The zone of a cell that none took out of reach.
+const OF_NONE: u16 = u16::MAX;
 /// Ways along a plan that differ by less are the same, metres.
 const NEARLY_M: f64 = 0.01;
 
@@ -36,6 +38,10 @@ pub struct Evidence {
     asked: Option<Vec<bool>>,
     found: Vec<(ObstacleId, Solid)>,
     drawn: Vec<Solid>,
+    /// Zones that the robot must not enter: those of the scenario, and those drawn later.
+    no_go: Vec<Solid>,
+    /// Which of them took a cell out of reach when it was drawn; [`OF_NONE`] for none.
+    shut_by: Vec<u16>,
     boundary: Boundary,
     shell: ShellZone,
     area: SweptArea,
@@ -57,6 +63,8 @@ impl Evidence {
             error_m: 0.0,
             asked: asked(run),
             found: Vec::new(),
+            no_go: no_go_zones(run),
+            shut_by: vec![OF_NONE; run.floor.len()],
             drawn: run.world.obstacles.iter().filter(|o| o.known).map(Solid::of).collect(),
             boundary: run.world.boundary.clone(),
             shell: ShellZone::new(&run.world.boundary, CRITICAL_ZONE_M),
@@ -159,6 +167,34 @@ impl Evidence {
         self.found.push((obstacle.id, Solid::of(obstacle)));
     }
 
+    /// A no-go zone was drawn; `words` say what it is.
+    pub(crate) fn forbid(&mut self, words: String, outline: &Shape) {
+        self.no_go.push(Solid { name: words, shape: outline.clone() });
+    }
+
+    /// The zone that was drawn last changed the kind of these cells.
+    pub(crate) fn shut(&mut self, changes: &[KindRun]) {
+        let zone = u16::try_from(self.no_go.len().saturating_sub(1)).unwrap_or(OF_NONE);
+        for KindRun(kind, first, count) in changes {
+            let first = (*first as usize).min(self.shut_by.len());
+            let end = first.saturating_add(*count as usize).min(self.shut_by.len());
+            if *kind != Cell::Reachable {
+                self.shut_by[first..end].fill(zone);
+            }
+        }
+    }
+
+    /// The zone that took a cell out of reach when it was drawn, if one did.
+    pub(super) fn shut_by(&self, index: usize) -> Option<&Solid> {
+        self.no_go.get(usize::from(self.shut_by[index]))
+    }
+
+    /// The no-go zone that is nearest to a place, and its distance, metres; `None` without any.
+    pub(super) fn nearest_no_go(&self, place: Point) -> Option<(&Solid, f64)> {
+        let all = self.no_go.iter().map(|zone| (zone, zone.shape.distance_m(place)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Takes in what another run on the same floor planned and did.
     pub fn join(&mut self, other: &Self) {
         let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
@@ -181,8 +217,25 @@ impl Evidence {
             _ => None,
         };
         self.found.extend(other.found.iter().cloned());
+        self.join_zones(other);
         self.shell.join(&other.shell);
         self.area.join(&other.area);
+    }
+
+    /// The zones of another run; those of a scenario that both were flown with have the same names.
+    fn join_zones(&mut self, other: &Self) {
+        let mut index_of = Vec::new();
+        for zone in &other.no_go {
+            let known = self.no_go.iter().position(|own| own.shape == zone.shape);
+            index_of.push(known.unwrap_or(self.no_go.len()));
+            if known.is_none() {
+                self.no_go.push(zone.clone());
+            }
+        }
+        for (own, theirs) in self.shut_by.iter_mut().zip(&other.shut_by).filter(|(own, _)| **own == OF_NONE) {
+            let index = index_of.get(usize::from(*theirs)).and_then(|index| u16::try_from(*index).ok());
+            *own = index.unwrap_or(OF_NONE);
+        }
     }
 
     /// Gives what was found other names.
@@ -234,6 +287,13 @@ impl Evidence {
         let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
         let shell = ("the shell", self.boundary.wall_distance_m(place));
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
+    }
+
+    /// The same with the no-go zones, from which the robot keeps as far.
+    pub(super) fn nearest_kept_from(&self, place: Point) -> (&str, f64) {
+        let solid = self.nearest_solid(place);
+        let zone = self.nearest_no_go(place).map(|(zone, m)| (zone.name.as_str(), m));
+        zone.filter(|(_, m)| *m < solid.1).unwrap_or(solid)
     }
 
     /// Name and distance of the found obstacle that is nearest to a place, metres; `None` without any.
@@ -310,6 +370,12 @@ impl Planned {
     fn is_past(&self, due_m: f32) -> bool {
         f64::from(due_m) <= self.along_m + NEARLY_M
     }
+}
+
+/// The no-go zones of a scenario.
+fn no_go_zones(run: &RunOpened) -> Vec<Solid> {
+    let zones = run.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+    zones.map(|zone| Solid { name: format!("no-go zone {}", zone.name), shape: zone.shape.clone() }).collect()
 }
 
 fn asked(run: &RunOpened) -> Option<Vec<bool>> {

@@ -141,11 +141,13 @@ impl Explained for OutOfReach {
                 let limit_m = measure.limit_m.unwrap_or(0.0);
                 format!("{} from {near}, hull and clearance {limit_m:.2} m", measure.range())
             }
-            (Self::ClosedOff, Some(Measure { value_m, .. })) => {
-                format!("no passage as wide as hull and clearance, {value_m:.2} m")
+            (Self::ClosedOff, Some(Measure { value_m, near, .. })) => {
+                let by = near.as_ref().map(|zone| format!("closed off by {zone}: ")).unwrap_or_default();
+                format!("{by}no passage as wide as hull and clearance, {value_m:.2} m")
             }
-            (Self::NoGo, Some(Measure { value_m, .. })) => {
-                format!("in a no-go zone, up to {value_m:.2} m from floor in reach")
+            (Self::NoGo, Some(Measure { value_m, near, .. })) => {
+                let zone = near.as_deref().unwrap_or("a no-go zone");
+                format!("in {zone}, up to {value_m:.2} m from floor in reach")
             }
             (_, None) => self.plainly().to_owned(),
         }

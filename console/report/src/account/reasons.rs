@@ -1,11 +1,22 @@
 //! Why cells were missed or are out of reach, and the numbers behind it.
 
 use super::{
-    evidence::Evidence,
+    evidence::{Evidence, Solid},
     measure::{Measure, depth_m},
     reason::{MissReason, OutOfReach},
 };
+use std::collections::BTreeMap;
 use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
+
+/// The names of the zones of some cells, the zone of most cells first; `None` without any.
+fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
+    let mut cells: BTreeMap<&str, usize> = BTreeMap::new();
+    zones.for_each(|zone| *cells.entry(&zone.name).or_default() += 1);
+    let mut names: Vec<(&str, usize)> = cells.into_iter().collect();
+    names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let names: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
+    (!names.is_empty()).then(|| names.join(" and "))
+}
 
 /// Why floor was missed.
 pub struct Reasons<'a> {
@@ -43,13 +54,13 @@ impl Reasons<'_> {
 
     /// How far a place lies beyond any lane, which keeps hull and clearance from what is solid, metres; negative within reach of one.
     pub(crate) fn beyond_lanes_m(&self, place: Point) -> f64 {
-        let (_, solid_m) = self.evidence.nearest_solid(place);
+        let (_, solid_m) = self.evidence.nearest_kept_from(place);
         self.room_m - solid_m - self.lane_m / 2.0
     }
 
     /// Why no plan led to a place.
     fn why_not_planned(&self, place: Point) -> MissReason {
-        let (_, solid_m) = self.evidence.nearest_solid(place);
+        let (_, solid_m) = self.evidence.nearest_kept_from(place);
         if self.beyond_lanes_m(place) > 0.0 {
             MissReason::Narrow
         } else if solid_m < self.room_m {
@@ -73,7 +84,7 @@ impl Reasons<'_> {
             |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::max);
         let least =
             |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::min);
-        let solid = |cell: usize| evidence.nearest_solid(floor.center(cell));
+        let solid = |cell: usize| evidence.nearest_kept_from(floor.center(cell));
         let depth =
             |is_other: &dyn Fn(usize) -> bool| Some(depth_m(floor, cells, is_other).unwrap_or(floor.cell_m));
         match reason {
@@ -117,9 +128,14 @@ impl Reasons<'_> {
             OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
                 Measure::off(cells.iter().map(solid)).map(|m| m.against(self.room_m))
             }
-            OutOfReach::ClosedOff => Some(Measure::of(2.0 * self.room_m)),
+            OutOfReach::ClosedOff => {
+                let by = cells.iter().filter_map(|cell| self.evidence.shut_by(*cell));
+                Some(Measure { near: named(by), ..Measure::of(2.0 * self.room_m) })
+            }
             OutOfReach::NoGo => {
-                depth_m(floor, cells, |cell| floor.kind(cell) == Cell::Reachable).map(Measure::of)
+                let zone = |cell: &usize| Some(self.evidence.nearest_no_go(floor.center(*cell))?.0);
+                let depth_m = depth_m(floor, cells, |cell| floor.kind(cell) == Cell::Reachable)?;
+                Some(Measure { near: named(cells.iter().filter_map(zone)), ..Measure::of(depth_m) })
             }
         }
     }

@@ -364,3 +364,50 @@ fn floor_that_was_not_requested_or_lies_in_a_no_go_zone_is_listed_with_a_distanc
     let out = account.unreachable.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
     assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from floor in reach");
 }
+
+/// What becomes of a floor on which a box is forbidden, as the words of the areas out of reach.
+fn out_of_reach_with(run: &RunOpened, zone: &world::Shape) -> Vec<Area<OutOfReach>> {
+    let mut evidence = Evidence::new(run);
+    let mut maker = world::FloorMaker::new(&run.world, 0.05, 0.45, 0.6, Point::origin());
+    let changes = maker.forbid(&run.world, zone);
+    evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), zone);
+    evidence.shut(&changes);
+    let mut run = run.clone();
+    run.floor.change(&changes);
+    account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).unreachable
+}
+
+fn rectangle(low: (f64, f64), high: (f64, f64)) -> world::Shape {
+    let corners = [low, (high.0, low.1), high, (low.0, high.1)];
+    world::Shape::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() }
+}
+
+#[test]
+fn floor_in_a_drawn_zone_names_it_and_so_does_floor_that_it_closes_off() {
+    let run = round_tank(0.05);
+    let words = "no-go zone no-go 1, drawn by the operator at 12.0 s";
+    let within = out_of_reach_with(&run, &rectangle((1.0, -1.0), (2.5, 0.5)));
+    let named = within.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
+    assert!(named.why().starts_with(&format!("in {words}, up to ")), "{}", named.why());
+    // A bar across the tank: what lies east of it is closed off.
+    let across = out_of_reach_with(&run, &rectangle((2.0, -6.0), (2.2, 6.0)));
+    let closed: Vec<String> = across.iter().map(Area::why).collect();
+    assert!(
+        closed.iter().any(|why| why.contains(&format!("closed off by {words}: no passage"))),
+        "{closed:?}"
+    );
+}
+
+#[test]
+fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
+    let run = round_tank(0.05);
+    let mut evidence = Evidence::new(&run);
+    let zone = rectangle((1.0, -1.0), (2.5, 0.5));
+    evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), &zone);
+    assert_eq!(why_missed(&evidence, &run, 0.72, 0.0), MissReason::Clearance);
+    assert_eq!(why_missed(&evidence, &run, -2.0, 0.0), MissReason::NotPlanned);
+    let reasons = evidence.reasons(&run);
+    let cell = run.floor.cell_at(Point::new(0.72, 0.0)).expect("a place on the floor");
+    let measure = reasons.measure(&CoverageGrid::new(run.floor.clone()), MissReason::Clearance, &[cell]);
+    assert!(measure.expect("a number").near.expect("a name").contains("no-go 1"));
+}

@@ -286,3 +286,26 @@ fn rounded(value: Value) -> Value {
         other => other,
     }
 }
+
+/// A zone that was drawn under way: a box of 1 m by 2 m.
+fn zone_drawn(x: f64, y: f64) -> Value {
+    let vertices = [(x, y), (x + 1.0, y), (x + 1.0, y + 2.0), (x, y + 2.0)].map(|(x, y)| Point::new(x, y));
+    let shape = world::Shape::Polygon { vertices: vertices.to_vec() };
+    let zone = Zone { name: "no-go 1".into(), kind: world::ZoneKind::NoGo, shape };
+    json!({ "event": "zone_drawn", "zone": zone })
+}
+
+#[test]
+fn a_zone_drawn_under_way_is_reported_for_every_task_with_who_drew_it_when_and_where() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let run = fold(&[(0, opened()), (0, start), (4, zone_drawn(0.0, 0.5))]).summary();
+    let line = "no-go zone no-go 1, drawn by the operator at 2.0 s: 2.00 m², corners 0.00, 0.50; 1.00, 0.50; 1.00, 2.50; 0.00, 2.50 m";
+    assert!(human(&run).contains(line), "{}", human(&run));
+    let zone = serde_json::to_value(&run).unwrap()["zones_drawn"][0].clone();
+    assert_eq!(
+        (&zone["name"], &zone["by"], &zone["t_s"]),
+        (&json!("no-go 1"), &json!("operator"), &json!(2.0))
+    );
+    let early = fold(&[(0, opened()), (0, zone_drawn(0.0, 0.5))]).summary();
+    assert!(human(&early).contains("drawn by the operator before the start"), "{}", human(&early));
+}

@@ -11,7 +11,7 @@ pub struct Incident {
     pub t_s: f64,
     /// When it was over, seconds; absent for what has no length, and for what lasted to the end.
     pub until_s: Option<f64>,
-    /// What kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `plan`, `order`, `station` or `end`.
+    /// What kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `zone` (a no-go zone that was drawn), `plan`, `order`, `station` or `end`.
     pub kind: &'static str,
     /// How much it asked of the operator.
     pub severity: Severity,

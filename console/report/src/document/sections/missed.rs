@@ -4,7 +4,7 @@ use super::{
     super::page::{Block, Cell, Table, Value},
     Document, counted, number,
 };
-use crate::account::{Area, Cause, MissReason};
+use crate::account::{Area, Cause, MissReason, OutOfReach};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// With more missed areas than this, small ones are said in few words.
@@ -131,6 +131,12 @@ fn plates_of(area: &Area<MissReason>) -> String {
     if more > 0 { format!("{names} +{more}") } else { names }
 }
 
+/// The no-go zone in which most of an area lies.
+fn zone_of(area: &Area<OutOfReach>) -> Option<&str> {
+    let cause = area.causes.first().filter(|cause| cause.reason == OutOfReach::NoGo)?;
+    cause.measure.as_ref()?.near.as_deref()
+}
+
 fn unreachable(document: &Document) -> Table {
     let floor = &document.floor;
     let mut table = Table::new(
@@ -144,12 +150,13 @@ fn unreachable(document: &Document) -> Table {
     );
     let mut by_reason: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for area in &floor.unreachable {
-        by_reason.entry(area.reason).or_default().push(area);
+        by_reason.entry((area.reason, zone_of(area))).or_default().push(area);
     }
-    for (reason, areas) in by_reason {
+    for ((reason, zone), areas) in by_reason {
         let largest = areas[0];
+        let in_zone = zone.map(|zone| format!("in {zone}"));
         table.row(vec![
-            reason.plainly().into(),
+            in_zone.unwrap_or_else(|| reason.plainly().to_owned()).into(),
             areas.len().to_string().into(),
             format!("{:.3}", areas.iter().map(|area| area.area_m2).sum::<f64>()).into(),
             format!("{}, {}: {}", number(largest.at.x, 2), number(largest.at.y, 2), largest.why()).into(),

@@ -121,7 +121,7 @@ fn tether_table(tether: &TetherPart) -> Table {
 
 fn incidents(document: &Document, run: &RunPart) -> Option<Block> {
     let mut table = Table::new(
-        "Alarms, holds, faults, obstacles, plans and stations",
+        "Alarms, holds, faults, obstacles, drawn zones, plans and stations",
         &[
             ("Time", "h:m:s", "r nw"),
             ("No.", "on the chart", "c"),
