@@ -135,18 +135,41 @@ fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
     std::fs::copy(bench.command().get_program(), &program).unwrap();
     std::fs::copy(scenario("goto-single-obstacle.toml"), &mission).unwrap();
     std::fs::set_permissions(bench.path(), PermissionsExt::from_mode(0o755)).unwrap();
-    // The limit holds for nobody, but not for root.
-    let nobody = ["--reuid=65534", "--regid=65534", "--clear-groups"];
-    let is_possible = std::process::Command::new("setpriv").args(nobody).arg("true").status();
+    // The limit holds for a user who runs nothing else, but not for root.
+    let user = (70_000 + std::process::id() % 1000).to_string();
+    let other = [format!("--reuid={user}"), format!("--regid={user}"), "--clear-groups".to_owned()];
+    let is_possible = std::process::Command::new("setpriv").args(&other).arg("true").status();
     if !is_possible.is_ok_and(|status| status.success()) {
         eprintln!("passed over: this is not root, or setpriv is not installed");
         return;
     }
-    for command in [["run", mission.to_str().unwrap()], ["verify", "latest"], ["report", "latest"]] {
+    bench.fly(&mission, &[]);
+    let run = bench.runs()[0].to_str().unwrap().to_owned();
+    let (run, mission) = (run.as_str(), mission.to_str().unwrap());
+    let limited = |threads: usize, command: &[&str]| {
         let mut limited = std::process::Command::new("setpriv");
-        limited.args(nobody).args(["prlimit", "--nproc=4"]).arg(&program).args(command);
-        let ended = Ended::from(limited.env_clear().current_dir(bench.path()).output().unwrap());
-        assert!(ended.code == Some(3) && ended.err.contains("`ulimit -u`"), "{ended:?}");
+        limited.args(&other).arg("prlimit").arg(format!("--nproc={threads}")).arg(&program).args(command);
+        Ended::from(limited.env_clear().current_dir(bench.path()).output().unwrap())
+    };
+    // With less than each command needs nothing is begun.
+    let commands: [(usize, &[&str]); 6] = [
+        (3, &["report", run]),
+        (3, &["rescan", run, "-o", "again.toml"]),
+        (3, &["runs"]),
+        (8, &["verify", run]),
+        (13, &["run", mission]),
+        (16, &["console", mission]),
+    ];
+    for (needed, command) in commands {
+        for threads in 1..needed {
+            let ended = limited(threads, command);
+            assert!(ended.code == Some(3) && ended.err.contains("`ulimit -u`"), "{threads}: {ended:?}");
+            assert_eq!(ended.err.lines().count(), 1, "{threads} for {command:?}: {ended:?}");
+        }
+    }
+    for (enough, command) in [(1, ["events", run]), (3, ["report", run])] {
+        let ended = limited(enough, &command);
+        assert_eq!(ended.code, Some(0), "{enough} for {command:?}: {ended:?}");
     }
 }
 

@@ -102,10 +102,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
         return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
     }
-    if !matches!(cli.command, Some(Command::TakeTerminal | Command::Completions { .. } | Command::Man { .. }))
-    {
-        threads::check()?;
-    }
+    threads::check(threads::needed(cli.command.as_ref()))?;
     let plugins = PluginDirs {
         requires_sandbox: cli.plugins.require_sandbox,
         ..PluginDirs::standard(&cli.plugins.plugin_dir)
