@@ -50,6 +50,8 @@ impl Run {
             | EventKind::RangesConsistent => self.locate(event, &mut change),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ZoneDrawn { zone } => {
+                // The plan before does not know it: another one is made.
+                self.forget_certificate();
                 self.about.iter_mut().for_each(|about| about.world.zones.push(zone.clone()));
             }
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
@@ -194,6 +196,10 @@ impl Run {
     }
 
     fn hold(&mut self, event: &Event, hold: &Hold, change: &mut Change) {
+        // No planner failed, so a plan was made that is not flown.
+        if matches!(hold.by, HoldReason::PlannerFault { .. }) && self.planning.fault.is_none() {
+            self.forget_certificate();
+        }
         if let HoldReason::Stuck { message } = &hold.by {
             self.raise(event, Cause::Stuck, Severity::Warn, format!("stuck: {message}"));
         }

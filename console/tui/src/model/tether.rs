@@ -27,7 +27,7 @@ pub struct Tether {
     pub is_snagged: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
-    /// Whether the last plan was certified; `None` before the first.
+    /// Whether the plan that is flown, or was refused last, is certified; `None` without such a plan.
     pub certified: Option<bool>,
     /// Mission time of what is known of how it lies, seconds; `None` before the first.
     pub t_s: Option<f64>,

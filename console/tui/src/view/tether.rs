@@ -4,6 +4,7 @@ use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
 use crate::model::{Pane, Tether};
 use crate::theme::Role;
+use mission::Phase;
 use ratatui::{Frame, layout::Rect};
 
 /// Columns from which the pane writes full words.
@@ -24,7 +25,8 @@ fn note(look: &Look) -> &'static str {
     match look.run.tether.as_ref().and_then(|tether| tether.certified) {
         Some(true) => "plan certified",
         Some(false) => "NOT certified",
-        None => "",
+        None if *look.run.phase() == Phase::Waiting => "",
+        None => "no certified plan",
     }
 }
 

@@ -394,11 +394,29 @@ impl ScriptedMission {
 
     /// The planner fails and the robot is held.
     pub(crate) fn planner_fails(&self) -> Vec<Event> {
-        let message = "planner rpf panicked during step".to_owned();
+        self.fails(During::Step, Cause::Panic, "planner rpf panicked during step")
+    }
+
+    /// The planner finds no plan and the robot is held.
+    pub(crate) fn planning_fails(&self) -> Vec<Event> {
+        let cause = Cause::Planner(planner_api::Code::NoPath);
+        self.fails(During::Plan, cause, "planner rpf has no plan: no way")
+    }
+
+    /// A no-go zone is drawn.
+    pub(crate) fn zone_drawn(&self) -> Event {
+        let vertices = [(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let shape = Shape::Polygon { vertices };
+        let zone = world::Zone { name: "no-go 1".into(), kind: world::ZoneKind::NoGo, shape };
+        self.now(EventKind::ZoneDrawn { zone })
+    }
+
+    fn fails(&self, during: During, cause: Cause, message: &str) -> Vec<Event> {
+        let message = message.to_owned();
         let fault = Fault {
             planner: "rpf".into(),
-            during: During::Step,
-            cause: Cause::Panic,
+            during,
+            cause,
             message: message.clone(),
             partial: Vec::new(),
             plugin_sha256: None,

@@ -261,3 +261,25 @@ fn a_robot_that_stands_still_is_drawn_once_a_second_and_news_at_once() {
     assert_eq!(redraw(&screen.model, &health), Redraw::No);
     assert_eq!(redraw(&Screen::running().model, &telemetry), Redraw::Soon);
 }
+
+#[test]
+fn the_tether_pane_calls_no_plan_certified_that_is_not_flown() {
+    let notes = |events: fn(&Screen) -> Vec<Event>| {
+        let mut screen = Screen::tethered();
+        let events = events(&screen);
+        screen.hear(RunMsg::Events(events));
+        let shown = text(&drawn(&screen.model, PLAIN, (120, 36)));
+        ["no certified plan", "plan certified"].map(|note| shown.contains(note))
+    };
+    assert_eq!(notes(|_| Vec::new()), [false, true]);
+    // One that fails in a step is restarted, and goes on with its plan.
+    assert_eq!(notes(|screen| screen.mission.planner_fails()), [false, true]);
+    assert_eq!(notes(|screen| vec![screen.mission.zone_drawn()]), [true, false]);
+    assert_eq!(notes(|screen| screen.mission.planning_fails()), [true, false]);
+    // A plan that is safe for the tether, and scans nothing.
+    let no_way = |screen: &Screen| {
+        let message = "plan of rpf scans none of the remaining 3.00 m²".to_owned();
+        vec![screen.mission.certified(&[]), screen.mission.held(HoldReason::PlannerFault { message })]
+    };
+    assert_eq!(notes(no_way), [true, false]);
+}

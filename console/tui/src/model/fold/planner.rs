@@ -1,7 +1,7 @@
 //! Events of planners into a run.
 
 use crate::model::{Cause, Change, PlanShown, Run, Trail, Withdrawn};
-use mission::{Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text};
+use mission::{During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text};
 use planner_api::{Command, Drawing};
 
 /// Most drawings kept of one tick.
@@ -40,6 +40,9 @@ impl Run {
                 // A planner that was refused does not replace the active one.
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
+                    if fault.during == During::Plan {
+                        self.forget_certificate();
+                    }
                 }
                 self.raise_as_logged(event, Cause::Planner);
                 change.withdraw(Withdrawn::All);

@@ -4,6 +4,11 @@ use crate::model::{Cause, Run};
 use mission::{Event, EventKind, Severity, event::TetherAlarm};
 
 impl Run {
+    /// The plan that was certified last is not flown any more.
+    pub(super) fn forget_certificate(&mut self) {
+        self.tether.iter_mut().for_each(|tether| tether.certified = None);
+    }
+
     /// Takes in an event of the tether.
     pub(super) fn tethered(&mut self, event: &Event) {
         match &event.kind {
