@@ -1,6 +1,6 @@
 //! The console without a terminal: scripts, plain sentences, configuration files, completions and manual pages.
 
-use crate::bench::{Bench, Ended};
+use crate::bench::{Bench, Ended, scenario};
 use std::{
     io::Write,
     process::{Command, Stdio},
@@ -44,6 +44,26 @@ fn the_first_line_that_fails_is_named() {
         let ended = scripted(&Bench::new(), script);
         assert!(ended.code == Some(code) && ended.err.contains(line), "{script}: {ended:?}");
     }
+}
+
+#[test]
+fn a_mission_that_takes_long_to_show_starts_when_that_is_confirmed() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap();
+    let (name, _) = text.split_once("[tank]").unwrap();
+    let (_, robot) = text.split_once("[robot]").unwrap();
+    let column = |k: u32| {
+        let at_rad = 0.3 * f64::from(k);
+        let (x, y) = (10.0 * at_rad.cos(), (4.0 + f64::from(k % 10)) * at_rad.sin());
+        format!(
+            "[[obstacles]]\nname = \"c{k}\"\nkind = \"circle\"\ncenter_m = [{x:.2}, {y:.2}]\nradius_m = 0.05\n"
+        )
+    };
+    let columns: String = (0..300).map(column).collect();
+    let slow = bench.file("slow.toml", format!("{name}[tank]\nradius_m = 20.0\n{columns}[robot]{robot}"));
+    let script = bench.file("mission.txt", "start\nkey enter\nwait until not phase waiting\n");
+    let ended = bench.tankops(&["console", slow.to_str().unwrap(), "--script", script.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
 }
 
 #[test]

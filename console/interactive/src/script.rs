@@ -200,10 +200,8 @@ impl Runner {
         loop {
             self.session.update_time();
             let look_again = Instant::now() + LOOK_AGAIN;
-            let mut next = self.session.next(Some(Instant::now()));
-            while let Some(msg) = next {
+            while let Some(msg) = self.session.next(Some(Instant::now())) {
                 self.take(msg)?;
-                next = self.session.next(Some(Instant::now()));
                 if Instant::now() >= look_again {
                     break;
                 }
