@@ -80,6 +80,12 @@ impl Chart {
         &self.world
     }
 
+    /// Whether a place is so far from everything solid and from every no-go zone, metres.
+    pub(crate) fn has_room(&self, at: Point, room_m: f64) -> bool {
+        let mut no_go = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+        self.map.clearance_m(at) >= room_m && no_go.all(|zone| zone.shape.distance_m(at) >= room_m)
+    }
+
     /// Distances and neighbours on the chart.
     pub(crate) fn map(&self) -> &ObstacleMap {
         &self.map

@@ -67,7 +67,8 @@ impl Mission {
 
     pub(super) fn scan_from(&mut self, before: Pose) {
         let here = self.locator.pose();
-        self.task.advance(here.position, self.chart.map(), self.config.room_m());
+        let (chart, room_m) = (&self.chart, self.config.room_m());
+        self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
         if self.phase == Phase::Waiting {
             return;
         }

@@ -121,8 +121,8 @@ impl Mission {
     }
 
     fn advance_shadow(&self, shadow: &mut Shadow, here: Point) {
-        let map = self.chart.map();
-        shadow.task.advance(here, map, self.config.room_m());
+        let (chart, map, room_m) = (&self.chart, self.chart.map(), self.config.room_m());
+        shadow.task.advance(here, map, |at| chart.has_room(at, room_m));
         if let Some(plan) = &mut shadow.slot.follower {
             plan.advance(here, |at| map.clearance_m(at) >= 0.0);
         }

@@ -85,3 +85,25 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let names: Vec<&str> = flight.mission.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
     assert_eq!(names, ["no-go 1", "no-go 2"]);
 }
+
+#[test]
+fn a_zone_over_a_part_of_a_preset_path_is_gone_round_and_one_over_all_of_the_rest_is_refused() {
+    let path = (0..40).map(|k| Point::new(-4.0 + 0.2 * f64::from(k), 0.0)).collect();
+    let task = TaskConfig::Follow { path, tolerance_m: 0.2 };
+    let mut flight = Flight::new(MissionConfig { task, ..config() });
+    flight.tick(&[Order::Start]);
+    flight.fly(20);
+    let over = |west: f64, east: f64| zone((west, -0.4), (east, 0.4));
+    let events = flight.tick(&[over(0.0, 9.0)]);
+    assert!(refusal(&events).is_some_and(|text| text.contains("end of the path")), "{events:?}");
+    assert_eq!(refusal(&flight.tick(&[over(-1.0, 1.0)])), None);
+    let is_beyond = |flight: &Flight| flight.mission.task.target().x > 1.0;
+    let targets: Vec<f64> = (0..200)
+        .map(|_| {
+            flight.tick(&[]);
+            flight.mission.task.target().x
+        })
+        .collect();
+    let within = targets.iter().filter(|x| (-1.0..=1.0).contains(*x)).count();
+    assert!(within == 0 && is_beyond(&flight), "{targets:?}");
+}
