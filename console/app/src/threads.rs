@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, available_parallelism};
 
 /// Threads and processes at once, besides the first thread, counted with `prlimit --nproc`. What planners start beyond their
-/// process is not counted: ours do without where they get none.
+/// process is counted only where something else needs it: ours do without where they get none.
 mod each {
     /// A planner: its process, and the thread in it that ends it with the console.
     pub(super) const PLANNER: usize = 2;
@@ -34,7 +34,8 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
     match command {
         None | Some(Command::Console(_) | Command::Replay(_)) => each::CONSOLE + each::PLANNER + each::RUN,
         Some(Command::Run(args)) if args.no_record => each::PLANNER + each::JOURNAL + each::SIGNAL,
-        Some(Command::Run(_)) => each::PLANNER + each::RUN + each::SIGNAL,
+        // What a planner of floor plans with, one a core, must not take what the recording needs.
+        Some(Command::Run(_)) => each::PLANNER + cores() - 1 + each::RUN + each::SIGNAL,
         Some(
             Command::Plan(_)
             | Command::Planners { .. }
@@ -45,6 +46,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
         Some(Command::Verify { .. }) => each::VERIFY,
         Some(Command::Report(args)) if args.sign.is_some() => each::VERIFY,
         Some(Command::Report(_) | Command::Rescan(_) | Command::Runs { .. }) => each::PAST_RUN,
+        Some(Command::Export(args)) if args.to.rrd.is_none() && args.to.ranges.is_none() => each::PAST_RUN,
         Some(Command::Export(_)) => each::RECORDING,
         Some(Command::Locate(_)) => each::RUN + each::SIGNAL,
         Some(Command::Reproduce(args)) if args.name.is_some() && !args.list => missions(args.threads),
@@ -76,8 +78,11 @@ fn of_campaign(command: &CampaignCommand) -> usize {
 
 /// Missions that are flown at once without being recorded; 0: one for each core.
 fn missions(at_once: usize) -> usize {
-    let cores = || available_parallelism().map_or(1, usize::from);
     each::SIGNAL + (1 + each::PLANNER) * if at_once > 0 { at_once } else { cores() }
+}
+
+fn cores() -> usize {
+    available_parallelism().map_or(1, usize::from)
 }
 
 /// Makes sure that the system grants what a command needs, before it begins something that it could not end. Takes less than a
