@@ -33,6 +33,14 @@ const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always",
 const WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
     .help("Tangent force as a multiple of the repulsion gain.")
     .group(FIELD);
+/// With the share of other planners, whose repulsion gain is a five-hundredth, the wall would push the robot back from goals
+/// that lie a metre before it.
+const WALL: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.001)
+    .help(
+        "Push of the wall as a share of the repulsion gain, within half its range. The paper has no wall: 0.",
+    )
+    .group(FIELD)
+    .live();
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .help("Length of a move when planning; the paper moves 0.01.")
     .group("Plan");
@@ -51,7 +59,7 @@ impl Planner for Tapf {
         RHO_0,
         TANGENT,
         WEIGHT,
-        p::WALL_GAIN,
+        WALL,
         STEP,
         WINDOW,
         p::GUARD,

@@ -81,3 +81,10 @@ fn in_flight_it_passes_a_column_in_the_way_without_touching_it() {
         assert!(outcome.completed && outcome.clearance_m > 0.0, "{outcome:?}");
     }
 }
+
+#[test]
+fn a_goal_near_the_wall_is_reached() {
+    let layout = Layout { radius_m: 5.0, hull_m: 0.25, ..floor(&[(0.5, 0.2, 0.3)], (-4.2, 0.0)) };
+    let reaches = |values: &[(&str, f64)]| plan(&layout, values, Point::new(4.2, 0.0)).0.unwrap().complete;
+    assert!(reaches(&[]) && !reaches(&[("wall_gain", 0.1)]));
+}
