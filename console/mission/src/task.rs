@@ -4,6 +4,7 @@ mod cover;
 mod rest;
 
 use cover::Cover;
+pub(crate) use cover::Joint;
 pub(crate) use geometry::PathFollower;
 pub(crate) use rest::rest_of;
 

@@ -141,6 +141,9 @@ impl Mission {
             None => {
                 self.take_plan(&plan);
                 self.plan_is_there();
+                if asked.is_repair {
+                    self.want_better_plan();
+                }
             }
             Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
                 self.active.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
@@ -206,6 +209,7 @@ impl Mission {
 
     /// The active planner cannot drive the robot on.
     fn active_is_no_use(&mut self, by: HoldReason) {
+        self.drop_better_plan("the planner that drives failed");
         self.active.prepare = Prepare::No;
         let is_to_be_held = match &self.phase {
             Phase::Running(_) => true,

@@ -33,12 +33,19 @@ impl Mission {
                 self.happened.push(EventKind::PlannerPrepared { ask, choice: slot.choice.clone(), info });
                 Some(slot)
             }
+            (PendingKind::Plan(_), Ok(Given::Plan(plan))) if slot.better.is_some() => {
+                self.better_plan_arrived(slot, ask, plan, said)
+            }
             (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
                 self.candidate_planned(slot, ask, asked, plan, said)
             }
             (_, result) => {
                 let fault = result.err().unwrap_or_else(|| mismatch(&slot.choice.id));
                 self.pass_on(said, &slot.choice.id);
+                if slot.better.is_some() {
+                    self.better_plan_failed(slot, ask, fault);
+                    return None;
+                }
                 let message = fault.message.clone();
                 self.note_fault(ask, fault, slot.info.as_ref().map(|info| info.sha256.clone()));
                 self.reject(slot, message);

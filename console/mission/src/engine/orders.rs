@@ -49,6 +49,7 @@ impl Mission {
             Order::Shadow(choice) => self.begin_shadow(choice.clone()),
             Order::Promote => self.order_promotion(),
             Order::DropShadow => self.end_shadow(),
+            Order::TakePlan => self.order_better_plan(),
             Order::SetParameter { key, value } => self.set_parameter(key, value),
             Order::FlyUncertified => {
                 self.allow_uncertified(true);
@@ -104,6 +105,7 @@ impl Mission {
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
         self.cancel_promotion();
+        self.drop_better_plan("another planner was chosen");
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
@@ -164,6 +166,7 @@ impl Mission {
     }
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
+        self.drop_better_plan("a parameter was changed");
         // A change on top of a change that is under way.
         let newest = self.candidate.as_ref().filter(|slot| slot.choice.id == self.active.choice.id);
         let base = newest.map(|slot| &slot.choice).or_else(|| self.active.newest_change());

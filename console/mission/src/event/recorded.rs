@@ -80,6 +80,7 @@ impl EventKind {
             | Self::ShadowBegan { ask, .. }
             | Self::ShadowMissed { ask, .. }
             | Self::Snapshotted { ask, .. }
+            | Self::BetterPlanned { ask, .. }
             | Self::Discarded { ask } => Some(*ask),
             Self::Shadowed { of } => of.closes(),
             Self::PlannerChosen { ask, .. }
@@ -103,6 +104,9 @@ impl EventKind {
             Self::ParametersChanged { ask: Some(_), .. } => Ok(Given::Reconfigured),
             Self::Planned { ask: Some(_), return_path, path, complete, legs, cuts, .. } => {
                 without_return_path(*return_path, path, *complete, legs, cuts).map(Given::Plan)
+            }
+            Self::BetterPlanned { path, complete, legs, cuts, .. } => {
+                without_return_path(0, path, *complete, legs, cuts).map(Given::Plan)
             }
             Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),

@@ -32,6 +32,15 @@ pub(crate) struct Cover {
     at_corner: (f64, f64),
 }
 
+/// A place on the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Joint {
+    /// The place.
+    pub at: Point,
+    /// Way along the plan to it, metres.
+    pub station_m: f64,
+}
+
 /// A plan under way.
 #[derive(Clone)]
 struct Lanes {
@@ -118,6 +127,33 @@ impl Cover {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let rest = rest_of(plan, follower.target_m(), &[follower.target()]);
         Some(Plan { cost: 0.0, ..rest })
+    }
+
+    /// The first place at which a stretch of the plan ends, or a point of one without stretches, at least so far ahead of the
+    /// robot; `None` if the plan ends before.
+    pub(crate) fn joint(&self, lead_m: f64) -> Option<Joint> {
+        let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
+        let stations_m = polyline::stations_m(&plan.path);
+        let least_m = follower.along_m() + lead_m;
+        let ends_leg = |index: &usize| plan.legs.is_empty() || plan.legs.iter().any(|leg| leg.last == *index);
+        let first = stations_m.partition_point(|at_m| *at_m < least_m);
+        let index = (first..plan.path.len().saturating_sub(1)).find(ends_leg)?;
+        Some(Joint { at: plan.path[index], station_m: stations_m[index] })
+    }
+
+    /// The way along the plan from the robot to a place on it.
+    pub(crate) fn way_to(&self, joint: &Joint) -> Vec<Point> {
+        let between = self.lanes.iter().flat_map(|Lanes { plan, follower, .. }| {
+            let stations_m = polyline::stations_m(&plan.path);
+            let at = |m: f64| stations_m.partition_point(|at_m| *at_m <= m);
+            plan.path[at(follower.along_m())..at(joint.station_m)].to_vec()
+        });
+        std::iter::once(self.position).chain(between).collect()
+    }
+
+    /// What is left of the path from a place on it.
+    pub(crate) fn path_from(&self, joint: &Joint) -> Vec<Point> {
+        self.lanes.as_ref().map_or_else(Vec::new, |lanes| rest_of(&lanes.plan, joint.station_m, &[joint.at]).path)
     }
 
     /// Progress along the plan.

@@ -195,7 +195,7 @@ pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
 }
 
 fn order(n: u8) -> Order {
-    match n % 11 {
+    match n % 12 {
         0 => Order::Hold,
         1 => Order::Resume,
         2 => Order::Step,
@@ -206,6 +206,7 @@ fn order(n: u8) -> Order {
         7 => shadow("other"),
         8 => shadow("straight"),
         9 => Order::Promote,
+        10 => Order::TakePlan,
         _ => Order::DropShadow,
     }
 }
@@ -248,7 +249,7 @@ proptest! {
         silent in prop::option::of(20_u64..300),
         delays in prop::collection::vec(prop_oneof![4 => 0_u64..1, 2 => 1_u64..5, 1 => 20_u64..60], 64),
         faults in prop::collection::vec(0_u64..400, 0..4),
-        orders in prop::collection::vec((0_u64..400, 0_u8..22), 0..16),
+        orders in prop::collection::vec((0_u64..400, 0_u8..24), 0..16),
     ) {
         let config = if covers { covering() } else { config() };
         let fallback = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
@@ -281,7 +282,7 @@ proptest! {
             }
             let standing = flight.mission.standing();
             prop_assert_eq!(&folded.phase, standing.phase);
-            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10] {
+            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10, 11] {
                 prop_assert_eq!(folded.standing().allows(&order(n)), standing.allows(&order(n)), "{:?}", order(n));
             }
             let holds = now.last() == Some(&Order::Hold);
