@@ -106,6 +106,14 @@ impl Task {
         }
     }
 
+    /// Whether a plan is for the most part the one that is flown.
+    pub(crate) fn keeps_to(&self, plan: &api::Plan) -> bool {
+        match self {
+            Self::Cover(cover) => cover.keeps_to(plan),
+            Self::Goto(_) | Self::Follow { .. } => false,
+        }
+    }
+
     /// Reachable cells that are left to scan; none unless the task is to cover.
     pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         match self {

@@ -139,9 +139,10 @@ impl Mission {
         self.happened.extend(events);
         match objection {
             None => {
+                let is_repair = asked.is_repair && self.task.keeps_to(&plan);
                 self.take_plan(&plan);
                 self.plan_is_there();
-                if asked.is_repair {
+                if is_repair {
                     self.want_better_plan();
                 }
             }

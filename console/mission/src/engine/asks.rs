@@ -170,7 +170,8 @@ impl Mission {
         let is_repair = keep.is_some() && matches!(reason, Reason::MapChanged | Reason::Blocked);
         let beginning = Beginning { start, previous, coverage: &self.floor.coverage };
         let what = What::Plan(Box::new(self.plan_from(beginning, reason.clone(), keep)));
-        let asked = AskedPlan { return_path, from_anchor, is_repair, ..AskedPlan::from_here(reason, here.position) };
+        let asked =
+            AskedPlan { return_path, from_anchor, is_repair, ..AskedPlan::from_here(reason, here.position) };
         (PendingKind::Plan(asked), what)
     }
 

@@ -131,7 +131,8 @@ impl Mission {
 
     fn is_better_plan_due(&self) -> bool {
         let is_due = self.better_plan_due_s.is_some_and(|due_s| due_s <= self.now_s());
-        let is_steady = self.active.is_ready && self.active.has_plan() && self.active.newest_change().is_none();
+        let is_steady =
+            self.active.is_ready && self.active.has_plan() && self.active.newest_change().is_none();
         is_due && is_steady && self.candidate.is_none() && self.is_running()
     }
 
@@ -164,11 +165,8 @@ impl Mission {
         let coverage = self.coverage_after(&way);
         let heading_rad = way.windows(2).next_back().map(|pair| pair[1] - pair[0]).map(|w| w.y.atan2(w.x));
         let here = self.locator.pose_estimate();
-        let start = PoseEstimate {
-            position: joint.at,
-            heading_rad: heading_rad.unwrap_or(here.heading_rad),
-            ..here
-        };
+        let start =
+            PoseEstimate { position: joint.at, heading_rad: heading_rad.unwrap_or(here.heading_rad), ..here };
         let previous = self.trail.iter().chain(&way).copied().collect();
         let beginning = Beginning { start, previous, coverage: &coverage };
         let ask = self.plan_from(beginning, Reason::MapChanged, None);
@@ -252,9 +250,10 @@ impl Mission {
             let missed_m2 = (as_now - less) as f64 * cell_m2;
             return Some(format!("it saves {} but scans {missed_m2:.2} m² less", better.saving(&flown)));
         }
-        let certificate = self.tether.as_ref().map(|tether| {
-            tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor())
-        })?;
+        let certificate = self
+            .tether
+            .as_ref()
+            .map(|tether| tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor()))?;
         let why = || format!("it is not safe for the tether: {}", certificate.reasons.join("; "));
         (!certificate.certified).then(why)
     }

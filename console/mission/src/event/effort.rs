@@ -51,7 +51,8 @@ mod tests {
 
     #[test]
     fn turning_takes_time_unless_the_robot_has_no_heading() {
-        let path = [(0.0, 0.0), (4.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        let path =
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 2.0)].map(|(x, y)| Point::new(x, y));
         let limits = |motion| Limits {
             motion,
             v_max_m_per_s: 0.4,

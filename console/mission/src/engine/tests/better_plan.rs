@@ -93,7 +93,8 @@ fn driven_s(flight: &Flight) -> f64 {
 #[test]
 fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
     let config = wasteful(BetterPlan::Take);
-    let (taken, off) = (flown(&MissionConfig { attended: false, ..config.clone() }), flown(&wasteful(BetterPlan::Off)));
+    let (taken, off) =
+        (flown(&MissionConfig { attended: false, ..config.clone() }), flown(&wasteful(BetterPlan::Off)));
     let [planned, took] = &better_events(&taken)[..] else { panic!("{:?}", better_events(&taken)) };
     assert!(planned.1.starts_with("straight has a better plan, which saves "), "{planned:?}");
     assert!(took.1.starts_with("better plan of straight taken, which saves "), "{took:?}");
@@ -270,7 +271,8 @@ fn a_fault_of_the_planner_that_drives_drops_it() {
 
 #[test]
 fn a_forecast_makes_none_unless_they_are_taken_without_asking() {
-    for (better_plan, in_fork) in [(BetterPlan::Offer, BetterPlan::Off), (BetterPlan::Take, BetterPlan::Take)] {
+    for (better_plan, in_fork) in [(BetterPlan::Offer, BetterPlan::Off), (BetterPlan::Take, BetterPlan::Take)]
+    {
         let flight = flight(wasteful(better_plan));
         assert_eq!(flight.mission.fork().mission.config.better_plan, in_fork);
     }

@@ -126,11 +126,9 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
             vec![("planner", choice.id.clone()), ("parameters", parameters(choice))]
         }
         EventKind::BetterPlanned { planner, flown, better, .. }
-        | EventKind::BetterPlanTaken { planner, flown, better } => vec![
-            ("planner", planner.clone()),
-            ("flown", effort(flown)),
-            ("better", effort(better)),
-        ],
+        | EventKind::BetterPlanTaken { planner, flown, better } => {
+            vec![("planner", planner.clone()), ("flown", effort(flown)), ("better", effort(better))]
+        }
         EventKind::PlannerRejected { planner, why }
         | EventKind::BetterPlanDropped { planner, why }
         | EventKind::ShadowEnded { planner, why }
