@@ -241,13 +241,13 @@ impl Mission {
         }
         let coverage = self.coverage_after(way);
         let cell_m2 = coverage.floor().cell_m2();
-        let [less, as_now] = [&plan.path[..], rest].map(|path| {
+        let [left, as_now] = [&plan.path[..], rest].map(|path| {
             let mut coverage = coverage.clone();
             Tool::along(path, |from, to| coverage.mark(self.config.tool(), from, to));
-            coverage.counts().covered_reachable
+            self.task.floor_left(&coverage).len()
         });
-        if less < as_now {
-            let missed_m2 = (as_now - less) as f64 * cell_m2;
+        if left > as_now {
+            let missed_m2 = (left - as_now) as f64 * cell_m2;
             return Some(format!("it saves {} but scans {missed_m2:.2} m² less", better.saving(&flown)));
         }
         let certificate = self

@@ -44,7 +44,13 @@ impl Mission {
             Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
             Order::ChoosePlanner(choice) => {
                 let from = self.active.choice.id.clone();
-                self.choose(choice.clone(), Reason::Swap { from });
+                if self.takes_live(choice) {
+                    self.stay_held();
+                    self.drop_candidate();
+                    self.active.reconfigure = Some(choice.clone());
+                } else {
+                    self.choose(choice.clone(), Reason::Swap { from });
+                }
             }
             Order::Shadow(choice) => self.begin_shadow(choice.clone()),
             Order::Promote => self.order_promotion(),
@@ -118,6 +124,23 @@ impl Mission {
         } else {
             self.replace_active(slot);
         }
+    }
+
+    /// Whether a choice is the planner that drives with other live values: these change no plan, so that it goes on with its own.
+    /// A value that goes back to its default is not among them: planners are told values only.
+    fn takes_live(&self, choice: &PlannerChoice) -> bool {
+        let (before, slot) = (&self.active.choice, &self.active);
+        let is_live = |key: &String| slot.info.as_ref().is_some_and(|info| info.has_live(key));
+        let mut changed =
+            choice.parameters.iter().filter(|(key, value)| before.parameters.get(*key) != Some(value));
+        let keeps_all = before.parameters.keys().all(|key| choice.parameters.contains_key(key));
+        choice.id == before.id
+            && *choice != *before
+            && slot.is_ready
+            && slot.has_plan()
+            && slot.newest_change().is_none()
+            && keeps_all
+            && changed.all(|(key, _)| is_live(key))
     }
 
     /// Whether the robot is held because the active planner has no plan that it may fly.

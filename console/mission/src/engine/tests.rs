@@ -108,15 +108,6 @@ impl Straight {
         }
         self.chosen.push(id.into());
         let text = String::new;
-        let gain = ParamInfo {
-            key: "gain".into(),
-            label: text(),
-            unit: text(),
-            help: text(),
-            group: text(),
-            kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
-            live: true,
-        };
         Ok(PlannerInfo {
             id: id.into(),
             name: text(),
@@ -128,7 +119,7 @@ impl Straight {
             covers: true,
             snapshots: self.snapshots,
             sandbox: None,
-            parameters: if self.has_stiff_gain { vec![gain] } else { vec![] },
+            parameters: if self.has_stiff_gain { vec![gain(true)] } else { vec![] },
         })
     }
 
@@ -176,6 +167,19 @@ impl Straight {
         } else {
             Command::still(Status::Waiting)
         })
+    }
+}
+
+/// A parameter that changes under way or not.
+fn gain(live: bool) -> ParamInfo {
+    ParamInfo {
+        key: "gain".into(),
+        label: String::new(),
+        unit: String::new(),
+        help: String::new(),
+        group: String::new(),
+        kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
+        live,
     }
 }
 

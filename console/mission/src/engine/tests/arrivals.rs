@@ -122,15 +122,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![ParamInfo {
-        key: "gain".into(),
-        label: String::new(),
-        unit: String::new(),
-        help: String::new(),
-        group: String::new(),
-        kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
-        live: true,
-    }];
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
     let value = ParamValue::Float(2.0);
     let events = flight.tick(&[Order::SetParameter { key: "gain".into(), value: value.clone() }]);
     let at = |is: fn(&EventKind) -> bool| events.iter().position(is);

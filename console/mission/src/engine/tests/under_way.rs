@@ -58,6 +58,29 @@ fn another_planner_and_other_values_begin_anew() {
 }
 
 #[test]
+fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_values() {
+    let mut flight = held_on_the_way();
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    let chosen = |value| {
+        let parameters = Parameters::from([("gain".to_owned(), ParamValue::Float(value))]);
+        Order::ChoosePlanner(PlannerChoice { id: "straight".into(), parameters })
+    };
+    let changed =
+        |events: &[EventKind]| events.iter().any(|kind| matches!(kind, EventKind::ParametersChanged { .. }));
+    assert!(changed(&flight.tick(&[chosen(2.0)])));
+    assert_eq!((flight.planner.plans, flight.planner.chosen.len(), flight.closed.len()), (1, 1, 0));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Operator)));
+    // The same choice once more plans anew, and so does one that changes the plan or takes a value back.
+    flight.tick(&[chosen(2.0)]);
+    assert_eq!(flight.planner.plans, 2);
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(false)];
+    flight.tick(&[chosen(3.0)]);
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.tick(&[swap_to("straight")]);
+    assert_eq!((flight.planner.plans, flight.planner.chosen.len()), (4, 4));
+}
+
+#[test]
 fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     let mut flight = held_on_the_way();
     let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
