@@ -300,6 +300,9 @@ pub enum EventKind {
     Discarded {
         /// Which ask it answers.
         ask: AskId,
+        /// The plan, if it is kept to in the next one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        plan: Option<Box<EventKind>>,
     },
     /// A planner answered a step only after the tick it was asked for; reported for the first of a row.
     PlannerLate {

@@ -62,7 +62,7 @@ impl Mission {
             }
             (PendingKind::StepInShadow, Given::Command(_)) => {
                 self.pass_on(said, &self.active.choice.id.clone());
-                self.happened.push(EventKind::Discarded { ask });
+                self.happened.push(EventKind::Discarded { ask, plan: None });
             }
             (PendingKind::Snapshot, Given::State { bytes }) => {
                 self.pass_on(said, &self.active.choice.id.clone());

@@ -169,6 +169,15 @@ fn a_plugin_that_fails_three_times_within_a_minute_may_not_drive_again() {
 
 /// The answers of a journal, fed into another mission in the ticks in which they arrived.
 pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
+    replay_asking(config, recorded, |_| {})
+}
+
+/// The same, with what is asked.
+pub(super) fn replay_asking(
+    config: MissionConfig,
+    recorded: &Flight,
+    mut hear: impl FnMut(&Ask),
+) -> Vec<Event> {
     let mut again = Flight::new(config);
     let (mut events, mut answers) = (Vec::new(), RecordedAnswers::default());
     for (readings, orders) in &recorded.inputs {
@@ -177,7 +186,10 @@ pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
             .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
         again.mission.sense(&Input { readings, orders });
         loop {
-            std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(&ask));
+            while let Some(ask) = again.mission.poll_ask() {
+                hear(&ask);
+                answers.submit(&ask);
+            }
             let Some((answer, _)) = answers.next_answer() else { break };
             again.mission.answer(answer);
         }

@@ -1,6 +1,6 @@
 //! What planners are given of a plan that is being flown, or that they made a moment ago.
 
-use super::covering::covering;
+use super::{arrivals::replay_asking, covering::covering};
 use super::*;
 use world::polyline;
 
@@ -107,5 +107,12 @@ fn a_plan_that_came_too_late_is_kept_to_in_the_next_one_unless_the_robot_is_far(
         flight.fly(2 * delay as usize);
         assert_eq!(kept_m(&flight).len(), 3);
         assert_eq!(flight.planner.kept[2].is_some(), is_kept, "after {delay} ticks");
+        let mut kept = Vec::new();
+        let events = replay_asking(covering(), &flight, |ask| {
+            if let What::Plan(request) = &ask.what {
+                kept.push(request.under_way.clone());
+            }
+        });
+        assert!(events == flight.events && kept == flight.planner.kept, "the journal repeats what is asked");
     }
 }
