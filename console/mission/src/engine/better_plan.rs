@@ -17,6 +17,7 @@ use crate::{
     planner::Fault,
     task::{Joint, Task, rest_of},
 };
+use geometry::PathFollower;
 use planner_api::{Plan, PoseEstimate, Reason};
 use world::{CoverageGrid, Point, Tool};
 
@@ -33,6 +34,9 @@ const WORTH_S: f64 = 300.0;
 const CHANGE_S: f64 = 30.0;
 /// ... and this share of the rest: so much longer than planned is the way driven, after finds that nobody foresees.
 const CHANGE_SHARE: f64 = 0.02;
+/// Two plans scan the same if they leave the same up to this share of what is left to scan: cells count by their centres, so that two
+/// plans of other lanes differ by single cells.
+const SAME_FLOOR_SHARE: f64 = 0.0005;
 /// The robot is at the place where the plan begins, metres along its way.
 const AT_JOINT_M: f64 = 0.05;
 
@@ -86,7 +90,7 @@ impl Mission {
 
     /// The better plan is to be flown from where it begins.
     pub(super) fn order_better_plan(&mut self) {
-        if let Some(better) = self.candidate.as_mut().and_then(|slot| slot.better.as_mut()) {
+        if let Some(better) = self.candidate.as_mut().and_then(|slot| slot.better.as_deref_mut()) {
             better.is_ordered = true;
         }
     }
@@ -104,7 +108,7 @@ impl Mission {
     }
 
     fn better(&self) -> Option<&Better> {
-        self.candidate.as_ref().and_then(|slot| slot.better.as_ref())
+        self.candidate.as_ref().and_then(|slot| slot.better.as_deref())
     }
 
     /// Begins to look for a better plan if one is due; takes it, or lets it go, where it begins.
@@ -118,7 +122,7 @@ impl Mission {
         if !self.active.has_plan() || !self.active.is_ready {
             return self.drop_better_plan("another plan is being made");
         }
-        let along_m = self.task.lanes().map_or(0.0, |lanes| lanes.along_m());
+        let along_m = self.task.lanes().map_or(0.0, PathFollower::along_m);
         if !self.is_running() || joint.is_none_or(|joint| along_m < joint.station_m - AT_JOINT_M) {
             return;
         }
@@ -140,7 +144,7 @@ impl Mission {
         self.better_plan_due_s = None;
         if self.joint().is_some() {
             let mut slot = self.active.successor(self.active.choice.clone(), Reason::MapChanged);
-            slot.better = Some(Better::default());
+            slot.better = Some(Box::default());
             self.candidate = Some(slot);
         }
     }
@@ -172,7 +176,7 @@ impl Mission {
         let ask = self.plan_from(beginning, Reason::MapChanged, None);
         let asked = AskedPlan::from_here(Reason::MapChanged, here.position);
         let slot = self.candidate.as_mut()?;
-        slot.better = Some(Better { joint: Some(joint), ..Better::default() });
+        slot.better = Some(Box::new(Better { joint: Some(joint), ..Better::default() }));
         slot.ask(self.tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)))
     }
 
@@ -219,7 +223,7 @@ impl Mission {
         }
         slot.plan = PlanState::Flying { is_whole: plan.complete };
         let offer = Some(Offer { plan, flown, better });
-        slot.better = Some(Better { joint: Some(joint), offer, is_ordered: false });
+        slot.better = Some(Box::new(Better { joint: Some(joint), offer, is_ordered: false }));
         Some(slot)
     }
 
@@ -241,13 +245,15 @@ impl Mission {
         }
         let coverage = self.coverage_after(way);
         let cell_m2 = coverage.floor().cell_m2();
+        let same = SAME_FLOOR_SHARE * self.task.floor_left(&coverage).len() as f64;
         let [left, as_now] = [&plan.path[..], rest].map(|path| {
             let mut coverage = coverage.clone();
             Tool::along(path, |from, to| coverage.mark(self.config.tool(), from, to));
             self.task.floor_left(&coverage).len()
         });
-        if left > as_now {
-            let missed_m2 = (left - as_now) as f64 * cell_m2;
+        let less = left as f64 - as_now as f64;
+        if less > same {
+            let missed_m2 = less * cell_m2;
             return Some(format!("it saves {} but scans {missed_m2:.2} m² less", better.saving(&flown)));
         }
         let certificate = self

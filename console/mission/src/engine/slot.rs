@@ -49,7 +49,7 @@ pub(super) struct PlannerSlot {
     pub found_since: Vec<Shape>,
     /// From where on what it plans is to take the place of the plan that is flown; `None` for one that takes over as soon as it
     /// has a plan.
-    pub better: Option<Better>,
+    pub better: Option<Box<Better>>,
     /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.
     pub robot_waits: bool,
     /// Its command for this tick.

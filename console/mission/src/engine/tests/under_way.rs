@@ -1,7 +1,7 @@
 //! What planners are given of a plan that is being flown, or that they made a moment ago.
 
-use super::{arrivals::replay_asking, covering::covering};
 use super::*;
+use super::{arrivals::replay_asking, covering::covering};
 use world::polyline;
 
 /// A flight over the floor that was held on the way.
