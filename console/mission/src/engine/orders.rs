@@ -115,7 +115,8 @@ impl Mission {
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
-        slot.keep = self.plan_left_here(&slot.choice);
+        let goes_on = self.takes_live(&slot.choice).then(|| self.task.under_way()).flatten();
+        slot.keep = goes_on.or_else(|| self.plan_left_here(&slot.choice));
         slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
         if self.active.is_ready && !waiting && !self.has_active_failed() {

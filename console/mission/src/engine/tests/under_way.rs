@@ -81,6 +81,20 @@ fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_valu
 }
 
 #[test]
+fn a_planner_that_begins_again_with_other_live_values_keeps_to_its_plan() {
+    let mut flight = Flight::new(covering());
+    flight.planner.has_stiff_gain = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    flight.tick(&[Order::Hold]);
+    let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
+    flight.tick(&[Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) }]);
+    flight.fly(2);
+    assert_eq!((flight.planner.chosen.len(), kept_m(&flight)), (2, vec![None, left_m]));
+    assert_eq!(flight.mission.active.choice.parameters["gain"], ParamValue::Float(2.0));
+}
+
+#[test]
 fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     let mut flight = held_on_the_way();
     let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
