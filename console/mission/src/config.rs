@@ -121,6 +121,28 @@ impl TetherConfig {
     }
 }
 
+/// After a repair the planner is asked for a plan for all that is left, while the robot flies on: what becomes of one that is
+/// better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BetterPlan {
+    /// None is made.
+    #[default]
+    Off,
+    /// It is offered to the operator. Where nobody is there to take it, none is made.
+    Offer,
+    /// It is flown.
+    Take,
+}
+
+impl BetterPlan {
+    /// Whether none is made. Serde gives a reference.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+    fn is_off(&self) -> bool {
+        *self == Self::Off
+    }
+}
+
 /// A mission as the engine needs it; made and checked by whoever reads the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissionConfig {
@@ -174,6 +196,9 @@ pub struct MissionConfig {
     /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
+    /// What becomes of a plan for all that is left that is better than a repaired one; journals of before have none.
+    #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
+    pub better_plan: BetterPlan,
 }
 
 impl MissionConfig {
@@ -185,6 +210,15 @@ impl MissionConfig {
     /// Width of floor that planners may count on in one pass, metres.
     pub fn lane_m(&self) -> f64 {
         self.swath_m - self.scan.overlap_m
+    }
+
+    /// Whether plans that are better than repaired ones are made at all.
+    pub fn wants_better_plans(&self) -> bool {
+        match self.better_plan {
+            BetterPlan::Off => false,
+            BetterPlan::Offer => self.attended,
+            BetterPlan::Take => true,
+        }
     }
 
     /// The tool: a bar across the heading of a robot that has one, a disc under a point robot.

@@ -7,6 +7,7 @@
 
 mod answers;
 mod asks;
+mod better_plan;
 mod candidate;
 mod driving;
 mod floor;
@@ -87,6 +88,8 @@ pub struct Mission {
     candidate: Option<PlannerSlot>,
     /// A planner that flies beside the one that drives, and moves nothing.
     shadow: Option<Shadow>,
+    /// Mission time from which on a better plan than the repaired one is looked for, seconds.
+    better_plan_due_s: Option<f64>,
     /// The plan that was flown when the planner that drives took over.
     left: Option<LeftPlan>,
     workers: Workers,
@@ -138,6 +141,7 @@ impl Mission {
             active: PlannerSlot::new(config.planner.clone(), Reason::Start),
             candidate: None,
             shadow: None,
+            better_plan_due_s: None,
             left: None,
             workers: Workers::default(),
             stepped_from: None,
@@ -172,6 +176,7 @@ impl Mission {
             position: self.position_trust(),
             planner: self.active.known(),
             shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
+            has_offer: self.has_offer(),
         }
     }
 
@@ -198,6 +203,7 @@ impl Mission {
         let reached = self.drag_tether(map_changed, input.readings.paid_out_m);
         self.apply_rules(input.readings, reached.as_ref());
         self.lead_shadow();
+        self.lead_better_plan();
     }
 
     /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.

@@ -3,6 +3,7 @@
 //! Journal, recording, screen and report are folds over this one enum. Events are past tense, self-contained and
 //! carry neither wall-clock time nor anything else that would differ between two equal runs.
 
+mod effort;
 mod log_line;
 mod recorded;
 mod rounding;
@@ -10,6 +11,7 @@ mod severity;
 mod shadow;
 mod tether;
 
+pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
@@ -298,6 +300,9 @@ pub enum EventKind {
     Discarded {
         /// Which ask it answers.
         ask: AskId,
+        /// The plan, if it is kept to in the next one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        plan: Option<Box<EventKind>>,
     },
     /// A planner answered a step only after the tick it was asked for; reported for the first of a row.
     PlannerLate {
@@ -353,6 +358,47 @@ pub enum EventKind {
     /// No planner flies in shadow any more.
     ShadowEnded {
         /// Which did.
+        planner: String,
+        /// Why, as a sentence.
+        why: String,
+    },
+    /// A plan for all that is left was made in the background, after a repair, from a place ahead on the plan that is flown.
+    BetterPlanned {
+        /// Which ask this answers.
+        ask: AskId,
+        /// By whom.
+        planner: String,
+        /// The path.
+        path: Vec<Point>,
+        /// Whether it achieves the whole task.
+        complete: bool,
+        /// What the stretches of the path are for, as far as the planner says.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        legs: Vec<Leg>,
+        /// Lines that the tethered robot never crosses.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        cuts: Vec<Vec<Point>>,
+        /// What the plan that is flown takes from there on.
+        flown: Effort,
+        /// What this one takes.
+        better: Effort,
+        /// Why it is not offered, as a sentence; absent if it is.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        objection: Option<String>,
+    },
+    /// The better plan took the place of the one that was flown, in this tick; that its planner drives, the plan from here and
+    /// the certificate of it follow.
+    BetterPlanTaken {
+        /// By whom.
+        planner: String,
+        /// What the plan before would have taken from here on.
+        flown: Effort,
+        /// What this one takes.
+        better: Effort,
+    },
+    /// No better plan is being made or offered any more.
+    BetterPlanDropped {
+        /// By whom it was to be.
         planner: String,
         /// Why, as a sentence.
         why: String,

@@ -24,7 +24,7 @@ mod task;
 pub mod tether;
 
 pub use ask::{Answer, Ask, AskId, Awaits, Given, Said, What, WorkerId};
-pub use config::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;

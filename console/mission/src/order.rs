@@ -41,6 +41,8 @@ pub enum Order {
     Promote,
     /// End the shadow.
     DropShadow,
+    /// Fly the better plan that is offered, from the place on where it begins.
+    TakePlan,
     /// Change one parameter of the planner; while the mission runs only live ones.
     SetParameter {
         /// Which parameter.

@@ -42,6 +42,8 @@ pub struct Standing<'a> {
     pub planner: Option<&'a PlannerInfo>,
     /// How the planner in shadow does; `None` without one.
     pub shadow: Option<ShadowTally>,
+    /// Whether a better plan is offered and not taken yet.
+    pub has_offer: bool,
 }
 
 /// Why an order is not accepted.
@@ -73,6 +75,8 @@ pub enum Refusal {
     RangesInconsistent,
     /// No plan has been refused because of the tether.
     NoPlanRefused,
+    /// No better plan is offered.
+    NoOffer,
     /// No planner flies in shadow.
     NoShadow,
     /// The planner in shadow has not proven itself yet.
@@ -101,6 +105,7 @@ impl fmt::Display for Refusal {
                 f.write_str("the ranges contradict each other; resuming requires a consistent fix")
             }
             Self::NoPlanRefused => f.write_str("no plan has been refused because of the tether"),
+            Self::NoOffer => f.write_str("no better plan is offered"),
             Self::NoShadow => f.write_str("no planner flies in shadow"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
@@ -139,7 +144,8 @@ impl Standing<'_> {
                 | Order::Inject(_)
                 | Order::Shadow(_)
                 | Order::Promote
-                | Order::DropShadow,
+                | Order::DropShadow
+                | Order::TakePlan,
                 Phase::Waiting,
             ) => Err(Refusal::NotStarted),
             (Order::Resume | Order::Step | Order::StepTo(_), Phase::Held(_)) => self.can_move(),
@@ -150,6 +156,7 @@ impl Standing<'_> {
             }
             (Order::Promote, _) => self.can_promote(),
             (Order::DropShadow, _) => self.shadow.map(|_| ()).ok_or(Refusal::NoShadow),
+            (Order::TakePlan, _) => self.has_offer.then_some(()).ok_or(Refusal::NoOffer),
             (Order::FlyUncertified, _) => Err(Refusal::NoPlanRefused),
             (Order::ChoosePlanner(_), Phase::Running(_)) => Err(Refusal::SwapNeedsHold),
             (Order::SetParameter { key, .. }, Phase::Running(_)) => {

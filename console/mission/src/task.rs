@@ -4,6 +4,7 @@ mod cover;
 mod rest;
 
 use cover::Cover;
+pub(crate) use cover::Joint;
 pub(crate) use geometry::PathFollower;
 pub(crate) use rest::rest_of;
 
@@ -102,6 +103,14 @@ impl Task {
         match self {
             Self::Cover(cover) => cover.under_way(),
             Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
+    /// Whether a plan is for the most part the one that is flown.
+    pub(crate) fn keeps_to(&self, plan: &api::Plan) -> bool {
+        match self {
+            Self::Cover(cover) => cover.keeps_to(plan),
+            Self::Goto(_) | Self::Follow { .. } => false,
         }
     }
 

@@ -263,6 +263,13 @@ impl Tether {
         whole
     }
 
+    /// Evaluates a plan from where the cable will lie after some way.
+    pub fn certify_after(&self, way: &[Point], plan: &Plan, world: &World, returns: bool) -> Certificate {
+        let mut there = self.clone();
+        there.cable.drag_along(way);
+        there.certify(plan, world, returns)
+    }
+
     /// What keeps the cable out although the robot is back, as a sentence; `None` if all is in.
     pub fn left_out(&self, world: &World) -> Option<String> {
         let mut cable = self.cable.clone();

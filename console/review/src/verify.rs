@@ -208,8 +208,10 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
             path.display()
         )));
     }
-    let scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
+    let mut scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
+    // Runs of before this key made no better plans.
+    scenario.mission.better_plan = opened.mission.better_plan;
     let flight = Flight::prepare(&scenario, opened.mission.attended);
     Ok((scenario, flight))
 }

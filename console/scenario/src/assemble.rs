@@ -12,7 +12,7 @@ use super::{
     source::Source,
     task, tether,
 };
-use mission::{Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
 use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -107,6 +107,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         fallback,
         // Who flies it knows; a scenario does not.
         attended: false,
+        better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
     let reel_length_m = mission.tether.as_ref().map(|tether| tether.limits.reel_length_m);
@@ -289,6 +290,7 @@ struct Rest {
     position_limit_m: f64,
     position_lost_hold_s: f64,
     stuck_s: f64,
+    better_plan: BetterPlan,
 }
 
 impl Rest {
@@ -322,7 +324,16 @@ impl Rest {
             position_limit_m: position_limit_m?,
             position_lost_hold_s: position_lost_hold_s?,
             stuck_s: stuck_s?,
+            better_plan: better_plan(mission.word("better_plan")?),
         })
+    }
+}
+
+fn better_plan(word: &str) -> BetterPlan {
+    match word {
+        "take" => BetterPlan::Take,
+        "off" => BetterPlan::Off,
+        _ => BetterPlan::Offer,
     }
 }
 

@@ -383,6 +383,7 @@ static MISSION: &[Key] = &[
     number("scan_position_limit_m", "m", above(0.0)).or_none("`position_limit_m`"),
     number("position_lost_hold_s", "s", at_least(0.0)).or(2.0),
     number("stuck_s", "s", above(0.0)).or(30.0),
+    word("better_plan", &["offer", "take", "off"]).or_word("offer"),
 ];
 
 static SPIRAL: &[Key] = &[

@@ -51,6 +51,8 @@ pub enum ActionId {
     Promote,
     /// End the shadow.
     DropShadow,
+    /// Fly the better plan that is offered.
+    TakePlan,
     /// Forecast how the mission would go on with one planner or another.
     WhatIf,
     /// Forecast another planner too.
@@ -248,6 +250,7 @@ pub const ACTIONS: &[Action] = &[
     action(ActionId::Shadow, "shadow", "Fly a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]),
     action(ActionId::Promote, "promote", "Let the planner in shadow take over", &[], &[Context::Screen]).risk(Risk::Moves),
     action(ActionId::DropShadow, "shadow-off", "End the shadow", &[], &[Context::Screen]),
+    action(ActionId::TakePlan, "take-plan", "Take the better plan that is offered", &[Key::Char('T')], &[Context::Mission]).risk(Risk::Moves),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters"),
     action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]),
     action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if"),

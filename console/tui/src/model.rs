@@ -41,7 +41,7 @@ pub use line_edit::LineEdit;
 pub use live::{Access, Busy, Live, RunId, RunResult, Source};
 pub use log::{Entry, Log};
 pub use palette::Palette;
-pub use planning::{PlanShown, Planning};
+pub use planning::{Offer, PlanShown, Planning};
 pub use plans::{Ghost, GhostPlan, Plans};
 pub use position::Position;
 pub use preflight::Preflight;

@@ -62,7 +62,7 @@ impl Mission {
             }
             (PendingKind::StepInShadow, Given::Command(_)) => {
                 self.pass_on(said, &self.active.choice.id.clone());
-                self.happened.push(EventKind::Discarded { ask });
+                self.happened.push(EventKind::Discarded { ask, plan: None });
             }
             (PendingKind::Snapshot, Given::State { bytes }) => {
                 self.pass_on(said, &self.active.choice.id.clone());
@@ -139,8 +139,12 @@ impl Mission {
         self.happened.extend(events);
         match objection {
             None => {
+                let is_repair = asked.is_repair && self.task.keeps_to(&plan);
                 self.take_plan(&plan);
                 self.plan_is_there();
+                if is_repair {
+                    self.want_better_plan();
+                }
             }
             Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
                 self.active.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
@@ -206,6 +210,7 @@ impl Mission {
 
     /// The active planner cannot drive the robot on.
     fn active_is_no_use(&mut self, by: HoldReason) {
+        self.drop_better_plan("the planner that drives failed");
         self.active.prepare = Prepare::No;
         let is_to_be_held = match &self.phase {
             Phase::Running(_) => true,

@@ -13,7 +13,16 @@ use crate::{
 use geometry::PathFollower;
 use planner_api::{Drive, Plan, PoseEstimate, Reason};
 use std::sync::Arc;
-use world::Point;
+use world::{CoverageGrid, Point};
+
+/// Where a plan begins.
+pub(super) struct Beginning<'a> {
+    pub start: PoseEstimate,
+    /// The way to there, from the start of the mission.
+    pub previous: Vec<Point>,
+    /// What has been scanned by then.
+    pub coverage: &'a CoverageGrid,
+}
 
 /// Private state is saved this often, seconds.
 const SAVE_EVERY_S: f64 = 1.0;
@@ -124,6 +133,9 @@ impl Mission {
             return Some(slot.open(worker, self.tick, site));
         }
         let PlanState::Due { reason, from_anchor } = slot.plan.clone() else { return None };
+        if slot.better.is_some() {
+            return self.ask_for_better_plan();
+        }
         let keep = slot.keep.clone();
         let (kind, what) = self.plan_ask(reason, from_anchor, self.trail.len(), keep);
         let slot = self.candidate.as_mut()?;
@@ -155,11 +167,23 @@ impl Mission {
         let here = self.locator.pose_estimate();
         let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
         let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
-        let task = self.task.left(&self.floor.coverage, self.config.lane_m(), self.config.tether_limits());
-        let site = Arc::new(self.chart.site());
-        let ask = PlanAsk { reason: reason.clone(), start, task, site, previous, under_way: keep };
-        let what = What::Plan(Box::new(ask));
-        (PendingKind::Plan(AskedPlan { reason, return_path, from_anchor, here: here.position }), what)
+        let is_repair = keep.is_some() && matches!(reason, Reason::MapChanged | Reason::Blocked);
+        let beginning = Beginning { start, previous, coverage: &self.floor.coverage };
+        let what = What::Plan(Box::new(self.plan_from(beginning, reason.clone(), keep)));
+        let asked =
+            AskedPlan { return_path, from_anchor, is_repair, ..AskedPlan::from_here(reason, here.position) };
+        (PendingKind::Plan(asked), what)
+    }
+
+    /// The inputs of a plan for what is left of the task.
+    pub(super) fn plan_from(
+        &self,
+        Beginning { start, previous, coverage }: Beginning<'_>,
+        reason: Reason,
+        under_way: Option<Plan>,
+    ) -> PlanAsk {
+        let task = self.task.left(coverage, self.config.lane_m(), self.config.tether_limits());
+        PlanAsk { reason, start, task, site: Arc::new(self.chart.site()), previous, under_way }
     }
 
     fn ask_for_step(&mut self) -> Option<Ask> {

@@ -33,12 +33,19 @@ impl Mission {
                 self.happened.push(EventKind::PlannerPrepared { ask, choice: slot.choice.clone(), info });
                 Some(slot)
             }
+            (PendingKind::Plan(_), Ok(Given::Plan(plan))) if slot.better.is_some() => {
+                self.better_plan_arrived(slot, ask, plan, said)
+            }
             (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
                 self.candidate_planned(slot, ask, asked, plan, said)
             }
             (_, result) => {
                 let fault = result.err().unwrap_or_else(|| mismatch(&slot.choice.id));
                 self.pass_on(said, &slot.choice.id);
+                if slot.better.is_some() {
+                    self.better_plan_failed(slot, ask, fault);
+                    return None;
+                }
                 let message = fault.message.clone();
                 self.note_fault(ask, fault, slot.info.as_ref().map(|info| info.sha256.clone()));
                 self.reject(slot, message);
@@ -60,9 +67,12 @@ impl Mission {
         if gone_m > NEAR_PLAN_M {
             // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
             self.pass_on(said, &id);
-            self.happened.push(EventKind::Discarded { ask });
-            slot.robot_waits = true;
             let is_kept = gone_m <= MOST_GONE_M && matches!(self.task, Task::Cover(_));
+            // The journal repeats what the planner is asked next.
+            let from_here = AskedPlan::from_here(asked.reason, asked.here);
+            let planned = is_kept.then(|| Box::new(Self::planned(Some(ask), &id, &from_here, &plan)));
+            self.happened.push(EventKind::Discarded { ask, plan: planned });
+            slot.robot_waits = true;
             slot.keep = is_kept.then_some(Plan { cost: 0.0, ..plan });
             return Some(slot);
         }

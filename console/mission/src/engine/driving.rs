@@ -85,7 +85,7 @@ impl Mission {
     pub(super) fn discard(&mut self, arrived: Arrived) {
         let ask = arrived.ask;
         self.pass_on_with(arrived);
-        self.happened.push(EventKind::Discarded { ask });
+        self.happened.push(EventKind::Discarded { ask, plan: None });
     }
 
     /// What there is to report with a command, directly before what becomes of it.

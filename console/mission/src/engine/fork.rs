@@ -1,6 +1,7 @@
 //! A mission as it stands now, for a forecast of how it would go on.
 
 use super::Mission;
+use crate::config::BetterPlan;
 use world::{Pose, World, tether::Cable};
 
 /// A mission as it stands now, and everything that a simulation of how it goes on has to start from.
@@ -26,6 +27,10 @@ impl Mission {
             candidate.leave_worker();
         }
         mission.shadow = None;
+        // Nobody is there to take one.
+        if mission.config.better_plan == BetterPlan::Offer {
+            mission.config.better_plan = BetterPlan::Off;
+        }
         mission.active.leave_worker();
         mission.active.saved = None;
         let estimate = mission.locator.pose();

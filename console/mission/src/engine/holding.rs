@@ -30,6 +30,7 @@ impl Mission {
             if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
                 let mut slot = self.active.successor(choice, Reason::Swap { from: active });
                 slot.prepare = Prepare::Plan;
+                self.drop_better_plan("another planner drives");
                 if let Some(candidate) = self.candidate.take() {
                     self.reject(candidate, format!("the fallback planner {} takes over", slot.choice.id));
                 }

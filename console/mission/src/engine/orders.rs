@@ -44,11 +44,18 @@ impl Mission {
             Order::Terminate => self.end(Outcome::Aborted, "ended by a signal to the process".into()),
             Order::ChoosePlanner(choice) => {
                 let from = self.active.choice.id.clone();
-                self.choose(choice.clone(), Reason::Swap { from });
+                if self.takes_live(choice) {
+                    self.stay_held();
+                    self.drop_candidate();
+                    self.active.reconfigure = Some(choice.clone());
+                } else {
+                    self.choose(choice.clone(), Reason::Swap { from });
+                }
             }
             Order::Shadow(choice) => self.begin_shadow(choice.clone()),
             Order::Promote => self.order_promotion(),
             Order::DropShadow => self.end_shadow(),
+            Order::TakePlan => self.order_better_plan(),
             Order::SetParameter { key, value } => self.set_parameter(key, value),
             Order::FlyUncertified => {
                 self.allow_uncertified(true);
@@ -104,10 +111,12 @@ impl Mission {
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
         self.cancel_promotion();
+        self.drop_better_plan("another planner was chosen");
         let waiting = self.phase == Phase::Waiting;
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
-        slot.keep = self.plan_left_here(&slot.choice);
+        let goes_on = self.takes_live(&slot.choice).then(|| self.task.under_way()).flatten();
+        slot.keep = goes_on.or_else(|| self.plan_left_here(&slot.choice));
         slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
         if self.active.is_ready && !waiting && !self.has_active_failed() {
@@ -116,6 +125,23 @@ impl Mission {
         } else {
             self.replace_active(slot);
         }
+    }
+
+    /// Whether a choice is the planner that drives with other live values: these change no plan, so that it goes on with its own.
+    /// A value that goes back to its default is not among them: planners are told values only.
+    fn takes_live(&self, choice: &PlannerChoice) -> bool {
+        let (before, slot) = (&self.active.choice, &self.active);
+        let is_live = |key: &String| slot.info.as_ref().is_some_and(|info| info.has_live(key));
+        let mut changed =
+            choice.parameters.iter().filter(|(key, value)| before.parameters.get(*key) != Some(value));
+        let keeps_all = before.parameters.keys().all(|key| choice.parameters.contains_key(key));
+        choice.id == before.id
+            && *choice != *before
+            && slot.is_ready
+            && slot.has_plan()
+            && slot.newest_change().is_none()
+            && keeps_all
+            && changed.all(|(key, _)| is_live(key))
     }
 
     /// Whether the robot is held because the active planner has no plan that it may fly.
@@ -164,6 +190,7 @@ impl Mission {
     }
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
+        self.drop_better_plan("a parameter was changed");
         // A change on top of a change that is under way.
         let newest = self.candidate.as_ref().filter(|slot| slot.choice.id == self.active.choice.id);
         let base = newest.map(|slot| &slot.choice).or_else(|| self.active.newest_change());

@@ -139,6 +139,8 @@ impl Mission {
 
     /// Flies a plan from now on.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
+        self.drop_better_plan("another plan is flown");
+        self.better_plan_due_s = None;
         self.task.take_plan(plan);
         // Progress is counted along the new plan from here.
         self.rules.stuck.restart();

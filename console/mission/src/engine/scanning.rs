@@ -33,6 +33,9 @@ impl Mission {
         if is_due(&self.task) {
             self.active.want_plan(Reason::MapChanged);
         }
+        if changes_plans && !shapes.is_empty() {
+            self.postpone_better_plan();
+        }
         let shadow = self.shadow.as_mut().map(|shadow| &mut shadow.slot);
         if changes_plans {
             self.active.found_since.extend_from_slice(&shapes);

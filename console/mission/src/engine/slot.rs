@@ -1,6 +1,9 @@
 //! A planner of the mission: how far it is prepared, its plan, and what is asked of it.
 
-use super::rules::{BlockedRule, CutsRule, LatePlannerRule};
+use super::{
+    better_plan::Better,
+    rules::{BlockedRule, CutsRule, LatePlannerRule},
+};
 use crate::{
     ask::{Ask, AskId, Said, Site, What, WorkerId},
     planner::{PlannerChoice, PlannerInfo},
@@ -44,6 +47,9 @@ pub(super) struct PlannerSlot {
     pub follower: Option<PathFollower>,
     /// What was found since the plan was asked for that is being made.
     pub found_since: Vec<Shape>,
+    /// From where on what it plans is to take the place of the plan that is flown; `None` for one that takes over as soon as it
+    /// has a plan.
+    pub better: Option<Box<Better>>,
     /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.
     pub robot_waits: bool,
     /// Its command for this tick.
@@ -143,8 +149,17 @@ pub(super) struct AskedPlan {
     pub return_path: Vec<Point>,
     /// Whether that return path was the second try.
     pub from_anchor: bool,
+    /// Whether the planner was to keep to the plan that is flown, changed where the map has changed.
+    pub is_repair: bool,
     /// Where the robot stood.
     pub here: Point,
+}
+
+impl AskedPlan {
+    /// A plan from where the robot stands, which is not asked of the planner.
+    pub(super) fn from_here(reason: Reason, here: Point) -> Self {
+        Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
+    }
 }
 
 /// A command that has arrived.

@@ -1,6 +1,7 @@
 //! Missions in a perfect little world: exact ranges, a point robot that follows its commands.
 
 mod arrivals;
+mod better_plan;
 mod caught;
 mod covering;
 mod shadow;
@@ -12,7 +13,7 @@ mod zones;
 use super::*;
 use crate::{
     ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
-    config::{ScanConfig, TaskConfig},
+    config::{BetterPlan, ScanConfig, TaskConfig},
     phase::{Gait, Hold, HoldReason, Outcome},
     planner::{
         Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
@@ -54,6 +55,10 @@ struct Straight {
     plans_to_m: Option<f64>,
     /// Its coverage plans are a single point.
     leads_nowhere: bool,
+    /// Its first plans go along each lane three times.
+    wasteful_plans: usize,
+    /// From this plan on it leaves out the last lane.
+    scans_less_from_plan: Option<usize>,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
 }
@@ -103,15 +108,6 @@ impl Straight {
         }
         self.chosen.push(id.into());
         let text = String::new;
-        let gain = ParamInfo {
-            key: "gain".into(),
-            label: text(),
-            unit: text(),
-            help: text(),
-            group: text(),
-            kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
-            live: true,
-        };
         Ok(PlannerInfo {
             id: id.into(),
             name: text(),
@@ -123,7 +119,7 @@ impl Straight {
             covers: true,
             snapshots: self.snapshots,
             sandbox: None,
-            parameters: if self.has_stiff_gain { vec![gain] } else { vec![] },
+            parameters: if self.has_stiff_gain { vec![gain(true)] } else { vec![] },
         })
     }
 
@@ -142,7 +138,11 @@ impl Straight {
             if self.leads_nowhere {
                 return Plan { path: vec![*anchor], ..Plan::default() };
             }
-            return Plan { cuts, ..covering::lanes(request, *anchor) };
+            let lanes = covering::lanes(request, *anchor);
+            let lanes = if self.plans <= self.wasteful_plans { covering::wasteful(&lanes) } else { lanes };
+            let scans_less = self.scans_less_from_plan.is_some_and(|first| self.plans >= first);
+            let lanes = if scans_less { covering::without_last_lane(lanes) } else { lanes };
+            return Plan { cuts, ..lanes };
         }
         let mut path = vec![request.start.position];
         path.extend(self.plans_to_m.map(|x_m| Point::new(x_m, 0.0)));
@@ -167,6 +167,19 @@ impl Straight {
         } else {
             Command::still(Status::Waiting)
         })
+    }
+}
+
+/// A parameter that changes under way or not.
+fn gain(live: bool) -> ParamInfo {
+    ParamInfo {
+        key: "gain".into(),
+        label: String::new(),
+        unit: String::new(),
+        help: String::new(),
+        group: String::new(),
+        kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
+        live,
     }
 }
 
@@ -216,6 +229,7 @@ fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        better_plan: BetterPlan::Offer,
     }
 }
 

@@ -80,6 +80,7 @@ impl Mission {
             self.happened.push(EventKind::FloorChanged { changes });
         }
         self.end_shadow();
+        self.drop_better_plan("a no-go zone was drawn");
         let next = self.candidate.take().map(|mut slot| {
             self.workers.close(slot.leave_worker());
             slot.choice

@@ -85,6 +85,9 @@ impl Event {
             | EventKind::PlannerLogged { .. }
             | EventKind::PlannerLate { .. }
             | EventKind::PlannerFailed { .. } => of_planner(&self.kind)?,
+            EventKind::BetterPlanned { .. }
+            | EventKind::BetterPlanTaken { .. }
+            | EventKind::BetterPlanDropped { .. } => of_better_plan(&self.kind)?,
             EventKind::ShadowBegan { .. }
             | EventKind::Shadowed { .. }
             | EventKind::ShadowMissed { .. }
@@ -162,6 +165,26 @@ fn of_planner(kind: &EventKind) -> Option<LogLine> {
             line(Severity::Watch, "plan", format!("{}; the robot stood still", late_text(planner, *ticks)))
         }
         EventKind::PlannerFailed { fault, .. } => line(fault.severity(), "plan", fault.message.clone()),
+        _ => return None,
+    })
+}
+
+fn of_better_plan(kind: &EventKind) -> Option<LogLine> {
+    Some(match kind {
+        EventKind::BetterPlanned { planner, flown, better, objection: None, .. } => {
+            let text = format!("{planner} has a better plan, which saves {}", better.saving(flown));
+            line(Severity::Watch, "plan", text)
+        }
+        EventKind::BetterPlanned { planner, objection: Some(why), .. } => {
+            line(Severity::Info, "plan", format!("{planner} has no better plan: {why}"))
+        }
+        EventKind::BetterPlanTaken { planner, flown, better } => {
+            let text = format!("better plan of {planner} taken, which saves {}", better.saving(flown));
+            line(Severity::Info, "plan", text)
+        }
+        EventKind::BetterPlanDropped { planner, why } => {
+            line(Severity::Info, "plan", format!("no better plan of {planner}: {why}"))
+        }
         _ => return None,
     })
 }
@@ -247,6 +270,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::Shadow(choice) => format!("fly planner {} in shadow", choice.id),
         Order::Promote => "promote the planner in shadow".into(),
         Order::DropShadow => "end the shadow".into(),
+        Order::TakePlan => "take the better plan".into(),
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
         Order::DrawZone(_) => "draw no-go zone".into(),
         Order::Inject(injection) => injection_text(injection, stations),

@@ -66,7 +66,8 @@ impl RecordedAnswers {
         let Recorded { ask, closing, said } = self.due.remove(at)?;
         let (_, is_plan) = self.open.swap_remove(open);
         let result = closing.recorded_answer(is_plan)?;
-        let is_used = !matches!(closing, EventKind::Discarded { .. } | EventKind::ShadowMissed { .. });
+        let is_used =
+            !matches!(closing, EventKind::Discarded { plan: None, .. } | EventKind::ShadowMissed { .. });
         Some((Answer { ask, result, said }, is_used))
     }
 }
@@ -80,7 +81,8 @@ impl EventKind {
             | Self::ShadowBegan { ask, .. }
             | Self::ShadowMissed { ask, .. }
             | Self::Snapshotted { ask, .. }
-            | Self::Discarded { ask } => Some(*ask),
+            | Self::BetterPlanned { ask, .. }
+            | Self::Discarded { ask, .. } => Some(*ask),
             Self::Shadowed { of } => of.closes(),
             Self::PlannerChosen { ask, .. }
             | Self::ParametersChanged { ask, .. }
@@ -104,8 +106,12 @@ impl EventKind {
             Self::Planned { ask: Some(_), return_path, path, complete, legs, cuts, .. } => {
                 without_return_path(*return_path, path, *complete, legs, cuts).map(Given::Plan)
             }
+            Self::BetterPlanned { path, complete, legs, cuts, .. } => {
+                without_return_path(0, path, *complete, legs, cuts).map(Given::Plan)
+            }
             Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
+            Self::Discarded { plan: Some(plan), .. } => return plan.recorded_answer(is_plan),
             Self::Discarded { .. } if is_plan => Ok(Given::Plan(Plan::default())),
             Self::Discarded { .. } | Self::ShadowMissed { .. } => {
                 Ok(Given::Command(Command::still(Status::Waiting)))

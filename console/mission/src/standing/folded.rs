@@ -25,6 +25,9 @@ pub struct FoldedStanding {
     /// How the planner in shadow does; `None` without one.
     #[serde(default)]
     shadow: Option<ShadowTally>,
+    /// Whether a better plan is offered and not taken yet.
+    #[serde(default)]
+    has_offer: bool,
 }
 
 impl FoldedStanding {
@@ -36,6 +39,9 @@ impl FoldedStanding {
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
                     self.shadow = Some(ShadowTally::default());
+                }
+                if *order == Order::TakePlan {
+                    self.has_offer = false;
                 }
                 self.gait = match order {
                     Order::Step => Some(Gait::OneTick),
@@ -55,6 +61,8 @@ impl FoldedStanding {
             EventKind::RangesInconsistent { .. } => self.is_alarmed = true,
             EventKind::RangesConsistent => self.is_alarmed = false,
             EventKind::PlannerChosen { info, .. } => self.planner = Some(info.clone()),
+            EventKind::BetterPlanned { objection, .. } => self.has_offer = objection.is_none(),
+            EventKind::BetterPlanTaken { .. } | EventKind::BetterPlanDropped { .. } => self.has_offer = false,
             EventKind::Promoted { .. } | EventKind::ShadowEnded { .. } => self.shadow = None,
             _ => {}
         }
@@ -68,6 +76,12 @@ impl FoldedStanding {
             None if self.is_alarmed => PositionTrust::Alarmed,
             None => PositionTrust::Good,
         };
-        Standing { phase: &self.phase, position, planner: self.planner.as_deref(), shadow: self.shadow }
+        Standing {
+            phase: &self.phase,
+            position,
+            planner: self.planner.as_deref(),
+            shadow: self.shadow,
+            has_offer: self.has_offer,
+        }
     }
 }

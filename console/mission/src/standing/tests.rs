@@ -37,6 +37,7 @@ fn orders() -> Vec<Order> {
         Order::Shadow(choice),
         Order::Promote,
         Order::DropShadow,
+        Order::TakePlan,
         Order::SetParameter { key: "gain".into(), value: ParamValue::Flag(true) },
         Order::Inject(Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 20.0, by: None }),
         Order::UseStation { station: StationId(1), used: false },
@@ -45,7 +46,7 @@ fn orders() -> Vec<Order> {
 
 fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
     let shadow = ShadowTally { answered: 40, in_row: READY_AFTER, missed: 2 };
-    Standing { phase, position, planner: None, shadow: Some(shadow) }
+    Standing { phase, position, planner: None, shadow: Some(shadow), has_offer: true }
 }
 
 #[test]

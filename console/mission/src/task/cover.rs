@@ -4,7 +4,7 @@ use super::rest_of;
 use crate::ask::TaskLeft;
 use geometry::PathFollower;
 use planner_api::{self as api, LegTag, Plan};
-use std::sync::Arc;
+use std::{collections::HashSet, sync::Arc};
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
 /// Blocks of floor handed to planners are this share of a lane wide.
@@ -30,6 +30,15 @@ pub(crate) struct Cover {
     before_m: f64,
     /// Least distance from the corner ahead, metres, and the time since then, seconds.
     at_corner: (f64, f64),
+}
+
+/// A place on the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Joint {
+    /// The place.
+    pub at: Point,
+    /// Way along the plan to it, metres.
+    pub station_m: f64,
 }
 
 /// A plan under way.
@@ -118,6 +127,49 @@ impl Cover {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let rest = rest_of(plan, follower.target_m(), &[follower.target()]);
         Some(Plan { cost: 0.0, ..rest })
+    }
+
+    /// Whether at least half of the points of a plan are points of the one that is flown: a plan made anew shares a tenth of them,
+    /// a repaired one more than seven tenths.
+    pub(crate) fn keeps_to(&self, plan: &Plan) -> bool {
+        let bits = |point: &Point| [point.x.to_bits(), point.y.to_bits()];
+        let flown: HashSet<_> = self.lanes.iter().flat_map(|lanes| &lanes.plan.path).map(bits).collect();
+        let kept = plan.path.iter().filter(|point| flown.contains(&bits(point))).count();
+        2 * kept >= plan.path.len()
+    }
+
+    /// The first place at which a stretch of the plan ends at least so far ahead of the robot, or, if that is more than twice as
+    /// far, any point of it; `None` if the plan ends before.
+    pub(crate) fn joint(&self, lead_m: f64) -> Option<Joint> {
+        let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
+        let stations_m = polyline::stations_m(&plan.path);
+        let least_m = follower.along_m() + lead_m;
+        let after = |at_m: f64| stations_m.partition_point(|station_m| *station_m < at_m);
+        let (first, end) = (after(least_m), plan.path.len().saturating_sub(1));
+        let near = first..after(least_m + lead_m).min(end);
+        let leg_ends = plan.legs.iter().map(|leg| leg.last);
+        let index = leg_ends.filter(|last| near.contains(last)).min().unwrap_or(first);
+        if index >= end {
+            return None;
+        }
+        Some(Joint { at: plan.path[index], station_m: stations_m[index] })
+    }
+
+    /// The way along the plan from the robot to a place on it.
+    pub(crate) fn way_to(&self, joint: &Joint) -> Vec<Point> {
+        let between = self.lanes.iter().flat_map(|Lanes { plan, follower, .. }| {
+            let stations_m = polyline::stations_m(&plan.path);
+            let at = |m: f64| stations_m.partition_point(|at_m| *at_m <= m);
+            plan.path[at(follower.along_m())..at(joint.station_m)].to_vec()
+        });
+        std::iter::once(self.position).chain(between).collect()
+    }
+
+    /// What is left of the path from a place on it.
+    pub(crate) fn path_from(&self, joint: &Joint) -> Vec<Point> {
+        self.lanes
+            .as_ref()
+            .map_or_else(Vec::new, |lanes| rest_of(&lanes.plan, joint.station_m, &[joint.at]).path)
     }
 
     /// Progress along the plan.

@@ -31,6 +31,9 @@ impl Run {
                 if *order == Order::Start {
                     self.clock.started_s = Some(event.t_s);
                 }
+                if *order == Order::TakePlan {
+                    self.planning.offer.iter_mut().for_each(|offer| offer.is_taken = true);
+                }
                 change.answered = Some(order.clone());
                 self.shadowed(event, &mut change);
             }
@@ -64,6 +67,9 @@ impl Run {
             | EventKind::Scalars { .. }
             | EventKind::PlannerFailed { .. }
             | EventKind::PlannerLate { .. }
+            | EventKind::BetterPlanned { .. }
+            | EventKind::BetterPlanTaken { .. }
+            | EventKind::BetterPlanDropped { .. }
             | EventKind::PlannerRejected { .. } => self.planned(event, &mut change),
             EventKind::ShadowBegan { .. }
             | EventKind::Shadowed { .. }
@@ -210,6 +216,7 @@ impl Run {
 
     fn end(&mut self, event: &Event, outcome: Outcome, reason: &str, change: &mut Change) {
         reason.clone_into(&mut self.end_reason);
+        self.planning.offer = None;
         change.withdraw(Withdrawn::All);
         let severity = match outcome {
             Outcome::Complete | Outcome::Aborted => return,

@@ -1,6 +1,6 @@
 //! The planner as the screen knows it.
 
-use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, planner::Fault};
+use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, event::Effort, planner::Fault};
 use planner_api::{Command, Drawing};
 use serde::{Deserialize, Serialize};
 use world::Point;
@@ -19,6 +19,19 @@ pub struct PlanShown {
     pub complete: bool,
     /// Mission time at which it was made, seconds.
     pub t_s: f64,
+}
+
+/// A plan that is better than the rest of the one that is flown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Offer {
+    /// What the rest takes.
+    pub flown: Effort,
+    /// What the better plan takes.
+    pub better: Effort,
+    /// Where it begins.
+    pub begins: Option<Point>,
+    /// Whether the operator has taken it.
+    pub is_taken: bool,
 }
 
 /// The planner and what it last did.
@@ -46,4 +59,7 @@ pub struct Planning {
     /// Whether the last plan was of that planner: the certificate that follows says nothing of the plan that is flown.
     #[serde(default)]
     pub proposed: bool,
+    /// A better plan that is offered, or was taken and is flown from where it begins.
+    #[serde(default)]
+    pub offer: Option<Offer>,
 }

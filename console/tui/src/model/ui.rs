@@ -354,6 +354,8 @@ pub enum Ask {
     Swap(PlannerChoice),
     /// Let the planner in shadow take over.
     Promote,
+    /// Fly the better plan.
+    TakePlan,
 }
 
 impl Ask {
@@ -366,6 +368,7 @@ impl Ask {
             Self::Abort => Order::Abort,
             Self::Swap(choice) => Order::ChoosePlanner(choice.clone()),
             Self::Promote => Order::Promote,
+            Self::TakePlan => Order::TakePlan,
         }
     }
 }

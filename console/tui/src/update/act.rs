@@ -85,6 +85,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::ChoosePlanner => choose(model, Purpose::Drive),
         ActionId::Shadow => choose(model, Purpose::Shadow),
         ActionId::Promote => ask(model, Ask::Promote),
+        ActionId::TakePlan => ask(model, Ask::TakePlan),
         ActionId::DropShadow => send(model, Order::DropShadow),
         ActionId::Compare => choose(model, Purpose::Compare),
         ActionId::WhatIf => what_if::open(model),

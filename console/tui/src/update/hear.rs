@@ -97,6 +97,7 @@ fn take(model: &mut Model, event: &Event) {
         model.live.answered(&order);
     }
     if let Some((severity, text)) = notice {
+        let text = model.console.keys.spelled(&text);
         model.say(severity, text);
     }
     withdraw(model, withdrawn);

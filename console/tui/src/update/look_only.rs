@@ -44,10 +44,14 @@ fn acts(id: ActionId) -> bool {
     use ActionId::{
         Abort, Acknowledge, AcknowledgeAll, Again, CancelPlan, ChoosePlanner, Compare, DrawZone, DropShadow,
         Exclude, Faster, FlyUncertified, Hold, Include, Inject, PlanAgain, Preflight, Promote, Reload,
-        Resume, SetParameter, SetSpeed, Shadow, Shelve, Slower, Start, Step, StepEvent, StepLane, WhatIf,
+        Resume, SetParameter, SetSpeed, Shadow, Shelve, Slower, Start, Step, StepEvent, StepLane, TakePlan,
+        WhatIf,
     };
     let moves = matches!(id, Hold | Start | Resume | FlyUncertified | Step | StepLane | StepEvent | Abort);
-    let plans = matches!(id, ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload);
+    let plans = matches!(
+        id,
+        TakePlan | ChoosePlanner | Compare | PlanAgain | CancelPlan | Preflight | WhatIf | Reload
+    );
     let shadows = matches!(id, Shadow | Promote | DropShadow);
     let sets =
         matches!(id, SetParameter | SetSpeed | Slower | Faster | Inject | Exclude | Include | DrawZone);

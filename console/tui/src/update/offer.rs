@@ -26,6 +26,7 @@ fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Abort => abort(model),
         ActionId::ChoosePlanner => swap(model),
         ActionId::Shadow | ActionId::Promote | ActionId::DropShadow => of_shadow(model, id),
+        ActionId::TakePlan => accepted(model, &Order::TakePlan),
         ActionId::Accept => accept(model),
         ActionId::WhatIf => accepted(model, &Order::NoteOutlooks(Vec::new())),
         ActionId::Preflight | ActionId::Compare | ActionId::PlanAgain | ActionId::CancelPlan => {
@@ -337,6 +338,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::PositionLost { .. }
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused
+        | Refusal::NoOffer
         | Refusal::ShadowNotReady { .. } => None,
     }
 }

@@ -99,6 +99,7 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
         Ask::Abort => ActionId::Abort,
         Ask::Swap(_) => ActionId::ChoosePlanner,
         Ask::Promote => ActionId::Promote,
+        Ask::TakePlan => ActionId::TakePlan,
     };
     match offered(model, id) {
         Ok(()) => {

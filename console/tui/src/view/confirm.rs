@@ -136,6 +136,16 @@ fn asked(model: &Model) -> Option<Vec<String>> {
                 format!("It takes over from {driving} without a hold."),
             ]
         }
+        Overlay::Confirm(Ask::TakePlan) => {
+            let offer = model.live.run.planning.offer.as_ref();
+            let saves = offer.map_or_else(|| "-".into(), |offer| offer.better.saving(&offer.flown));
+            let begins = offer.and_then(|offer| offer.begins).map_or_else(|| "-".into(), text::place);
+            vec![
+                "Take the better plan? Enter: take, Esc: cancel.".into(),
+                format!("It saves {saves}."),
+                format!("It begins at {begins}, without a hold."),
+            ]
+        }
         Overlay::Stepping => {
             let tick_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.tick_s);
             vec![

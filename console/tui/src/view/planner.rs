@@ -2,7 +2,7 @@
 
 use super::look::{Look, fill, marked, ranked};
 use super::{shadow, text};
-use crate::model::{Pane, Run};
+use crate::model::{Offer, Pane, Run};
 use crate::theme::Role;
 use planner_api::{Drive, Status};
 use ratatui::Frame;
@@ -48,6 +48,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
         );
     }
     rows.extend(shadow::rows(run, room));
+    rows.extend(run.planning.offer.iter().map(|offer| (2, "better", better(look, offer, room))));
     rows.extend([
         (0, "speed", pose(motion(run, room))),
         (1, "command", command(look, room)),
@@ -56,6 +57,16 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
         (5, "plan", (Role::Text, plan(run))),
     ]);
     rows
+}
+
+/// The better plan that is offered: what it saves, and which key takes it.
+fn better(look: &Look, offer: &Offer, room: usize) -> Value {
+    let saves = text::number((offer.flown.time_s - offer.better.time_s) / 60.0, 1);
+    let of = text::number(offer.flown.time_s / 60.0, 1);
+    let keys = |words: &str| look.model.console.keys.spelled(words);
+    let next = if offer.is_taken { "taken".to_owned() } else { keys("<take-plan>: take") };
+    let words = [format!("saves {saves} of {of} min; {next}"), format!("-{saves} min; {next}"), next];
+    (Role::Watch, text::wording(words, room))
 }
 
 fn planner(look: &Look) -> Value {

@@ -99,6 +99,7 @@ pub(crate) fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        better_plan: mission::BetterPlan::Offer,
     }
 }
 

@@ -68,7 +68,7 @@ fn event() -> impl Strategy<Value = Event> {
             EventKind::PlannerRejected { planner: "漢字".repeat(40), why: "no".repeat(200) },
             EventKind::PlannerLate { planner: "rpf".into(), ticks: u64::MAX },
             EventKind::Snapshotted { ask, bytes: u64::MAX },
-            EventKind::Discarded { ask },
+            EventKind::Discarded { ask, plan: None },
         ];
         events.extend(lone.into_iter().map(|kind| mission.now(kind)));
         events.push(mission.ended(Outcome::Stuck, "漢字".repeat(40).as_str()));

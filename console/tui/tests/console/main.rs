@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod alarms;
+mod better_plan;
 mod commands;
 mod events;
 mod fixture;

@@ -382,7 +382,7 @@ fn a_planner_that_is_rejected_or_late_is_reported() {
     assert!(notice(&screen).contains("spiral-tangent will not take over: no plan within 60 s"));
     let mut screen = Screen::running();
     let before = screen.model.clone();
-    send_event(&mut screen, EventKind::Discarded { ask });
+    send_event(&mut screen, EventKind::Discarded { ask, plan: None });
     send_event(&mut screen, EventKind::Snapshotted { ask, bytes: 12 });
     assert_eq!(screen.model, before, "of no interest to the operator");
     for (ticks, text) in [(1, "planner rpf answered 1 tick late"), (4, "planner rpf answered 4 ticks late")] {

@@ -52,6 +52,7 @@ fn overlays() -> Vec<Overlay> {
         Overlay::Confirm(Ask::Abort),
         Overlay::Confirm(Ask::Swap(choice("apf"))),
         Overlay::Confirm(Ask::Promote),
+        Overlay::Confirm(Ask::TakePlan),
         Overlay::Stepping,
         Overlay::Quit,
         commands(false),
@@ -73,7 +74,13 @@ fn overlays() -> Vec<Overlay> {
         match overlay {
             Overlay::None
             | Overlay::Confirm(
-                Ask::Start | Ask::Resume | Ask::FlyUncertified | Ask::Abort | Ask::Swap(_) | Ask::Promote,
+                Ask::Start
+                | Ask::Resume
+                | Ask::FlyUncertified
+                | Ask::Abort
+                | Ask::Swap(_)
+                | Ask::Promote
+                | Ask::TakePlan,
             )
             | Overlay::Stepping
             | Overlay::Quit

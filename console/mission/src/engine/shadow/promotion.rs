@@ -68,7 +68,7 @@ impl Mission {
         };
         let here = self.locator.position();
         let reason = Reason::Swap { from };
-        let asked = AskedPlan { reason, return_path: Vec::new(), from_anchor: shadow.from_anchor, here };
+        let asked = AskedPlan { from_anchor: shadow.from_anchor, ..AskedPlan::from_here(reason, here) };
         let evaluated = self.evaluate(None, &shadow.slot.choice.id, &asked, rest);
         match &evaluated.objection {
             None => {
@@ -99,6 +99,7 @@ impl Mission {
         Evaluated { plan, events, .. }: Evaluated,
     ) {
         let planner = slot.choice.id.clone();
+        self.drop_better_plan("another planner drives");
         if let Some(candidate) = self.candidate.take() {
             self.reject(candidate, format!("planner {planner} was promoted from shadow"));
         }

@@ -122,15 +122,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![ParamInfo {
-        key: "gain".into(),
-        label: String::new(),
-        unit: String::new(),
-        help: String::new(),
-        group: String::new(),
-        kind: ParamKind::Float { min: 0.0, max: 9.0, default: 1.0 },
-        live: true,
-    }];
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
     let value = ParamValue::Float(2.0);
     let events = flight.tick(&[Order::SetParameter { key: "gain".into(), value: value.clone() }]);
     let at = |is: fn(&EventKind) -> bool| events.iter().position(is);
@@ -177,6 +169,15 @@ fn a_plugin_that_fails_three_times_within_a_minute_may_not_drive_again() {
 
 /// The answers of a journal, fed into another mission in the ticks in which they arrived.
 pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
+    replay_asking(config, recorded, |_| {})
+}
+
+/// The same, with what is asked.
+pub(super) fn replay_asking(
+    config: MissionConfig,
+    recorded: &Flight,
+    mut hear: impl FnMut(&Ask),
+) -> Vec<Event> {
     let mut again = Flight::new(config);
     let (mut events, mut answers) = (Vec::new(), RecordedAnswers::default());
     for (readings, orders) in &recorded.inputs {
@@ -185,7 +186,10 @@ pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
             .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
         again.mission.sense(&Input { readings, orders });
         loop {
-            std::iter::from_fn(|| again.mission.poll_ask()).for_each(|ask| answers.submit(&ask));
+            while let Some(ask) = again.mission.poll_ask() {
+                hear(&ask);
+                answers.submit(&ask);
+            }
             let Some((answer, _)) = answers.next_answer() else { break };
             again.mission.answer(answer);
         }
@@ -195,7 +199,7 @@ pub(super) fn replay(config: MissionConfig, recorded: &Flight) -> Vec<Event> {
 }
 
 fn order(n: u8) -> Order {
-    match n % 11 {
+    match n % 12 {
         0 => Order::Hold,
         1 => Order::Resume,
         2 => Order::Step,
@@ -206,6 +210,7 @@ fn order(n: u8) -> Order {
         7 => shadow("other"),
         8 => shadow("straight"),
         9 => Order::Promote,
+        10 => Order::TakePlan,
         _ => Order::DropShadow,
     }
 }
@@ -248,7 +253,7 @@ proptest! {
         silent in prop::option::of(20_u64..300),
         delays in prop::collection::vec(prop_oneof![4 => 0_u64..1, 2 => 1_u64..5, 1 => 20_u64..60], 64),
         faults in prop::collection::vec(0_u64..400, 0..4),
-        orders in prop::collection::vec((0_u64..400, 0_u8..22), 0..16),
+        orders in prop::collection::vec((0_u64..400, 0_u8..24), 0..16),
     ) {
         let config = if covers { covering() } else { config() };
         let fallback = PlannerChoice { id: "fallback".into(), parameters: Parameters::new() };
@@ -281,7 +286,7 @@ proptest! {
             }
             let standing = flight.mission.standing();
             prop_assert_eq!(&folded.phase, standing.phase);
-            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10] {
+            for n in [0, 1, 2, 3, 5, 6, 7, 9, 10, 11] {
                 prop_assert_eq!(folded.standing().allows(&order(n)), standing.allows(&order(n)), "{:?}", order(n));
             }
             let holds = now.last() == Some(&Order::Hold);

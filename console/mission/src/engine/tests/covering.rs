@@ -32,6 +32,30 @@ pub(super) fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
     Plan { path, complete: true, legs, ..Plan::default() }
 }
 
+/// The same lanes, each of them driven there, back and there again.
+pub(super) fn wasteful(lanes: &Plan) -> Plan {
+    let mut plan = Plan { path: vec![lanes.path[0]], legs: vec![], ..lanes.clone() };
+    for leg in &lanes.legs {
+        let way = &lanes.path[leg.first + 1..=leg.last];
+        let first = plan.path.len() - 1;
+        plan.path.extend(way);
+        if leg.tag == LegTag::Swath {
+            plan.path.extend(way.iter().rev().skip(1).chain(way.iter().skip(1)));
+        }
+        plan.legs.push(Leg { first, last: plan.path.len() - 1, ..*leg });
+    }
+    plan
+}
+
+/// The same lanes but the last one.
+pub(super) fn without_last_lane(mut lanes: Plan) -> Plan {
+    let (Some(home), Some(swath)) = (lanes.legs.pop(), lanes.legs.pop()) else { return lanes };
+    lanes.path.drain(swath.first + 1..home.last);
+    let last = lanes.path.len() - 1;
+    lanes.legs.push(Leg { first: last - 1, last, ..home });
+    lanes
+}
+
 fn is_wanted(request: &PlanAsk, point: Point) -> bool {
     let TaskLeft::Cover { regions, .. } = &request.task else { return false };
     let is_near = |region: &Vec<Point>| {
@@ -58,7 +82,7 @@ pub(super) fn covering() -> MissionConfig {
     MissionConfig { task, start, time_limit_s: 1000.0, ..config() }
 }
 
-fn covered(flight: &Flight) -> f64 {
+pub(super) fn covered(flight: &Flight) -> f64 {
     flight
         .events
         .iter()

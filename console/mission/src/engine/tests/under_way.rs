@@ -1,7 +1,7 @@
 //! What planners are given of a plan that is being flown, or that they made a moment ago.
 
-use super::covering::covering;
 use super::*;
+use super::{arrivals::replay_asking, covering::covering};
 use world::polyline;
 
 /// A flight over the floor that was held on the way.
@@ -58,6 +58,43 @@ fn another_planner_and_other_values_begin_anew() {
 }
 
 #[test]
+fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_values() {
+    let mut flight = held_on_the_way();
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    let chosen = |value| {
+        let parameters = Parameters::from([("gain".to_owned(), ParamValue::Float(value))]);
+        Order::ChoosePlanner(PlannerChoice { id: "straight".into(), parameters })
+    };
+    let changed =
+        |events: &[EventKind]| events.iter().any(|kind| matches!(kind, EventKind::ParametersChanged { .. }));
+    assert!(changed(&flight.tick(&[chosen(2.0)])));
+    assert_eq!((flight.planner.plans, flight.planner.chosen.len(), flight.closed.len()), (1, 1, 0));
+    assert!(matches!(flight.held_by(), Some(HoldReason::Operator)));
+    // The same choice once more plans anew, and so does one that changes the plan or takes a value back.
+    flight.tick(&[chosen(2.0)]);
+    assert_eq!(flight.planner.plans, 2);
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(false)];
+    flight.tick(&[chosen(3.0)]);
+    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.tick(&[swap_to("straight")]);
+    assert_eq!((flight.planner.plans, flight.planner.chosen.len()), (4, 4));
+}
+
+#[test]
+fn a_planner_that_begins_again_with_other_live_values_keeps_to_its_plan() {
+    let mut flight = Flight::new(covering());
+    flight.planner.has_stiff_gain = true;
+    flight.tick(&[Order::Start]);
+    flight.fly(200);
+    flight.tick(&[Order::Hold]);
+    let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
+    flight.tick(&[Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) }]);
+    flight.fly(2);
+    assert_eq!((flight.planner.chosen.len(), kept_m(&flight)), (2, vec![None, left_m]));
+    assert_eq!(flight.mission.active.choice.parameters["gain"], ParamValue::Float(2.0));
+}
+
+#[test]
 fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     let mut flight = held_on_the_way();
     let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
@@ -84,5 +121,12 @@ fn a_plan_that_came_too_late_is_kept_to_in_the_next_one_unless_the_robot_is_far(
         flight.fly(2 * delay as usize);
         assert_eq!(kept_m(&flight).len(), 3);
         assert_eq!(flight.planner.kept[2].is_some(), is_kept, "after {delay} ticks");
+        let mut kept = Vec::new();
+        let events = replay_asking(covering(), &flight, |ask| {
+            if let What::Plan(request) = &ask.what {
+                kept.push(request.under_way.clone());
+            }
+        });
+        assert!(events == flight.events && kept == flight.planner.kept, "the journal repeats what is asked");
     }
 }

@@ -1,6 +1,6 @@
 //! Events of planners into a run.
 
-use crate::model::{Cause, Change, PlanShown, Run, Trail, Withdrawn};
+use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
 use mission::{During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text};
 use planner_api::{Command, Drawing};
 
@@ -50,6 +50,25 @@ impl Run {
             // No alarm: the planner works again, and a fault before may not be acknowledged yet.
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
+            }
+            EventKind::BetterPlanned { path, flown, better, objection, .. } => {
+                self.planning.candidate = None;
+                if objection.is_none() {
+                    let (flown, better, begins) = (*flown, *better, path.first().copied());
+                    self.planning.offer = Some(Offer { flown, better, begins, is_taken: false });
+                    let saving = better.saving(&flown);
+                    change.say(Severity::Watch, format!("better plan saves {saving}; <take-plan>: take it"));
+                }
+            }
+            EventKind::BetterPlanTaken { .. } => {
+                self.planning.offer = None;
+                change.say(Severity::Info, "better plan taken");
+            }
+            EventKind::BetterPlanDropped { why, .. } => {
+                self.planning.candidate = None;
+                if self.planning.offer.take().is_some() {
+                    change.say(Severity::Info, format!("no better plan any more: {why}"));
+                }
             }
             EventKind::PlannerRejected { planner, why } => {
                 self.planning.candidate = None;

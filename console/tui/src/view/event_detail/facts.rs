@@ -4,7 +4,10 @@ use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What};
 use crate::view::fields::Field;
 use crate::view::text;
-use mission::{EventKind, PlannerChoice, PlannerInfo, Resumes, event::TetherAlarm};
+use mission::{
+    EventKind, PlannerChoice, PlannerInfo, Resumes,
+    event::{Effort, TetherAlarm},
+};
 use planner_api::Reason;
 use positioning::{Exclusion, FixError, Ranging};
 use world::{Obstacle, Shape, StationId, tether::Certificate};
@@ -30,6 +33,9 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerRejected { .. } => "planner rejected",
         EventKind::ParametersChanged { .. } => "parameters changed",
         EventKind::Planned { .. } => "plan",
+        EventKind::BetterPlanned { .. } => "better plan",
+        EventKind::BetterPlanTaken { .. } => "better plan taken",
+        EventKind::BetterPlanDropped { .. } => "no better plan",
         EventKind::ShadowBegan { .. } | EventKind::Shadowed { .. } => "planner in shadow",
         EventKind::ShadowMissed { .. } => "planner in shadow late",
         EventKind::PromotionRefused { .. } => "promotion refused",
@@ -95,6 +101,12 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
     }
 }
 
+fn effort(effort: &Effort) -> String {
+    let turns = text::number(effort.rotation_rad / std::f64::consts::TAU, 1);
+    let (metres, minutes) = (text::number(effort.length_m, 0), text::number(effort.time_s / 60.0, 1));
+    format!("{metres} m, {turns} turns, {minutes} min")
+}
+
 fn of_planner(kind: &EventKind) -> Vec<Field> {
     match kind {
         EventKind::PlannerChosen { choice, info, from, .. } => {
@@ -113,7 +125,12 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
         EventKind::ParametersChanged { choice, .. } => {
             vec![("planner", choice.id.clone()), ("parameters", parameters(choice))]
         }
+        EventKind::BetterPlanned { planner, flown, better, .. }
+        | EventKind::BetterPlanTaken { planner, flown, better } => {
+            vec![("planner", planner.clone()), ("flown", effort(flown)), ("better", effort(better))]
+        }
         EventKind::PlannerRejected { planner, why }
+        | EventKind::BetterPlanDropped { planner, why }
         | EventKind::ShadowEnded { planner, why }
         | EventKind::PromotionRefused { planner, why } => {
             vec![("planner", planner.clone()), ("reason", why.clone())]

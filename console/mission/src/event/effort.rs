@@ -1,0 +1,71 @@
+//! What flying a path takes.
+
+use planner_api::{Limits, Motion};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use world::{Point, geometry::wrap_angle_rad, polyline};
+
+/// Points that are nearer to each other than this have no direction, metres.
+const NO_WAY_M: f64 = 1e-6;
+
+/// What flying a path takes a robot at its own speeds, which drives straight on and turns on the spot.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Effort {
+    /// Its length, metres.
+    pub length_m: f64,
+    /// Sum of all changes of direction, radians.
+    pub rotation_rad: f64,
+    /// Mission time, seconds.
+    pub time_s: f64,
+}
+
+impl Effort {
+    /// What a path takes. A robot without a heading turns in no time.
+    pub(crate) fn of(path: &[Point], limits: &Limits) -> Self {
+        let length_m = polyline::length_m(path);
+        let ways = path.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| way.norm() > NO_WAY_M);
+        let headings: Vec<f64> = ways.map(|way| way.y.atan2(way.x)).collect();
+        let rotation_rad = headings.windows(2).map(|pair| wrap_angle_rad(pair[1] - pair[0]).abs()).sum();
+        let turning_s = match limits.motion {
+            Motion::Point => 0.0,
+            Motion::Unicycle => rotation_rad / limits.w_max_rad_per_s,
+        };
+        Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
+    }
+
+    /// By how much less it takes than another, in words.
+    pub fn saving(&self, other: &Self) -> String {
+        let turns = (other.rotation_rad - self.rotation_rad) / TAU;
+        format!(
+            "{:.0} m, {turns:.1} turns, {:.1} of {:.1} min",
+            other.length_m - self.length_m,
+            (other.time_s - self.time_s) / 60.0,
+            other.time_s / 60.0
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turning_takes_time_unless_the_robot_has_no_heading() {
+        let path =
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        let limits = |motion| Limits {
+            motion,
+            v_max_m_per_s: 0.4,
+            w_max_rad_per_s: 0.5,
+            radius_m: 0.3,
+            sensing_range_m: 3.0,
+        };
+        let turning = Effort::of(&path, &limits(Motion::Unicycle));
+        assert!((turning.length_m - 8.0).abs() < 1e-12 && (turning.rotation_rad - TAU / 2.0).abs() < 1e-12);
+        assert!((turning.time_s - 20.0 - TAU).abs() < 1e-12);
+        let straight = Effort::of(&path, &limits(Motion::Point));
+        assert!((straight.time_s - 20.0).abs() < 1e-12);
+        assert_eq!(straight.saving(&turning), "0 m, 0.0 turns, 0.1 of 0.4 min");
+        assert_eq!(Effort::of(&[], &limits(Motion::Point)), Effort::default());
+    }
+}
