@@ -7,8 +7,9 @@ use world::{Boundary, Point, polyline::edges};
 
 /// Slack between what is planned and what the mission demands, metres.
 pub(crate) const SLACK_M: f64 = 2e-3;
-/// Largest angle between neighbouring tangents of an outline, radians.
-const FACET_RAD: f64 = TAU / 18.0;
+/// Largest angle between neighbouring tangents of an outline, radians: wider ones keep the tool off columns by a centimetre at
+/// their corners, which adds up where many stand close together.
+const FACET_RAD: f64 = TAU / 24.0;
 /// How far a facet of a round wall may lie from the circle, metres.
 const WALL_SAGITTA_M: f64 = 2e-3;
 

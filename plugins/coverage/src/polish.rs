@@ -52,6 +52,7 @@ pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &Reachable
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..terms };
     bend(track, &terms, &careful, tuning::BENDS, &|_| 1.0)?;
     tie(track, &terms, &careful, &|_| 1.0)?;
+    scan_dear_floor(track, &terms, &careful)?;
     for price in tuning::PRICES {
         if track.coverage() > enough {
             track.reopen();
@@ -59,6 +60,21 @@ pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &Reachable
         }
     }
     track.pass_along_shell(&terms)
+}
+
+/// Where much is still missing, as in slivers around many columns that stand close together, the path is bent to dearer and dearer
+/// floor.
+fn scan_dear_floor(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
+    let enough = terms.enough - tuning::LEFT;
+    for times in tuning::DEARER {
+        if track.coverage() >= enough {
+            break;
+        }
+        let terms = Terms { enough, bend_m_per_m2: terms.bend_m_per_m2 * times, ..*terms };
+        bend(track, &terms, careful, tuning::BENDS, &|_| 1.0)?;
+        tie(track, &terms, careful, &|_| 1.0)?;
+    }
+    Ok(())
 }
 
 /// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was

@@ -66,9 +66,13 @@ pub(crate) mod tour {
 pub(crate) mod polish {
     /// Value of floor to shortcuts. What they drop is covered more cheaply by bends: together these shorten paths by
     /// 2 to 3 % (tuning.md).
-    pub(crate) const FLOOR: f64 = 9.0;
+    pub(crate) const FLOOR: f64 = 11.0;
     /// Most that floor may cost by a bend, turns included.
-    pub(crate) const BENT_FLOOR: f64 = 24.0;
+    pub(crate) const BENT_FLOOR: f64 = 28.0;
+    /// How many times that, one after another, where at last more than this share of the floor is missing of what is enough
+    /// (tuning.md).
+    pub(crate) const DEARER: [f64; 3] = [2.0, 4.0, 8.0];
+    pub(crate) const LEFT: f64 = 0.0008;
     /// Value of floor once the path was bent to it, metres of path per square metre: nothing may be lost again.
     pub(crate) const CAREFUL_M_PER_M2: f64 = 1e6;
     /// Cells of the first round, as a multiple of those of the second: finer ones decide between candidates no better.
@@ -176,8 +180,11 @@ pub(crate) mod choice {
     /// gained by another one is least in large tanks.
     pub(crate) const TOURED_M: f64 = 14_000.0;
     pub(crate) const LEAST_TOURED: usize = 2;
-    /// The same between straight walls: along the longest, and across it.
+    /// The same between straight walls: along the longest, and across it. Cuts are tried up to several angles there, as multiples
+    /// of the largest, and at most so far, radians: other cuts break other lanes (tuning.md).
     pub(crate) const BETWEEN_WALLS: usize = 2;
+    pub(crate) const ANGLES_BETWEEN_WALLS: [f64; 4] = [1.0, 1.2, 1.4, 1.6];
+    pub(crate) const MOST_ANGLE_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
     /// A tank with more obstacles than this is crowded: only the best direction is tried, with straight cuts. With oblique ones the
     /// tether was not as straight as is preferred there, and all would be planned in vain (tuning.md).
     pub(crate) const CROWDED: usize = 800;

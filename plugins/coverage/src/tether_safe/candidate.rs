@@ -8,14 +8,15 @@ use crate::slit_domain::SlitDomain;
 use crate::tether::{Tethered, least_cable_m};
 use crate::tether_safe::parameters::{Choice, Preferences};
 use crate::tuning::choice::{
-    BETWEEN_WALLS, BY_OBSTACLE, LEAST_TOURED, LOOKED_AT, PLACES, SLIVER_PER_M, TOURED_M,
+    ANGLES_BETWEEN_WALLS, BETWEEN_WALLS, BY_OBSTACLE, LEAST_TOURED, LOOKED_AT, MOST_ANGLE_RAD, PLACES,
+    SLIVER_PER_M, TOURED_M,
 };
 use crate::tuning::cuts::{AROUND_M, SLACKS_ACROSS, SLACKS_ALONG};
 use crate::workspace::Workspace;
 use planner_api::Site;
 use std::f64::consts::PI;
 use world::tether::{Cable, Certificate, Strain};
-use world::{Boundary, polyline};
+use world::{Boundary, polyline, shape::ring_area_m2};
 
 /// One way to make a plan.
 pub(super) struct Candidate {
@@ -32,7 +33,10 @@ impl Candidate {
         let is_meant = preferences.contours && (preferences.directions == 0 || !is_other);
         let contours = is_meant.then_some(Pattern::Contours);
         let straight = straight(workspace, preferences, alpha_rad);
-        contours.into_iter().chain(straight).map(|pattern| Self { pattern, alpha_rad }).collect()
+        let patterns: Vec<Pattern> = contours.into_iter().chain(straight).collect();
+        let with_cuts =
+            |alpha_rad: f64| patterns.iter().map(move |pattern| Self { pattern: *pattern, alpha_rad });
+        angles_rad(workspace, alpha_rad, patterns.len()).into_iter().flat_map(with_cuts).collect()
     }
 
     /// What the operator calls it.
@@ -98,14 +102,34 @@ fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) ->
     found.into_iter().take(wanted).map(|(_, rows)| pattern(rows)).collect()
 }
 
+/// Up to which angles cuts are tried, radians; several between straight walls, where lanes have few directions.
+fn angles_rad(workspace: &Workspace, alpha_rad: f64, n_patterns: usize) -> Vec<f64> {
+    if matches!(workspace.wall, Boundary::Circle { .. }) || workspace.is_crowded() {
+        return vec![alpha_rad];
+    }
+    let most = most_toured(workspace) / n_patterns.max(1);
+    let larger_rad = |times: f64| alpha_rad.max((alpha_rad * times).min(MOST_ANGLE_RAD));
+    let mut angles_rad = ANGLES_BETWEEN_WALLS.map(larger_rad).to_vec();
+    angles_rad.dedup();
+    angles_rad.truncate(most.max(1));
+    angles_rad
+}
+
 /// How many directions of straight lanes are worth their time.
 fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
     if workspace.is_crowded() {
         return 1;
     }
-    let Boundary::Circle { radius_m } = workspace.wall else { return BETWEEN_WALLS };
-    let lanes_m = PI * radius_m * radius_m / workspace.swath_m;
-    if is_round { ((TOURED_M / lanes_m) as usize).max(LEAST_TOURED) } else { BETWEEN_WALLS }
+    if is_round { most_toured(workspace) } else { BETWEEN_WALLS }
+}
+
+/// How many first tours are worth their time.
+fn most_toured(workspace: &Workspace) -> usize {
+    let area_m2 = match &workspace.wall {
+        Boundary::Circle { radius_m } => PI * radius_m * radius_m,
+        Boundary::Polygon { vertices } => ring_area_m2(vertices).abs(),
+    };
+    ((TOURED_M * workspace.swath_m / area_m2) as usize).max(LEAST_TOURED)
 }
 
 /// What obstacles and slivers along the wall cost rows, in lanes that a cut breaks.

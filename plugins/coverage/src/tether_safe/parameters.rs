@@ -23,7 +23,8 @@ const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 1
            break the fewest lanes, between straight walls two.")
     .group("Plan");
 const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 50.0)
-    .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path.")
+    .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path. Between straight \
+           walls larger ones, up to 80 deg, are tried as well.")
     .group("Tether");
 const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0, 1.1)
     .help("Longest cable, as a multiple of the least that can do, if any candidate keeps it; the reel always limits it.")
@@ -34,7 +35,7 @@ const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 7
 const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 3600.0, 100.0)
     .help("Largest sum of the angles about all obstacles, if any candidate keeps it; the mission's limit always holds.")
     .group("Tether");
-const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.0)
+const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.3)
     .help("While a path is sought it may get this much longer for every whole turn saved; more leaves more floor to touch-ups.")
     .group("Plan");
 const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 0.0)
