@@ -117,7 +117,8 @@ impl Chart {
                 events.extend(event);
             }
         }
-        if !events.is_empty() {
+        // What has hardly moved since it was reported may change plans, too: they are checked by this map.
+        if changes_plans || !events.is_empty() {
             self.revision += 1;
             self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
         }

@@ -2,6 +2,7 @@
 
 use super::*;
 use planner_api::{Leg, LegTag};
+use world::ObstacleMap;
 
 /// Straight lanes over the regions, or over everything; round obstacles they leave a gap and pass it to the north.
 pub(super) fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
@@ -249,4 +250,24 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     assert!((shown(&chart) - 0.93).abs() < 1e-9);
     chart.sight(&[], &pose);
     assert!((shown(&chart) - 1.0).abs() < 1e-9, "out of sight it is where the drawing has it");
+}
+
+#[test]
+fn whatever_changes_plans_is_on_the_map_by_which_they_are_checked() {
+    let mut chart = Chart::new(drawing(), &covering(), 1);
+    let pose = covering().start;
+    let mut silent = 0;
+    for tick in 0..60_u32 {
+        // Something drives for three seconds, and stops.
+        let x = 0.033 * f64::from(tick.min(31));
+        let shape_in_robot = Shape::Disc { center: Point::new(x, 0.0), radius_m: 0.2 };
+        let seen = chart.see(f64::from(tick) * 0.1, &[Sighting { id: ObstacleId(9), shape_in_robot }], &pose);
+        if seen.changes_plans || !seen.events.is_empty() {
+            silent += u32::from(seen.events.is_empty());
+            let (at, world) = (pose.position, chart.world());
+            let as_it_is = ObstacleMap::new(&world.boundary, &world.obstacles).obstacle_distance_m(at);
+            assert!((chart.map().obstacle_distance_m(at) - as_it_is).abs() < 1e-12, "tick {tick}");
+        }
+    }
+    assert!(silent > 0, "its stop changes plans although it has hardly moved since it was reported");
 }
