@@ -4,6 +4,7 @@ use crate::bench::{Bench, Ended, journal_text, workspace};
 use std::{
     path::{Path, PathBuf},
     process::Command,
+    sync::Mutex,
 };
 
 /// A new planner, and the file that comes of building it as the guide says.
@@ -11,23 +12,34 @@ fn built(bench: &Bench, lang: &str) -> PathBuf {
     let created = bench.tankops(&["new-planner", "my-own", "--lang", lang]);
     assert_eq!(created.code, Some(0), "{created:?}");
     let folder = bench.path().join("my-own");
-    let (program, arguments, place) = match lang {
-        "rust" => {
-            // The versions that were tested; the machine may be offline.
-            std::fs::copy(workspace().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
-            (env!("CARGO"), &["build", "--release", "--offline"][..], author_target().join("release"))
-        }
-        _ => ("make", &["-s"][..], folder.clone()),
-    };
-    let built = Command::new(program)
-        .args(arguments)
-        .current_dir(&folder)
+    if lang == "rust" {
+        // The versions that were tested; the machine may be offline.
+        std::fs::copy(workspace().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+        return built_in_rust(bench);
+    }
+    let built = Command::new("make").arg("-s").current_dir(&folder).output().unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    folder.join("libplanner_my_own.so")
+}
+
+/// Builds the planner in Rust, in a folder that all tests share, since its dependencies take long: one at a time, each with its own
+/// copy of what comes of it.
+fn built_in_rust(bench: &Bench) -> PathBuf {
+    static BUILDING: Mutex<()> = Mutex::new(());
+    let _one_at_a_time = BUILDING.lock().unwrap();
+    let made = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--offline"])
+        .current_dir(bench.path().join("my-own"))
         .env("CARGO_TARGET_DIR", author_target())
         .env_remove("RUSTFLAGS")
         .output()
         .unwrap();
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    place.join("libplanner_my_own.so")
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let own = bench.path().join("built");
+    std::fs::create_dir_all(&own).unwrap();
+    let name = "libplanner_my_own.so";
+    std::fs::copy(author_target().join("release").join(name), own.join(name)).unwrap();
+    own.join(name)
 }
 
 /// Built once for all runs of this test.
@@ -157,7 +169,7 @@ fn a_panic_leaves_the_calls_by_which_it_came_if_that_is_asked() {
     let helper =
         "#[inline(never)]\nfn look_up_nothing() {\n    std::hint::black_box(Vec::<u8>::new())[3];\n}\n";
     std::fs::write(&source, format!("{bad}\n{helper}")).unwrap();
-    let plugin = rebuilt_in_rust(&bench);
+    let plugin = built_in_rust(&bench);
     for (asked, is_there) in [("1", true), ("0", false)] {
         let bench = Bench::new();
         let scenario = source.parent().unwrap().with_file_name("scenario.toml");
@@ -172,18 +184,6 @@ fn a_panic_leaves_the_calls_by_which_it_came_if_that_is_asked() {
         }
         assert!(!journal_text(run).contains("look_up_nothing"));
     }
-}
-
-fn rebuilt_in_rust(bench: &Bench) -> PathBuf {
-    let made = Command::new(env!("CARGO"))
-        .args(["build", "--release", "--offline"])
-        .current_dir(bench.path().join("my-own"))
-        .env("CARGO_TARGET_DIR", author_target())
-        .env_remove("RUSTFLAGS")
-        .output()
-        .unwrap();
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    author_target().join("release/libplanner_my_own.so")
 }
 
 #[test]
