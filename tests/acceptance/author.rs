@@ -27,6 +27,10 @@ fn built(bench: &Bench, lang: &str) -> PathBuf {
 fn built_in_rust(bench: &Bench) -> PathBuf {
     static BUILDING: Mutex<()> = Mutex::new(());
     let _one_at_a_time = BUILDING.lock().unwrap();
+    // Cargo takes the planners of all tests for one and looks at times alone: a source older than what another test built would count
+    // as built.
+    let source = bench.path().join("my-own/src/lib.rs");
+    std::fs::write(&source, std::fs::read(&source).unwrap()).unwrap();
     let made = Command::new(env!("CARGO"))
         .args(["build", "--release", "--offline"])
         .current_dir(bench.path().join("my-own"))
