@@ -30,7 +30,7 @@ pub struct Offer {
     pub better: Effort,
     /// Where it begins.
     pub begins: Option<Point>,
-    /// Whether the operator has taken it.
+    /// Whether it is taken where it begins: the operator has ordered it, or the scenario says so.
     pub is_taken: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
-use mission::{AskId, EventKind, Order, WorkerId, event::Effort};
+use mission::{AskId, BetterPlan, EventKind, Order, WorkerId, event::Effort};
 use tui::{Effect, Key, RunMsg};
 use world::Point;
 
@@ -68,6 +68,15 @@ fn a_better_plan_is_taken_by_its_key_or_by_its_command_after_a_question() {
         hear(&mut screen, EventKind::BetterPlanTaken { planner: "rpf".into(), flown: FLOWN, better: BETTER });
         assert!(screen.model.live.run.planning.offer.is_none());
     }
+}
+
+#[test]
+fn where_the_scenario_takes_better_plans_nobody_is_asked() {
+    let mut screen = Screen::running();
+    screen.model.live.run.about.as_mut().unwrap().mission.better_plan = BetterPlan::Take;
+    hear(&mut screen, better_plan(None));
+    let shown = shown_at(&screen, (120, 36));
+    assert!(shown.contains("saves 3.7 of 41.0 min; taken") && !shown.contains("T: take"), "{shown}");
 }
 
 #[test]

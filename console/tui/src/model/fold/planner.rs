@@ -1,7 +1,9 @@
 //! Events of planners into a run.
 
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
-use mission::{During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text};
+use mission::{
+    BetterPlan, During, Event, EventKind, Phase, PlannerChoice, PlannerInfo, Severity, event::late_text,
+};
 use planner_api::{Command, Drawing};
 
 /// Most drawings kept of one tick.
@@ -55,9 +57,14 @@ impl Run {
                 self.planning.candidate = None;
                 if objection.is_none() {
                     let (flown, better, begins) = (*flown, *better, path.first().copied());
-                    self.planning.offer = Some(Offer { flown, better, begins, is_taken: false });
+                    let is_taken = self
+                        .about
+                        .as_ref()
+                        .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
+                    self.planning.offer = Some(Offer { flown, better, begins, is_taken });
+                    let next = if is_taken { "taken where it begins" } else { "<take-plan>: take it" };
                     let saving = better.saving(&flown);
-                    change.say(Severity::Watch, format!("better plan saves {saving}; <take-plan>: take it"));
+                    change.say(Severity::Watch, format!("better plan saves {saving}; {next}"));
                 }
             }
             EventKind::BetterPlanTaken { .. } => {
