@@ -106,6 +106,22 @@ pub fn stations_m(path: &[Point]) -> Vec<f64> {
         .collect()
 }
 
+/// The changes of heading along a path, radians, from 0 to pi; points on top of each other have no heading.
+///
+/// ```
+/// use geometry::{Point, polyline::turns_rad};
+/// let path = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (1.0, 2.0)].map(|(x, y)| Point::new(x, y));
+/// assert_eq!(turns_rad(&path).collect::<Vec<_>>(), [std::f64::consts::FRAC_PI_2]);
+/// ```
+pub fn turns_rad(path: &[Point]) -> impl Iterator<Item = f64> {
+    let mut headings = path.windows(2).filter_map(|pair| (pair[1] - pair[0]).try_normalize(1e-9));
+    let mut before = headings.next();
+    headings.map(move |heading| {
+        let last = before.replace(heading).unwrap_or(heading);
+        last.perp(&heading).atan2(last.dot(&heading)).abs()
+    })
+}
+
 /// The path without its first and its last `end_m` metres; empty if it is no longer than both together.
 ///
 /// ```

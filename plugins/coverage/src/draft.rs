@@ -4,7 +4,6 @@ use crate::floor::{Grain, ReachableFloor, SweptFloor};
 use crate::jobs::Job;
 use crate::lanes::{Lane, lanes, wanted_pieces};
 use crate::pattern::Pattern;
-use crate::plane::angle_rad;
 use crate::polish::{Terms, Track, polish, settle};
 use crate::scan::{Piece, Scan};
 use crate::scope::Scope;
@@ -14,7 +13,7 @@ use crate::tour::{Connectors, Costs, Effort, tour};
 use crate::tuning;
 use planner_api::Result;
 use std::f64::consts::TAU;
-use world::{Point, Vector, polyline};
+use world::{Point, polyline};
 
 /// A candidate as far as the first tour.
 pub(crate) struct Draft<'a> {
@@ -165,6 +164,5 @@ fn joined(pieces: &[Piece]) -> Vec<Point> {
 
 /// Sum of the changes of heading along a path, in whole turns.
 pub(crate) fn rotation_turns(path: &[Point]) -> f64 {
-    let headings: Vec<Vector> = path.windows(2).filter_map(|w| (w[1] - w[0]).try_normalize(1e-9)).collect();
-    headings.windows(2).map(|w| angle_rad(w[0], w[1])).sum::<f64>() / TAU
+    polyline::turns_rad(path).sum::<f64>() / TAU
 }

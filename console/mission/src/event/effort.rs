@@ -3,10 +3,7 @@
 use planner_api::{Limits, Motion};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use world::{Point, geometry::wrap_angle_rad, polyline};
-
-/// Points that are nearer to each other than this have no direction, metres.
-const NO_WAY_M: f64 = 1e-6;
+use world::{Point, polyline};
 
 /// What flying a path takes a robot at its own speeds, which drives straight on and turns on the spot.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -23,9 +20,7 @@ impl Effort {
     /// What a path takes. A robot without a heading turns in no time.
     pub(crate) fn of(path: &[Point], limits: &Limits) -> Self {
         let length_m = polyline::length_m(path);
-        let ways = path.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| way.norm() > NO_WAY_M);
-        let headings: Vec<f64> = ways.map(|way| way.y.atan2(way.x)).collect();
-        let rotation_rad = headings.windows(2).map(|pair| wrap_angle_rad(pair[1] - pair[0]).abs()).sum();
+        let rotation_rad = polyline::turns_rad(path).sum();
         let turning_s = match limits.motion {
             Motion::Point => 0.0,
             Motion::Unicycle => rotation_rad / limits.w_max_rad_per_s,

@@ -85,7 +85,7 @@ impl Tank {
         })?;
         let length_m = polyline::length_m(path);
         let area_m2 = grid.counts().reachable as f64 * cell_m * cell_m;
-        let turns = turns_rad(path);
+        let turns: Vec<f64> = polyline::turns_rad(path).collect();
         Ok(Scan {
             coverage_reachable: grid.fraction_reachable(),
             coverage_exact: area.share_of(grid.floor(), &self.boundary, &shapes).unwrap_or(0.0),
@@ -134,10 +134,4 @@ impl Tank {
         }
         zone
     }
-}
-
-/// The changes of heading along a path, radians, not negative.
-fn turns_rad(path: &[Point]) -> Vec<f64> {
-    let headings: Vec<Vector> = path.windows(2).filter_map(|w| (w[1] - w[0]).try_normalize(1e-9)).collect();
-    headings.windows(2).map(|w| w[0].perp(&w[1]).atan2(w[0].dot(&w[1])).abs()).collect()
 }
