@@ -1,6 +1,6 @@
 //! Figures of fixes and track.
 
-use crate::fixes::word;
+use crate::fixes::{self, word};
 use mission::{Event, EventKind};
 use positioning::{Integrity, fix::ellipse_95};
 use serde::Serialize;
@@ -56,6 +56,11 @@ impl Mean {
 }
 
 impl Tally {
+    /// Whether any emission gave a position that its own ranges do not contradict.
+    pub fn has_fix(&self) -> bool {
+        self.fixes.keys().any(|word| *word != fixes::word(Integrity::Alarm))
+    }
+
     /// Takes in the events of a moment.
     pub fn take(&mut self, events: &[Event]) {
         let mut truth: Option<Point> = None;

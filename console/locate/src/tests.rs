@@ -53,6 +53,7 @@ impl Readable {
     fn task<'a>(&'a self, scenario: &'a Scenario) -> Task<'a> {
         Task {
             file: &self.file,
+            shown: self.file.to_str().unwrap(),
             scenario,
             sound_speed_m_s: None,
             finds_sound_speed: false,
@@ -305,7 +306,7 @@ fn folders_and_pipes_are_refused_and_not_waited_for() {
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     for file in [dir.path(), &pipe] {
         let (scenario, other) = (scenario(), Readable::new("r.csv", ""));
-        let error = Task { file, ..other.task(&scenario) }.survey().unwrap_err().to_string();
+        let error = Task { file, shown: file.to_str().unwrap(), ..other.task(&scenario) }.survey().unwrap_err().to_string();
         assert!(error.ends_with("it is not a regular file"), "{error}");
     }
 }
