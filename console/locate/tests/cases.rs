@@ -200,3 +200,26 @@ fn motion_that_was_not_measured_is_not_none() {
     let most_m = located(&scenario, &gap).tally.error_95_m.unwrap()[1];
     assert!(most_m > 3.0, "{most_m}");
 }
+
+#[test]
+fn the_forecast_says_which_floor_has_a_mirror_image_and_what_decides() {
+    let warning = |stations: &str, start: [f64; 2]| {
+        let scenario = scenario(stations, start);
+        report::forecast::mirror_warning(&scenario.mission, &scenario.sim.world.as_drawn())
+    };
+    assert_eq!(warning(AROUND, [0.0, 0.0]), None);
+    let decided = warning(ON_A_LINE, [0.0, 3.0]).unwrap();
+    assert!(decided.contains("the line of stations B1, B2 and B3"), "{decided}");
+    assert!(decided.contains("robot.start_m decides, 3.00 m from that line"), "{decided}");
+    let open = warning(ON_A_LINE, [0.0, 0.02]).unwrap();
+    assert!(open.contains("cannot be decided: robot.start_m lies 0.02 m from that line"), "{open}");
+    // Two of three stations all but in one place are a line, too, and so are two.
+    let twins = "stations = [{ name = \"A\", at_m = [-5.9, 0.0] }, { name = \"B\", at_m = [-5.9, 0.05] }, { name = \"C\", at_m = [5.9, 0.0] }]";
+    assert!(warning(twins, [0.0, 3.0]).is_some());
+    let pair = "stations = [{ name = \"A\", at_m = [-5.9, 0.0] }, { name = \"C\", at_m = [5.9, 0.0] }]";
+    assert!(warning(pair, [0.0, 3.0]).unwrap().contains("the line of stations A and C"));
+    // On a chord near the wall every image lies behind it.
+    let wall = "stations = [{ name = \"A\", at_m = [-1.5, -5.8] }, { name = \"B\", at_m = [0.0, -5.8] }, { name = \"C\", at_m = [1.5, -5.8] }]";
+    let by_wall = warning(wall, [0.0, 3.0]).unwrap();
+    assert!(by_wall.contains("the wall decides"), "{by_wall}");
+}
