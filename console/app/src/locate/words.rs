@@ -207,9 +207,12 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     lines
 }
 
-/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong.
+/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong and the robot
+/// can have come.
 fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
     let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;
-    let off_m = (first - scenario.mission.start.position).norm();
-    (off_m > 2.0 * error_95_m + 3.0 * scenario.mission.start_sigma_m).then_some(off_m)
+    let mission = &scenario.mission;
+    let moved_m = mission.limits.v_max_m_per_s * tally.first_fix_t_s.unwrap_or_default();
+    let off_m = (first - mission.start.position).norm();
+    (off_m > 2.0 * error_95_m + 3.0 * mission.start_sigma_m + moved_m).then_some(off_m)
 }
