@@ -241,7 +241,9 @@ mod tests {
         for (is_free, scale) in [(false, 0.01), (true, 0.01), (true, -0.02), (true, 0.05)] {
             let verdict = verdict(400, scale, 0.0, is_free, 3);
             let found = verdict.scale.unwrap();
-            assert!(found.is_proven, "{verdict:?}");
+            // With ranges that err by a share, stations all round hold a fix in its place.
+            assert!(found.is_proven || !is_free, "{verdict:?}");
+            assert!(found.value.abs() > 10.0 * found.sigma, "{verdict:?}");
             assert!((found.value - scale).abs() < 4.0 * found.sigma + 0.1 * scale.abs(), "{scale}: {found:?}");
             assert!(verdict.stations.iter().all(|(_, wrong)| !wrong.is_proven), "{verdict:?}");
         }

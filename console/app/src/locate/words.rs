@@ -3,12 +3,16 @@
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
 use ::locate::{Doubts, Survey, Tally};
+use positioning::Wrong;
 use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
 
 /// A speed of sound that is less known than this, as a share, does not serve to correct ranges.
 const DOUBTFUL_SCALE: f64 = 0.005;
+
+/// An error of the speed of sound of more standard deviations than this is worth a word.
+const SURE_SIGMAS: f64 = 4.0;
 
 /// Lines of a label and what it labels.
 #[derive(Default)]
@@ -127,6 +131,14 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
         lines.push(format!(
             "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of sound, or find it with \
              --find sound-speed"
+        ));
+    }
+    let harmless = |scale: &Wrong| !scale.is_proven && scale.value.abs() > SURE_SIGMAS * scale.sigma;
+    if let Some(scale) = survey.verdict.scale.filter(harmless).filter(|_| !survey.verdict.is_wrong()) {
+        lines.push(format!(
+            "ranges differ from the scenario by {:+.3} ± {:.3} % throughout, which moves fixes by less than their stated errors",
+            scale.value * 100.0,
+            scale.sigma * 100.0
         ));
     }
     for (id, wrong) in survey.verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven) {
