@@ -21,7 +21,6 @@ use report::{
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
 use serde::Serialize;
-use world::StationId;
 use std::{
     collections::BTreeMap,
     fs::File,
@@ -29,6 +28,7 @@ use std::{
     path::Path,
     process::ExitCode,
 };
+use world::StationId;
 
 /// The figures as JSON.
 #[derive(Serialize)]
