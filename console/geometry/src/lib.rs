@@ -4,6 +4,7 @@
 //! east; SI units throughout.
 
 pub mod boundary;
+pub mod braking;
 pub mod convex;
 pub mod follower;
 pub mod motion;
@@ -14,6 +15,7 @@ pub mod shape;
 pub mod symmetric;
 
 pub use boundary::Boundary;
+pub use braking::Braking;
 pub use follower::PathFollower;
 pub use motion::{Drive, Limits, Motion};
 pub use pose::{Point, Pose, Vector, direction_or, unit_vector, wrap_angle_rad};

@@ -12,6 +12,7 @@ mod candidate;
 mod driving;
 mod floor;
 mod fork;
+mod governing;
 mod holding;
 mod orders;
 mod planning;
@@ -37,6 +38,7 @@ use crate::{
 };
 pub use driving::Sending;
 use floor::ScannedFloor;
+use governing::Governor;
 pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
@@ -93,6 +95,8 @@ pub struct Mission {
     /// The plan that was flown when the planner that drives took over.
     left: Option<LeftPlan>,
     workers: Workers,
+    /// What limits the commands.
+    governor: Governor,
     /// Where the robot was let go that moves until something happens.
     stepped_from: Option<PlaceOnPlan>,
     happened: Happened,
@@ -125,6 +129,7 @@ impl Mission {
     /// `drawing` is the tank as drawn, `floor` its grid; `seed` is handed to planners for their random choices.
     pub fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
         let start = config.start.position;
+        let governor = Governor::new(&config, &drawing.zones);
         Self {
             tick: 0,
             tether: config
@@ -144,6 +149,7 @@ impl Mission {
             better_plan_due_s: None,
             left: None,
             workers: Workers::default(),
+            governor,
             stepped_from: None,
             happened: Happened {
                 events: Vec::new(),
@@ -208,7 +214,9 @@ impl Mission {
 
     /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
     pub fn act(&mut self) -> Step {
+        self.update_mode();
         let drive = self.drive();
+        self.follow_drive(drive);
         self.end_step();
         let (tick, t_s) = (self.tick, self.now_s());
         // What it has grown to is kept for the next tick.

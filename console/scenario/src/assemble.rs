@@ -13,6 +13,7 @@ use super::{
     task, tether,
 };
 use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
+use planner_api::Limits;
 use sim::{AeConfig, Mover, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -89,7 +90,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         start_sigma_m: robot.start_sigma_m,
         tick_s: rest.tick_s,
         time_limit_s: rest.time_limit_s,
-        limits: robot.limits,
+        limits: Limits { tick_s: rest.tick_s, ..robot.limits },
         swath_m: rest.swath_m,
         scan: rest.scan,
         clearance_m: rest.clearance_m,
@@ -107,6 +108,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         fallback,
         // Who flies it knows; a scenario does not.
         attended: false,
+        amphibious: robot.amphibious,
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
@@ -357,7 +359,7 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         radius_m: robot.limits.radius_m,
         v_max_m_per_s: robot.limits.v_max_m_per_s,
         w_max_rad_per_s: robot.limits.w_max_rad_per_s,
-        acceleration_m_per_s2: robot.acceleration_m_per_s2,
+        acceleration_m_per_s2: robot.limits.acceleration_m_per_s2,
         sensing_range_m: robot.limits.sensing_range_m,
         slip_mean: robot.slip_mean,
         slip_sigma: robot.slip_sigma,

@@ -7,10 +7,8 @@ use world::{Amphibious, Pace, Point};
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Robot {
-    /// What it can do.
+    /// What it can do, but for the length of a tick, which is the mission's.
     pub limits: Limits,
-    /// Largest change of speed, metres per second squared.
-    pub acceleration_m_per_s2: f64,
     /// Where it starts, if given.
     pub start: Option<Point>,
     /// Heading at the start, radians, if given.
@@ -81,8 +79,10 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
             w_max_rad_per_s: fastest.w_max_rad_per_s,
             radius_m: radius_m?,
             sensing_range_m: sensing_range_m?,
+            acceleration_m_per_s2: acceleration?,
+            // The mission says how long a tick is.
+            tick_s: 0.0,
         },
-        acceleration_m_per_s2: acceleration?,
         start,
         start_heading_rad: heading_deg.map(f64::to_radians),
         start_sigma_m: start_sigma_m?,

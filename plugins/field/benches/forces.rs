@@ -50,6 +50,8 @@ fn forces(criterion: &mut Criterion) {
                 w_max_rad_per_s: 1.0,
                 radius_m: 0.25,
                 sensing_range_m: 3.0,
+                acceleration_m_per_s2: 0.5,
+                tick_s: 0.1,
             },
             swath_m: 0.5,
             clearance_m: 0.1,

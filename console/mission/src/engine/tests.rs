@@ -212,6 +212,8 @@ fn config() -> MissionConfig {
             w_max_rad_per_s: 1.0,
             radius_m: 0.25,
             sensing_range_m: 2.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
         },
         swath_m: 0.5,
         clearance_m: 0.05,
@@ -229,6 +231,7 @@ fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        amphibious: None,
         better_plan: BetterPlan::Offer,
     }
 }

@@ -35,6 +35,8 @@ impl Writer {
             .f64(limits.w_max_rad_per_s)
             .f64(limits.radius_m)
             .f64(limits.sensing_range_m)
+            .f64(limits.acceleration_m_per_s2)
+            .f64(limits.tick_s)
     }
 
     pub(crate) fn site(&mut self, site: &Site<'_>) -> &mut Self {
@@ -146,6 +148,8 @@ impl Body<'_> {
             w_max_rad_per_s: self.f64()?,
             radius_m: self.f64()?,
             sensing_range_m: self.f64()?,
+            acceleration_m_per_s2: self.f64()?,
+            tick_s: self.f64()?,
         })
     }
 

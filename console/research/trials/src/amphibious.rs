@@ -110,6 +110,8 @@ impl AmphibiousLayout {
                 w_max_rad_per_s: 0.31,
                 radius_m: HULL_M,
                 sensing_range_m: 20.0,
+                acceleration_m_per_s2: 100.0,
+                tick_s: 0.1,
             },
             swath_m: 1.0,
             clearance_m: 0.1,

@@ -79,6 +79,8 @@ impl Layout {
                 w_max_rad_per_s: 0.8,
                 radius_m: self.hull_m,
                 sensing_range_m: 3.0,
+                acceleration_m_per_s2: 100.0,
+                tick_s: 0.1,
             },
             swath_m: 1.0,
             clearance_m: self.clearance_m,

@@ -123,6 +123,8 @@ impl Tank {
                 w_max_rad_per_s: 1.0,
                 radius_m: HULL_M,
                 sensing_range_m: 3.0,
+                acceleration_m_per_s2: 100.0,
+                tick_s: 0.1,
             },
             swath_m: SWATH_M,
             clearance_m: CLEARANCE_M,

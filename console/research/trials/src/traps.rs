@@ -120,6 +120,8 @@ impl Trap {
                 w_max_rad_per_s: 1.0,
                 radius_m: HULL_M,
                 sensing_range_m,
+                acceleration_m_per_s2: 100.0,
+                tick_s: 0.1,
             },
             swath_m: 1.0,
             clearance_m: 0.0,

@@ -20,6 +20,8 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], zones: &'a [Zone<'a>]) -> Site<'a> {
             w_max_rad_per_s: 1.0,
             radius_m: 0.25,
             sensing_range_m: 3.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
         },
         swath_m: 0.5,
         clearance_m: 0.1,

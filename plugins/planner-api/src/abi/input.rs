@@ -76,6 +76,9 @@ pub struct Site {
     pub sensing_range: f64,
     pub swath: f64,
     pub clearance: f64,
+    // Since 1.4.
+    pub acceleration: f64,
+    pub tick: f64,
 }
 
 /// A request for a plan.

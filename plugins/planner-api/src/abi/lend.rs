@@ -74,6 +74,8 @@ pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Si
         sensing_range: from.limits.sensing_range_m,
         swath: from.swath_m,
         clearance: from.clearance_m,
+        acceleration: from.limits.acceleration_m_per_s2,
+        tick: from.limits.tick_s,
     }
 }
 

@@ -145,12 +145,21 @@ impl SiteParts<'_> {
                 w_max_rad_per_s: self.raw.w_max,
                 radius_m: self.raw.radius,
                 sensing_range_m: self.raw.sensing_range,
+                acceleration_m_per_s2: acceleration(&self.raw),
+                tick_s: self.raw.tick,
             },
             swath_m: self.raw.swath,
             clearance_m: self.raw.clearance,
             seed: self.raw.seed,
         })
     }
+}
+
+/// Acceleration of a robot that stops at once, as those of a console were that does not say it, metres per second squared.
+const AT_ONCE_M_PER_S2: f64 = 1e3;
+
+fn acceleration(site: &abi::Site) -> f64 {
+    if site.acceleration > 0.0 { site.acceleration } else { AT_ONCE_M_PER_S2 }
 }
 
 /// The values of parameters, with keys that are UTF-8.

@@ -70,6 +70,8 @@ impl GotoLayout {
                 w_max_rad_per_s: 1.0,
                 radius_m: self.hull_m,
                 sensing_range_m: 100.0,
+                acceleration_m_per_s2: 100.0,
+                tick_s: 0.1,
             },
             swath_m: 1.0,
             clearance_m: 0.0,
