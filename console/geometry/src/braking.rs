@@ -28,9 +28,10 @@ impl Braking {
     /// ```
     /// use geometry::{Braking, Limits, Motion};
     /// let (motion, v_max_m_per_s, w_max_rad_per_s, radius_m) = (Motion::Unicycle, 0.4, 1.0, 0.2);
-    /// let (sensing_range_m, acceleration_m_per_s2, tick_s) = (2.0, 0.5, 0.1);
+    /// let (sensing_range_m, acceleration_m_per_s2, tick_s, amphibious) = (2.0, 0.5, 0.1, None);
     /// let limits = Limits {
     ///     motion, v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+    ///     amphibious,
     /// };
     /// assert_eq!(Braking::of(&limits).tick_s, 0.1);
     /// ```

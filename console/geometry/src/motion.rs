@@ -1,6 +1,6 @@
 //! How a robot moves, its limits, and the control law that turns a planner's command into a drive within them.
 
-use crate::{Point, Pose, Vector, unit_vector, wrap_angle_rad};
+use crate::{Amphibious, Point, Pose, Vector, unit_vector, wrap_angle_rad};
 
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
@@ -38,6 +38,7 @@ pub enum Motion {
 ///     sensing_range_m: 2.0,
 ///     acceleration_m_per_s2: 0.5,
 ///     tick_s: 0.1,
+///     amphibious: None,
 /// };
 /// assert_eq!(limits.motion as u32, 1);
 /// ```
@@ -60,6 +61,9 @@ pub struct Limits {
     /// Length of a tick, seconds: a command takes effect for so long before the next one can.
     #[cfg_attr(feature = "serde", serde(default = "usual_tick"))]
     pub tick_s: f64,
+    /// For a robot that walks and swims: what holds in each mode. What is above are the larger limits of both.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub amphibious: Option<Amphibious>,
 }
 
 /// That of a robot whose scenario does not give it; journals of before do not say it, metres per second squared.
@@ -109,9 +113,10 @@ impl Drive {
 /// ```
 /// use geometry::{Drive, Limits, Motion, Vector, motion::{TURN_FIRST_RAD, drive_for}};
 /// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
-/// # let (acceleration_m_per_s2, tick_s) = (0.5, 0.1);
+/// # let (acceleration_m_per_s2, tick_s, amphibious) = (0.5, 0.1, None);
 /// let limits = Limits {
 ///     motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+///     amphibious,
 /// };
 /// let east = Drive::Velocity(Vector::new(0.3, 0.0));
 /// let sent = drive_for(east, 0.2, &limits, TURN_FIRST_RAD);
@@ -139,9 +144,10 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
 /// ```
 /// use geometry::{Drive, Limits, Motion, Pose, Vector, motion::{TURN_FIRST_RAD, rollout}};
 /// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
-/// # let (acceleration_m_per_s2, tick_s) = (0.5, 0.1);
+/// # let (acceleration_m_per_s2, tick_s, amphibious) = (0.5, 0.1, None);
 /// let limits = Limits {
 ///     motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+///     amphibious,
 /// };
 /// let north = Drive::Velocity(Vector::new(0.0, 0.3));
 /// let way = rollout(north, Pose::new(0.0, 0.0, 0.0), &limits, TURN_FIRST_RAD, 5.0);
@@ -223,6 +229,7 @@ mod tests {
             sensing_range_m: 2.0,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         }
     }
 

@@ -5,7 +5,7 @@ use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, Point, Pose, coverage::Tool, tether};
+use world::{Point, Pose, coverage::Tool, tether};
 
 /// What is to be achieved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -196,9 +196,6 @@ pub struct MissionConfig {
     /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
-    /// How the robot walks and swims, if it does both; [`Self::limits`] are the larger ones.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub amphibious: Option<Amphibious>,
     /// What becomes of a plan for all that is left that is better than a repaired one; journals of before have none.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,

@@ -40,6 +40,7 @@ fn round_trip(criterion: &mut Criterion) {
         sensing_range_m: 3.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Circle { radius_m: 20.0 };
     let site = Site {

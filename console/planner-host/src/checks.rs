@@ -51,6 +51,7 @@ mod tests {
         sensing_range_m: 2.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
 
     #[test]

@@ -108,7 +108,6 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         fallback,
         // Who flies it knows; a scenario does not.
         attended: false,
-        amphibious: robot.amphibious,
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);
@@ -365,6 +364,6 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         slip_sigma: robot.slip_sigma,
         odometry_sigma_ratio: robot.odometry_sigma_ratio,
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
-        amphibious: robot.amphibious,
+        amphibious: robot.limits.amphibious,
     }
 }

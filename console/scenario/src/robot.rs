@@ -25,8 +25,6 @@ pub(crate) struct Robot {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// How it walks and swims, if it does both.
-    pub amphibious: Option<Amphibious>,
 }
 
 impl Robot {
@@ -82,6 +80,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
             acceleration_m_per_s2: acceleration?,
             // The mission says how long a tick is.
             tick_s: 0.0,
+            amphibious,
         },
         start,
         start_heading_rad: heading_deg.map(f64::to_radians),
@@ -91,7 +90,6 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
-        amphibious,
     })
 }
 

@@ -52,6 +52,7 @@ fn forces(criterion: &mut Criterion) {
                 sensing_range_m: 3.0,
                 acceleration_m_per_s2: 0.5,
                 tick_s: 0.1,
+                amphibious: None,
             },
             swath_m: 0.5,
             clearance_m: 0.1,

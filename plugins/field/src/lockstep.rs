@@ -154,6 +154,7 @@ mod tests {
             sensing_range_m: 3.0,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         };
         let site = Site {
             revision: 0,

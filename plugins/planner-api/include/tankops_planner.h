@@ -135,6 +135,10 @@ typedef struct tp_site {
   /* since 1.4 */
   double acceleration;      /* largest change of speed; 0 if the console does not say */
   double tick;              /* length of a tick: a command takes effect for so long */
+  uint32_t is_amphibious;   /* 1 for a robot that walks and swims: v_max and w_max are the larger limits of both */
+  uint32_t transition_ticks; /* for a complete change from walking to swimming */
+  double land_v_max, land_w_max;             /* outside zones that are flooded */
+  double underwater_v_max, underwater_w_max; /* within them */
 } tp_site;
 
 typedef struct tp_plan_in {
@@ -288,7 +292,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 TP_ASSERT(sizeof(void *) == 8, "tankops planners are 64-bit libraries");
 TP_ASSERT(sizeof(tp_str) == 16 && sizeof(tp_vec2) == 16 && sizeof(tp_pose) == 24, "layout");
 TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zone) == 32, "layout");
-TP_ASSERT(sizeof(tp_site) == 144 && offsetof(tp_site, boundary) == 16, "layout");
+TP_ASSERT(sizeof(tp_site) == 184 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
 TP_ASSERT(sizeof(tp_plan_in) == 224 && offsetof(tp_plan_in, covariance) == 48, "layout");

@@ -160,6 +160,7 @@ mod tests {
         sensing_range_m: 3.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
 
     fn exact_pose(position: Point) -> PoseEstimate {

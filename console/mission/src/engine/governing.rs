@@ -100,16 +100,16 @@ impl Mission {
 
     /// Walks or swims as the floor under the robot demands.
     pub(super) fn update_mode(&mut self) {
-        if let Some(amphibious) = self.config.amphibious {
+        if let Some(amphibious) = self.config.limits.amphibious {
             let medium = Medium::at(&self.chart.world().zones, self.locator.position());
             self.governor.mode = self.governor.mode.toward(medium, amphibious.transition_steps);
         }
     }
 
     fn here(&self) -> Here {
-        let limits = match self.config.amphibious {
+        let limits = match self.config.limits.amphibious {
             Some(amphibious) => {
-                let pace = amphibious.pace(self.governor.mode);
+                let pace = amphibious.pace(self.governor.mode.weight());
                 let (v_max_m_per_s, w_max_rad_per_s) = (pace.v_max_m_per_s, pace.w_max_rad_per_s);
                 Limits { v_max_m_per_s, w_max_rad_per_s, ..self.config.limits }
             }

@@ -214,6 +214,7 @@ fn config() -> MissionConfig {
             sensing_range_m: 2.0,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         },
         swath_m: 0.5,
         clearance_m: 0.05,
@@ -231,7 +232,6 @@ fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
-        amphibious: None,
         better_plan: BetterPlan::Offer,
     }
 }

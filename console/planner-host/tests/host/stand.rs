@@ -66,6 +66,7 @@ pub(crate) fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
         sensing_range_m: 3.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Circle { radius_m: 10.0 };
     call(&Site {

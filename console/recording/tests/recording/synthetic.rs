@@ -333,6 +333,7 @@ fn opened() -> RunOpened {
         sensing_range_m: 2.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
     RunOpened {
         journal_version: JOURNAL_VERSION,
@@ -369,7 +370,6 @@ fn opened() -> RunOpened {
             tether: None,
             fallback: None,
             attended: false,
-            amphibious: None,
             better_plan: mission::BetterPlan::Off,
         },
     }

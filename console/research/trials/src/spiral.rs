@@ -81,6 +81,7 @@ impl Layout {
                 sensing_range_m: 3.0,
                 acceleration_m_per_s2: 100.0,
                 tick_s: 0.1,
+                amphibious: None,
             },
             swath_m: 1.0,
             clearance_m: self.clearance_m,

@@ -125,6 +125,7 @@ impl Tank {
                 sensing_range_m: 3.0,
                 acceleration_m_per_s2: 100.0,
                 tick_s: 0.1,
+                amphibious: None,
             },
             swath_m: SWATH_M,
             clearance_m: CLEARANCE_M,

@@ -122,6 +122,7 @@ impl Trap {
                 sensing_range_m,
                 acceleration_m_per_s2: 100.0,
                 tick_s: 0.1,
+                amphibious: None,
             },
             swath_m: 1.0,
             clearance_m: 0.0,

@@ -84,6 +84,7 @@ pub(crate) fn config() -> MissionConfig {
             sensing_range_m: 2.0,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         },
         swath_m: 0.6,
         scan: ScanConfig::default(),
@@ -101,7 +102,6 @@ pub(crate) fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
-        amphibious: None,
         better_plan: mission::BetterPlan::Offer,
     }
 }

@@ -38,6 +38,7 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], motion: Motion) -> Site<'a> {
             sensing_range_m: 2.5,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         },
         swath_m: 0.5,
         clearance_m: 0.05,

@@ -66,6 +66,7 @@ fn a_passage_that_the_cells_do_not_show_is_found_all_the_same() {
         sensing_range_m: 3.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
     let site = |clearance_m| Site {
         revision: 0,

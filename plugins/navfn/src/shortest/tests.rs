@@ -22,6 +22,7 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], zones: &'a [Zone<'a>]) -> Site<'a> {
             sensing_range_m: 3.0,
             acceleration_m_per_s2: 0.5,
             tick_s: 0.1,
+            amphibious: None,
         },
         swath_m: 0.5,
         clearance_m: 0.1,

@@ -23,6 +23,7 @@ fn with_site<R>(obstacles: &[Obstacle<'_>], call: impl FnOnce(&Site<'_>) -> R) -
         sensing_range_m: 2.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Polygon { vertices: &CORNERS };
     let site = Site {

@@ -72,6 +72,7 @@ impl GotoLayout {
                 sensing_range_m: 100.0,
                 acceleration_m_per_s2: 100.0,
                 tick_s: 0.1,
+                amphibious: None,
             },
             swath_m: 1.0,
             clearance_m: 0.0,
