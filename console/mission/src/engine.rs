@@ -48,6 +48,9 @@ use stepping::PlaceOnPlan;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
 
+/// A robot that turns at least this fast turns about in the time that it is given at a corner, radians per second.
+const BRISK_RAD_PER_S: f64 = 0.75;
+
 /// What enters the engine at the top of a tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Input<'a> {
@@ -268,10 +271,15 @@ impl Mission {
         match &self.phase {
             // A robot that stands for its planner is kept from no corner.
             Phase::Running(_) if self.robot_waits() => {}
-            Phase::Running(_) => self.task.wait(self.config.tick_s),
+            Phase::Running(_) => self.task.wait(self.config.tick_s * self.briskness()),
             Phase::Held(hold) if hold.by.blames_planner() => self.replace_failed_planner(),
             Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}
         }
+    }
+
+    /// How fast time passes for a robot at a corner: one that turns slowly is given longer to come round.
+    fn briskness(&self) -> f64 {
+        (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
     }
 
     /// Whether the robot stands because it has no plan, or no planner, yet.
