@@ -13,10 +13,8 @@ const STACK: u64 = 1 << 20;
 /// # Errors
 /// One does not; the sentence names it.
 pub(crate) fn check() -> anyhow::Result<()> {
-    let limits = [
-        (Resource::As, ADDRESS_SPACE, "address space", 'v'),
-        (Resource::Stack, STACK, "stack", 's'),
-    ];
+    let limits =
+        [(Resource::As, ADDRESS_SPACE, "address space", 'v'), (Resource::Stack, STACK, "stack", 's')];
     limits.into_iter().try_for_each(|(resource, needed, of_what, option)| {
         enough(getrlimit(resource).current, needed, of_what, option).map_err(|why| anyhow!(why))
     })
@@ -40,7 +38,10 @@ mod tests {
 
     #[test]
     fn a_limit_that_is_too_low_is_named() {
-        assert_eq!((enough(None, 1 << 20, "stack", 's'), enough(Some(1 << 20), 1 << 20, "stack", 's')), (Ok(()), Ok(())));
+        assert_eq!(
+            (enough(None, 1 << 20, "stack", 's'), enough(Some(1 << 20), 1 << 20, "stack", 's')),
+            (Ok(()), Ok(()))
+        );
         let why = "tankops needs 1024 kB of stack, and the system grants 64 kB: `ulimit -s 1024`";
         assert_eq!(enough(Some(64 << 10), 1 << 20, "stack", 's'), Err(why.to_owned()));
     }

@@ -39,7 +39,8 @@ fn wait(file: &Path) -> Option<File> {
     if !file.metadata().is_ok_and(|about| about.file_type().is_fifo()) {
         return None;
     }
-    let pipe = OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(file).ok()?;
+    let pipe =
+        OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(file).ok()?;
     let has_come = |within| poll(&mut [PollFd::new(&pipe, PollFlags::IN)], within).is_ok_and(|n| n > 0);
     if !has_come(Some(&SOON)) {
         warn_line(&format!("note: waiting for what is written to the pipe {}", file.display()));

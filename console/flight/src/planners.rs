@@ -3,9 +3,7 @@
 use crate::failure::bad_input;
 use anyhow::anyhow;
 use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
-use planner_host::{
-    PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, parameter_problems, survey,
-};
+use planner_host::{PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, parameter_problems, survey};
 use scenario::Scenario;
 
 /// What there is to choose from.

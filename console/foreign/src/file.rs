@@ -58,8 +58,9 @@ pub fn read_at_most(path: &Path, most_bytes: u64) -> io::Result<String> {
     if bytes.len() as u64 > most_bytes {
         return Err(too_long());
     }
-    String::from_utf8(bytes)
-        .map_err(|error| damaged(format!("no text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1)))
+    String::from_utf8(bytes).map_err(|error| {
+        damaged(format!("no text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1))
+    })
 }
 
 /// The text of a regular file of JSON, of at most so many bytes, that is no larger in memory than a few times as much.

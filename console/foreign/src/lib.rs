@@ -8,4 +8,4 @@ mod file;
 mod text;
 
 pub use file::{MOST_TEXT_BYTES, json_weight, open_regular, read_at_most, read_json, read_regular};
-pub use text::{is_plain, plain, plain_json, plain_lines, unplain};
+pub use text::{is_plain, plain, plain_json, plain_lines, seen, unplain};

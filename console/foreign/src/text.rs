@@ -48,6 +48,16 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     replaced(text, |c| if is_end(c) { ' ' } else { INSTEAD })
 }
 
+/// A name of another program without what cannot be seen in it, as soft hyphens and joiners; ends of lines and tabs are spaces.
+pub fn seen(name: &str) -> String {
+    plain(name)
+        .chars()
+        .zip(name.chars())
+        .filter(|(c, written)| *c != INSTEAD || *written == INSTEAD)
+        .map(|(c, _)| c)
+        .collect()
+}
+
 /// A text of several lines: line feeds and tabs stay, everything else that is not plain is `�`.
 pub fn plain_lines(text: &str) -> Cow<'_, str> {
     let instead = |c| if matches!(c, '\n' | '\t') { c } else { INSTEAD };
@@ -97,7 +107,9 @@ mod tests {
     #[test]
     fn what_hides_or_controls_is_shown_instead() {
         assert!(HIDDEN.chars().all(|c| !is_plain(c)));
-        assert!(plain(HIDDEN).chars().all(|c| c == INSTEAD) && plain_lines(HIDDEN).chars().all(|c| c == INSTEAD));
+        assert!(
+            plain(HIDDEN).chars().all(|c| c == INSTEAD) && plain_lines(HIDDEN).chars().all(|c| c == INSTEAD)
+        );
         assert_eq!(plain("a\u{202e}b\u{9b}2Jc"), "a�b�2Jc");
         assert_eq!(plain("one\ntwo\tthree\u{2028}four\u{85}five"), "one two three four five");
         assert_eq!(plain_lines("one\n\ttwo\r\n\r"), "one\n\ttwo\n�");
@@ -107,15 +119,34 @@ mod tests {
 
     #[test]
     fn ordinary_names_stay_as_they_are() {
-        for name in ["Säule 3", "u\u{308}ber", "Behälter\u{a0}7", "P-07", "タンク", "резервуар", "Ø 25 °C", "�", "⚠ 🛢"] {
+        for name in [
+            "Säule 3",
+            "u\u{308}ber",
+            "Behälter\u{a0}7",
+            "P-07",
+            "タンク",
+            "резервуар",
+            "Ø 25 °C",
+            "�",
+            "⚠ 🛢",
+        ] {
             assert!(matches!(plain(name), Cow::Borrowed(same) if same == name), "{name:?}");
         }
     }
 
     #[test]
+    fn what_cannot_be_seen_is_no_part_of_a_name() {
+        assert_eq!(seen("Pumpen\u{ad}sumpf\u{200b} 1\u{fe0f}\tNord\u{a0}"), "Pumpensumpf 1 Nord\u{a0}");
+        assert_eq!(seen("\u{1b}[2J�"), "[2J�");
+    }
+
+    #[test]
     fn json_has_the_same_values_in_plain_characters() {
         let value = serde_json::json!({ "name": HIDDEN, "list": ["a\u{9b}b", "c"] });
-        for text in [serde_json::to_string(&value).expect("JSON"), serde_json::to_string_pretty(&value).expect("JSON")] {
+        for text in [
+            serde_json::to_string(&value).expect("JSON"),
+            serde_json::to_string_pretty(&value).expect("JSON"),
+        ] {
             let plain = plain_json(&text);
             assert_eq!(unplain(&plain), None);
             assert_eq!(serde_json::from_str::<serde_json::Value>(&plain).expect("JSON"), value);

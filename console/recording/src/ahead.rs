@@ -102,7 +102,10 @@ impl<T> Drop for Taker<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::{sync::atomic::{AtomicU64, Ordering}, thread};
+    use std::{
+        sync::atomic::{AtomicU64, Ordering},
+        thread,
+    };
 
     #[test]
     fn all_items_arrive_in_order_and_the_queue_stays_within_its_weight() {
@@ -112,16 +115,21 @@ mod tests {
             let given = Arc::clone(&given);
             thread::spawn(move || {
                 // Every tenth is heavier than the whole queue may be.
-                (0..500).all(|n| giver.give(n, if n % 10 == 9 { 25 } else { 3 }) && {
-                    given.fetch_add(1, Ordering::SeqCst);
-                    true
+                (0..500).all(|n| {
+                    giver.give(n, if n % 10 == 9 { 25 } else { 3 }) && {
+                        given.fetch_add(1, Ordering::SeqCst);
+                        true
+                    }
                 })
             })
         };
         for (expected, item) in (0..).zip(taker) {
             taken += 1;
             assert_eq!(item, expected);
-            assert!(given.load(Ordering::SeqCst) <= taken + 4, "three items of 3 and one that was just taken");
+            assert!(
+                given.load(Ordering::SeqCst) <= taken + 4,
+                "three items of 3 and one that was just taken"
+            );
         }
         assert!(giving.join().is_ok_and(|all| all) && taken == 500);
     }

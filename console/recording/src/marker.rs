@@ -64,7 +64,11 @@ impl Drop for FailureMarker {
 pub fn recorded_failure(folder: &Path) -> Option<String> {
     let mut text = Vec::new();
     // What is longer is not ours, and its beginning says enough.
-    foreign::open_regular(&folder.join(FAILURE_FILE)).ok()?.take(LENGTH as u64).read_to_end(&mut text).ok()?;
+    foreign::open_regular(&folder.join(FAILURE_FILE))
+        .ok()?
+        .take(LENGTH as u64)
+        .read_to_end(&mut text)
+        .ok()?;
     Some(String::from_utf8_lossy(&text).trim().to_owned())
 }
 

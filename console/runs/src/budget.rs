@@ -55,7 +55,10 @@ impl Budget {
         self.digest(|goes_on| sha256_while(path, goes_on))
     }
 
-    fn digest(&self, compute: impl FnOnce(&mut dyn FnMut(u64) -> bool) -> io::Result<String>) -> io::Result<String> {
+    fn digest(
+        &self,
+        compute: impl FnOnce(&mut dyn FnMut(u64) -> bool) -> io::Result<String>,
+    ) -> io::Result<String> {
         let (most, mut read) = (self.digested.get(), 0);
         let digest = compute(&mut |bytes| {
             read = bytes;
@@ -96,6 +99,8 @@ mod tests {
         let budget = Budget { digested: Cell::new(4 << 18), ..Budget::of_a_list() };
         assert_eq!(budget.sha256(&file).unwrap(), recording::sha256(&file).unwrap());
         let error = budget.sha256(&file).unwrap_err();
-        assert!(error.kind() == io::ErrorKind::QuotaExceeded && error.to_string().contains("too long for a list"));
+        assert!(
+            error.kind() == io::ErrorKind::QuotaExceeded && error.to_string().contains("too long for a list")
+        );
     }
 }

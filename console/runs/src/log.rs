@@ -143,7 +143,9 @@ fn check_clock(now: SystemTime) -> Result<(), RunError> {
     if now >= SystemTime::UNIX_EPOCH {
         return Ok(());
     }
-    Err(RunError::Machine("no run can be recorded: the clock of the machine stands before 1970; set it".into()))
+    Err(RunError::Machine(
+        "no run can be recorded: the clock of the machine stands before 1970; set it".into(),
+    ))
 }
 
 #[cfg(test)]
@@ -155,7 +157,10 @@ mod tests {
     fn a_clock_before_1970_is_named() {
         assert!(check_clock(SystemTime::now()).is_ok() && check_clock(SystemTime::UNIX_EPOCH).is_ok());
         let error = check_clock(SystemTime::UNIX_EPOCH - Duration::from_secs(1)).unwrap_err();
-        assert_eq!(error.to_string(), "no run can be recorded: the clock of the machine stands before 1970; set it");
+        assert_eq!(
+            error.to_string(),
+            "no run can be recorded: the clock of the machine stands before 1970; set it"
+        );
         assert!(!error.is_input());
     }
 

@@ -1,8 +1,8 @@
 //! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
 
 use crate::{error::RunError, log::CLOSE_TIMEOUT};
-use rustix::process::{Resource, getrlimit};
 use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
+use rustix::process::{Resource, getrlimit};
 use std::{
     fs::{self, File},
     io::{self, Write},

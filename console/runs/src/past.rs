@@ -7,7 +7,8 @@ use crate::{
 };
 use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
 use recording::{
-    JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of, sha256_while,
+    JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of,
+    sha256_while,
 };
 use report::{Fold, Logs, PastRun, Record, Summary, document::Files};
 use std::{

@@ -43,7 +43,9 @@ impl<'a> ReportFile<'a> {
         recording_bytes: Option<u64>,
     ) -> serde_json::Result<String> {
         let unsealed = Self { run, summary, journal_bytes, recording_bytes, report_sha256: String::new() };
-        let text = |report: &Self| Ok(plain_json(&serde_json::to_string_pretty(report)?).into_owned() + "\n");
+        let text = |report: &Self| -> serde_json::Result<String> {
+            Ok(plain_json(&serde_json::to_string_pretty(report)?).into_owned() + "\n")
+        };
         let report_sha256 = digest_of_lines(&text(&unsealed)?);
         text(&Self { report_sha256, ..unsealed })
     }
@@ -174,7 +176,9 @@ impl Reported {
         }
         match budget.sha256(&path) {
             Ok(now) if now == then => None,
-            Err(error) if error.kind() == io::ErrorKind::QuotaExceeded => Some(format!("{RECORDING_FILE}: {error}")),
+            Err(error) if error.kind() == io::ErrorKind::QuotaExceeded => {
+                Some(format!("{RECORDING_FILE}: {error}"))
+            }
             Ok(_) | Err(_) => Some(NOT_THE_RECORDING.to_owned()),
         }
     }

@@ -4,10 +4,7 @@ use crate::{budget::Budget, files::LOCK_FILE, report_file::Reported};
 use foreign::open_regular;
 use recording::recorded_failure;
 use report::Summary;
-use std::{
-    fs::TryLockError,
-    path::Path,
-};
+use std::{fs::TryLockError, path::Path};
 
 /// How a past run stands.
 #[derive(Debug, Clone, PartialEq)]

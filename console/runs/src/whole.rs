@@ -191,11 +191,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let [file, draft, victim] = ["file", "file.part", "victim"].map(|name| folder.path().join(name));
         fs::write(&victim, "precious").unwrap();
-        let links: [fn(&Path, &Path) -> io::Result<()>; 2] = [|to, at| std::os::unix::fs::symlink(to, at), |to, at| fs::hard_link(to, at)];
+        let links: [fn(&Path, &Path) -> io::Result<()>; 2] =
+            [|to, at| std::os::unix::fs::symlink(to, at), |to, at| fs::hard_link(to, at)];
         for link in links {
             link(&victim, &draft).unwrap();
             write_whole(&file, b"new").unwrap();
-            assert_eq!((fs::read(&file).unwrap(), fs::read(&victim).unwrap()), (b"new".to_vec(), b"precious".to_vec()));
+            assert_eq!(
+                (fs::read(&file).unwrap(), fs::read(&victim).unwrap()),
+                (b"new".to_vec(), b"precious".to_vec())
+            );
         }
         assert!(std::process::Command::new("mkfifo").arg(&draft).status().unwrap().success());
         write_whole(&file, b"newer").unwrap();

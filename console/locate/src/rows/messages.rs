@@ -117,10 +117,11 @@ impl Messages {
                 LinearReadEvent::Record { opcode: 0, .. } => {
                     return Err(damaged(*count + 1, &"a record of kind 0"));
                 }
-                LinearReadEvent::Record { data, .. } if {
-                    *held += data.len() as u64;
-                    *held > FREE_BYTES + MOST_EXPANSION * *read
-                } =>
+                LinearReadEvent::Record { data, .. }
+                    if {
+                        *held += data.len() as u64;
+                        *held > FREE_BYTES + MOST_EXPANSION * *read
+                    } =>
                 {
                     return Err(damaged(*count, &"it unpacks to more than a recording does"));
                 }
@@ -135,7 +136,10 @@ impl Messages {
                         };
                         // Other topics of a recording are none of our business.
                         if encoding == "json" && data.len() > LONGEST_ROW {
-                            return Err(problem(*count, format!("topic {topic}: a message of {} bytes", data.len())));
+                            return Err(problem(
+                                *count,
+                                format!("topic {topic}: a message of {} bytes", data.len()),
+                            ));
                         }
                         if encoding == "json" {
                             let row = serde_json::from_slice(&data);

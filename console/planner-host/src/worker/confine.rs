@@ -1,8 +1,8 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
 use super::Socket;
-use crate::loader::File;
 use crate::discovery::PluginDirs;
+use crate::loader::File;
 use crate::sandbox::{ClosedOff, PLUGIN_AT, close_all_but, seal};
 use crate::wire::answer::Sealed;
 use crate::wire::body::Writer;

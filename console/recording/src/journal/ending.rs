@@ -32,7 +32,10 @@ pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
     };
     file.seek(SeekFrom::Start(start))?;
     let tail = tail_of(Lines::of(file, path, FrameStart::default())?.text())?;
-    let parsed = tail.rsplit(|byte| *byte == b'\n').filter(|line| is_light(line)).filter_map(|line| serde_json::from_slice(line).ok());
+    let parsed = tail
+        .rsplit(|byte| *byte == b'\n')
+        .filter(|line| is_light(line))
+        .filter_map(|line| serde_json::from_slice(line).ok());
     Ok(parsed.into_iter().find(|event: &Event| matches!(event.kind, EventKind::Ended { .. })))
 }
 

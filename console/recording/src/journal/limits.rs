@@ -74,9 +74,12 @@ impl Pace {
         if matches!(kind, EventKind::RunOpened(_)) && std::mem::replace(&mut self.is_opened, true) {
             return Err("the run is opened a second time".to_owned());
         }
-        self.lasting += u32::from(matches!(kind, EventKind::ObstacleFound { .. } | EventKind::ZoneDrawn { .. }));
+        self.lasting +=
+            u32::from(matches!(kind, EventKind::ObstacleFound { .. } | EventKind::ZoneDrawn { .. }));
         if self.lasting > MOST_LASTING {
-            return Err(format!("more than {MOST_LASTING} obstacles were found or zones drawn, which no run has"));
+            return Err(format!(
+                "more than {MOST_LASTING} obstacles were found or zones drawn, which no run has"
+            ));
         }
         if *tick < self.tick || t_s.is_nan() || *t_s < self.t_s {
             return Err(format!(

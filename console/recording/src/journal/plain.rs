@@ -77,7 +77,9 @@ mod tests {
 
     #[test]
     fn plain_lines_stay_as_they_are() {
-        for text in [r#"{"a":"one\ntwo\tthree\r\n \"q\" \\u001b \/ Sä\u00fcle 漢"}"#, "{}", r#"{"a":"\ud83d\ude00"}"#] {
+        for text in
+            [r#"{"a":"one\ntwo\tthree\r\n \"q\" \\u001b \/ Sä\u00fcle 漢"}"#, "{}", r#"{"a":"\ud83d\ude00"}"#]
+        {
             assert_eq!(line(text.as_bytes()), None, "{text}");
         }
         for broken in [&b"{\"a\":\"\\"[..], b"\\u12", b"\\ud800", b"\xff\\u001b"] {

@@ -29,7 +29,8 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
 /// A cell that no spreadsheet computes, in plain characters: a text that begins as a formula does has an apostrophe before it.
 pub fn cell(text: &str) -> String {
     let cell = foreign::plain_lines(text);
-    let is_formula = cell.starts_with(['=', '+', '-', '@', '|', '%', '\t', '\r']) && cell.parse::<f64>().is_err();
+    let is_formula =
+        cell.starts_with(['=', '+', '-', '@', '|', '%', '\t', '\r']) && cell.parse::<f64>().is_err();
     if is_formula { format!("'{cell}") } else { cell.into_owned() }
 }
 
@@ -162,8 +163,30 @@ mod tests {
 
     #[test]
     fn a_text_that_a_spreadsheet_would_compute_is_kept_as_a_text() {
-        let cells = ["|calc", "a\u{202e}b\u{9b}", "=HYPERLINK(\"http://x\")", "@SUM(A1)", "+1+2", "-1.5", "-pit", "pit", "\tpit", ""];
-        let kept = ["'|calc", "a�b�", "'=HYPERLINK(\"http://x\")", "'@SUM(A1)", "'+1+2", "-1.5", "'-pit", "pit", "'\tpit", ""];
+        let cells = [
+            "|calc",
+            "a\u{202e}b\u{9b}",
+            "=HYPERLINK(\"http://x\")",
+            "@SUM(A1)",
+            "+1+2",
+            "-1.5",
+            "-pit",
+            "pit",
+            "\tpit",
+            "",
+        ];
+        let kept = [
+            "'|calc",
+            "a�b�",
+            "'=HYPERLINK(\"http://x\")",
+            "'@SUM(A1)",
+            "'+1+2",
+            "-1.5",
+            "'-pit",
+            "pit",
+            "'\tpit",
+            "",
+        ];
         assert_eq!(cells.map(cell), kept);
     }
 }

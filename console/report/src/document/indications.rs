@@ -1,7 +1,7 @@
 //! Indications of the scanning instrument, by time, placed on the track.
 
-use foreign::unplain;
 use crate::record::Record;
+use foreign::unplain;
 use serde::{Deserialize, Serialize};
 use world::{Point, geometry::unit_vector};
 

@@ -50,7 +50,8 @@ impl Incidents {
         let mut all = self.all.clone();
         let has_end = all.last().is_some_and(|last| last.kind == "end");
         if self.n_dropped > 0 {
-            let text = format!("{} more happened, which are not listed: the journal has them", self.n_dropped);
+            let text =
+                format!("{} more happened, which are not listed: the journal has them", self.n_dropped);
             let (t_s, severity) = (self.last_s, Severity::Crit);
             let at = all.len() - usize::from(has_end);
             all.insert(at, Incident { t_s, until_s: None, kind: "alarm", severity, text });

@@ -69,12 +69,23 @@ impl<'de> Visitor<'de> for Named {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut fields: A) -> Result<Plan, A::Error> {
-        let is_plan = fields.next_entry::<String, String>()? == Some(("event".to_owned(), "planned".to_owned()));
+        let is_plan =
+            fields.next_entry::<String, String>()? == Some(("event".to_owned(), "planned".to_owned()));
         if !is_plan {
             return Err(A::Error::custom("no plan"));
         }
         let Planned { ask, return_path, planner, reason, path, length_m, complete, legs, cuts } =
             Planned::deserialize(MapAccessDeserializer::new(fields))?;
-        Ok(Plan(EventKind::Planned { ask, return_path, planner, reason, path, length_m, complete, legs, cuts }))
+        Ok(Plan(EventKind::Planned {
+            ask,
+            return_path,
+            planner,
+            reason,
+            path,
+            length_m,
+            complete,
+            legs,
+            cuts,
+        }))
     }
 }
