@@ -2,7 +2,7 @@
 
 use crate::{
     cli::AccuracyArgs,
-    output::{say_json, write_file},
+    output::{check_free, say_json, write_file},
 };
 use flight::{
     failure::{COMPLETE, bad_input},
@@ -19,6 +19,7 @@ use std::process::ExitCode;
 /// `tankops accuracy`.
 pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
+    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let forecast = forecast(mission, &drawing);
     let map = AccuracyMap::new(&drawing, &forecast);

@@ -5,7 +5,7 @@ mod words;
 use crate::{
     cli::{FindArg, LocateArgs},
     input,
-    output::say_json,
+    output::{check_free, say_json},
 };
 use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
 use flight::{
@@ -121,9 +121,7 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         finds_clock_offset: args.find.contains(&FindArg::ClockOffset),
         skips_bad_rows: args.skip_bad_rows,
     };
-    if let Some(file) = args.output.as_ref().filter(|file| file.exists()) {
-        return Err(bad_input(format!("{} already exists; choose another name", file.display())));
-    }
+    args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let survey = task.survey()?;
     let (tally, doubts, kept) = located(args, &task, &survey)?;
     if args.json {

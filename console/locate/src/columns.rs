@@ -2,6 +2,7 @@
 
 use crate::{clock, problem::Problem};
 use csv::StringRecord;
+use report::document::csv::cell;
 use std::collections::HashMap;
 use world::{Odometry, Point, Pose, Station, StationId};
 
@@ -140,11 +141,13 @@ impl Columns {
         }
         let by_number = stations.iter().map(|station| (station.id.0.to_string(), station.id));
         let by_name = stations.iter().map(|station| (station.name.clone(), station.id));
+        // As a table names them.
+        let by_cell = stations.iter().map(|station| (cell(&station.name), station.id));
         Ok(Self {
             names,
             at,
             sound_speed_m_s: sound_speed_m_s.unwrap_or(1.0),
-            stations: by_number.chain(by_name).collect(),
+            stations: by_number.chain(by_cell).chain(by_name).collect(),
             station_names: stations.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
             has_commas: false,
         })

@@ -27,6 +27,9 @@ pub(crate) struct LocateArgs {
     /// Write fixes and track as CSV to this file.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long, requires = "output")]
+    pub force: bool,
     /// Write neither journal nor recording.
     #[arg(long)]
     pub no_record: bool,
@@ -60,6 +63,9 @@ pub(crate) struct MapArgs {
     /// Draw wall and pieces to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long, requires = "svg")]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -67,7 +73,7 @@ pub(crate) struct ImportArgs {
     /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES, or list of columns (.csv) with the fields `x_m`, `y_m`,
     /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name.
     pub file: PathBuf,
-    /// Scenario file to write; must not exist.
+    /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
     /// Inner radius of the tank of a list of columns, in metres.
@@ -86,6 +92,9 @@ pub(crate) struct ImportArgs {
     /// Draw the floor to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// A unit of length of drawings.

@@ -113,6 +113,9 @@ impl EventKind {
                 round_point(position);
                 [heading_rad, clearance_m].into_iter().for_each(round);
             }
+            Self::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => {
+                [asked_m_per_s, sent_m_per_s, needs_m].into_iter().for_each(round);
+            }
             Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),
             Self::Fixed { fix } => round_fix(fix),
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {

@@ -44,6 +44,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerLogged { .. } => "message of the planner",
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
+        EventKind::SpeedLimited { .. } => "speed limited",
         EventKind::Held { .. } => "mission held",
         EventKind::Resumed => "mission resumed",
         EventKind::Ended { .. } => "mission ended",
@@ -80,6 +81,11 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::PositionLost { error_m, limit_m } => {
             vec![("error", metres(*error_m) + " (95 %)"), ("limit", metres(*limit_m))]
         }
+        EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => vec![
+            ("asked for", format!("{} m/s", text::number(*asked_m_per_s, 2))),
+            ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
+            ("to stop", format!("{} from the speed asked for", metres(*needs_m))),
+        ],
         EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
