@@ -68,6 +68,8 @@ mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;
+#[path = "acceptance/stopping.rs"]
+mod stopping;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

@@ -7,6 +7,7 @@ mod events;
 mod export;
 mod headless;
 mod import;
+mod input;
 mod locate;
 mod machine;
 mod manual;

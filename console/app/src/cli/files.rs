@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct LocateArgs {
     /// Readings as CSV, or as MCAP with JSON messages of the same names: `t_s`, `station`, and `range_m`, `arrival_s` (with or
-    /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us.
+    /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us. `-` reads standard input.
     pub readings: PathBuf,
     /// Scenario with tank, stations, start and noise.
     #[arg(long, value_name = "FILE")]
