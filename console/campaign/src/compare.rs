@@ -164,7 +164,7 @@ mod tests {
     fn table(plan: &str) -> Table {
         let campaign = campaign(plan);
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read")
+        read_part(&campaign, 0, file(&part(&campaign, 0, &rows).expect("written"))).expect("read")
     }
 
     #[test]

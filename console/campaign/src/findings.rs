@@ -224,7 +224,7 @@ pub(crate) mod tests {
     pub(crate) fn example() -> Findings {
         let campaign = campaign(PLAN);
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read");
+        let table = read_part(&campaign, 0, file(&part(&campaign, 0, &rows).expect("written"))).expect("read");
         findings(&campaign, &table)
     }
 

@@ -6,6 +6,7 @@
 
 mod compare;
 mod design;
+mod digest;
 mod findings;
 mod frozen;
 mod grid;

@@ -17,6 +17,7 @@ mod locate;
 pub mod order;
 pub mod phase;
 pub mod planner;
+mod plan_extent;
 mod preview;
 pub mod spelling;
 pub mod standing;
@@ -34,5 +35,6 @@ pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
     RefusedPlugin, Sandbox, todays_parameter,
 };
+pub use plan_extent::check_extent;
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

@@ -8,6 +8,7 @@ use crate::stamp::{self, Abi};
 use crate::survey::Cache;
 use crate::user_folder::user_folder;
 use rustix::fs::OFlags;
+use rustix::process::{Resource, getrlimit};
 use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
@@ -88,7 +89,7 @@ fn is_plugin_name(path: &Path) -> bool {
 }
 
 /// A larger file is no plugin, bytes.
-const MOST_BYTES: u64 = 512 << 20;
+pub(crate) const MOST_BYTES: u64 = 128 << 20;
 
 /// A file that is named like a plugin, with what can be determined without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -169,6 +170,14 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
+/// Why this machine lets no process set aside a plugin of so many bytes, if it does not.
+pub(crate) fn too_large_for_machine(bytes: u64) -> Option<String> {
+    let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < bytes)?;
+    Some(format!(
+        "cannot be loaded here: a process may write files of {limit} bytes, and the plugin has {bytes}; `ulimit -f` limits files"
+    ))
+}
+
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
@@ -213,7 +222,7 @@ mod tests {
         let sparse = File::create(place("sparse")).expect("a file");
         sparse.set_len(10 << 30).expect("a length");
         let why = read_bytes(&place("sparse")).expect_err("too large");
-        assert_eq!(why, "10737418240 bytes: no plugin is larger than 536870912");
+        assert_eq!(why, "10737418240 bytes: no plugin is larger than 134217728");
         std::os::unix::fs::symlink(place("pipe"), place("link")).expect("a link");
         assert_eq!(read_bytes(&place("link")), Err("not a plain file".into()));
     }
