@@ -11,6 +11,7 @@ mod findings;
 mod frozen;
 mod grid;
 mod page;
+pub mod part;
 mod plan;
 mod plots;
 mod reader;

@@ -22,7 +22,6 @@ use parquet::{
     errors::ParquetError,
     file::{metadata::KeyValue, properties::WriterProperties, reader::ChunkReader},
 };
-use sha2::{Digest, Sha256};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use thiserror::Error;
@@ -231,7 +230,7 @@ fn text(value: &serde_json::Value) -> Option<String> {
     }
 }
 
-fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
+pub(crate) fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
     let words = |of: &dyn Fn(&Row) -> Option<String>| -> ArrayRef {
         Arc::new(rows.iter().map(of).collect::<StringArray>())
     };
@@ -254,7 +253,7 @@ fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
     Ok(RecordBatch::try_new(schema(campaign), columns)?)
 }
 
-fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<Vec<u8>>, TableError> {
+pub(crate) fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<Vec<u8>>, TableError> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(8 * ROWS_AT_ONCE))
@@ -267,80 +266,21 @@ fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<Vec<u8>>, T
     Ok(ArrowWriter::try_new(Vec::new(), schema(campaign), Some(properties))?)
 }
 
-/// The bytes of a table that is written, with their digest.
-fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableError> {
-    let mut bytes = writer.into_inner()?;
-    digest::seal(&mut bytes);
-    Ok(bytes)
-}
-
-/// What a part says of where it comes from.
-fn part_source(campaign: &Campaign, block: u64) -> String {
-    let cases = campaign.block(block);
-    let hash = hex(&Sha256::digest(campaign.provenance()));
-    format!("{hash} missions {} to {}", cases.start, cases.end - 1)
-}
-
 /// Bytes as hexadecimal digits.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
-/// The rows of a block, in the order of their missions, as a file.
-///
-/// # Errors
-/// They do not fit the columns.
-pub fn part(campaign: &Campaign, block: u64, rows: &[Row]) -> Result<Vec<u8>, TableError> {
-    let mut writer = writer(campaign, part_source(campaign, block))?;
-    writer.write(&batch(campaign, rows)?)?;
-    finished(writer)
-}
-
-/// Makes sure that a file is the part of this block, byte for byte as it was written.
-///
-/// # Errors
-/// It is damaged, or the part of something else.
-pub fn check_part(
-    campaign: &Campaign,
-    block: u64,
-    file: impl ChunkReader + 'static,
-) -> Result<(), TableError> {
-    checked_part(campaign, block, file).map(|_| ())
-}
-
-/// Reads the part of a block.
-///
-/// # Errors
-/// As [`check_part`].
-pub fn read_part(
-    campaign: &Campaign,
-    block: u64,
-    file: impl ChunkReader + 'static,
-) -> Result<Table, TableError> {
-    Table::from_reader(checked_part(campaign, block, file)?)
-}
-
-fn checked_part<T: ChunkReader + 'static>(
-    campaign: &Campaign,
-    block: u64,
-    file: T,
-) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
-    match digest::check(&file)? {
-        Seal::Whole => {}
-        Seal::Damaged => return Err(TableError::Damaged),
-        Seal::None => return Err(TableError::NoDigest),
-    }
-    let builder = opened(file)?;
-    let cases = campaign.block(block);
-    let rows = builder.metadata().file_metadata().num_rows();
-    let is_of_block =
-        source(&builder) == Some(&part_source(campaign, block)) && rows as u64 == cases.end - cases.start;
-    if is_of_block { Ok(builder) } else { Err(TableError::Foreign) }
+/// The bytes of a table that is written, with their digest.
+pub(crate) fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableError> {
+    let mut bytes = writer.into_inner()?;
+    digest::seal(&mut bytes);
+    Ok(bytes)
 }
 
 /// A reader that believes the columns, and not what is said about them in the words of Arrow, of which damage may make
 /// anything.
-fn opened<T: ChunkReader + 'static>(file: T) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
+pub(crate) fn opened<T: ChunkReader + 'static>(file: T) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
     let options = ArrowReaderOptions::new().with_skip_arrow_metadata(true);
     Ok(ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)?)
 }
@@ -365,7 +305,7 @@ pub fn merged(campaign: &Campaign, parts: &[Table]) -> Result<Vec<u8>, TableErro
     finished(writer)
 }
 
-fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuilder<T>) -> Option<&str> {
+pub(crate) fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuilder<T>) -> Option<&str> {
     let entries = builder.metadata().file_metadata().key_value_metadata()?;
     entries.iter().find(|entry| entry.key == SOURCE)?.value.as_deref()
 }
@@ -402,7 +342,7 @@ impl Table {
         }
     }
 
-    fn from_reader<T: ChunkReader + 'static>(
+    pub(crate) fn from_reader<T: ChunkReader + 'static>(
         builder: ParquetRecordBatchReaderBuilder<T>,
     ) -> Result<Self, TableError> {
         let schema = Arc::new(Schema::new(builder.schema().fields().clone()));
@@ -483,7 +423,7 @@ impl Table {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::frozen::tests::campaign;
+    use crate::{frozen::tests::campaign, part};
     use mission::Outcome;
     use proptest::prelude::*;
     use report::Summary;
@@ -518,7 +458,7 @@ pub(crate) mod tests {
         let campaign = campaign(plan);
         let part = |block| {
             let rows: Vec<Row> = campaign.block(block).map(row).collect();
-            read_part(&campaign, block, file(&part(&campaign, block, &rows).expect("written"))).expect("read")
+            part::read(&campaign, block, file(&part::write(&campaign, block, &rows).expect("written"))).expect("read")
         };
         let parts: Vec<Table> = (0..campaign.blocks()).map(part).collect();
         merged(&campaign, &parts).expect("merged")
@@ -537,22 +477,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_part_of_another_campaign_is_refused() {
-        let plan = |k: &str| campaign(&format!("block = 4\n{}", PLAN.replace("2.0", k)));
-        let (one, other) = (plan("2.0"), plan("3.0"));
-        let bytes = part(&one, 1, &one.block(1).map(row).collect::<Vec<_>>()).expect("written");
-        assert!(check_part(&one, 1, file(&bytes)).is_ok());
-        assert!(matches!(read_part(&other, 1, file(&bytes)), Err(TableError::Foreign)));
-        assert!(matches!(read_part(&one, 2, file(&bytes)), Err(TableError::Foreign)), "another block");
-        assert!(matches!(read_part(&one, 1, file(&bytes[..100])), Err(TableError::NoDigest)));
-        assert!(matches!(read_part(&one, 1, file(&[])), Err(TableError::NoDigest)));
-    }
-
-    #[test]
     fn every_flipped_bit_is_found() {
         let one = campaign(&format!("block = 4\n{PLAN}"));
-        let whole = part(&one, 0, &one.block(0).map(row).collect::<Vec<_>>()).expect("written");
-        let of_part = |file| read_part(&one, 0, file).is_ok();
+        let whole = part::write(&one, 0, &one.block(0).map(row).collect::<Vec<_>>()).expect("written");
+        let of_part = |file| part::read(&one, 0, file).is_ok();
         assert_eq!(found_whole(&whole, of_part), [] as [usize; 0]);
         assert_eq!(found_whole(&table(PLAN), |file| Table::read(file).is_ok()), [] as [usize; 0]);
     }

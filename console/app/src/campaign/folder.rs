@@ -2,7 +2,7 @@
 
 use crate::shared_folder::SharedFolder;
 use anyhow::Context;
-use campaign::{Campaign, Table, table};
+use campaign::{Campaign, Table, TableError, part};
 use flight::failure::bad_input;
 use recording::{open_regular, read_regular};
 use std::{
@@ -67,18 +67,18 @@ impl Folder {
         if !self.0.has(&Self::part(block)) {
             return Ok(false);
         }
-        self.with_part(block, |file| table::check_part(campaign, block, file)).map(|()| true)
+        self.with_part(block, |file| part::check(campaign, block, file)).map(|()| true)
     }
 
     /// Reads a part.
     pub(crate) fn read_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<Table> {
-        self.with_part(block, |file| table::read_part(campaign, block, file))
+        self.with_part(block, |file| part::read(campaign, block, file))
     }
 
     fn with_part<T>(
         &self,
         block: u64,
-        read: impl FnOnce(fs::File) -> Result<T, table::TableError>,
+        read: impl FnOnce(fs::File) -> Result<T, TableError>,
     ) -> anyhow::Result<T> {
         let file = self.path().join(Self::part(block));
         let open = open_regular(&file).with_context(|| file.display().to_string())?;

@@ -3,7 +3,7 @@
 use super::{folder::Folder, pilot::Pilot};
 use crate::stop_signal::StopSignal;
 use anyhow::anyhow;
-use campaign::{Campaign, Row, Watch, table};
+use campaign::{Campaign, Row, Watch, part};
 use flight::planners::Found;
 use planner_host::PluginDirs;
 use std::{
@@ -129,7 +129,7 @@ impl Work<'_> {
     fn publish(&self, (block, mut rows): Whole) -> anyhow::Result<()> {
         rows.sort_by_key(|(row, _)| row.case);
         let (rows, costs): (Vec<Row>, Vec<String>) = rows.into_iter().unzip();
-        let part = table::part(self.campaign, block, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
+        let part = part::write(self.campaign, block, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
         self.folder.publish_part(block, &part, &(costs.join("\n") + "\n"))?;
         if self.pulls {
             self.folder.release(block);
