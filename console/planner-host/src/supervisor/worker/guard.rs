@@ -64,10 +64,11 @@ impl Guard {
 
     /// Decides about the call that waits; what was tried, if that may not be.
     pub(super) fn decide(&mut self) -> Option<String> {
+        let stage = self.stage();
         let listener = self.listener.as_ref()?;
         let call = listener.next()?;
         let about_memory = self.uncounted.verdict(&call);
-        let verdict = about_memory.unwrap_or_else(|| verdict(&call, self.stage(), &mut self.sought));
+        let verdict = about_memory.unwrap_or_else(|| verdict(&call, stage, &mut self.sought));
         self.has_loaded |= ends_loading(&call);
         listener.answer(&call, &verdict);
         match verdict {
