@@ -69,7 +69,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
     let mut checks = vec![
         check(
             "answers soundly in every tank",
-            named(flown, first_seed, |flown| flown.misbehaved.as_ref().map(String::as_str)),
+            named(flown, first_seed, |flown| flown.misbehaved.as_deref()),
         ),
         Check {
             what: "does not give up everywhere",
@@ -89,7 +89,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
         check("keeps no memory for ever", subject.hoards()),
         check(
             "ends when it is not wanted any more",
-            named(flown, first_seed, |flown| flown.bad_end.as_ref().map(String::as_str)),
+            named(flown, first_seed, |flown| flown.bad_end.as_deref()),
         ),
         Check { what: "leaves no thread behind", failure: None, warning: threads_left(flown) },
     ]);
@@ -107,7 +107,7 @@ fn named(flown: &[Flown], first_seed: u64, about: impl Fn(&Flown) -> Option<&str
 fn gives_up(flown: &[Flown], first_seed: u64) -> Option<String> {
     let has = |flown: &Flown| flown.gave_up.is_some() && !flown.is_complete() && !flown.unsupported;
     let everywhere = !flown.is_empty() && flown.iter().all(has);
-    everywhere.then(|| named(flown, first_seed, |flown| flown.gave_up.as_ref().map(String::as_str)))?
+    everywhere.then(|| named(flown, first_seed, |flown| flown.gave_up.as_deref()))?
 }
 
 fn completes_none(flown: &[Flown]) -> Option<String> {
@@ -205,7 +205,7 @@ impl Subject<'_> {
         let own = std::iter::once(self.planner.id.as_str());
         // One that fails itself is nothing to take over from.
         let mut tried = self.beside.iter().copied().chain(own).map(|from| self.takes_over_from(from));
-        tried.find_map(|outcome| outcome.ok()).flatten()
+        tried.find_map(Result::ok).flatten()
     }
 
     /// Why it does not take over from a planner, if it does not.
