@@ -254,7 +254,10 @@ fn a_part_that_was_damaged_or_is_empty_is_not_done_and_never_merges() {
         std::fs::write(folder.join("part-00002.parquet"), bytes).unwrap();
         let status = campaign(&bench, "status", &[Path::new("out")]);
         assert!(status.code == Some(1) && status.out.contains("missing: 2"), "{status:?}");
-        assert!(status.err.contains("part-00002.parquet is ") || status.err.contains("comes from"), "{status:?}");
+        assert!(
+            status.err.contains("part-00002.parquet is ") || status.err.contains("comes from"),
+            "{status:?}"
+        );
         let merged = campaign(&bench, "merge", &[Path::new("out")]);
         assert!(merged.code == Some(2) && merged.err.contains("blocks are missing: 2"), "{merged:?}");
         works(&bench, "--pull --threads 1", "out");
@@ -271,9 +274,8 @@ fn damage_to_a_table_is_named_by_whoever_compares_it() {
     let at = bytes.len() / 2;
     bytes[at] ^= 1;
     let damaged = bench.file("damaged.parquet", bytes);
-    let compare = |file: &Path| {
-        campaign(&bench, "compare --metric mission_time_s", &[Path::new("out"), file])
-    };
+    let compare =
+        |file: &Path| campaign(&bench, "compare --metric mission_time_s", &[Path::new("out"), file]);
     let refused = compare(&damaged);
     assert!(refused.code == Some(2) && refused.err.contains("damaged.parquet is damaged"), "{refused:?}");
     let sound = compare(Path::new("out"));

@@ -1,6 +1,6 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
-use crate::{accuracy::warn_of_clearance, output::pretty_json};
+use crate::{accuracy::warn_of_positions, output::pretty_json};
 use flight::{
     failure::{BAD_INPUT, COMPLETE, is_input},
     planners::{self, check_installed},
@@ -104,7 +104,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String
         Err(error) if is_input(&error) => return Ok(Err(error.to_string())),
         Err(error) => return Err(error),
     }
-    warn_of_clearance(&scenario);
+    warn_of_positions(&scenario);
     warn_of_shadowed(&scenario, plugins);
     Ok(Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id)))
 }

@@ -47,9 +47,10 @@ pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
         NotReplayed::Machine(why) => anyhow!(why),
     });
     let (code, end) = match replayed? {
-        Replayed::ToTheEnd { requests } => {
-            (COMPLETE, format!("the console accepts the answers to all {requests} requests: it does not fail again"))
-        }
+        Replayed::ToTheEnd { requests } => (
+            COMPLETE,
+            format!("the console accepts the answers to all {requests} requests: it does not fail again"),
+        ),
         Replayed::Failed(how) => (ENDED_OTHERWISE, format!("failed again at {how}")),
     };
     say_line(&end)?;

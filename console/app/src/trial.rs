@@ -24,7 +24,8 @@ pub(crate) fn fly(
     keep: Option<&Path>,
 ) -> anyhow::Result<ExitCode> {
     let mut trials = Vec::new();
-    let shipped: Vec<String> = planners::found(&PluginDirs::standard(&[])).planners.into_iter().map(|info| info.id).collect();
+    let shipped: Vec<String> =
+        planners::found(&PluginDirs::standard(&[])).planners.into_iter().map(|info| info.id).collect();
     for file in files {
         let plugins = with_folder_of(file, plugins);
         let found = planners::found(&plugins).planners;
@@ -70,7 +71,8 @@ fn with_folder_of(file: &Path, plugins: &PluginDirs) -> PluginDirs {
 fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyhow::Result<Vec<PlannerInfo>> {
     let refused = |why: String| bad_input(format!("{}: {why}", file.display()));
     let SurveyedPlugin { sha256, planners, refused: reason, .. } =
-        check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox).map_err(anyhow::Error::msg)?;
+        check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox)
+            .map_err(anyhow::Error::msg)?;
     if let Some(reason) = reason {
         return Err(refused(reason));
     }

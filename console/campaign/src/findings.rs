@@ -222,7 +222,8 @@ pub(crate) mod tests {
     pub(crate) fn example() -> Findings {
         let campaign = campaign(&format!("block = 160\n{PLAN}"));
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written"))).expect("read");
+        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written")))
+            .expect("read");
         findings(&campaign, &table)
     }
 

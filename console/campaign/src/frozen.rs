@@ -95,9 +95,9 @@ impl Campaign {
         }
         let digest = value["sha256"].as_str().unwrap_or_default().to_owned();
         let campaign: Self = serde_json::from_value(value).map_err(no_campaign)?;
-        let damage = campaign.damage().or_else(|| {
-            (campaign.digest() != digest).then(|| "its SHA-256 is another one".to_owned())
-        });
+        let damage = campaign
+            .damage()
+            .or_else(|| (campaign.digest() != digest).then(|| "its SHA-256 is another one".to_owned()));
         match damage {
             None => Ok(campaign),
             Some(what) => Err(format!("was changed or damaged: {what}; prepare the campaign again")),

@@ -30,11 +30,7 @@ pub fn write(campaign: &Campaign, block: u64, rows: &[Row]) -> Result<Vec<u8>, T
 ///
 /// # Errors
 /// It is damaged, or the part of something else.
-pub fn check(
-    campaign: &Campaign,
-    block: u64,
-    file: impl ChunkReader + 'static,
-) -> Result<(), TableError> {
+pub fn check(campaign: &Campaign, block: u64, file: impl ChunkReader + 'static) -> Result<(), TableError> {
     checked(campaign, block, file).map(|_| ())
 }
 
@@ -42,11 +38,7 @@ pub fn check(
 ///
 /// # Errors
 /// As [`check`].
-pub fn read(
-    campaign: &Campaign,
-    block: u64,
-    file: impl ChunkReader + 'static,
-) -> Result<Table, TableError> {
+pub fn read(campaign: &Campaign, block: u64, file: impl ChunkReader + 'static) -> Result<Table, TableError> {
     Table::from_reader(checked(campaign, block, file)?)
 }
 
@@ -63,8 +55,8 @@ fn checked<T: ChunkReader + 'static>(
     let builder = opened(file)?;
     let cases = campaign.block(block);
     let rows = builder.metadata().file_metadata().num_rows();
-    let is_of_block =
-        source(&builder) == Some(&part_source(campaign, block)) && u64::try_from(rows) == Ok(cases.end - cases.start);
+    let is_of_block = source(&builder) == Some(&part_source(campaign, block))
+        && u64::try_from(rows) == Ok(cases.end - cases.start);
     if is_of_block { Ok(builder) } else { Err(TableError::Foreign) }
 }
 

@@ -258,10 +258,7 @@ pub(crate) fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(8 * ROWS_AT_ONCE))
         .set_created_by(digest::CREATED_BY.to_owned())
-        .set_key_value_metadata(Some(vec![
-            KeyValue::new(SOURCE.to_owned(), source),
-            digest::place_holder(),
-        ]))
+        .set_key_value_metadata(Some(vec![KeyValue::new(SOURCE.to_owned(), source), digest::place_holder()]))
         .build();
     Ok(ArrowWriter::try_new(Vec::new(), schema(campaign), Some(properties))?)
 }
@@ -280,7 +277,9 @@ pub(crate) fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableErr
 
 /// A reader that believes the columns, and not what is said about them in the words of Arrow, of which damage may make
 /// anything.
-pub(crate) fn opened<T: ChunkReader + 'static>(file: T) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
+pub(crate) fn opened<T: ChunkReader + 'static>(
+    file: T,
+) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
     let options = ArrowReaderOptions::new().with_skip_arrow_metadata(true);
     Ok(ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)?)
 }
@@ -458,7 +457,8 @@ pub(crate) mod tests {
         let campaign = campaign(plan);
         let part = |block| {
             let rows: Vec<Row> = campaign.block(block).map(row).collect();
-            part::read(&campaign, block, file(&part::write(&campaign, block, &rows).expect("written"))).expect("read")
+            part::read(&campaign, block, file(&part::write(&campaign, block, &rows).expect("written")))
+                .expect("read")
         };
         let parts: Vec<Table> = (0..campaign.blocks()).map(part).collect();
         merged(&campaign, &parts).expect("merged")

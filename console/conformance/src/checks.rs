@@ -67,10 +67,7 @@ struct FailedBeside;
 pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Vec<Check> {
     let check = |what, failure| Check { what, failure, warning: None };
     let mut checks = vec![
-        check(
-            "answers soundly in every tank",
-            named(flown, first_seed, |flown| flown.misbehaved.as_deref()),
-        ),
+        check("answers soundly in every tank", named(flown, first_seed, |flown| flown.misbehaved.as_deref())),
         Check {
             what: "does not give up everywhere",
             failure: gives_up(flown, first_seed),

@@ -75,7 +75,8 @@ impl Trial {
         (n, first_seed): (u64, u64),
     ) -> Self {
         let tanks: Vec<Scenario> = (0..n).map(|i| tank::draw(task, first_seed.wrapping_add(i))).collect();
-        let flies_such = |other: &&PlannerInfo| other.id != planner.id && (task == Task::Goto || other.covers);
+        let flies_such =
+            |other: &&PlannerInfo| other.id != planner.id && (task == Task::Goto || other.covers);
         let beside = others.found.iter().filter(flies_such);
         let ids: Vec<&str> = std::iter::once(planner).chain(beside).map(|info| info.id.as_str()).collect();
         let flights: Vec<(usize, &Scenario)> =
@@ -116,8 +117,10 @@ impl Trial {
         let checks = self.checks.iter().map(Check::line);
         let rows = self.rows.iter().map(Row::line);
         let n = self.rows.first().map_or(0, |row| row.tanks);
-        let title =
-            format!("\n{}, {}, in {n} random tanks from seed {} on:\n", self.planner, self.task, self.first_seed);
+        let title = format!(
+            "\n{}, {}, in {n} random tanks from seed {} on:\n",
+            self.planner, self.task, self.first_seed
+        );
         let lost = self.rows.first().into_iter().flat_map(Row::lost).map(row::InTank::line);
         checks.chain([title, Row::HEADINGS.to_owned()]).chain(rows).chain(lost).collect()
     }

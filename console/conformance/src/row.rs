@@ -102,7 +102,10 @@ impl Row {
                 .filter_map(|flown| flown.memory_bytes)
                 .max()
                 .map(|bytes| bytes as f64 / 1e6),
-            by_tank: (0..).zip(flown).map(|(n, flown)| InTank::of(first_seed.wrapping_add(n), flown)).collect(),
+            by_tank: (0..)
+                .zip(flown)
+                .map(|(n, flown)| InTank::of(first_seed.wrapping_add(n), flown))
+                .collect(),
         }
     }
 

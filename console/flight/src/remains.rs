@@ -22,9 +22,9 @@ pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f6
         let lines =
             printed.iter().map(|Printed { planner, line }| format!("T+{t_s:.1} s  {planner}: {line}\n"));
         let ends = bad_ends.iter().map(|end| format!("T+{t_s:.1} s  {end}\n"));
-        let faults = crashes.iter().map(|crash| {
-            format!("T+{t_s:.1} s  {}; plugin {}\n", crash.fault.message, plugin_file(crash))
-        });
+        let faults = crashes
+            .iter()
+            .map(|crash| format!("T+{t_s:.1} s  {}; plugin {}\n", crash.fault.message, plugin_file(crash)));
         log.keep_output(&lines.chain(ends).chain(faults).collect::<String>());
         for crash in &crashes {
             log.keep_crash(&files(crash));
@@ -57,11 +57,7 @@ fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
         digest_of(frames),
         env!("CARGO_PKG_VERSION"),
     );
-    [
-        (CRASH_FILE, about.into()),
-        (FRAMES_FILE, frames.clone()),
-        ("output.txt", output.clone().into()),
-    ]
+    [(CRASH_FILE, about.into()), (FRAMES_FILE, frames.clone()), ("output.txt", output.clone().into())]
 }
 
 /// Makes sure that the requests of a crash are those that were kept with it; `about` is what was written about it.
@@ -82,8 +78,8 @@ pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mission::{Cause, Fault};
     use mission::planner::During;
+    use mission::{Cause, Fault};
 
     #[test]
     fn frames_that_were_cut_or_changed_are_known_by_what_was_written_about_them() {
@@ -100,6 +96,8 @@ mod tests {
         let about = String::from_utf8(about).expect("text");
         assert_eq!(check_frames(&about, &frames), Ok(()));
         assert!(check_frames(&about, &frames[..2]).is_err_and(|why| why.starts_with("was cut or changed")));
-        assert!(check_frames("planner p died\n", &frames).is_err_and(|why| why.starts_with("cannot be checked")));
+        assert!(
+            check_frames("planner p died\n", &frames).is_err_and(|why| why.starts_with("cannot be checked"))
+        );
     }
 }

@@ -13,11 +13,12 @@ pub mod config;
 mod drift;
 pub mod engine;
 pub mod event;
+mod governor;
 mod locate;
 pub mod order;
 pub mod phase;
-pub mod planner;
 mod plan_extent;
+pub mod planner;
 mod preview;
 pub mod spelling;
 pub mod standing;
@@ -31,10 +32,10 @@ pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use plan_extent::check_extent;
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
     RefusedPlugin, Sandbox, todays_parameter,
 };
-pub use plan_extent::check_extent;
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};

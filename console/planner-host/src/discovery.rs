@@ -51,12 +51,17 @@ impl PluginDirs {
         Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
+    /// The paths of all files that are named like a plugin, folder by folder.
+    pub(crate) fn candidates(&self) -> Vec<PathBuf> {
+        self.folders.iter().flat_map(|dir| named_like_plugins(dir)).collect()
+    }
+
     /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
     /// content as an earlier one is the same plugin and left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
         let cache = Cache::new(self.cache.as_deref());
-        for path in self.folders.iter().flat_map(|dir| named_like_plugins(dir)) {
+        for path in self.candidates() {
             let plugin = cache.seen(&path).unwrap_or_else(|| {
                 let plugin = PluginFile::read(path);
                 cache.note(&plugin);
@@ -170,11 +175,14 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Why this machine lets no process set aside a plugin of so many bytes, if it does not.
-pub(crate) fn too_large_for_machine(bytes: u64) -> Option<String> {
-    let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < bytes)?;
+/// Why this machine lets no process set aside a plugin, if it does not; a file that is no plugin for its size has another reason.
+pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
+    let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
+    let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;
     Some(format!(
-        "cannot be loaded here: a process may write files of {limit} bytes, and the plugin has {bytes}; `ulimit -f` limits files"
+        "the system lets no file grow beyond {limit} bytes, and {} has {length}: `ulimit -f {}`",
+        path.display(),
+        MOST_BYTES / 1024
     ))
 }
 

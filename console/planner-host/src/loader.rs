@@ -58,8 +58,8 @@ impl File {
     pub(crate) fn read(path: &Path) -> Result<Self, NotRead> {
         let bytes = read_bytes(path).map_err(NotRead::Refused)?;
         let abi = stamp::read(&bytes).map_err(|error| NotRead::Refused(error.to_string()))?;
-        if let Some(why) = too_large_for_machine(bytes.len() as u64) {
-            return Err(NotRead::Machine(why));
+        if let Some(why) = too_large_for_machine(path) {
+            return Err(NotRead::Machine(format!("cannot be loaded: {why}")));
         }
         let staged = stage::stage(&bytes)
             .map_err(|error| NotRead::Machine(no_worker("cannot set the plugin aside", &error)))?;

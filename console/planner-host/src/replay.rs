@@ -49,7 +49,8 @@ pub fn replay(
     let requests = whole(frames).map_err(NotReplayed::Damaged)?;
     // A debugger has memory of its own.
     let limit = memory_limit_of(frames).filter(|_| !patient).unwrap_or(u64::MAX);
-    let mut worker = Worker::spawn(worker, limit).map_err(|failure| NotReplayed::Machine(refusal_text(&failure)))?;
+    let mut worker =
+        Worker::spawn(worker, limit).map_err(|failure| NotReplayed::Machine(refusal_text(&failure)))?;
     let (mut stream, mut incoming, mut judge) = (frames, Incoming::default(), Judge::default());
     for n in 1..=requests {
         if incoming.receive(&mut stream) != Received::Frame {
@@ -148,7 +149,8 @@ mod tests {
         for length in 1..both.len() {
             let cut = whole(&both[..length]);
             let n = if length < load.len() { 1 } else { 2 };
-            let expected = if length == load.len() { Ok(1) } else { Err(format!("is cut off within request {n}")) };
+            let expected =
+                if length == load.len() { Ok(1) } else { Err(format!("is cut off within request {n}")) };
             assert_eq!(cut, expected, "{length}");
         }
         assert!(whole(&step).is_err_and(|why| why.contains("does not load a plugin")));

@@ -22,7 +22,10 @@ mod memory;
 mod verdict;
 
 #[cfg(not(target_os = "linux"))]
-pub(crate) use elsewhere::{Listener, MAY_HIDE, MAY_RESERVE, Uncounted, Verdict, close_all_but, close_files, ends_loading, seal, verdict};
+pub(crate) use elsewhere::{
+    Listener, MAY_HIDE, MAY_RESERVE, Uncounted, Verdict, close_all_but, close_files, ends_loading, seal,
+    verdict,
+};
 #[cfg(target_os = "linux")]
 pub(crate) use {
     files::nothing as close_files,

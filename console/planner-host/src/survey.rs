@@ -100,7 +100,10 @@ impl<'a> Surveyor<'a> {
         let holders = |id: &&str| {
             let has_it = |plugin: &&PluginFile| {
                 plugin.may_have(id)
-                    && self.probing.planners_of(plugin).is_ok_and(|infos| infos.iter().any(|info| info.id == **id))
+                    && self
+                        .probing
+                        .planners_of(plugin)
+                        .is_ok_and(|infos| infos.iter().any(|info| info.id == **id))
             };
             let mut holders = self.plugins.iter().filter(has_it).map(|plugin| plugin.path.clone());
             Some(((*id).to_owned(), holders.next()?, holders.next()?))
@@ -126,6 +129,9 @@ pub fn check_plugin(
     requires_sandbox: bool,
 ) -> Result<SurveyedPlugin, String> {
     check_descriptors()?;
+    if let Some(why) = too_large_for_machine(file) {
+        return Err(why);
+    }
     let probing = Probing { worker, requires_sandbox, cache: Cache::new(None), refused: RefCell::default() };
     let surveyed = look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new());
     match probing.no_worker() {
@@ -157,13 +163,6 @@ impl<'a> Probing<'a> {
     }
 
     fn planners_of(&self, plugin: &PluginFile) -> Result<Vec<PlannerInfo>, Failure> {
-        // First: what is known of a plugin does not load it.
-        let bytes = plugin.path.metadata().map_or(0, |about| about.len());
-        if let Some(why) = too_large_for_machine(bytes) {
-            let failure = Failure::Console(why);
-            self.refused.borrow_mut().insert(plugin.path.clone(), failure.clone());
-            return Err(failure);
-        }
         if let Some(planners) = self.cache.get(plugin) {
             return Ok(planners);
         }

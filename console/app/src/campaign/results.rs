@@ -80,8 +80,7 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let shown = file.display();
     let open = recording::open_regular(&file)
         .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
-    let (table, is_proven) =
-        Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
+    let (table, is_proven) = Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
     if !is_proven {
         let why = "an earlier tankops or another program wrote it, so that damage to it is not noticed";
         warn_line(&format!("{shown} carries no digest: {why}"));

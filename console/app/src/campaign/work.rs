@@ -129,7 +129,8 @@ impl Work<'_> {
     fn publish(&self, (block, mut rows): Whole) -> anyhow::Result<()> {
         rows.sort_by_key(|(row, _)| row.case);
         let (rows, costs): (Vec<Row>, Vec<String>) = rows.into_iter().unzip();
-        let part = part::write(self.campaign, block, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
+        let part =
+            part::write(self.campaign, block, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
         self.folder.publish_part(block, &part, &(costs.join("\n") + "\n"))?;
         if self.pulls {
             self.folder.release(block);

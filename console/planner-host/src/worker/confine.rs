@@ -1,9 +1,9 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
 use super::Socket;
-use crate::discovery::MOST_BYTES;
+use crate::discovery::{MOST_BYTES, PluginDirs, too_large_for_machine};
 use crate::loader::File;
-use crate::sandbox::{ClosedOff, MAY_RESERVE, close_all_but, seal};
+use crate::sandbox::{ClosedOff, MAY_RESERVE, PLUGIN_AT, close_all_but, seal};
 use crate::wire::answer::Sealed;
 use crate::wire::body::Writer;
 use crate::wire::{SHUT_DOWN_WITHIN, kind};
@@ -18,25 +18,31 @@ use std::os::unix::net::UnixStream;
 
 /// The socket lives above the numbers that careless plugins close; there is only this one descriptor of it.
 const SOCKET_AT: i32 = 200;
-/// The plugin's own bytes come after it.
-#[cfg(target_os = "linux")]
-const LAST_DESCRIPTOR: i32 = crate::sandbox::PLUGIN_AT;
-#[cfg(not(target_os = "linux"))]
-const LAST_DESCRIPTOR: i32 = SOCKET_AT;
 const MOST_FILES: u64 = 256;
 /// Of the first thread; it does not count as memory that can be written.
 const LARGEST_STACK: u64 = 16 << 20;
 
-/// Makes sure that a worker can have its socket where it belongs, before one is started.
+/// Makes sure, before a worker is started, that it can have its socket and its plugin where they belong, and that the system lets
+/// every plugin in these folders be set aside.
 ///
 /// # Errors
 /// A sentence about the limit that is too low.
-pub fn check_descriptors() -> Result<(), String> {
-    match getrlimit(Resource::Nofile).current {
-        Some(limit) if limit <= LAST_DESCRIPTOR as u64 => Err(format!(
+pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
+    check_descriptors()?;
+    plugins.candidates().iter().find_map(|path| too_large_for_machine(path)).map_or(Ok(()), Err)
+}
+
+/// Makes sure that a worker can have its socket and its plugin where they belong.
+///
+/// # Errors
+/// A sentence about the limit that is too low.
+pub(crate) fn check_descriptors() -> Result<(), String> {
+    let last = SOCKET_AT.max(PLUGIN_AT) as u64;
+    match getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
+        Some(limit) => Err(format!(
             "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
         )),
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 

@@ -114,7 +114,8 @@ impl<'a> Session<'a> {
         requires_sandbox: bool,
     ) -> Result<bool, Trouble> {
         let lost = |error| Trouble::Unable(no_worker("cannot be closed off", &error));
-        let (sandbox, reads_libraries) = close_off(self.socket, sequence, file, memory_limit_bytes).map_err(lost)?;
+        let (sandbox, reads_libraries) =
+            close_off(self.socket, sequence, file, memory_limit_bytes).map_err(lost)?;
         if requires_sandbox && sandbox != Sandbox::Full {
             return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));
         }
