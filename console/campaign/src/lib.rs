@@ -6,10 +6,12 @@
 
 mod compare;
 mod design;
+mod digest;
 mod findings;
 mod frozen;
 mod grid;
 mod page;
+pub mod part;
 mod plan;
 mod plots;
 mod reader;
