@@ -8,7 +8,10 @@ use crate::{
         signature,
     },
 };
-use flight::failure::{COMPLETE, bad_input};
+use flight::{
+    failure::{COMPLETE, bad_input},
+    texts,
+};
 use planner_host::PluginDirs;
 use report::{
     Document, Inspection, PastRun,
@@ -39,7 +42,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     }
     let read = review::read_all(&args.runs, &args.logs.folder())?;
     let inspection = inspection(args, read.last())?;
-    let indications = args.indications.as_deref().map(read_text).transpose()?;
+    let indications = args.indications.as_deref().map(texts::read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());
     if let Some(by) = &args.sign {
         refuse_other_signer(by, inspection.inspector.as_deref())?;
@@ -124,12 +127,8 @@ fn may_write(
 fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspection> {
     let known = last.map(review::inspection).transpose()?.unwrap_or_default();
     let Some(file) = &args.inspection else { return Ok(known) };
-    let later = scenario::inspection(&read_text(file)?, &file.display().to_string());
+    let later = scenario::inspection(&texts::read(file)?, &file.display().to_string());
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))
-}
-
-fn read_text(file: &Path) -> anyhow::Result<String> {
-    fs::read_to_string(file).map_err(|error| bad_input(format!("{} cannot be read: {error}", file.display())))
 }
 
 /// The files of a format with their texts.

@@ -1,6 +1,7 @@
 //! The table of a campaign: one row for each mission, as Parquet.
 
 use crate::{
+    columns::explained,
     frozen::Campaign,
     row::{Row, Status},
     value::Value,
@@ -33,9 +34,10 @@ enum Kind {
     Count,
     Number,
     Text,
+    Flag,
 }
 
-use Kind::{Count, Number, Text};
+use Kind::{Count, Flag, Number, Text};
 
 /// Columns that are figures of the report, by their place in it.
 const FIGURES: [(&str, Kind); 48] = [
@@ -84,9 +86,9 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.wrap_total_max_rad", Number),
     ("tether.loops", Count),
     ("tether.end_length_m", Number),
-    ("tether.entangled", Text),
+    ("tether.entangled", Flag),
     ("tether.snags", Count),
-    ("tether.snagged", Text),
+    ("tether.snagged", Flag),
 ];
 
 /// Figures of which more is better; of the others, less is.
@@ -107,7 +109,7 @@ const MORE_IS_BETTER: [&str; 12] = [
 
 /// Names of the columns that are numbers of the report.
 pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
-    FIGURES.iter().filter(|(_, kind)| *kind != Text).map(|(name, _)| *name)
+    FIGURES.iter().filter(|(_, kind)| matches!(kind, Count | Number)).map(|(name, _)| *name)
 }
 
 /// Whether a table has such a column.
@@ -138,7 +140,7 @@ pub enum TableError {
 }
 
 fn schema(campaign: &Campaign) -> SchemaRef {
-    let field = |name: &str, kind: DataType, nullable| Field::new(name, kind, nullable);
+    let field = |name: &str, kind: DataType, nullable| explained(Field::new(name, kind, nullable));
     let mut fields = vec![
         field("case", DataType::UInt64, false),
         field("scenario", DataType::Utf8, false),
@@ -159,6 +161,7 @@ fn schema(campaign: &Campaign) -> SchemaRef {
             Count => DataType::UInt64,
             Number => DataType::Float64,
             Text => DataType::Utf8,
+            Flag => DataType::Boolean,
         };
         field(name, kind, true)
     }));
@@ -204,6 +207,7 @@ fn figure_column(name: &str, kind: Kind, rows: &[Row]) -> ArrayRef {
         Count => Arc::new(values.map(serde_json::Value::as_u64).collect::<UInt64Array>()),
         Number => Arc::new(values.map(serde_json::Value::as_f64).collect::<Float64Array>()),
         Text => Arc::new(values.map(text).collect::<StringArray>()),
+        Flag => Arc::new(values.map(serde_json::Value::as_bool).collect::<BooleanArray>()),
     }
 }
 
@@ -458,6 +462,17 @@ pub(crate) mod tests {
         assert_eq!(table.numbers("set.k")[..2], [Some(0.5), Some(2.0)]);
         assert_eq!(table.words("planner")[2].as_deref(), Some("q"));
         assert_eq!((table.numbers("seed")[159], table.flags("success").len()), (Some(29.0), 160));
+    }
+
+    #[test]
+    fn every_column_says_its_unit_and_meaning() {
+        let read = ParquetRecordBatchReaderBuilder::try_new(file(&table(PLAN))).expect("read");
+        for field in read.schema().fields() {
+            let (unit, meaning) = (&field.metadata()["unit"], &field.metadata()["meaning"]);
+            assert!(!meaning.is_empty(), "{field}");
+            assert_eq!(unit.is_empty(), !field.data_type().is_numeric(), "{field}");
+        }
+        assert_eq!(read.schema().field_with_name("tether.entangled").expect("a column").data_type(), &DataType::Boolean);
     }
 
     #[test]

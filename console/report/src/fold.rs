@@ -5,7 +5,7 @@ use crate::{
     accuracy::{Accuracy, Claimed, Estimate},
     drawn::DrawnZone,
     scanned::Scanned,
-    summary::{Summary, Tether},
+    summary::{REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
@@ -181,6 +181,7 @@ impl Fold {
     /// The figures so far. Those that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
         Summary {
+            report_version: Some(REPORT_VERSION),
             floor: self.account(),
             coverage: self.scanned.as_ref().map(|scanned| scanned.coverage(self.is_to_scan())),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),

@@ -22,7 +22,7 @@ fn read_text(units: &str, blocks: &str, entities: &str, assumed: &Assumed) -> Re
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    read(&file, assumed).map_err(|error| {
+    read(&Input::read(&file).unwrap(), assumed).map_err(|error| {
         let file = "d.dxf".into();
         ImportError { file, ..error }.to_string()
     })
@@ -118,7 +118,7 @@ fn what_is_missing_is_named() {
     let file = dir.path().join("d.dxf");
     fs::write(&file, "this is not a drawing\nat all\n").unwrap();
     assert!(
-        read(&file, &plain())
+        read(&Input::read(&file).unwrap(), &plain())
             .unwrap_err()
             .to_string()
             .contains("line 1: no DXF drawing: `this is not a drawin` is no group code")
@@ -130,7 +130,7 @@ fn the_scenario_holds_shell_obstacles_and_zones() {
     let entities = format!(
         "{SHELL}0 CIRCLE,8 COLUMNS,10 20000,20 15000,40 250,0 CIRCLE,8 NOGO,10 15000,20 15000,40 500"
     );
-    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario("t", "d.dxf");
+    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario("t", "d.dxf", "tether-safe");
     for wanted in [
         "radius_m = 10\n",
         "[[obstacles]]\nname = \"column 1\"\nkind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 0.25\n",
@@ -153,7 +153,7 @@ fn blocks_that_insert_each_other_without_end_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    let message = read(&file, &plain()).unwrap_err().to_string();
+    let message = read(&Input::read(&file).unwrap(), &plain()).unwrap_err().to_string();
     assert!(message.contains("more than 1000000 entities"), "{message}");
 }
 
@@ -174,7 +174,7 @@ fn a_hundred_thousand_lines_are_joined_to_the_shell() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    let plan = read(&file, &plain()).unwrap();
+    let plan = read(&Input::read(&file).unwrap(), &plain()).unwrap();
     let lost_m2 = std::f64::consts::PI * 6000.0 - plan.boundary.area_m2();
     assert!((0.0..5.0).contains(&lost_m2), "{lost_m2}");
 }
@@ -194,7 +194,7 @@ fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\nSHELL\n10\n0\n20\n0\n40\n5\n").unwrap();
-    let message = read(&file, &plain()).unwrap_err().to_string();
+    let message = read(&Input::read(&file).unwrap(), &plain()).unwrap_err().to_string();
     assert!(
         message.ends_with("the drawing is cut off: it does not end with EOF; save it again"),
         "{message}"
@@ -358,7 +358,7 @@ fn old_encodings_hidden_layers_and_coordinates_of_a_survey() {
     let file = dir.path().join("d.dxf");
     fs::write(&file, bytes).unwrap();
     let layers = Layers::new(vec![(Role::Columns, "Stütze".into())]);
-    let plan = read(&file, &Assumed { layers, ..plain() }).unwrap();
+    let plan = read(&Input::read(&file).unwrap(), &Assumed { layers, ..plain() }).unwrap();
     assert_eq!(shapes(&plan.obstacles), ["column 1: disc (-5.000 0.000) 0.200"]);
     assert_eq!(
         plan.notes,
@@ -399,7 +399,7 @@ fn seams_and_the_shell_enclose_plates_that_texts_name() {
     assert!(plan.notes.contains(&"not used: layer TEXTS: MTEXT, 2 of them".into()), "{:?}", plan.notes);
     assert!(plan.notes.contains(&"not used: layer TEXTS: TEXT, 1 of them".into()), "{:?}", plan.notes);
     // The scenario's outlines are those of the plan.
-    let text = plan.scenario("t", "d.dxf");
+    let text = plan.scenario("t", "d.dxf", "tether-safe");
     assert!(text.contains("[plates]\noutlines = [\n    { name = \"P-02\", vertices_m = [["), "{text}");
 }
 
