@@ -81,7 +81,8 @@ impl Estimate {
     }
 }
 
-fn time_s(mission: &MissionConfig, path: &[Point]) -> f64 {
+/// Time to drive a path at full speed, with stops to turn at corners, seconds.
+pub(crate) fn time_s(mission: &MissionConfig, path: &[Point]) -> f64 {
     let limits = &mission.limits;
     let ways = path.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| way.norm() > 1e-9);
     let (mut time_s, mut before) = (0.0, None::<world::Vector>);
