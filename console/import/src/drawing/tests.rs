@@ -430,3 +430,120 @@ fn closed_outlines_are_plates_as_they_are_drawn() {
         plan.notes
     );
 }
+
+#[test]
+fn attributes_of_blocks_are_numbers_of_plates() {
+    let blocks = "0 BLOCK,8 0,2 PL0,10 0,20 0,0 LWPOLYLINE,8 PLATES,90 4,70 1,10 0,20 0,10 3,20 0,10 3,20 4,10 0,20 4,0 ENDBLK";
+    let insert = |x: i32, number: &str| {
+        format!(
+            "0 INSERT,8 0,66 1,2 PL0,10 {x},20 -2,0 ATTRIB,8 PLATES,10 {m},20 -1,40 0.2,1 8 mm,2 THICKNESS,70 0,\
+             0 ATTRIB,8 0,10 {m},20 0,40 0.2,1 {number},2 PLATE_NO,70 0,0 SEQEND,8 0,",
+            m = f64::from(x) + 1.5
+        )
+    };
+    let entities = format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}{}", insert(-3, "B7"), insert(0, "B8"));
+    let plan = read_text(",9 $INSUNITS,70 6", blocks, &entities, &plain()).unwrap();
+    let mut found = plates(&plan);
+    found.sort_unstable_by(|a, b| a.0.cmp(b.0));
+    assert_eq!(found, [("B7", 12.0), ("B8", 12.0)]);
+    assert!(plan.notes.contains(&"not used: layer PLATES: ATTRIB, 2 of them".into()), "{:?}", plan.notes);
+}
+
+#[test]
+fn texts_of_what_else_is_drawn_name_no_plate() {
+    let entities = [
+        "0 CIRCLE,8 SHELL,10 0,20 0,40 6,",
+        "0 LINE,8 PLATES,10 -6,20 0,11 6,21 0,",
+        "0 LWPOLYLINE,8 MISSED,90 4,70 1,10 1,20 1,10 2,20 1,10 2,20 2,10 1,20 2,0 TEXT,8 MISSED,10 1.5,20 1.5,1 4,",
+        "0 TEXT,8 NUMBERS,10 0,20 -2,1 S-1",
+    ];
+    let plan = read_text(",9 $INSUNITS,70 6", "", &entities.concat(), &plain()).unwrap();
+    let names: Vec<&str> = plates(&plan).into_iter().map(|(name, _)| name).collect();
+    assert!(names.contains(&"S-1") && names.contains(&"P-01") && names.len() == 2, "{names:?}");
+    assert!(plan.notes.contains(&"not used: layer MISSED: TEXT, 1 of them".into()), "{:?}", plan.notes);
+}
+
+/// The four sides of a tank of 10 by 8 m in millimetres, with a gap after the first.
+const GAPPED: &str = "0 LINE,8 SHELL,10 0,20 0,11 9980,21 0,0 LINE,8 SHELL,10 10000,20 0,11 10000,21 8000,\
+                      0 LINE,8 SHELL,10 10000,20 8000,11 0,21 8000,0 LINE,8 SHELL,10 0,20 8000,11 0,21 0,";
+
+#[test]
+fn an_outline_with_a_gap_is_named_with_its_place() {
+    let told = "4 lines are nearly an outline of 10.000 m across: one gap of 20.0 mm, from (9980, 0) to (10000, 0) in the \
+                drawing; join the ends there";
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 4", "", GAPPED, &plain()).unwrap_err(),
+        format!("d.dxf: no shell on a layer SHELL: {told}; layers: `SHELL` (4 LINE)")
+    );
+    // A column drawn on the same layer is no shell.
+    let with_column = format!("{GAPPED}0 CIRCLE,8 SHELL,10 3000,20 3000,40 1000");
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 4", "", &with_column, &plain()).unwrap_err(),
+        format!(
+            "d.dxf: no shell on a layer SHELL: the largest closed outline is 2.000 m across, but {told}; layers: `SHELL` \
+             (1 CIRCLE, 4 LINE)"
+        )
+    );
+    let columns = "0 CIRCLE,8 SHELL,10 0,20 0,40 6,0 LWPOLYLINE,8 COLUMNS,90 4,70 0,10 1,20 1,10 2,20 1,10 2,20 2,10 1.05,20 1";
+    let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
+    assert!(
+        plan.notes.iter().any(|note| note.starts_with("Columns: 1 lines that close no outline are left out; 1 line is nearly")
+            && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
+        "{:?}",
+        plan.notes
+    );
+}
+
+#[test]
+fn an_outline_that_crosses_itself_is_named_with_its_place() {
+    let crossed = "0 LWPOLYLINE,8 SHELL,90 4,70 1,10 0,20 0,10 10,20 8,10 10,20 0,10 0,20 8";
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 6", "", crossed, &plain()).unwrap_err(),
+        "d.dxf: no shell on a layer SHELL: the outline crosses itself at (5, 4) in the drawing; draw it once around; layers: \
+         `SHELL` (1 LWPOLYLINE)"
+    );
+}
+
+#[test]
+fn a_layer_that_was_named_is_not_asked_for_again() {
+    let line = "0 LINE,8 0,10 0,20 0,11 1,21 1";
+    assert_eq!(
+        with_layers(&[(Role::Shell, "0")], line).unwrap_err(),
+        "d.dxf: no circle and no closed outline on the layer 0 that is named for SHELL; draw the inner side of the shell \
+         there, or name another layer; layers: `0` (1 LINE)"
+    );
+    let plan = with_layers(&[(Role::Columns, "POSTS")], &format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}", line.replace("8 0", "8 POSTS")));
+    let notes = plan.unwrap().notes;
+    assert!(
+        notes.iter().any(|note| note.contains("the layers that are named for them hold none: POSTS")),
+        "{notes:?}"
+    );
+}
+
+#[test]
+fn names_of_any_letters_are_written_as_toml_has_them() {
+    let names = [
+        "St\u{a0}1", "Stu\u{308}tze", "a\u{200b}b", "so\u{ad}ft", "\u{2764}\u{fe0f}", "\u{915}\u{94d}\u{937}", "say \"x\"", "back\\slash",
+    ];
+    let disc = |name: &&str| Named {
+        name: (*name).to_owned(),
+        shape: Shape::Disc { center: Point::origin(), radius_m: 0.3 },
+    };
+    let vertices_m = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let plate = |name: &&str| world::DrawnPlate { name: (*name).to_owned(), vertices_m: vertices_m.clone() };
+    let plan = FloorPlan {
+        boundary: Boundary::Circle { radius_m: 6.0 },
+        obstacles: names.iter().map(disc).collect(),
+        no_go: Vec::new(),
+        plates: names.iter().map(plate).collect(),
+        notes: vec!["a\nb".into()],
+    };
+    let text = plan.scenario("t", "plan \"of\" 1\\2.dxf", "tether-safe");
+    let read: toml::Table = text.parse().unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let of = |list: &toml::Value| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(of(&read["obstacles"]), names);
+    assert_eq!(of(&read["plates"]["outlines"]), names);
+    assert_eq!(read["about"].as_str(), Some("The floor of plan \"of\" 1\\2.dxf"));
+}
