@@ -139,7 +139,8 @@ fn the_standard_input_is_a_scenario_a_drawing_or_a_list() {
             .unwrap();
         child.stdin.take().unwrap().write_all(text).unwrap();
         let output = child.wait_with_output().unwrap();
-        let told = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        let told =
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
         (output.status.code(), told)
     };
     let goto = std::fs::read(scenario("goto-single-obstacle.toml")).unwrap();
@@ -162,11 +163,15 @@ fn a_scenario_in_another_encoding_is_named_with_line_and_remedy() {
     let bench = Bench::new();
     let text = "# A tank\nname = \"Öl\"\n";
     bench.file("latin.toml", text.chars().map(|letter| letter as u8).collect::<Vec<u8>>());
-    let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    let wide: Vec<u8> =
+        [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
     bench.file("wide.toml", &wide);
     bench.file("bare.toml", &wide[2..]);
     for (file, told) in [
-        ("latin.toml", "not UTF-8 but ISO-8859-1, by line 2\nhelp: save it as UTF-8: `iconv -f ISO-8859-1 -t UTF-8 FILE > NEW`"),
+        (
+            "latin.toml",
+            "not UTF-8 but ISO-8859-1, by line 2\nhelp: save it as UTF-8: `iconv -f ISO-8859-1 -t UTF-8 FILE > NEW`",
+        ),
         ("wide.toml", "not UTF-8 but UTF-16, by its first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t"),
         ("bare.toml", "not UTF-8 but UTF-16LE, by its first line\nhelp:"),
     ] {
@@ -185,7 +190,16 @@ fn a_planner_that_proves_that_no_way_exists_has_not_failed() {
     let [x, y] = [0, 1].map(|k| goal[k].as_float().or(goal[k].as_integer().map(|v| v as f64)).unwrap());
     let ring = format!(
         "name = \"ring\"\nkind = \"polyline\"\nwidth_m = 0.1\npoints_m = [[{}, {}], [{}, {}], [{}, {}], [{}, {}], [{}, {}]]",
-        x - 0.8, y - 0.8, x + 0.8, y - 0.8, x + 0.8, y + 0.8, x - 0.8, y + 0.8, x - 0.8, y - 0.8
+        x - 0.8,
+        y - 0.8,
+        x + 0.8,
+        y - 0.8,
+        x + 0.8,
+        y + 0.8,
+        x - 0.8,
+        y + 0.8,
+        x - 0.8,
+        y - 0.8
     );
     let ring: toml::Table = ring.parse().unwrap();
     let obstacles = table.entry("obstacles").or_insert_with(|| toml::Value::Array(Vec::new()));
@@ -195,7 +209,11 @@ fn a_planner_that_proves_that_no_way_exists_has_not_failed() {
     for planner in ["navfn", "shortest"] {
         let flown = bench.tankops(&["run", "shut.toml", "--no-record", "--json", "--planner", planner]);
         let report = flown.json();
-        assert_eq!((&report["outcome"], &report["planner_faults"]), (&"stuck".into(), &0.into()), "{flown:?}");
+        assert_eq!(
+            (&report["outcome"], &report["planner_faults"]),
+            (&"stuck".into(), &0.into()),
+            "{flown:?}"
+        );
         assert!(flown.code == Some(1) && report["reason"].as_str().unwrap().contains("proved"), "{flown:?}");
     }
 }

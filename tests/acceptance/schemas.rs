@@ -40,7 +40,12 @@ print(sum(seen.values()), "valid:", " ".join(sorted(seen)))
 
 fn validated(bench: &Bench, schema: &str, file: &str) -> Option<(bool, String)> {
     let schema = workspace().join("console/docs").join(schema);
-    let ended = Command::new("python3").current_dir(bench.path()).args(["-c", PROGRAM]).arg(schema).arg(file).output();
+    let ended = Command::new("python3")
+        .current_dir(bench.path())
+        .args(["-c", PROGRAM])
+        .arg(schema)
+        .arg(file)
+        .output();
     let ended = ended.ok()?;
     let told = String::from_utf8_lossy(&ended.stdout).into_owned() + &String::from_utf8_lossy(&ended.stderr);
     Some((ended.status.success(), told))
@@ -48,12 +53,16 @@ fn validated(bench: &Bench, schema: &str, file: &str) -> Option<(bool, String)> 
 
 #[test]
 fn shipped_runs_are_valid_by_their_schemas() {
-    let has_library = Command::new("python3").args(["-c", "import jsonschema.validators as v; v.Draft202012Validator"]).output();
+    let has_library = Command::new("python3")
+        .args(["-c", "import jsonschema.validators as v; v.Draft202012Validator"])
+        .output();
     if !has_library.is_ok_and(|ended| ended.status.success()) {
         eprintln!("skipped: python3 has no jsonschema");
         return;
     }
-    for name in ["cover-circle.toml", "goto-single-obstacle.toml", "spiral-paper.toml", "tether-out-and-back.toml"] {
+    for name in
+        ["cover-circle.toml", "goto-single-obstacle.toml", "spiral-paper.toml", "tether-out-and-back.toml"]
+    {
         let bench = Bench::new();
         let flown = bench.fly(&scenario(name), &[]).json();
         let run = bench.runs().pop().unwrap();

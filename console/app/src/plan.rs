@@ -90,7 +90,8 @@ fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Optio
         return None;
     }
     let found = planners::found(plugins);
-    let suited = planners::suited_to_coverage(&found).filter(|info| info.id != scenario.mission.planner.id)?;
+    let suited =
+        planners::suited_to_coverage(&found).filter(|info| info.id != scenario.mission.planner.id)?;
     let mut other = scenario.clone();
     other.mission.planner = PlannerChoice { id: suited.id.clone(), parameters: Parameters::default() };
     let plan = Planned::new(&other.mission, &scenario.sim.world.as_drawn(), make_plan(&other, plugins).ok()?);

@@ -48,7 +48,10 @@ const MEANINGS: [(&str, &str); 56] = [
     ("accuracy.stations_min", "stations used for one fix, least"),
     ("positioning.mean_error_m", "distance from the estimated to the true position, mean"),
     ("positioning.p50_m", "distance from the estimated to the true position, median"),
-    ("positioning.p95_m", "distance from the estimated to the true position, not exceeded in 95 % of the ticks"),
+    (
+        "positioning.p95_m",
+        "distance from the estimated to the true position, not exceeded in 95 % of the ticks",
+    ),
     ("positioning.max_m", "distance from the estimated to the true position, largest"),
     ("positioning.in_95_ellipse", "share of the ticks in which the truth lay in the 95 % ellipse"),
     ("positioning.position_lost_s", "time for which the position was lost"),

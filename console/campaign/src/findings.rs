@@ -104,9 +104,8 @@ impl Findings {
     /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another. A planner that
     /// gives up at once is quick in what it does complete.
     pub fn ranked(&self) -> Vec<bool> {
-        let is_ranked = |arm: &Arm| {
-            arm.complete.hits > 0 && !self.arms.iter().any(|other| arm.is_clearly_below(other))
-        };
+        let is_ranked =
+            |arm: &Arm| arm.complete.hits > 0 && !self.arms.iter().any(|other| arm.is_clearly_below(other));
         self.arms.iter().map(is_ranked).collect()
     }
 }
@@ -117,7 +116,11 @@ impl Columns {
             cases: table.numbers("case").iter().map(|case| case.unwrap_or(0.0) as u64).collect(),
             status: table.words("status"),
             success: table.flags("success"),
-            is_complete: table.words("outcome").iter().map(|word| word.as_deref() == Some(COMPLETE)).collect(),
+            is_complete: table
+                .words("outcome")
+                .iter()
+                .map(|word| word.as_deref() == Some(COMPLETE))
+                .collect(),
             faults: table.numbers("planner_faults"),
             metrics: metrics.iter().map(|metric| table.numbers(metric)).collect(),
         }
@@ -196,7 +199,8 @@ fn arm(
     let difference = |metric: usize| {
         let off = own.iter().filter_map(|(pair, row)| {
             let other = *first.get(pair)?;
-            let counts = |row: usize| if metric == 0 { columns.is_flown(row) } else { columns.is_complete[row] };
+            let counts =
+                |row: usize| if metric == 0 { columns.is_flown(row) } else { columns.is_complete[row] };
             let both = counts(*row) && counts(other);
             both.then(|| Some(columns.value(metric, *row)? - columns.value(metric, other)?)).flatten()
         });
@@ -204,7 +208,7 @@ fn arm(
     };
     let metrics = 1..=campaign.design.metrics.len();
     let (complete, incomplete): (Vec<usize>, Vec<usize>) =
-        flown.iter().partition(|row| columns.is_complete[**row]);
+        flown.iter().copied().partition(|row| columns.is_complete[*row]);
     let means = |rows: &[usize]| {
         let of = |metric| mean(rows.iter().filter_map(|row| columns.value(metric, *row)));
         metrics.clone().map(of).collect()
@@ -301,7 +305,8 @@ impl Texts {
 
     /// How a mission ended, and why.
     fn of_row(&self, row: usize, columns: &Columns) -> (String, String) {
-        let text = |column: &[Option<String>]| column.get(row).cloned().flatten().filter(|text| !text.is_empty());
+        let text =
+            |column: &[Option<String>]| column.get(row).cloned().flatten().filter(|text| !text.is_empty());
         let head = text(&self.outcome).or_else(|| columns.status[row].clone()).unwrap_or_default();
         let faults = columns.faults(row);
         let faulty = || (columns.success[row] && faults > 0).then(|| format!("{faults} faults of planners"));
@@ -343,7 +348,10 @@ pub(crate) mod tests {
         assert_eq!(findings.arms[0].success.n, of_first.len() as u64);
         let mean =
             complete.iter().map(|n| 100.0 + (n * 7919 % 101) as f64).sum::<f64>() / complete.len() as f64;
-        assert_eq!((findings.arms[0].complete.hits, findings.arms[0].complete.n), (complete.len() as u64, of_first.len() as u64));
+        assert_eq!(
+            (findings.arms[0].complete.hits, findings.arms[0].complete.n),
+            (complete.len() as u64, of_first.len() as u64)
+        );
         let ours = findings.arms[0].means[0].expect("a mean").mean;
         assert!((ours - mean).abs() < 1e-9);
         assert_eq!(findings.arms[0].scenarios.len(), 2);
@@ -401,6 +409,9 @@ pub(crate) mod tests {
         assert_eq!(worst.len(), 2, "{worst:?}");
         assert!(worst[0].starts_with("aborted, mission_time_s 0.10: no plan after"), "{worst:?}");
         assert!(worst[0].ends_with(" (18 more like it)"), "{worst:?}");
-        assert!(worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 faults"), "{worst:?}");
+        assert!(
+            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 faults"),
+            "{worst:?}"
+        );
     }
 }

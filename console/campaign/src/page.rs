@@ -23,9 +23,8 @@ struct Page<'a> {
 /// None that a reader can do anything about.
 pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> {
     let arms = findings.arms.iter();
-    let means = arms.clone().map(|arm| {
-        (arm.name.as_str(), cells(arm.complete.hits, arm.complete.n, &arm.means))
-    });
+    let means =
+        arms.clone().map(|arm| (arm.name.as_str(), cells(arm.complete.hits, arm.complete.n, &arm.means)));
     let incomplete = arms.clone().filter(|arm| arm.complete.hits < arm.complete.n).map(|arm| {
         let n = arm.complete.n - arm.complete.hits;
         (arm.name.as_str(), cells(n, arm.complete.n, &arm.means_of_incomplete))

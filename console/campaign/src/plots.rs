@@ -153,8 +153,9 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     axes(&mut plot, (&across, metric), (&up, "share of missions flown, complete"));
     for (line, (at, arm)) in curves().enumerate() {
         let (last, most) = ((arm.quantiles.len() - 1) as f64, arm.complete.share().unwrap_or(0.0));
-        let point =
-            |(k, value): (usize, &f64)| format!("{:.1},{:.1} ", across.at(*value), up.at(most * k as f64 / last));
+        let point = |(k, value): (usize, &f64)| {
+            format!("{:.1},{:.1} ", across.at(*value), up.at(most * k as f64 / last))
+        };
         let points: String = arm.quantiles.iter().enumerate().map(point).collect();
         let (ink, y) = (colour(at), HEIGHT + 4.0 + LINE * line as f64);
         plot.draw(format_args!(

@@ -472,7 +472,10 @@ pub(crate) mod tests {
             assert!(!meaning.is_empty(), "{field}");
             assert_eq!(unit.is_empty(), !field.data_type().is_numeric(), "{field}");
         }
-        assert_eq!(read.schema().field_with_name("tether.entangled").expect("a column").data_type(), &DataType::Boolean);
+        assert_eq!(
+            read.schema().field_with_name("tether.entangled").expect("a column").data_type(),
+            &DataType::Boolean
+        );
     }
 
     #[test]

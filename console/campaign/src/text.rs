@@ -88,18 +88,26 @@ impl fmt::Display for Findings {
             }
         }
         for faults in self.faults.iter().take(MOST_ARMS) {
-            writeln!(f, "    {}: {} faults in {} missions", short(&faults.arm), faults.faults, faults.missions)?;
+            writeln!(
+                f,
+                "    {}: {} faults in {} missions",
+                short(&faults.arm),
+                faults.faults,
+                faults.missions
+            )?;
         }
         writeln!(f, "\nSuccess (complete, every bound kept; 95 % interval)")?;
         let cells =
             |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
         f.write_str(&table(&[], &cells, shown))?;
         writeln!(f, "\nMeans over the complete missions (± 95 %)")?;
-        let intervals = |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
+        let intervals =
+            |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
         let cells = |of: Share, means: &[Option<Mean>]| {
-            std::iter::once(format!("{} of {}", of.hits, of.n)).chain(intervals(means)).collect()
+            std::iter::once(format!("{} of {}", of.hits, of.n)).chain(intervals(means)).collect::<Vec<String>>()
         };
-        let head = |first: &str| std::iter::once(first.to_owned()).chain(self.metrics.clone()).collect::<Vec<_>>();
+        let head =
+            |first: &str| std::iter::once(first.to_owned()).chain(self.metrics.clone()).collect::<Vec<_>>();
         let means = |arm: &Arm| cells(arm.complete, &arm.means);
         f.write_str(&table(&head("complete"), &means, shown))?;
         let gave_up: Vec<Arm> =

@@ -62,9 +62,8 @@ fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerCh
 /// Every objection, with its place in the scenario.
 pub fn check_choices(scenario: &Scenario, found: &Found) -> anyhow::Result<()> {
     let task = &scenario.mission.task;
-    let objections: Vec<_> = chosen(scenario)
-        .flat_map(|(section, choice)| objections(section, choice, found, task))
-        .collect();
+    let objections: Vec<_> =
+        chosen(scenario).flat_map(|(section, choice)| objections(section, choice, found, task)).collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 

@@ -49,7 +49,10 @@ mod tests {
         fs::write(file.path(), b"# plan\nname = \"Gr\xfcn\"\n").unwrap();
         for read in [read, read_regular] {
             let error = read(file.path()).unwrap_err().to_string();
-            assert!(error.contains(": not UTF-8 but ISO-8859-1, by line 2; save it as UTF-8: `iconv"), "{error}");
+            assert!(
+                error.contains(": not UTF-8 but ISO-8859-1, by line 2; save it as UTF-8: `iconv"),
+                "{error}"
+            );
         }
         fs::write(file.path(), "name = \"Grün\"\n").unwrap();
         assert_eq!(read(file.path()).unwrap(), "name = \"Grün\"\n");

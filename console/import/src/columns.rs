@@ -122,9 +122,7 @@ fn disc(
     tank_radius_m: f64,
 ) -> Result<Shape, (String, String)> {
     let mut metres = |quantity| {
-        fields
-            .metres(record, quantity, has_commas, marks)
-            .map_err(|(field, what)| (field.to_owned(), what))
+        fields.metres(record, quantity, has_commas, marks).map_err(|(field, what)| (field.to_owned(), what))
     };
     let (center, radius_m) =
         (Point::new(metres(Quantity::X)?, metres(Quantity::Y)?), metres(Quantity::Radius)?);

@@ -67,7 +67,8 @@ pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> 
         return Err(of_file(format!("nothing lies on a layer `{missing}`; layers: {listed}")));
     }
     let mut sorted = Sorted::new(all, unit_m, assumed, &drawing.hidden, &mut notes);
-    let (boundary, moved, rest) = floor(&mut sorted, unit_m, assumed, &listed, &mut notes).map_err(of_file)?;
+    let (boundary, moved, rest) =
+        floor(&mut sorted, unit_m, assumed, &listed, &mut notes).map_err(of_file)?;
     let named = |name: &str, shapes: Vec<Shape>| -> Vec<Named> {
         let named = |(k, shape): (usize, Shape)| Named {
             name: format!("{name} {}", k + 1),

@@ -238,9 +238,7 @@ impl Complaint {
                 remedy.clone()
             }
             Self::NotText(foreign) => foreign.remedy(),
-            Self::TooLarge { .. } => {
-                "a scenario is a short TOML file; is this the right file?".into()
-            }
+            Self::TooLarge { .. } => "a scenario is a short TOML file; is this the right file?".into(),
             Self::NotToml(_) => "the format is TOML: `key = value` lines under `[section]` heads".into(),
             Self::UnknownWord { nearest: Some(word), .. } => format!("did you mean \"{word}\"?"),
             Self::OutOfPlace { .. } => "leave this key out".into(),

@@ -96,7 +96,8 @@ pub(crate) fn documentation(attributes: &[Attribute]) -> String {
         })
         .map(|line| line.trim().to_owned())
         .collect();
-    let text = lines.iter().take_while(|line| !line.starts_with("```")).cloned().collect::<Vec<_>>().join("\n");
+    let text =
+        lines.iter().take_while(|line| !line.starts_with("```")).cloned().collect::<Vec<_>>().join("\n");
     let paragraphs = text.split("\n\n").map(|paragraph| paragraph.replace('\n', " "));
     paragraphs.collect::<Vec<_>>().join("\n").trim().to_owned()
 }

@@ -120,7 +120,13 @@ impl<'a> Document<'a> {
     }
 
     /// An object of some fields and of properties that are there already.
-    fn object(&mut self, at: &Defined, fields: &[&Field], mut properties: Object, mut required: Vec<Value>) -> Value {
+    fn object(
+        &mut self,
+        at: &Defined,
+        fields: &[&Field],
+        mut properties: Object,
+        mut required: Vec<Value>,
+    ) -> Value {
         let mut choices: Option<Vec<Value>> = None;
         for field in fields {
             let serde = Serde::of(&field.attrs);
@@ -140,7 +146,8 @@ impl<'a> Document<'a> {
             }
             let own = field.ident.as_ref().expect("a named field").to_string();
             let name = serde.name(&own, None);
-            properties.insert(name.clone(), described(self.of_field(at, field), &documentation(&field.attrs)));
+            properties
+                .insert(name.clone(), described(self.of_field(at, field), &documentation(&field.attrs)));
             if !serde.default && !serde.skip_if {
                 required.push(name.into());
             }
@@ -150,9 +157,15 @@ impl<'a> Document<'a> {
             Some(choices) => {
                 let joined = choices.iter().map(|choice| {
                     let mut choice = self.resolved(choice);
-                    let all = properties.clone().into_iter().chain(choice["properties"].as_object().cloned().unwrap_or_default());
+                    let all = properties
+                        .clone()
+                        .into_iter()
+                        .chain(choice["properties"].as_object().cloned().unwrap_or_default());
                     choice["properties"] = all.collect::<Object>().into();
-                    let needed = required.iter().cloned().chain(choice["required"].as_array().cloned().unwrap_or_default());
+                    let needed = required
+                        .iter()
+                        .cloned()
+                        .chain(choice["required"].as_array().cloned().unwrap_or_default());
                     choice["required"] = needed.collect::<Vec<_>>().into();
                     choice
                 });
@@ -180,7 +193,8 @@ impl<'a> Document<'a> {
             .iter()
             .filter(|variant| !Serde::of(&variant.attrs).skip)
             .map(|variant| {
-                let name = Serde::of(&variant.attrs).name(&variant.ident.to_string(), serde.rename_all.as_deref());
+                let name =
+                    Serde::of(&variant.attrs).name(&variant.ident.to_string(), serde.rename_all.as_deref());
                 let schema = match &serde.tag {
                     _ if serde.untagged => self.content(at, variant),
                     Some(tag) => self.tagged(at, variant, tag, &name),
@@ -258,7 +272,8 @@ impl<'a> Document<'a> {
             Type::Slice(slice) => list(self.of_type(at, &slice.elem)),
             Type::Array(array) => list(self.of_type(at, &array.elem)),
             Type::Path(path) => {
-                let names: Vec<String> = path.path.segments.iter().map(|part| part.ident.to_string()).collect();
+                let names: Vec<String> =
+                    path.path.segments.iter().map(|part| part.ident.to_string()).collect();
                 let last = path.path.segments.last().expect("a path has an end");
                 let inner: Vec<&Type> = match &last.arguments {
                     PathArguments::AngleBracketed(all) => all

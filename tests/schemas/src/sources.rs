@@ -5,7 +5,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
 };
-use syn::{Attribute, File, Meta, Item, ItemEnum, ItemStruct, ItemType, TypeParam, UseTree};
+use syn::{Attribute, File, Item, ItemEnum, ItemStruct, ItemType, Meta, TypeParam, UseTree};
 
 /// The definition of a type.
 #[derive(Debug, Clone)]
@@ -68,8 +68,10 @@ impl Sources {
             if path.is_dir() {
                 self.read_folder(of_crate, &path);
             } else if path.extension().is_some_and(|end| end == "rs") {
-                let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-                let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                let text =
+                    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                let file =
+                    syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
                 self.take(of_crate, &path, &file);
             }
         }
@@ -151,7 +153,8 @@ impl Sources {
             found = named(None);
         }
         if found.len() > 1 && way.len() <= 1 {
-            let here: Vec<&Defined> = found.iter().copied().filter(|defined| defined.file == at.file).collect();
+            let here: Vec<&Defined> =
+                found.iter().copied().filter(|defined| defined.file == at.file).collect();
             found = if here.is_empty() { found } else { here };
         }
         if let Some(module) = way.last().filter(|_| found.len() > 1) {

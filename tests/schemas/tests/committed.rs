@@ -59,7 +59,11 @@ fn the_schema_of_reports_is_that_of_the_types() {
             name: "Summary",
             about: "The figures of one run: `report.json` in its folder, `tankops run --json`, `tankops report RUN --json`.",
         },
-        Root { of_crate: "report", name: "Document", about: "The inspection report: `tankops report RUN... -o FILE.json`." },
+        Root {
+            of_crate: "report",
+            name: "Document",
+            about: "The inspection report: `tankops report RUN... -o FILE.json`.",
+        },
     ];
     let id = format!("urn:tankops:report:{version}");
     is_committed("report-schema.json", &Document::of(&sources(), "Reports of tankops", &id, &roots));

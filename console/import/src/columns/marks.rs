@@ -27,13 +27,15 @@ pub(super) struct Marks {
 impl Marks {
     /// Takes in a number as it is written.
     pub(super) fn see(&mut self, written: &str, field: &str, unit_m: f64) {
-        let is_number = !written.is_empty() && written.chars().all(|c| c.is_ascii_digit() || "+-.,".contains(c));
+        let is_number =
+            !written.is_empty() && written.chars().all(|c| c.is_ascii_digit() || "+-.,".contains(c));
         let Some(at) = written.find(['.', ',']).filter(|_| is_number) else { return };
         let seen = || Seen { line: self.line, field: field.to_owned(), written: written.to_owned() };
         let mark = if written[at..].starts_with('.') { &mut self.point } else { &mut self.comma };
         mark.get_or_insert_with(seen);
         let before = written[..at].trim_start_matches(['+', '-']);
-        let is_grouped = written.len() - at == 4 && (1..=3).contains(&before.len()) && !before.starts_with('0');
+        let is_grouped =
+            written.len() - at == 4 && (1..=3).contains(&before.len()) && !before.starts_with('0');
         if (unit_m - MILLIMETRE_M).abs() < 1e-9 && is_grouped {
             self.grouped.get_or_insert_with(seen);
         } else {
@@ -57,8 +59,12 @@ impl Marks {
             return Some((second.line, second.field.clone(), what));
         }
         let Seen { line, field, written } = self.grouped.filter(|_| !self.has_decimals)?;
-        let [short, long] = [written.split(['.', ',']).next().unwrap_or_default().to_owned(), written.replace(['.', ','], "")];
-        let what = format!("`{written}` can mean {short} mm or {long} mm; write it without separators of thousands");
+        let [short, long] = [
+            written.split(['.', ',']).next().unwrap_or_default().to_owned(),
+            written.replace(['.', ','], ""),
+        ];
+        let what =
+            format!("`{written}` can mean {short} mm or {long} mm; write it without separators of thousands");
         Some((line, field, what))
     }
 }

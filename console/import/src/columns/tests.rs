@@ -5,7 +5,8 @@ fn read_bytes(bytes: &[u8]) -> Result<FloorPlan, String> {
     let file = dir.path().join("c.csv");
     std::fs::write(&file, bytes).unwrap();
     let shown = |error: ImportError| ImportError { file: "c.csv".into(), ..error }.to_string();
-    read(&Input::read(&file).unwrap(), 10.0).map_err(|errors| errors.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
+    read(&Input::read(&file).unwrap(), 10.0)
+        .map_err(|errors| errors.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
 }
 
 fn found(text: &[u8]) -> Vec<(String, f64, f64, f64)> {

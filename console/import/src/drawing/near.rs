@@ -79,7 +79,9 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
     longest.truncate(MOST_LINES);
     let ends: Vec<End> = longest
         .iter()
-        .flat_map(|line| [open[*line][0], open[*line][open[*line].len() - 1]].map(|at| End { line: *line, at }))
+        .flat_map(|line| {
+            [open[*line][0], open[*line][open[*line].len() - 1]].map(|at| End { line: *line, at })
+        })
         .collect();
     let mut pairs: Vec<(f64, usize, usize)> = (0..ends.len())
         .flat_map(|a| (a + 1..ends.len()).map(move |b| (a, b)))
@@ -154,14 +156,20 @@ mod tests {
     #[test]
     fn the_widest_gap_of_the_largest_outline_is_told_in_units_of_the_drawing() {
         let small = line(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.01, 1.02)]);
-        let large = [line(&[(0.0, 0.0), (9.98, 0.0)]), line(&[(10.0, 0.0), (10.0, 8.0), (0.0, 8.0), (0.0, 0.005)])];
+        let large =
+            [line(&[(0.0, 0.0), (9.98, 0.0)]), line(&[(10.0, 0.0), (10.0, 8.0), (0.0, 8.0), (0.0, 0.005)])];
         let miss = nearest(&[&[small.clone()], &large[..]].concat()).unwrap();
         assert_eq!(
             miss.told(0.001),
             "2 lines are nearly an outline of 10.000 m across: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \
              (10000, 0) in the drawing"
         );
-        assert!(nearest(&[small]).unwrap().told(1.0).contains("1 line is nearly an outline of 1.000 m across: one gap of"));
+        assert!(
+            nearest(&[small])
+                .unwrap()
+                .told(1.0)
+                .contains("1 line is nearly an outline of 1.000 m across: one gap of")
+        );
         assert_eq!(nearest(&[line(&[(0.0, 0.0), (5.0, 0.0)])]), None, "a line is no outline");
         assert_eq!(nearest(&[]), None);
     }

@@ -108,7 +108,9 @@ fn rings(
             let crossing = near::crossing(ring);
             if let Some(at) = crossing {
                 let at = drawn_at(at);
-                notes.push(format!("PLATES: an outline that crosses itself at {at} in the drawing is left out"));
+                notes.push(format!(
+                    "PLATES: an outline that crosses itself at {at} in the drawing is left out"
+                ));
             }
             crossing.is_none()
         });

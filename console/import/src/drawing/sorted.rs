@@ -88,7 +88,10 @@ impl Sorted {
         };
         if let Some(miss) = miss.filter(|miss| miss.across_m > shell.across_m()) {
             let largest_m = shell.across_m();
-            return Err(format!("the largest closed outline is {largest_m:.3} m across, but {}", told(&miss)));
+            return Err(format!(
+                "the largest closed outline is {largest_m:.3} m across, but {}",
+                told(&miss)
+            ));
         }
         if let Some(at) = near::crossing(shell.corners()) {
             let at = near::place(at, self.unit_m);
@@ -144,7 +147,8 @@ impl Sorted {
         if open.is_empty() {
             return;
         }
-        let miss = near::nearest(open).map(|miss| format!("; {}", miss.told(self.unit_m))).unwrap_or_default();
+        let miss =
+            near::nearest(open).map(|miss| format!("; {}", miss.told(self.unit_m))).unwrap_or_default();
         notes.push(format!("{role:?}: {} lines that close no outline are left out{miss}", open.len()));
     }
 

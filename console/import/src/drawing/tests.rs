@@ -130,7 +130,11 @@ fn the_scenario_holds_shell_obstacles_and_zones() {
     let entities = format!(
         "{SHELL}0 CIRCLE,8 COLUMNS,10 20000,20 15000,40 250,0 CIRCLE,8 NOGO,10 15000,20 15000,40 500"
     );
-    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario("t", "d.dxf", "tether-safe");
+    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario(
+        "t",
+        "d.dxf",
+        "tether-safe",
+    );
     for wanted in [
         "radius_m = 10\n",
         "[[obstacles]]\nname = \"column 1\"\nkind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 0.25\n",
@@ -487,7 +491,8 @@ fn an_outline_with_a_gap_is_named_with_its_place() {
     let columns = "0 CIRCLE,8 SHELL,10 0,20 0,40 6,0 LWPOLYLINE,8 COLUMNS,90 4,70 0,10 1,20 1,10 2,20 1,10 2,20 2,10 1.05,20 1";
     let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
     assert!(
-        plan.notes.iter().any(|note| note.starts_with("Columns: 1 lines that close no outline are left out; 1 line is nearly")
+        plan.notes.iter().any(|note| note
+            .starts_with("Columns: 1 lines that close no outline are left out; 1 line is nearly")
             && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
         "{:?}",
         plan.notes
@@ -512,7 +517,10 @@ fn a_layer_that_was_named_is_not_asked_for_again() {
         "d.dxf: no circle and no closed outline on the layer 0 that is named for SHELL; draw the inner side of the shell \
          there, or name another layer; layers: `0` (1 LINE)"
     );
-    let plan = with_layers(&[(Role::Columns, "POSTS")], &format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}", line.replace("8 0", "8 POSTS")));
+    let plan = with_layers(
+        &[(Role::Columns, "POSTS")],
+        &format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}", line.replace("8 0", "8 POSTS")),
+    );
     let notes = plan.unwrap().notes;
     assert!(
         notes.iter().any(|note| note.contains("the layers that are named for them hold none: POSTS")),
@@ -523,7 +531,14 @@ fn a_layer_that_was_named_is_not_asked_for_again() {
 #[test]
 fn names_of_any_letters_are_written_as_toml_has_them() {
     let names = [
-        "St\u{a0}1", "Stu\u{308}tze", "a\u{200b}b", "so\u{ad}ft", "\u{2764}\u{fe0f}", "\u{915}\u{94d}\u{937}", "say \"x\"", "back\\slash",
+        "St\u{a0}1",
+        "Stu\u{308}tze",
+        "a\u{200b}b",
+        "so\u{ad}ft",
+        "\u{2764}\u{fe0f}",
+        "\u{915}\u{94d}\u{937}",
+        "say \"x\"",
+        "back\\slash",
     ];
     let disc = |name: &&str| Named {
         name: (*name).to_owned(),

@@ -81,7 +81,10 @@ impl PlateLines {
                 _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
             }
         };
-        Self { seams: layout.seams(boundary), names: map.plates.iter().zip(&sums).enumerate().map(name).collect() }
+        Self {
+            seams: layout.seams(boundary),
+            names: map.plates.iter().zip(&sums).enumerate().map(name).collect(),
+        }
     }
 }
 

@@ -15,7 +15,7 @@ pub fn table(rows: &[Row]) -> String {
         let _ = writeln!(text, "{}  {}", block[0].case, block[0].method);
         let _ = writeln!(
             text,
-            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  {:<25} ",
+            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  {:<25}",
             "", "paper", "ours", "", "n", "difference", "95 % interval"
         );
         for row in block {
@@ -51,7 +51,8 @@ fn line(row: &Row) -> String {
 fn account(rows: &[Row]) -> String {
     let mut text = String::new();
     let printed: Vec<&Row> = rows.iter().filter(|row| row.verdict.is_some()).collect();
-    let count = |words: &str| printed.iter().filter(|row| row.verdict.is_some_and(|v| v.words() == words)).count();
+    let count =
+        |words: &str| printed.iter().filter(|row| row.verdict.is_some_and(|v| v.words() == words)).count();
     if !printed.is_empty() {
         let _ = writeln!(
             text,
@@ -74,7 +75,11 @@ fn account(rows: &[Row]) -> String {
             0 => String::new(),
             more => format!("; and {more} more blocks"),
         };
-        let _ = writeln!(text, "--first-seed has no effect on {n} rows, of which nothing is drawn: {}{more}", named.join("; "));
+        let _ = writeln!(
+            text,
+            "--first-seed has no effect on {n} rows, of which nothing is drawn: {}{more}",
+            named.join("; ")
+        );
     }
     text
 }
@@ -115,7 +120,11 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// A field as CSV has it.
 fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.into() }
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.into()
+    }
 }
 
 /// Every note of a block once, with the metric it belongs to if it is not of all.
@@ -176,6 +185,10 @@ mod tests {
              printed value, but the interval holds the printed value: more layouts decide\",true,false,gated"
         );
         assert!(lines[5].ends_with(",false,false,\"a, \"\"b\"\"\""), "{}", lines[5]);
-        assert!(lines[4].contains(",not reproduced,the sign of the claim does not come out: printed +9.5 %"), "{}", lines[4]);
+        assert!(
+            lines[4].contains(",not reproduced,the sign of the claim does not come out: printed +9.5 %"),
+            "{}",
+            lines[4]
+        );
     }
 }

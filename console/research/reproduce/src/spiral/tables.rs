@@ -83,7 +83,10 @@ fn mean_error(
 ) -> Option<f64> {
     let kept = |plans: &Vec<Measured>| {
         let kept = plans.iter().enumerate().filter(|(index, _)| Some(*index) != without);
-        kept.map(|(_, plan)| plan).filter(|plan| plan.has_path()).map(|plan| plan.score.rmse_m).collect::<Sample>()
+        kept.map(|(_, plan)| plan)
+            .filter(|plan| plan.has_path())
+            .map(|plan| plan.score.rmse_m)
+            .collect::<Sample>()
     };
     let is_meant = |run: &Run| run.method.id == method && run.case.ends_with(sampling);
     let means: Vec<f64> = runs

@@ -123,7 +123,8 @@ impl Block<'_> {
         let n = sample.len();
         [
             self.row(metric, sample.mean(), unit, n).within(sample.mean_interval_95()),
-            self.row(&format!("{metric}_median"), sample.median(), unit, n).within(sample.median_interval_95()),
+            self.row(&format!("{metric}_median"), sample.median(), unit, n)
+                .within(sample.median_interval_95()),
         ]
     }
 }

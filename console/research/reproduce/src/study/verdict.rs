@@ -43,7 +43,12 @@ enum Good {
 /// By the name of the figure; that of a median is that of its mean.
 fn good(metric: &str) -> Good {
     match metric.trim_end_matches("_median") {
-        "ok_rate" | "success_rate" | "precision" | "recall" | "cross_track_precision" | "coverage"
+        "ok_rate"
+        | "success_rate"
+        | "precision"
+        | "recall"
+        | "cross_track_precision"
+        | "coverage"
         | "rmse_reduction" => Good::High,
         "rmse" | "cross_track_rmse" | "plan_time_ms" | "collisions" | "wall_exits" | "mean_error"
         | "max_error" => Good::Low,
@@ -123,7 +128,8 @@ fn wilson(rate: f64, n: usize) -> [f64; 2] {
     let n = n as f64;
     let middle = rate + Z * Z / (2.0 * n);
     let half = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
-    [(middle - half).max(0.0), (middle + half).min(1.0 + Z * Z / n)].map(|v| (v / (1.0 + Z * Z / n)).clamp(0.0, 1.0))
+    [(middle - half).max(0.0), (middle + half).min(1.0 + Z * Z / n)]
+        .map(|v| (v / (1.0 + Z * Z / n)).clamp(0.0, 1.0))
 }
 
 /// Claims of which the sign does not come out, a sentence each; computed from the rows.
@@ -167,13 +173,20 @@ mod tests {
     #[test]
     fn near_is_reproduced_and_farther_is_better_or_not() {
         assert_eq!(told(row("rmse", 0.104, 0.1)), (Some(Verdict::Reproduced), String::new()));
-        assert_eq!(told(row("rmse", 0.08, 0.1)), (Some(Verdict::Better), "ours is 20.0 % below the printed value".into()));
+        assert_eq!(
+            told(row("rmse", 0.08, 0.1)),
+            (Some(Verdict::Better), "ours is 20.0 % below the printed value".into())
+        );
         assert_eq!(told(row("recall", 0.5, 0.4)).0, Some(Verdict::Better));
         assert_eq!(
             told(row("recall", 0.2, 0.4)),
             (Some(Verdict::NotReproduced), "ours is 50.0 % below the printed value".into())
         );
-        assert_eq!(told(row("stop_x", 40.0, 44.0)).0, Some(Verdict::NotReproduced), "no side of a place is good");
+        assert_eq!(
+            told(row("stop_x", 40.0, 44.0)).0,
+            Some(Verdict::NotReproduced),
+            "no side of a place is good"
+        );
         assert_eq!(told(row("success_rate", 0.0, 0.0)).0, Some(Verdict::Reproduced));
         assert_eq!(told(row("rmse", None, 0.1)).1, "nothing could be measured");
         assert_eq!(judged(Row { paper: None, ..row("rmse", 1.0, 1.0) }, true).verdict, None);
