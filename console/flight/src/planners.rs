@@ -93,7 +93,7 @@ fn objections(
     }
 }
 
-/// Planners for coverage, the one that suits most floors first: on 40 drawn floors it took the least mission time on most.
+/// Planners for coverage, the one with the shortest ways first (`tankops reproduce coverage-suite`).
 const FOR_COVERAGE: [&str; 3] = ["tether-safe", "hull-partition", "boustrophedon"];
 
 /// The planner that a scenario for a coverage mission names unless somebody says otherwise.
