@@ -2,7 +2,7 @@
 
 use crate::{
     cli::ReportArgs,
-    output::{pretty_json, write_file},
+    output::{check_free, pretty_json, write_file},
     signing::{
         Chain, refuse_doubts, refuse_not_recomputed, refuse_open_items, refuse_other_signer, register, seal,
         signature,
@@ -103,7 +103,7 @@ fn may_write(
     (revisions, folders): (&[Revision], &[PathBuf]),
 ) -> anyhow::Result<()> {
     if !output.exists() {
-        return Ok(());
+        return check_free(output, Some(force));
     }
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
@@ -117,10 +117,7 @@ fn may_write(
     if output.extension().is_none_or(|suffix| suffix != "html") && folders.iter().any(is_in) {
         return Err(bad_input(format!("{path} is a file of the run; choose another name")));
     }
-    if force {
-        return Ok(());
-    }
-    Err(bad_input(format!("{} already exists; choose another name, or --force", output.display())))
+    check_free(output, Some(force))
 }
 
 /// The facts of the scenario, and those of the file in their place.

@@ -1,9 +1,10 @@
 //! Short texts that people write: scripts, plans, facts, lists.
 
 use crate::failure::bad_input;
+use foreign::{MOST_TEXT_BYTES, open_regular};
 use scenario::Foreign;
 use std::{
-    fs::{self, File},
+    fs::File,
     io::{self, Read},
     path::Path,
 };
@@ -13,7 +14,7 @@ use std::{
 /// # Errors
 /// It cannot be read or is not UTF-8: what it is instead, and what to do about it.
 pub fn read(file: &Path) -> anyhow::Result<String> {
-    text(file, fs::read(file))
+    text(file, File::open(file).and_then(all))
 }
 
 /// The text of a regular file.
@@ -21,11 +22,20 @@ pub fn read(file: &Path) -> anyhow::Result<String> {
 /// # Errors
 /// As [`read`]; also that it is no regular file.
 pub fn read_regular(file: &Path) -> anyhow::Result<String> {
-    let bytes = |mut file: File| {
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map(|_| bytes)
-    };
-    text(file, recording::open_regular(file).and_then(bytes))
+    text(file, open_regular(file).and_then(all))
+}
+
+/// All of a file that is not too long for a text that somebody wrote.
+fn all(file: File) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.take(MOST_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_TEXT_BYTES {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            format!("it is longer than {} MB", MOST_TEXT_BYTES >> 20),
+        ));
+    }
+    Ok(bytes)
 }
 
 fn text(file: &Path, bytes: io::Result<Vec<u8>>) -> anyhow::Result<String> {
@@ -46,7 +56,7 @@ mod tests {
     #[test]
     fn what_is_not_utf_8_is_named_with_its_remedy() {
         let file = tempfile::NamedTempFile::new().unwrap();
-        fs::write(file.path(), b"# plan\nname = \"Gr\xfcn\"\n").unwrap();
+        std::fs::write(file.path(), b"# plan\nname = \"Gr\xfcn\"\n").unwrap();
         for read in [read, read_regular] {
             let error = read(file.path()).unwrap_err().to_string();
             assert!(
@@ -54,7 +64,7 @@ mod tests {
                 "{error}"
             );
         }
-        fs::write(file.path(), "name = \"Grün\"\n").unwrap();
+        std::fs::write(file.path(), "name = \"Grün\"\n").unwrap();
         assert_eq!(read(file.path()).unwrap(), "name = \"Grün\"\n");
     }
 }

@@ -2,14 +2,14 @@
 
 use crate::{
     drawing::plan::{Drawn, svg},
-    estimate::time_s,
+    estimate::time,
     leg::{Leg, legs},
 };
 use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start};
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
-    Cell, CoverageGrid, Floor, Point, Shape, SweptArea, Tool, World, polyline,
+    Cell, CoverageGrid, Floor, ObstacleMap, Point, Shape, SweptArea, Tool, World, polyline,
     tether::{Cable, Certificate},
 };
 
@@ -69,12 +69,13 @@ impl Planned {
     /// A plan for a mission on the drawing.
     pub fn new(mission: &MissionConfig, drawing: &World, made: Made) -> Self {
         let Made { plan, plan_time_ms, reason, warnings } = made;
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         Self {
             planner: mission.planner.id.clone(),
             parameters: mission.planner.parameters.clone(),
             legs: legs(&plan),
             length_m: polyline::length_m(&plan.path),
-            mission_time_s: time_s(mission, &plan.path),
+            mission_time_s: time::time_s(mission, &map, &plan.path),
             plan_time_ms,
             complete: plan.complete,
             reason,
