@@ -23,6 +23,9 @@ mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
 #[cfg(target_os = "linux")]
+#[path = "acceptance/foreign.rs"]
+mod foreign_files;
+#[cfg(target_os = "linux")]
 #[path = "acceptance/hostile.rs"]
 mod hostile;
 #[path = "acceptance/imported.rs"]

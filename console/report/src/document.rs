@@ -15,7 +15,7 @@ mod page;
 mod run_part;
 mod sections;
 
-pub use facts::{Inspection, unreadable};
+pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use maps::Figure;

@@ -25,9 +25,16 @@ const LEAST_CLEARANCE_M: f64 = 0.05;
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-pub(crate) fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+/// `also`: what else is looked for.
+pub(crate) fn assemble(
+    text: &str,
+    shown_name: &str,
+    table: &DeTable<'_>,
+    also: fn(&Source<'_>, &DeTable<'_>),
+) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
     let scenario = read(&Section::root(&source, table, schema::ROOT), text, shown_name);
+    also(&source, table);
     let problems = source.into_problems();
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),

@@ -326,6 +326,9 @@ fn exclusion_text(reason: &Exclusion) -> String {
         Exclusion::Residual { residual_m, gate_m } => {
             format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
         }
+        Exclusion::Impossible { range_m, most_m } => {
+            format!("range {range_m:.2} m, impossible in this tank (at most {most_m:.2} m)")
+        }
     }
 }
 

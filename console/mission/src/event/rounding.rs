@@ -156,8 +156,8 @@ fn round_covariance<const N: usize>(covariance: &mut SMatrix<f64, N, N>) {
     covariance.iter_mut().for_each(|x| *x = significant(*x));
 }
 
-fn round_ranging(Ranging { range_m, sigma_m, least_m, most_m, .. }: &mut Ranging) {
-    [range_m, sigma_m, least_m, most_m].into_iter().for_each(round);
+fn round_ranging(Ranging { range_m, sigma_m, least_m, most_m, timing_sigma_m, .. }: &mut Ranging) {
+    [range_m, sigma_m, least_m, most_m, timing_sigma_m].into_iter().for_each(round);
 }
 
 fn round_fix(fix: &mut Fix) {
@@ -167,8 +167,10 @@ fn round_fix(fix: &mut Fix) {
         [&mut residual.residual_m, &mut residual.sigma_m].into_iter().for_each(round);
     }
     for (_, why) in &mut fix.excluded {
-        if let Exclusion::Residual { residual_m, gate_m } = why {
-            [residual_m, gate_m].into_iter().for_each(round);
+        match why {
+            Exclusion::Residual { residual_m: one, gate_m: other }
+            | Exclusion::Impossible { range_m: one, most_m: other } => [one, other].into_iter().for_each(round),
+            Exclusion::Silent | Exclusion::ByOrder => {}
         }
     }
     [&mut fix.chi2, &mut fix.gdop, &mut fix.conditioning].into_iter().for_each(round);

@@ -118,6 +118,7 @@ impl Robot {
             repetitions: 5,
             least_m: (truth.position - station.position).norm() + error_m,
             most_m: (truth.position - station.position).norm() + error_m,
+            timing_sigma_m: 0.0,
         };
         let ranges: Vec<_> = stations.iter().map(|station| ranging(station, 0.05 * self.noise())).collect();
         let bad = (tick / 100) % 4 == 3;

@@ -342,6 +342,7 @@ impl ScriptedMission {
             repetitions: 5,
             least_m: (station.position - here).norm(),
             most_m: (station.position - here).norm(),
+            timing_sigma_m: 0.0,
         };
         world().stations.iter().map(ranging).collect()
     }

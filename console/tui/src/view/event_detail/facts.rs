@@ -213,6 +213,10 @@ fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging
     let mut facts = vec![("station", station_text(run, id))];
     match (reason, range) {
         (Exclusion::ByOrder, _) => facts.push(("reason", "excluded by the operator".into())),
+        (Exclusion::Impossible { range_m, most_m }, _) => {
+            let reason = format!("{range_m:.2} m is impossible in this tank, at most {most_m:.2} m");
+            facts.push(("reason", reason));
+        }
         (Exclusion::Silent, _) => facts.push(("reason", "not heard in this cycle".into())),
         (Exclusion::Residual { residual_m, .. }, Some(range)) => {
             let expected_m = range.range_m - residual_m;
