@@ -9,7 +9,7 @@ use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     hosts, planners, scenarios,
 };
-use mission::{Cause, Fault, Parameters, PlannerChoice, TaskConfig, preview};
+use mission::{Cause, Fault, Parameters, PlannerChoice, TaskConfig, check_extent, preview};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, PluginDirs, Reply};
 use report::{
@@ -129,6 +129,11 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> 
     let began = Instant::now();
     let answer = ask_for_plan(scenario, &mut host);
     spinner.finish_and_clear();
+    if let Ok(reply) = &answer {
+        let (mission, boundary) = (&scenario.mission, &scenario.sim.world.boundary);
+        check_extent(&reply.value, boundary, mission.lane_m())
+            .map_err(|what| bad_input(format!("planner {} {what}", mission.planner.id)))?;
+    }
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
     let mut warnings = Vec::new();
     let (plan, reason) = match answer {

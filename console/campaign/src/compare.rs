@@ -162,17 +162,15 @@ mod tests {
     use super::*;
     use crate::{
         frozen::tests::campaign,
+        part,
         row::Row,
-        table::{
-            part, read_part,
-            tests::{PLAN, file, row},
-        },
+        table::tests::{PLAN, file, row},
     };
 
     fn table(plan: &str) -> Table {
-        let campaign = campaign(plan);
+        let campaign = campaign(&format!("block = 160\n{plan}"));
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read")
+        part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written"))).expect("read")
     }
 
     #[test]

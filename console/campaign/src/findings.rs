@@ -320,20 +320,19 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         frozen::tests::campaign,
+        part,
         row::Row,
-        table::{
-            part, read_part,
-            tests::{PLAN, file, row},
-        },
+        table::tests::{PLAN, file, row},
     };
 
     use mission::Outcome;
     use report::Summary;
 
     pub(crate) fn example() -> Findings {
-        let campaign = campaign(PLAN);
+        let campaign = campaign(&format!("block = 160\n{PLAN}"));
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read");
+        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written")))
+            .expect("read");
         findings(&campaign, &table)
     }
 

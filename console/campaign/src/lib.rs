@@ -7,10 +7,12 @@
 mod columns;
 mod compare;
 mod design;
+mod digest;
 mod findings;
 mod frozen;
 mod grid;
 mod page;
+pub mod part;
 mod plan;
 mod plots;
 mod reader;

@@ -5,6 +5,7 @@ use anyhow::anyhow;
 use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
 use planner_host::{PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, parameter_problems, survey};
 use scenario::Scenario;
+use std::path::PathBuf;
 
 /// What there is to choose from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -44,6 +45,18 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
             None => check_choices(scenario, &found),
         }
     })
+}
+
+/// Sentences about planners of a scenario that more than one plugin has: which of them flies.
+pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
+    let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
+    let worker = WorkerCommand::default();
+    let twice = Surveyor::new(plugins, &worker).shadowed(&ids);
+    let sentence = |(id, taken, other): (String, PathBuf, PathBuf)| {
+        let (taken, other) = (taken.display(), other.display());
+        format!("planner {id} is the one of {taken}; it shadows that of {other}")
+    };
+    twice.into_iter().map(sentence).collect()
 }
 
 /// The planners of a scenario, with the sections that name them.

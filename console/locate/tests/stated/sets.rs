@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
-use std::fmt::Write as _;
+use std::{f64::consts::TAU, fmt::Write as _};
 use world::{Point, Pose, Vector};
 
 /// Metres per second at which sound runs.
@@ -91,19 +91,22 @@ impl Draw {
         let radius_m = rng.random_range(5.0..20.0);
         let n: u32 = rng.random_range(6..=8);
         let on_line = matches!(kind, Kind::Line | Kind::LineWrongStart);
-        let turn: f64 = rng.random_range(0.0..6.28);
+        let turn: f64 = rng.random_range(0.0..TAU);
         let stations = if on_line {
             let along = Vector::new(turn.cos(), turn.sin());
             let across = Vector::new(-along.y, along.x);
             // From exactly on a line to a hundredth of the radius beside it.
             let off = if seed % 2 == 0 { 0.0 } else { 0.01 * radius_m };
             (0..4)
-                .map(|k| along * (radius_m * (f64::from(k) / 1.5 - 1.0) * 0.98) + across * rng.random_range(-1.0..1.0) * off)
+                .map(|k| {
+                    along * (radius_m * (f64::from(k) / 1.5 - 1.0) * 0.98)
+                        + across * rng.random_range(-1.0..1.0) * off
+                })
                 .map(Point::from)
                 .collect()
         } else {
             (0..n)
-                .map(|k| turn + 6.283 * (f64::from(k) + rng.random_range(-0.2..0.2)) / f64::from(n))
+                .map(|k| turn + TAU * (f64::from(k) + rng.random_range(-0.2..0.2)) / f64::from(n))
                 .map(|angle| Point::new(radius_m * angle.cos(), radius_m * angle.sin()) * 0.999)
                 .collect()
         };
@@ -122,7 +125,9 @@ impl Draw {
         match self.noise {
             "gaussian" => self.ratio * self.normal(),
             "uniform" => self.ratio * self.rng.random_range(-1.0..1.0),
-            _ => self.ratio * f64::midpoint(self.rng.random_range(-1.0..1.0), self.rng.random_range(-1.0..1.0)),
+            _ => {
+                self.ratio * f64::midpoint(self.rng.random_range(-1.0..1.0), self.rng.random_range(-1.0..1.0))
+            }
         }
     }
 
@@ -147,7 +152,7 @@ impl Draw {
 
     /// A drive, a pose for each tenth of a second, that keeps inside.
     fn drive(&mut self, ticks: u32, speed_m_s: f64) -> Vec<(Pose, f64)> {
-        let at = self.rng.random_range(0.0..6.28_f64);
+        let at = self.rng.random_range(0.0..TAU);
         let from_m = 0.5 * self.radius_m;
         let mut pose = Pose::new(from_m * at.cos(), from_m * at.sin(), at + 1.5);
         let mut turn_rad = 0.0;
@@ -188,7 +193,7 @@ impl Set {
         }
         let said = match kind {
             Kind::LineWrongStart => {
-                let turned = draw.rng.random_range(0.0..6.28_f64);
+                let turned = draw.rng.random_range(0.0..TAU);
                 let by_m = draw.rng.random_range(0.5..2.0);
                 let off = Vector::new(turned.cos(), turned.sin()) * by_m;
                 Pose { position: start.position + off, ..start }
@@ -225,7 +230,9 @@ impl Set {
             if !cycle || (has_gap(k) && (250..350).contains(&k)) {
                 continue;
             }
-            let bad = if matches!(kind, Kind::Sentinels | Kind::SentinelArrivals) && draw.rng.random_range(0.0..1.0) < 0.3 {
+            let bad = if matches!(kind, Kind::Sentinels | Kind::SentinelArrivals)
+                && draw.rng.random_range(0.0..1.0) < 0.3
+            {
                 draw.rng.random_range(0..draw.stations.len())
             } else {
                 usize::MAX
@@ -280,7 +287,8 @@ impl Set {
         for (k, (pose, _)) in (0_u32..).zip(&drive) {
             let (t_s, at) = (f64::from(k) / 10.0, pose.position);
             let is_quiet = (20.0..20.0 + outage_s).contains(&t_s);
-            let errors: Vec<f64> = (0..draw.stations.len() as u32 * draw.repetitions).map(|_| draw.error()).collect();
+            let errors: Vec<f64> =
+                (0..draw.stations.len() as u32 * draw.repetitions).map(|_| draw.error()).collect();
             if k % (10 / rate_hz) == 0 {
                 let _ = writeln!(text, "{t_s},,,{},{}", at.x, at.y);
             }

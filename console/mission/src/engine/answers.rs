@@ -11,6 +11,7 @@ use crate::{
     config::TaskConfig,
     event::EventKind,
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
+    plan_extent::check_extent,
     planner::{Cause, During, Fault, PlannerInfo},
 };
 use planner_api::{Code, Plan};
@@ -104,7 +105,7 @@ impl Mission {
     pub(super) fn fitting(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
         let id = &slot.choice.id;
         if let Given::Plan(plan) = &given
-            && let Err(what) = self.check_extent(plan)
+            && let Err(what) = check_extent(plan, &self.chart.world().boundary, self.config.lane_m())
         {
             let (message, partial) = (format!("planner {id} {what}"), Vec::new());
             let plugin_sha256 = slot.info.as_ref().map(|info| info.sha256.clone());
