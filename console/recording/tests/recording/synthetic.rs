@@ -367,6 +367,7 @@ fn opened() -> RunOpened {
             tether: None,
             fallback: None,
             attended: false,
+            start_names_plan: false,
             better_plan: mission::BetterPlan::Off,
         },
     }
