@@ -23,6 +23,9 @@ mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
 #[cfg(target_os = "linux")]
+#[path = "acceptance/foreign.rs"]
+mod foreign_files;
+#[cfg(target_os = "linux")]
 #[path = "acceptance/hostile.rs"]
 mod hostile;
 #[path = "acceptance/imported.rs"]
@@ -53,6 +56,8 @@ mod rescan;
 mod reviewing;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
+#[path = "acceptance/schemas.rs"]
+mod schemas;
 #[path = "acceptance/script.rs"]
 mod script;
 #[cfg(unix)]
@@ -65,6 +70,8 @@ mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;
+#[path = "acceptance/stopping.rs"]
+mod stopping;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

@@ -1,9 +1,10 @@
 //! Flying a mission without a terminal: `tankops run`, and `tankops` where there is no terminal.
 
 use crate::{
-    accuracy::warn_of_clearance,
+    accuracy::warn_of_positions,
     cli::{LogsArg, RunArgs},
     output::pretty_json,
+    planners::warn_of_shadowed,
     progress,
     shadowing::Shadowing,
     stop_signal::{self, StopSignal},
@@ -66,7 +67,8 @@ fn fly_beside(
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     planners::check_installed(scenario, plugins)?;
-    warn_of_clearance(scenario);
+    warn_of_shadowed(scenario, plugins);
+    warn_of_positions(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
         RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?

@@ -2,13 +2,16 @@
 
 use crate::{
     cli::ReportArgs,
-    output::{pretty_json, write_file},
+    output::{check_free, pretty_json, write_file},
     signing::{
         Chain, refuse_doubts, refuse_not_recomputed, refuse_open_items, refuse_other_signer, register, seal,
         signature,
     },
 };
-use flight::failure::{COMPLETE, bad_input};
+use flight::{
+    failure::{COMPLETE, bad_input},
+    texts,
+};
 use planner_host::PluginDirs;
 use report::{
     Document, Inspection, PastRun,
@@ -39,7 +42,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     }
     let read = review::read_all(&args.runs, &args.logs.folder())?;
     let inspection = inspection(args, read.last())?;
-    let indications = args.indications.as_deref().map(read_text).transpose()?;
+    let indications = args.indications.as_deref().map(texts::read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());
     if let Some(by) = &args.sign {
         refuse_other_signer(by, inspection.inspector.as_deref())?;
@@ -100,7 +103,7 @@ fn may_write(
     (revisions, folders): (&[Revision], &[PathBuf]),
 ) -> anyhow::Result<()> {
     if !output.exists() {
-        return Ok(());
+        return check_free(output, Some(force));
     }
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
@@ -114,22 +117,15 @@ fn may_write(
     if output.extension().is_none_or(|suffix| suffix != "html") && folders.iter().any(is_in) {
         return Err(bad_input(format!("{path} is a file of the run; choose another name")));
     }
-    if force {
-        return Ok(());
-    }
-    Err(bad_input(format!("{} already exists; choose another name, or --force", output.display())))
+    check_free(output, Some(force))
 }
 
 /// The facts of the scenario, and those of the file in their place.
 fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspection> {
     let known = last.map(review::inspection).transpose()?.unwrap_or_default();
     let Some(file) = &args.inspection else { return Ok(known) };
-    let later = scenario::inspection(&read_text(file)?, &file.display().to_string());
+    let later = scenario::inspection(&texts::read(file)?, &file.display().to_string());
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))
-}
-
-fn read_text(file: &Path) -> anyhow::Result<String> {
-    fs::read_to_string(file).map_err(|error| bad_input(format!("{} cannot be read: {error}", file.display())))
 }
 
 /// The files of a format with their texts.

@@ -13,9 +13,11 @@ pub mod config;
 mod drift;
 pub mod engine;
 pub mod event;
+mod governor;
 mod locate;
 pub mod order;
 pub mod phase;
+mod plan_extent;
 mod plan_id;
 pub mod planner;
 mod preview;
@@ -31,6 +33,7 @@ pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use plan_extent::check_extent;
 pub use plan_id::{PlanId, PlanSeen};
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,

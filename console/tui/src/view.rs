@@ -23,6 +23,7 @@ mod plan;
 mod planner;
 mod plugins;
 mod position;
+mod readable;
 mod result;
 mod review;
 mod shadow;
@@ -84,6 +85,7 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     if arrangement != Arrangement::Strip {
         notice::draw(&look, frame, area);
     }
+    readable::make(frame.buffer_mut());
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());
     }

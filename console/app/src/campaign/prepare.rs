@@ -5,8 +5,9 @@ use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
 use flight::{
     failure::bad_input,
     planners::{Found, check_choices, choice_of},
+    texts,
 };
-use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_descriptors};
+use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_limits};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -20,7 +21,7 @@ pub(crate) struct Here {
 impl Here {
     /// Looks at the program and at every plugin.
     pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
-        check_descriptors().map_err(anyhow::Error::msg)?;
+        check_limits(plugins).map_err(anyhow::Error::msg)?;
         let worker = WorkerCommand::default();
         let surveyor = Surveyor::new(plugins, &worker);
         let survey = surveyor.survey();
@@ -62,7 +63,7 @@ impl Here {
 /// Reads a plan and freezes it with the texts of its scenarios.
 pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
     let shown = file.display().to_string();
-    let text = recording::read_regular(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
+    let text = texts::read_regular(file)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let plan = Plan::parse(&text, &shown, &name).map_err(|errors| bad_input(errors.render()))?;
     let folder = file.parent().unwrap_or(Path::new(""));

@@ -4,7 +4,6 @@ use crate::Progress;
 use crate::wire::answer::{
     MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS, Said, log_level,
 };
-use crate::wire::body;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::LogLevel;
@@ -110,7 +109,7 @@ impl<'a> Sink<'a> {
 /// A text of the plugin for people: at most so many bytes, nothing that moves a cursor.
 pub(super) fn plain(raw: Str, most: usize) -> String {
     // SAFETY: the plugin promises that its texts are as long as they say.
-    body::plain(&unsafe { raw.to_text(most) })
+    foreign::plain(&unsafe { raw.to_text(most) }).into_owned()
 }
 
 /// Takes the first of some things as long as there is room.

@@ -116,6 +116,7 @@ impl Run {
             | EventKind::TetherTruth { .. }
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
+            | EventKind::SpeedLimited { .. }
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }
