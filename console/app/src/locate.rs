@@ -61,6 +61,7 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         finds_sound_speed: args.find.contains(&FindArg::SoundSpeed),
         finds_clock_offset: args.find.contains(&FindArg::ClockOffset),
         skips_bad_rows: args.skip_bad_rows,
+        tool_on: args.tool_on.as_deref(),
     };
     if let Some(file) = args.output.as_ref().filter(|file| file.exists()) {
         return Err(bad_input(format!("{} already exists; choose another name", file.display())));
@@ -152,6 +153,7 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
     if !survey.has_motion {
         line("motion", "not measured; up to the robot's maximum speed in any direction".into());
     }
+    line("tool", tool(survey));
     let found = figures(args, survey, tally);
     if let Some([scale, sigma]) = found.range_scale {
         let speed = found.sound_speed_m_per_s.map(|[speed, sigma]| format!(", {speed:.2} ± {sigma:.2} m/s"));
@@ -194,6 +196,21 @@ fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally)
     figure("true error", "of fixes", tally.fix_error_m);
     figure("", "of the track", tally.track_error_m);
     text
+}
+
+/// When the tool was on.
+fn tool(survey: &Survey) -> String {
+    let Some(stretches) = &survey.tool_on_s else {
+        return "not known when it was on, so that no coverage is stated (column tool_on, or --tool-on FILE)"
+            .into();
+    };
+    let on_s: f64 = stretches.iter().map(|[from_s, to_s]| to_s - from_s).sum();
+    let heading = if survey.has_motion {
+        ""
+    } else {
+        "; without measured motion the heading is not known, so that no floor counts"
+    };
+    format!("on for {on_s:.1} s in {} stretches{heading}", stretches.len())
 }
 
 /// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong.

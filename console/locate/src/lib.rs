@@ -4,6 +4,7 @@
 //! A file is read twice, row by row: once to check it and to find out about clocks and sound, once to locate. Memory does not
 //! grow with it.
 
+mod again;
 mod columns;
 mod fixes;
 mod located;
@@ -12,7 +13,9 @@ mod moments;
 mod problem;
 mod rows;
 mod tally;
+mod tool;
 
+pub use again::{Again, again};
 pub use columns::Kind;
 pub use fixes::Fixes;
 pub use located::{Survey, Task};

@@ -5,13 +5,17 @@ use crate::{
     moments::{Moment, Moments},
     problem::Problem,
     rows::Rows,
+    tool::{self, Stretches},
 };
 use flight::{Flight, failure::bad_input};
-use mission::{Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice, event::Measured};
+use mission::{
+    Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
+    event::{Asked, Measured, ToolTrack},
+};
 use positioning::{Calibration, RangeNoise, Ranging, SolverKind, Unknowns};
 use scenario::Scenario;
 use std::path::Path;
-use world::{ObstacleMap, RangeSet};
+use world::{CoverageGrid, ObstacleMap, RangeSet, Tool};
 
 /// Bad rows that an error lists.
 const LISTED: usize = 10;
@@ -39,6 +43,8 @@ pub struct Task<'a> {
     pub finds_clock_offset: bool,
     /// Whether bad rows are left out instead of refused.
     pub skips_bad_rows: bool,
+    /// The file that says when the tool was on, if the readings have no column for it.
+    pub tool_on: Option<&'a Path>,
 }
 
 /// What a look over the whole file found, before anything is located.
@@ -58,6 +64,8 @@ pub struct Survey {
     pub ignored: Vec<String>,
     /// What was found out about clocks and sound; absent if it was not asked for.
     pub calibration: Option<Calibration>,
+    /// From when to when the tool was on, seconds after the first moment; absent if nothing says it.
+    pub tool_on_s: Option<Vec<[f64; 2]>>,
     first_s: f64,
 }
 
@@ -79,11 +87,14 @@ impl Task<'_> {
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
         let calibration = self.calibration(&columns)?;
+        let tool_on = self.tool_on(&columns)?;
+        let mut stretches = Stretches::default();
         let (mut problems, mut bad, mut first_s) = (Vec::new(), 0, None);
         for moment in moments.by_ref() {
             match moment {
                 Ok(moment) => {
                     first_s.get_or_insert(moment.t_s);
+                    stretches.take(moment.t_s, moment.tool_on);
                 }
                 Err(problem) => {
                     bad += 1;
@@ -99,6 +110,8 @@ impl Task<'_> {
         }
         let first_s = first_s.ok_or_else(|| bad_input(format!("{}: no rows", self.file.display())))?;
         let calibration = calibration.map(|calibration| self.calibrated(calibration)).transpose()?;
+        let tool_on = tool_on.or_else(|| columns.has_tool().then(|| stretches.finish()));
+        let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first_s, to_s - first_s];
         Ok(Survey {
             kind: columns.kind(),
             has_motion: columns.has_motion(),
@@ -107,8 +120,22 @@ impl Task<'_> {
             problems,
             ignored: columns.ignored().map(str::to_owned).collect(),
             calibration,
+            tool_on_s: tool_on.map(|stretches| stretches.into_iter().map(from_first).collect()),
             first_s,
         })
+    }
+
+    /// The stretches of the file that says when the tool was on.
+    fn tool_on(&self, columns: &Columns) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
+        let Some(file) = self.tool_on else { return Ok(None) };
+        if columns.has_tool() {
+            let (readings, file) = (self.file.display(), file.display());
+            return Err(bad_input(format!(
+                "{readings} has a column tool_on, and {file} says it as well; keep one of the two"
+            )));
+        }
+        let stretches = tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())))?;
+        Ok(Some(stretches))
     }
 
     fn listed(&self, problems: &[Problem], bad: u64) -> String {
@@ -181,12 +208,24 @@ impl Task<'_> {
         let (moments, _) = self.open()?;
         let config = self.config(survey);
         let mut opened = Flight::prepare(self.scenario, false).opened();
+        let mut tool = None;
         if let EventKind::RunOpened(run) = &mut opened.kind {
             run.mission = config.clone();
-            run.measured = Some(Measured {
+            let measured = Measured {
                 file: self.file.display().to_string(),
                 sha256: recording::sha256(self.file)?,
-            });
+                asked: Asked {
+                    sound_speed_m_per_s: self.sound_speed_m_s,
+                    finds_sound_speed: self.finds_sound_speed,
+                    finds_clock_offset: self.finds_clock_offset,
+                    skips_bad_rows: self.skips_bad_rows,
+                },
+                has_motion: survey.has_motion,
+                tool_on_s: survey.tool_on_s.clone(),
+            };
+            let passes = || (ToolTrack::new(&measured, &config), CoverageGrid::new(run.floor.clone()));
+            tool = survey.tool_on_s.is_some().then(passes);
+            run.measured = Some(measured);
         }
         let drawing = self.scenario.sim.world.as_drawn();
         let mut track = Track {
@@ -195,6 +234,7 @@ impl Task<'_> {
             // Two standard deviations are as far as it can have come.
             wander_m_per_s: if survey.has_motion { 0.0 } else { config.limits.v_max_m_per_s / 2.0 },
             radius_m: config.limits.radius_m,
+            swept: tool.map(|(track, grid)| Swept { tool: config.tool(), track, grid }),
             tick: 0,
             t_s: 0.0,
         };
@@ -242,8 +282,27 @@ struct Track {
     map: ObstacleMap,
     wander_m_per_s: f64,
     radius_m: f64,
+    swept: Option<Swept>,
     tick: u64,
     t_s: f64,
+}
+
+/// The floor that the tool passed while it was on.
+struct Swept {
+    tool: Tool,
+    track: ToolTrack,
+    grid: CoverageGrid,
+}
+
+impl Swept {
+    /// What an estimate adds to it.
+    fn visit(&mut self, Event { t_s, kind, .. }: &Event) -> Option<EventKind> {
+        let EventKind::Estimated { pose } = kind else { return None };
+        let (from, to) = self.track.visit(*t_s, pose)?;
+        let runs = self.grid.not_covered_under(self.tool, from, to);
+        self.grid.apply(&runs);
+        (!runs.is_empty()).then_some(EventKind::Covered { runs })
+    }
 }
 
 impl Track {
@@ -269,7 +328,11 @@ impl Track {
             ..world::Readings::default()
         };
         let located = self.locator.take(&readings);
-        let events = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
+        let mut events: Vec<Event> = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
+        if let Some(swept) = &mut self.swept {
+            let covered: Vec<EventKind> = events.iter().filter_map(|event| swept.visit(event)).collect();
+            events.extend(covered.into_iter().map(|kind| self.event(kind)));
+        }
         self.tick += 1;
         events
     }

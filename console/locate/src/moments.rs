@@ -22,6 +22,8 @@ pub(crate) struct Moment {
     pub odometry: Odometry,
     /// Where the robot truly was, if somebody knows.
     pub truth: Option<Pose>,
+    /// Whether the tool is on from here on; none if no row says it. Rows that contradict each other: it is off.
+    pub tool_on: Option<bool>,
 }
 
 /// The moments of a file, and between them what is wrong with rows.
@@ -99,8 +101,13 @@ fn belongs(row: &Row, first: &Row) -> bool {
 
 impl Moment {
     fn of(first: &Row) -> Self {
-        let mut moment =
-            Self { t_s: first.t_s, ranges: Vec::new(), odometry: Odometry::default(), truth: None };
+        let mut moment = Self {
+            t_s: first.t_s,
+            ranges: Vec::new(),
+            odometry: Odometry::default(),
+            truth: None,
+            tool_on: None,
+        };
         moment.add(first);
         moment
     }
@@ -121,6 +128,10 @@ impl Moment {
             self.odometry.turn_rad += turn_rad;
         }
         self.truth = row.truth.or(self.truth);
+        self.tool_on = match (self.tool_on, row.tool_on) {
+            (Some(before), Some(now)) => Some(before && now),
+            (before, now) => before.or(now),
+        };
     }
 
     /// Counts ranges of which only the differences matter from the first arrival.

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 pub struct Summary {
     /// Name of the scenario.
     pub scenario: Option<String>,
+    /// File of the readings that were located; absent for a run that was flown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub located: Option<String>,
     /// Id of the planner that drove first.
     pub planner: Option<String>,
     /// Version of its plugin.

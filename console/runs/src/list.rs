@@ -4,11 +4,13 @@ use crate::{
     error::RunError,
     folder::past_runs,
     notes::read_notes,
+    register::Register,
     report_file::Reported,
-    standing::{Standing, standing},
+    signed::signatures,
+    standing::{Standing, held, standing},
 };
 use recording::{JournalReader, journal_of};
-use report::{Fold, Summary, notes::Notes};
+use report::{Fold, Summary, document::Recovered, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -17,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub struct Listed {
     /// Name of its folder.
     pub name: String,
-    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
+    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECOVERED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
     /// Name of its scenario.
     pub scenario: Option<String>,
@@ -40,12 +42,18 @@ pub struct Listed {
     pub bookmarks: usize,
 }
 
-/// The past runs in a folder, oldest first; also those that have lost their journal.
+/// The past runs in a folder, oldest first; also those that have lost their journal. What the register and the signed reports
+/// of a run say against each other is in its note.
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn list(logs: &Path) -> Result<Vec<Listed>, RunError> {
-    Ok(past_runs(logs)?.iter().map(|folder| look_at(folder)).collect())
+pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
+    let listed = |folder: &PathBuf| {
+        let listed = look_at(folder);
+        let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
+        Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
+    };
+    Ok(past_runs(logs)?.iter().map(listed).collect())
 }
 
 /// Past runs as lines for people.
@@ -83,9 +91,16 @@ fn look_at(folder: &Path) -> Listed {
     match standing(folder) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
-            let reported = || Reported::read(folder).ok().flatten();
-            let note = note.or_else(|| reported()?.recording_doubt(folder, None));
-            listed(folder, word(&summary), Some(&summary), note)
+            let reported = Reported::read(folder).ok().flatten();
+            let recovered = reported.as_ref().and_then(Reported::recovered);
+            let closed = recovered.map(|Recovered { by, at, .. }| {
+                format!("killed, recovered by {by}, {at} UTC; {}", held(&summary))
+            });
+            let doubt = reported.as_ref().and_then(|reported| reported.recording_doubt(folder, None));
+            let note =
+                closed.or(note).into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
+            let is_cut = recovered.is_some() && summary.outcome.is_none();
+            listed(folder, if is_cut { "RECOVERED" } else { word(&summary) }, Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {
             let note = format!("outcome {}, but not kept: {why}", word(&summary));
@@ -140,14 +155,6 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Li
             listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
         }
     }
-}
-
-/// Up to when a journal that stops early goes.
-fn held(summary: &Summary) -> String {
-    summary.mission_time_s.map_or_else(
-        || "the journal is empty".into(),
-        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
-    )
 }
 
 /// What a journal says, up to the first damage, and what the damage is.
