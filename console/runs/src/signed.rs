@@ -48,7 +48,7 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
         Vec::new()
     });
     let entry = |revision: &Revision| registered.iter().find(|entry| is_same_report(entry, revision));
-    let changed = |revision| Some(list_change(revision, entry(revision)?, register)?);
+    let changed = |revision| list_change(revision, entry(revision)?, register);
     found.doubts.extend(found.revisions.iter().filter_map(changed));
     found.doubts.extend(found.revisions.iter().filter_map(|revision| file_doubt(revision, entry(revision))));
     let is_listed =
