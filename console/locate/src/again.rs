@@ -61,6 +61,7 @@ pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let asked = &measured.asked;
     let task = Task {
         file,
+        shown: &measured.file,
         scenario: &scenario,
         sound_speed_m_s: asked.sound_speed_m_per_s,
         finds_sound_speed: asked.finds_sound_speed,

@@ -5,22 +5,29 @@
 //! grow with it.
 
 mod again;
+mod clock;
 mod columns;
+mod doubts;
 mod fixes;
+mod found;
 mod located;
 mod measured;
 mod moments;
 mod problem;
+mod repeats;
 mod rows;
 mod tally;
 mod tool;
 
 pub use again::{Again, again};
 pub use columns::Kind;
+pub use doubts::{Doubts, Refused};
 pub use fixes::Fixes;
+pub use found::Found;
 pub use located::{Survey, Task};
 pub use measured::MeasuredWriter;
 pub use problem::Problem;
+pub use repeats::{Repeated, Repeats};
 pub use tally::Tally;
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ mod sections;
 mod words;
 
 pub use dates::Date;
-pub use facts::{Inspection, unreadable};
+pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use located::{Located, Readings, located_json};

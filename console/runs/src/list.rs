@@ -1,16 +1,18 @@
 //! Past runs, listed.
 
 use crate::{
+    budget::Budget,
     error::RunError,
     folder::past_runs,
+    glance::Glance,
     notes::read_notes,
     register::Register,
-    report_file::Reported,
+    report_file::{Now, Reported},
     signed::signatures,
-    standing::{Standing, held, standing},
+    standing::{Standing, held, standing_within},
 };
-use recording::{JournalReader, journal_of};
-use report::{Fold, Summary, document::Recovered, notes::Notes};
+use recording::journal_of;
+use report::{Summary, document::Recovered, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -42,18 +44,22 @@ pub struct Listed {
     pub bookmarks: usize,
 }
 
-/// The past runs in a folder, oldest first; also those that have lost their journal. What the register and the signed reports
-/// of a run say against each other is in its note.
+/// The past runs in a folder, oldest first; also those that have lost their journal. Of long journals without a report only the
+/// beginning and the end are read. What speaks against the signed reports of a run is in its note.
 ///
 /// # Errors
 /// The folder cannot be read.
 pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
-    let listed = |folder: &PathBuf| {
-        let listed = look_at(folder);
+    let budget = Budget::of_a_list();
+    let look = |folder: &PathBuf| {
+        let listed = look_at(folder, &budget);
         let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
         Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
     };
-    Ok(past_runs(logs)?.iter().map(listed).collect())
+    // The newest ones are what is looked for.
+    let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
+    listed.reverse();
+    Ok(listed)
 }
 
 /// Past runs as lines for people.
@@ -87,8 +93,8 @@ fn people(run: &Listed) -> Option<String> {
     (!words.is_empty()).then(|| format!("[{}]", words.join("; ")))
 }
 
-fn look_at(folder: &Path) -> Listed {
-    match standing(folder) {
+fn look_at(folder: &Path, budget: &Budget) -> Listed {
+    match standing_within(folder, budget) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
             let reported = Reported::read(folder).ok().flatten();
@@ -96,7 +102,8 @@ fn look_at(folder: &Path) -> Listed {
             let closed = recovered.map(|Recovered { by, at, .. }| {
                 format!("killed, recovered by {by}, {at} UTC; {}", held(&summary))
             });
-            let doubt = reported.as_ref().and_then(|reported| reported.recording_doubt(folder, None));
+            let doubt =
+                reported.as_ref().and_then(|reported| reported.recording_doubt(folder, Now::Within(budget)));
             let note =
                 closed.or(note).into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
             let is_cut = recovered.is_some() && summary.outcome.is_none();
@@ -107,7 +114,7 @@ fn look_at(folder: &Path) -> Listed {
             listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
         }
         Standing::Running => listed(folder, "RUNNING", None, None),
-        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure),
+        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure, budget),
     }
 }
 
@@ -137,14 +144,18 @@ fn word(summary: &Summary) -> &'static str {
 }
 
 /// A run of which only the journal says what happened.
-fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Listed {
-    let (summary, damage) = rebuild(&journal_of(folder));
+fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budget: &Budget) -> Listed {
+    let Glance { summary, damage, is_partial } = Glance::at(&journal_of(folder), budget);
     let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
     // Whatever became of the report: the journal has the run to its end.
     let ended = summary.outcome.filter(|_| damage.is_none());
     match (ended, failure, damage) {
         (Some(outcome), ..) => {
-            let source = doubt.map_or("without a report", |_| "figures from the journal");
+            let source = match (doubt, is_partial) {
+                (None, false) => "without a report",
+                (Some(_), false) => "figures from the journal",
+                (_, true) => "figures from the beginning and the end of the journal, which is long",
+            };
             listed(folder, outcome.word(), Some(&summary), with(source))
         }
         (None, _, Some(damage)) => listed(folder, "UNREADABLE", Some(&summary), with(&damage)),
@@ -155,16 +166,4 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Li
             listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
         }
     }
-}
-
-/// What a journal says, up to the first damage, and what the damage is.
-fn rebuild(journal: &Path) -> (Summary, Option<String>) {
-    let mut fold = Fold::new();
-    let damage = JournalReader::open(journal).and_then(|reader| {
-        reader.into_iter().try_for_each(|event| {
-            fold.apply(&event?);
-            Ok(())
-        })
-    });
-    (fold.summary(), damage.err().map(|error| error.to_string()))
 }

@@ -15,7 +15,7 @@ mod sweep;
 
 pub use config::{
     AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
-    TetherTruth, Track, Truth,
+    TetherTruth, TimingErrors, Track, Truth,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

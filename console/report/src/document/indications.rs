@@ -1,7 +1,7 @@
 //! Indications of the scanning instrument, by time, placed on the track.
 
-use super::unreadable;
 use crate::record::Record;
+use foreign::unplain;
 use serde::{Deserialize, Serialize};
 use world::{Point, geometry::unit_vector};
 
@@ -137,7 +137,7 @@ fn row(
         _ => error.to_string(),
     })?;
     let texts = [("kind", &row.kind), ("note", &row.note)];
-    if let Some((name, odd)) = texts.into_iter().find_map(|(name, text)| Some((name, unreadable(text)?))) {
+    if let Some((name, odd)) = texts.into_iter().find_map(|(name, text)| Some((name, unplain(text)?))) {
         return Err(format!("{name}: must be text that can be read: {odd} cannot"));
     }
     let numbers = [
