@@ -17,6 +17,7 @@ mod governor;
 mod locate;
 pub mod order;
 pub mod phase;
+mod plan_extent;
 pub mod planner;
 mod preview;
 pub mod spelling;
@@ -31,6 +32,7 @@ pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
 pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use plan_extent::check_extent;
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
     RefusedPlugin, Sandbox, todays_parameter,

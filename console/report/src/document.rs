@@ -34,7 +34,7 @@ use crate::{
     identity::{Stated, contradiction},
     joined::{Joined, PastRun, joined_or_located},
     record::Record,
-    summary::Coverage,
+    summary::{Coverage, REPORT_VERSION},
 };
 use layers::Layers;
 use serde::Serialize;
@@ -125,6 +125,8 @@ pub struct Signature {
 /// A report.
 #[derive(Debug, Serialize)]
 pub struct Document {
+    /// Version of the form, `REPORT_VERSION`.
+    pub report_version: u32,
     /// Number of the document: when the first run began, and its seed.
     pub number: String,
     /// Letter of the revision.
@@ -231,6 +233,7 @@ impl Document {
             pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
         }
         let mut document = Self {
+            report_version: REPORT_VERSION,
             number: number(past),
             revision: letter(context.revisions.len()),
             signature: context.signature,

@@ -11,6 +11,7 @@ use crate::{
     config::TaskConfig,
     event::EventKind,
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
+    plan_extent::check_extent,
     planner::{Cause, During, Fault, PlannerInfo},
 };
 use planner_api::{Code, Plan};
@@ -104,7 +105,7 @@ impl Mission {
     pub(super) fn fitting(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
         let id = &slot.choice.id;
         if let Given::Plan(plan) = &given
-            && let Err(what) = self.check_extent(plan)
+            && let Err(what) = check_extent(plan, &self.chart.world().boundary, self.config.lane_m())
         {
             let (message, partial) = (format!("planner {id} {what}"), Vec::new());
             let plugin_sha256 = slot.info.as_ref().map(|info| info.sha256.clone());
@@ -179,7 +180,7 @@ impl Mission {
 
     fn fail_active(&mut self, Failed { ask, kind, fault, said }: Failed) {
         self.pass_on(said, &self.active.choice.id.clone());
-        let (message, cause) = (fault.message.clone(), fault.cause);
+        let (message, cause, is_no_way) = (fault.message.clone(), fault.cause, fault.is_no_way());
         self.note_fault(ask, fault, self.active.info.as_ref().map(|info| info.sha256.clone()));
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
         match kind {
@@ -205,7 +206,11 @@ impl Mission {
                 self.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
             );
         }
-        self.active_is_no_use(HoldReason::PlannerFault { message });
+        self.active_is_no_use(if is_no_way {
+            HoldReason::Stuck { message }
+        } else {
+            HoldReason::PlannerFault { message }
+        });
     }
 
     /// The active planner cannot drive the robot on.
