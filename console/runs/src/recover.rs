@@ -5,7 +5,7 @@ use crate::{
     error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
 };
 use recording::{JournalError, recorded_failure, remove_reserve};
-use report::{Summary, document::Recovered};
+use report::{Logs, Summary, document::Recovered};
 use std::{path::Path, time::SystemTime};
 
 /// What the process that was killed would have added at the end.
@@ -27,7 +27,8 @@ pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
     let summary = Summary {
         events_sha256: files.journal_sha256.clone(),
         recording_sha256: files.recording_sha256.clone(),
-        logs: Some(past.run.logs.clone()),
+        // Nobody but this process has locked it.
+        logs: Some(Logs { is_open: false, ..past.run.logs.clone() }),
         ..past.run.summary.clone()
     };
     // The draft that the writer left is used up.
