@@ -1,7 +1,9 @@
 //! The report that an inspector signs: one model behind HTML, JSON, CSV, `GeoJSON` and DXF.
 
+mod certificate;
 mod charts;
 pub mod csv;
+mod dates;
 mod decisions;
 pub mod dxf;
 mod facts;
@@ -9,22 +11,28 @@ mod gate;
 pub mod geojson;
 mod indications;
 pub(crate) mod layers;
+mod located;
 mod maps;
 mod marks;
 mod page;
 mod run_part;
 mod sections;
+mod words;
 
+pub use dates::Date;
 pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
+pub use located::{Located, Readings, located_json};
 pub use maps::Figure;
 pub use page::html;
-pub use run_part::{Driver, Files, RunPart, TetherPart};
+pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
+pub use words::{is_placeholder, says_nothing};
 
 use crate::{
     account::{Account, account},
-    joined::{Joined, PastRun, joined},
+    identity::{Stated, contradiction},
+    joined::{Joined, PastRun, joined_or_located},
     record::Record,
     summary::{Coverage, REPORT_VERSION},
 };
@@ -70,7 +78,7 @@ pub struct Revision {
 /// A run as it was when a report on it was signed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct SignedRun {
-    /// Name of its folder.
+    /// Name of its folder when it was closed.
     pub run: String,
     /// SHA-256 of its journal, hexadecimal.
     pub journal_sha256: Option<String>,
@@ -81,8 +89,8 @@ pub struct SignedRun {
 impl SignedRun {
     /// A run as it is now.
     pub fn of(past: &PastRun) -> Self {
-        let Files { journal_sha256, recording_sha256, .. } = past.files.clone();
-        Self { run: past.name.clone(), journal_sha256, recording_sha256 }
+        let Files { journal_sha256, recording_sha256, closed_as, .. } = past.files.clone();
+        Self { run: closed_as.unwrap_or_else(|| past.name.clone()), journal_sha256, recording_sha256 }
     }
 }
 
@@ -131,8 +139,14 @@ pub struct Document {
     pub made_by: String,
     /// Whether positions and passes were computed and no floor was inspected.
     pub is_simulation: bool,
+    /// The readings that were located; absent for missions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub located: Option<Located>,
     /// What only people know; `null` is missing.
     pub inspection: Inspection,
+    /// Where that contradicts the scenario that was flown in what identifies the floor, as a sentence; absent if it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contradiction: Option<String>,
     /// How much of the floor was scanned by all runs together.
     pub coverage: Coverage,
     /// The account of the floor over all runs.
@@ -193,10 +207,15 @@ impl Document {
     /// # Errors
     /// As [`crate::merged()`], or indications that cannot be placed.
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
-        let all = joined(past)?;
+        let all = joined_or_located(past)?;
+        let located = Located::of(past);
         let Joined { run, scanned, evidence } = &all;
         let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
-        let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
+        let mut floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
+        let tool_is_known = located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
+        if located.is_some() {
+            floor = located::without_task(floor, tool_is_known);
+        }
         let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
         let layers = Layers::new(run, scanned, evidence, &places);
         let records: Vec<(&str, &Record)> =
@@ -207,8 +226,12 @@ impl Document {
             placed.map_err(|error| format!("{name}: {error}"))
         };
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
+        let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection);
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
-        let pictures = Pictures::draw(&layers, &floor, &indications, past);
+        let mut pictures = Pictures::draw(&layers, &floor, &indications, past);
+        if located.is_some() {
+            pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
+        }
         let mut document = Self {
             report_version: REPORT_VERSION,
             number: number(past),
@@ -216,8 +239,10 @@ impl Document {
             signature: context.signature,
             revisions: context.revisions,
             made_by: format!("tankops {}", context.version),
-            is_simulation: runs.iter().any(|run| run.positioning.is_some()),
+            is_simulation: located.is_none() && runs.iter().any(|run| run.positioning.is_some()),
+            located,
             inspection: context.inspection,
+            contradiction,
             coverage: scanned.coverage(true),
             floor,
             runs,

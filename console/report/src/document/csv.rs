@@ -36,18 +36,26 @@ pub fn cell(text: &str) -> String {
 
 fn plates(document: &Document) -> String {
     let floor = &document.floor;
+    let is_located = document.located.is_some();
+    let is_known = document.located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
     let row = |name: &str, kind: &str, shares: &Shares, error_m: Option<f64>| {
         let p = &shares.percent;
         let mut row = vec![name.to_owned(), kind.to_owned(), format!("{:.4}", shares.area_m2)];
         let guaranteed = p.guaranteed.unwrap_or(0.0);
-        row.extend(
-            [p.scanned, guaranteed, p.missed, p.unreachable, p.margin].map(|value| format!("{value:.1}")),
-        );
+        let of_mission = [p.missed, p.unreachable, p.margin].map(|value| (value, !is_located));
+        let of_tool = [p.scanned, guaranteed].map(|value| (value, is_known));
+        // What is not known is empty, not zero.
+        let cell =
+            |(value, is_stated): (f64, bool)| if is_stated { format!("{value:.1}") } else { String::new() };
+        row.extend(of_tool.into_iter().chain(of_mission).map(cell));
         row.push(error_m.map(|m| format!("{m:.3}")).unwrap_or_default());
         row
     };
     let bases = [("whole floor", &floor.whole), ("reachable floor", &floor.reachable)];
-    let bases = bases.map(|(name, shares)| row(name, "base", shares, None));
+    let bases = bases
+        .into_iter()
+        .take(if is_located { 1 } else { 2 })
+        .map(|(name, shares)| row(name, "base", shares, None));
     let plates = floor.plates.iter().map(|plate| {
         row(&plate.name, &format!("{:?}", plate.kind).to_lowercase(), &plate.shares, plate.error_p95_m)
     });

@@ -1,6 +1,6 @@
 //! The report as `GeoJSON`: track, missed areas, obstacles, shell, indications.
 
-use super::Document;
+use super::{Document, located};
 use crate::{
     account::Solid,
     drawing::trace::thinned,
@@ -27,6 +27,11 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
             past.record.track.iter().map(super::super::record::TrackPoint::position).collect();
         features
             .push(feature(line(&thinned(&places, TRACK_M)), json!({ "layer": "track", "run": past.name })));
+    }
+    if document.located.is_some() {
+        features.extend(located::positions(past).map(|(place, properties)| {
+            feature(json!({ "type": "Point", "coordinates": at(place) }), properties)
+        }));
     }
     if let Some(run) = past.last().and_then(|past| past.fold.run.as_ref()) {
         features.push(feature(polygon(&outline(&run.world.boundary)), json!({ "layer": "shell" })));
@@ -59,12 +64,21 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
         });
         features.push(feature(json!({ "type": "Point", "coordinates": at(found.at) }), properties));
     }
+    // Of readings nothing is reachable or missed, and unknown is not zero.
+    let [whole_floor, reachable_floor] = match &document.located {
+        None => [json!(document.floor.whole.percent), json!(document.floor.reachable.percent)],
+        Some(located) => {
+            let percent = document.floor.whole.percent;
+            let passed = json!({ "scanned": percent.scanned, "guaranteed": percent.guaranteed });
+            [if located.tool_on_s.is_some() { passed } else { json!(null) }, json!(null)]
+        }
+    };
     let collection = json!({
         "type": "FeatureCollection",
         "crs": { "type": "name", "properties": { "name": datum.name } },
         "properties": {
             "document": document.number, "revision": document.revision, "scenario": document.scenario,
-            "whole_floor": document.floor.whole.percent, "reachable_floor": document.floor.reachable.percent,
+            "whole_floor": whole_floor, "reachable_floor": reachable_floor, "located_from": document.located,
         },
         "features": features,
     });

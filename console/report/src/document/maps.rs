@@ -15,7 +15,7 @@ use std::fmt::Write;
 use world::Point;
 
 /// Widths of maps on paper, millimetres.
-const FULL_MM: f64 = 180.0;
+pub(super) const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
 /// Badges at most.
 const MOST_BADGES: usize = 60;
@@ -44,17 +44,17 @@ pub struct Legend {
     pub value: String,
 }
 
-fn swatch(inside: &str) -> String {
+pub(super) fn swatch(inside: &str) -> String {
     format!(r#"<svg class="sw" viewBox="0 0 7 4" aria-hidden="true">{inside}</svg>"#)
 }
 
-fn filled(fill: &str) -> String {
+pub(super) fn filled(fill: &str) -> String {
     swatch(&format!(
         r##"<rect x=".2" y=".2" width="6.6" height="3.6" fill="{fill}" stroke="#7D8A93" stroke-width=".2"/>"##
     ))
 }
 
-fn legend(swatch: String, text: &str, value: String) -> Legend {
+pub(super) fn legend(swatch: String, text: &str, value: String) -> Legend {
     Legend { swatch, text: text.to_owned(), value }
 }
 
@@ -222,14 +222,9 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     sheet.define_patterns(layers.floor().cell_m);
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);
     sheet.plates(layers.plates.as_ref());
-    let places: Vec<Point> = record.track.iter().map(|point| sheet.at(point.position())).collect();
-    let end = *places.last()?;
-    let line = thinned(&places, 0.06);
-    let mut path = String::new();
-    for (index, point) in line.iter().enumerate() {
-        // Writing to a String cannot fail.
-        let _ = write!(path, "{}{:.2} {:.2}", if index == 0 { "M" } else { "L" }, point.x, point.y);
-    }
+    let line = track_line(&sheet, record);
+    let end = *line.last()?;
+    let path = path_of(&line);
     sheet.draw(format_args!(
         r#"<path d="{path}" fill="none" stroke="{}" stroke-width=".22" stroke-linejoin="round"/>"#,
         colour::TRACK
@@ -245,6 +240,27 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     ));
     let caption = "Track by the estimated position; dot: end".into();
     Some(Figure { caption, svg: sheet.svg("Track of the robot", "half"), legend: Vec::new() })
+}
+
+/// The track on a sheet.
+fn track_line(sheet: &Sheet, record: &Record) -> Vec<Point> {
+    let places: Vec<Point> = record.track.iter().map(|point| sheet.at(point.position())).collect();
+    thinned(&places, 0.06)
+}
+
+/// A line on the paper as a path.
+fn path_of(line: &[Point]) -> String {
+    let mut path = String::new();
+    for (index, point) in line.iter().enumerate() {
+        // Writing to a String cannot fail.
+        let _ = write!(path, "{}{:.2} {:.2}", if index == 0 { "M" } else { "L" }, point.x, point.y);
+    }
+    path
+}
+
+/// The track on a sheet as a path.
+pub(super) fn drawn_track(sheet: &Sheet, record: &Record) -> String {
+    path_of(&track_line(sheet, record))
 }
 
 /// Heads of arrows along a line on the paper, evenly.

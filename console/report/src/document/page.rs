@@ -60,6 +60,8 @@ pub(super) struct Verdict {
 /// A large figure.
 pub(super) struct Share {
     pub(super) percent: String,
+    /// Unit of the figure.
+    pub(super) unit: &'static str,
     pub(super) of: &'static str,
     pub(super) about: String,
 }
@@ -175,6 +177,10 @@ pub(super) struct Section {
 /// The whole page.
 pub(super) struct Page {
     pub(super) title: String,
+    /// The title on the page.
+    pub(super) heading: &'static str,
+    /// What must be known before anything else, if it is no simulation.
+    pub(super) banner: String,
     pub(super) css: &'static str,
     pub(super) head: String,
     pub(super) mark: &'static str,

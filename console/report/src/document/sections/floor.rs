@@ -2,6 +2,7 @@
 
 use super::{
     super::{
+        located::accuracy_how,
         maps::{plate_bar, plate_legend},
         page::{Block, Row, Table, Value, per_cent},
     },
@@ -26,7 +27,7 @@ pub(super) fn map(document: &Document) -> Vec<Block> {
 }
 
 /// The critical zone: unrolled, its longest arcs, and plate by plate.
-pub(super) fn zone(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     let zone = &document.floor.critical_zone;
     let state = if zone.done { "Done" } else { "Not done" };
     let scanned = zone.scanned.map_or_else(|| "none".to_owned(), |share| format!("{} %", per_cent(share)));
@@ -98,9 +99,8 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// Accuracy and guaranteed coverage.
-pub(super) fn accuracy(document: &Document) -> Vec<Block> {
-    let pictures = &document.pictures;
+/// How good the position was, run by run.
+pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
     let mut table = Table::new(
         "Accuracy statement",
         &[
@@ -132,11 +132,15 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             ]);
         }
         if let Some(p) = &run.positioning {
-            let how = format!(
-                "simulation only; truth within the 95 % ellipse in {} % of the ticks; lost for {:.1} s",
-                per_cent(p.in_95_ellipse),
-                p.position_lost_s
-            );
+            let inside = per_cent(p.in_95_ellipse);
+            let how = if document.located.is_some() {
+                accuracy_how(&inside)
+            } else {
+                format!(
+                    "simulation only; truth within the 95 % ellipse in {inside} % of the ticks; lost for {:.1} s",
+                    p.position_lost_s
+                )
+            };
             table.row(vec![
                 format!("true error{of}").into(),
                 cm(p.mean_error_m).into(),
@@ -146,6 +150,12 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             ]);
         }
     }
+    table
+}
+
+/// Accuracy and guaranteed coverage.
+pub(super) fn accuracy(document: &Document) -> Vec<Block> {
+    let pictures = &document.pictures;
     let truth = document.coverage.by_truth.and_then(|truth| truth.scanned_truly.zip(truth.guaranteed_truly));
     let truth = truth.map(|(scanned, sure)| {
         Block::Text(format!(
@@ -163,14 +173,14 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
-        Block::Table(table),
+        Block::Table(accuracy_statement(document)),
     ];
     blocks.extend(truth);
     blocks
 }
 
 /// Every plate.
-pub(super) fn plates(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     if floor.plates.is_empty() {
         let waiver = Value::fact(document.inspection.plates_waiver.as_ref(), "plates_waiver");

@@ -28,6 +28,8 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let is_end = |letter: char| letter.is_control() || matches!(letter, '\\' | '"');
     let css = |text: String| escaped(&text).replace(is_end, " ");
     Page {
+        heading: "Tank floor inspection: coverage and position record",
+        banner: String::new(),
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
         head: css(format!(
@@ -127,7 +129,9 @@ fn verdict(document: &Document) -> Verdict {
         Some(Outcome::Aborted) => "the mission was ended early".to_owned(),
         Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
     };
-    let reason = last.and_then(|run| run.reason.clone());
+    let recovered = last.and_then(|run| run.files.recovered.as_ref());
+    let recovered = recovered.map(|how| format!("the run was killed, and closed {how}"));
+    let reason = last.and_then(|run| run.reason.clone()).or(recovered);
     Verdict {
         class: "bad",
         lead: format!(
@@ -145,6 +149,7 @@ fn shares(document: &Document) -> Vec<Share> {
     vec![
         Share {
             percent: format!("{:.1}", whole.percent.scanned),
+            unit: "%",
             of: "of the whole floor",
             about: format!(
                 "{} of {:.1} m² of floor within the shell, excluding the footprint of obstacles",
@@ -154,6 +159,7 @@ fn shares(document: &Document) -> Vec<Share> {
         },
         Share {
             percent: format!("{:.1}", reachable.percent.scanned),
+            unit: "%",
             of: "of the reachable floor",
             about: format!(
                 "{} of {:.1} m² that the tool can reach while hull and clearance are kept",
@@ -163,6 +169,7 @@ fn shares(document: &Document) -> Vec<Share> {
         },
         Share {
             percent: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
+            unit: "%",
             of: "of the reachable floor, guaranteed",
             about: format!(
                 "{} m² under the tool wherever the robot stood within its 95 % position error; {:.1} % of the whole floor",

@@ -15,7 +15,7 @@ use mission::Severity;
 const MOST_INCIDENTS: usize = 120;
 
 /// Every run, then the indications.
-pub(super) fn runs(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     for ((number, run), figures) in (1..).zip(&document.runs).zip(&document.pictures.runs) {
         let number: usize = number;
