@@ -1,6 +1,7 @@
 //! The table of a campaign: one row for each mission, as Parquet.
 
 use crate::{
+    columns::explained,
     digest::{self, Seal},
     frozen::Campaign,
     row::{Row, Status},
@@ -38,9 +39,10 @@ enum Kind {
     Count,
     Number,
     Text,
+    Flag,
 }
 
-use Kind::{Count, Number, Text};
+use Kind::{Count, Flag, Number, Text};
 
 /// Columns that are figures of the report, by their place in it.
 const FIGURES: [(&str, Kind); 48] = [
@@ -89,9 +91,9 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.wrap_total_max_rad", Number),
     ("tether.loops", Count),
     ("tether.end_length_m", Number),
-    ("tether.entangled", Text),
+    ("tether.entangled", Flag),
     ("tether.snags", Count),
-    ("tether.snagged", Text),
+    ("tether.snagged", Flag),
 ];
 
 /// Figures of which more is better; of the others, less is.
@@ -112,7 +114,7 @@ const MORE_IS_BETTER: [&str; 12] = [
 
 /// Names of the columns that are numbers of the report.
 pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
-    FIGURES.iter().filter(|(_, kind)| *kind != Text).map(|(name, _)| *name)
+    FIGURES.iter().filter(|(_, kind)| matches!(kind, Count | Number)).map(|(name, _)| *name)
 }
 
 /// Whether a table has such a column.
@@ -152,7 +154,7 @@ pub enum TableError {
 }
 
 fn schema(campaign: &Campaign) -> SchemaRef {
-    let field = |name: &str, kind: DataType, nullable| Field::new(name, kind, nullable);
+    let field = |name: &str, kind: DataType, nullable| explained(Field::new(name, kind, nullable));
     let mut fields = vec![
         field("case", DataType::UInt64, false),
         field("scenario", DataType::Utf8, false),
@@ -173,6 +175,7 @@ fn schema(campaign: &Campaign) -> SchemaRef {
             Count => DataType::UInt64,
             Number => DataType::Float64,
             Text => DataType::Utf8,
+            Flag => DataType::Boolean,
         };
         field(name, kind, true)
     }));
@@ -218,6 +221,7 @@ fn figure_column(name: &str, kind: Kind, rows: &[Row]) -> ArrayRef {
         Count => Arc::new(values.map(serde_json::Value::as_u64).collect::<UInt64Array>()),
         Number => Arc::new(values.map(serde_json::Value::as_f64).collect::<Float64Array>()),
         Text => Arc::new(values.map(text).collect::<StringArray>()),
+        Flag => Arc::new(values.map(serde_json::Value::as_bool).collect::<BooleanArray>()),
     }
 }
 
@@ -513,6 +517,20 @@ pub(crate) mod tests {
     fn a_table_without_a_digest_is_read_and_not_vouched_for() {
         let (table, is_proven) = Table::read(file(&without_digest())).expect("read");
         assert!(!table.is_empty() && !is_proven);
+    }
+
+    #[test]
+    fn every_column_says_its_unit_and_meaning() {
+        let read = ParquetRecordBatchReaderBuilder::try_new(file(&table(PLAN))).expect("read");
+        for field in read.schema().fields() {
+            let (unit, meaning) = (&field.metadata()["unit"], &field.metadata()["meaning"]);
+            assert!(!meaning.is_empty(), "{field}");
+            assert_eq!(unit.is_empty(), !field.data_type().is_numeric(), "{field}");
+        }
+        assert_eq!(
+            read.schema().field_with_name("tether.entangled").expect("a column").data_type(),
+            &DataType::Boolean
+        );
     }
 
     proptest! {

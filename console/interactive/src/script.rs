@@ -24,7 +24,10 @@ use super::{
 use answers::Answers;
 use anyhow::Context;
 use condition::Condition;
-use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
+use flight::{
+    failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    texts,
+};
 use mission::Severity;
 use ratatui::{Terminal, backend::TestBackend};
 use report::print::warn_line;
@@ -76,7 +79,7 @@ impl Script {
     /// The file cannot be read; a line is none: every such line with its number.
     pub(super) fn read(file: &Path) -> anyhow::Result<Self> {
         let shown = file.display();
-        let text = std::fs::read_to_string(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
+        let text = texts::read(file)?;
         let steps = read::steps(&text).map_err(|wrong| {
             let lines = wrong.iter().map(|(line, what)| format!("{shown}:{line}: {what}"));
             bad_input(lines.collect::<Vec<_>>().join("\n"))

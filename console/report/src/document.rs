@@ -26,7 +26,7 @@ use crate::{
     account::{Account, account},
     joined::{Joined, PastRun, joined},
     record::Record,
-    summary::Coverage,
+    summary::{Coverage, REPORT_VERSION},
 };
 use layers::Layers;
 use serde::Serialize;
@@ -117,6 +117,8 @@ pub struct Signature {
 /// A report.
 #[derive(Debug, Serialize)]
 pub struct Document {
+    /// Version of the form, `REPORT_VERSION`.
+    pub report_version: u32,
     /// Number of the document: when the first run began, and its seed.
     pub number: String,
     /// Letter of the revision.
@@ -208,6 +210,7 @@ impl Document {
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
         let pictures = Pictures::draw(&layers, &floor, &indications, past);
         let mut document = Self {
+            report_version: REPORT_VERSION,
             number: number(past),
             revision: letter(context.revisions.len()),
             signature: context.signature,

@@ -180,7 +180,7 @@ impl Mission {
 
     fn fail_active(&mut self, Failed { ask, kind, fault, said }: Failed) {
         self.pass_on(said, &self.active.choice.id.clone());
-        let (message, cause) = (fault.message.clone(), fault.cause);
+        let (message, cause, is_no_way) = (fault.message.clone(), fault.cause, fault.is_no_way());
         self.note_fault(ask, fault, self.active.info.as_ref().map(|info| info.sha256.clone()));
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
         match kind {
@@ -206,7 +206,11 @@ impl Mission {
                 self.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
             );
         }
-        self.active_is_no_use(HoldReason::PlannerFault { message });
+        self.active_is_no_use(if is_no_way {
+            HoldReason::Stuck { message }
+        } else {
+            HoldReason::PlannerFault { message }
+        });
     }
 
     /// The active planner cannot drive the robot on.
