@@ -379,7 +379,8 @@ pub(crate) mod tests {
             Row::flown(case, summary)
         };
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read");
+        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written")))
+            .expect("read");
         findings(&campaign, &table)
     }
 
