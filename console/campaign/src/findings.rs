@@ -324,7 +324,6 @@ pub(crate) mod tests {
         row::Row,
         table::tests::{PLAN, file, row},
     };
-
     use mission::Outcome;
     use report::Summary;
 
@@ -379,8 +378,8 @@ pub(crate) mod tests {
             Row::flown(case, summary)
         };
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written")))
-            .expect("read");
+        let bytes = part::write(&campaign, 0, &rows).expect("written");
+        let table = part::read(&campaign, 0, file(&bytes)).expect("read");
         findings(&campaign, &table)
     }
 

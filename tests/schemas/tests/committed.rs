@@ -7,7 +7,7 @@ use std::{
 };
 
 /// The crates whose types are written.
-const CRATES: [(&str, &str); 7] = [
+const CRATES: [(&str, &str); 8] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
     ("positioning", "console/positioning/src"),
@@ -15,6 +15,7 @@ const CRATES: [(&str, &str); 7] = [
     ("planner_api", "plugins/planner-api/src"),
     ("mission", "console/mission/src"),
     ("report", "console/report/src"),
+    ("runs", "console/runs/src"),
 ];
 
 fn project() -> PathBuf {
@@ -55,9 +56,14 @@ fn the_schema_of_reports_is_that_of_the_types() {
     let version = version("console/report/src/summary.rs", "REPORT_VERSION");
     let roots = [
         Root {
+            of_crate: "runs",
+            name: "ReportFile",
+            about: "The figures of one run, as `report.json` in its folder.",
+        },
+        Root {
             of_crate: "report",
             name: "Summary",
-            about: "The figures of one run: `report.json` in its folder, `tankops run --json`, `tankops report RUN --json`.",
+            about: "The figures of one run, as `tankops run --json` and `tankops report RUN --json` print them.",
         },
         Root {
             of_crate: "report",

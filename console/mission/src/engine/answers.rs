@@ -54,6 +54,7 @@ impl Mission {
             (PendingKind::Reconfigure(choice), Given::Reconfigured) => {
                 self.pass_on(said, &choice.id);
                 self.active.choice = choice.clone();
+                self.active.first_plan = None;
                 self.happened.push(EventKind::ParametersChanged { ask: Some(ask), choice });
             }
             (PendingKind::Plan(asked), Given::Plan(plan)) => self.plan_arrived(ask, asked, plan, said),
@@ -138,6 +139,11 @@ impl Mission {
         self.pass_on(said, &id);
         let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
         self.happened.extend(events);
+        let may_retry =
+            objection.as_ref().is_some_and(|why| why.by_tether) && self.may_try_from_anchor(&asked);
+        if !may_retry {
+            self.show_first_plan(&plan, objection.as_ref());
+        }
         match objection {
             None => {
                 let is_repair = asked.is_repair && self.task.keeps_to(&plan);
@@ -147,7 +153,7 @@ impl Mission {
                     self.want_better_plan();
                 }
             }
-            Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
+            Some(_) if may_retry => {
                 self.active.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
             }
             Some(Objection { by_tether, message }) => {
@@ -189,7 +195,10 @@ impl Mission {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
                 // A planner that was ordered meanwhile stays ordered.
                 if unsupported && self.candidate.is_none() && !self.is_running() {
+                    let prepare = self.active.prepare;
                     self.choose(choice, planner_api::Reason::Operator);
+                    // A plan that was ordered before the start stays ordered.
+                    self.active.prepare = prepare.max(self.active.prepare);
                 }
                 return;
             }
@@ -199,6 +208,9 @@ impl Mission {
             | PendingKind::Snapshot
                 if says_no => {}
             _ => self.close_active(),
+        }
+        if self.phase == Phase::Waiting {
+            self.active.first_plan = Some(Err(message.clone()));
         }
         if !self.active.has_plan() {
             // The operator agreed to the plan that was refused, not to one of later.

@@ -5,6 +5,7 @@ mod better_plan;
 mod caught;
 mod covering;
 mod shadow;
+mod start;
 mod stopping;
 mod tethered;
 mod under_way;
@@ -237,6 +238,7 @@ fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        start_names_plan: false,
         better_plan: BetterPlan::Offer,
     }
 }
