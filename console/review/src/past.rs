@@ -37,13 +37,13 @@ pub fn report_text(folder: &Path) -> anyhow::Result<String> {
     Ok(human(&summary(&Past::read(folder)?)?))
 }
 
-/// The inspection report of the run in a folder as a page, a draft; `None` for a mission that was not to scan floor.
+/// The inspection report of the run in a folder as a page, a draft; `None` for readings that were located.
 ///
 /// # Errors
 /// Its journal, or the list of signed reports on it, cannot be read.
 pub fn report_page(folder: &Path) -> anyhow::Result<Option<String>> {
     let past = Past::read(folder)?;
-    if past.run.summary.floor.is_none() {
+    if past.opened.measured.is_some() {
         return Ok(None);
     }
     let (inspection, revisions) = (inspection(&past)?, signed_list(folder)?);

@@ -3,6 +3,7 @@
 use super::{
     Document, RunPart,
     decisions::{MISSED, SCOPE, decisions, is_complete},
+    sections::number_of,
 };
 use crate::{clock, human::text::counted, record::Incident};
 use mission::RunOpened;
@@ -109,7 +110,10 @@ fn scope(document: &Document) -> Answered {
     ]);
     let early = if is_complete(document) { "" } else { ", ended early" };
     let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
-    let answer = format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell");
+    let answer = match &document.task {
+        Some(task) => format!("{}{early}; no scan of the floor", task.words()),
+        None => format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell"),
+    };
     decided(document, SCOPE, (answer, lacks))
 }
 
@@ -130,10 +134,18 @@ fn calibration(document: &Document) -> Answered {
         ("calibration_after", facts.calibration_after.is_some()),
         ("station_check", facts.station_check.is_some()),
     ]);
-    (if lacks.is_empty() { "stated in section 8".into() } else { String::new() }, lacks)
+    (if lacks.is_empty() { format!("stated in section {}", number_of(document.is_to_scan, 8)) } else { String::new() }, lacks)
+}
+
+/// The answer of a report on a run that was not there to scan, to what is asked of scans.
+fn no_scan() -> Answered {
+    ("the mission was not there to scan the floor".to_owned(), Vec::new())
 }
 
 fn plates(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let plates = &document.floor.plates;
     if plates.is_empty() {
         let waiver = document.inspection.plates_waiver.clone();
@@ -152,6 +164,9 @@ fn plates(document: &Document) -> Answered {
 }
 
 fn missed(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let floor = &document.floor;
     let without = floor.missed.iter().filter(|area| area.causes.iter().any(|cause| cause.text.is_empty()));
     let lacks =
@@ -166,6 +181,9 @@ fn missed(document: &Document) -> Answered {
 }
 
 fn unreachable(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(

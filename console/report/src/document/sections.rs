@@ -5,6 +5,7 @@ mod floor;
 mod front;
 mod missed;
 mod runs;
+mod task;
 
 use super::{
     Document,
@@ -15,7 +16,10 @@ use crate::{drawing::sheet::escaped, human::text::counted};
 
 /// The page of a document.
 pub(super) fn sections(document: &Document) -> Page {
-    let sections = [
+    if let Some(task) = &document.task {
+        return front::page(document, numbered(task::sections(document, task)));
+    }
+    let sections = vec![
         section("Scope", front::scope(document)),
         Section { is_new_sheet: true, ..section("Coverage map", floor::map(document)) },
         section("Missed and unreachable floor", missed::missed(document)),
@@ -29,8 +33,20 @@ pub(super) fn sections(document: &Document) -> Page {
         section("Signatures and revisions", closing::signatures(document)),
         section("Provenance", closing::provenance(document)),
     ];
-    let numbered = (1..).zip(sections).map(|(number, section)| Section { number, ..section });
-    front::page(document, numbered.collect())
+    front::page(document, numbered(sections))
+}
+
+fn numbered(sections: Vec<Section>) -> Vec<Section> {
+    (1..).zip(sections).map(|(number, section)| Section { number, ..section }).collect()
+}
+
+/// The sections of the report on a run that was not there to scan, by their numbers in that on one that was.
+const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
+
+/// The number of a section, from that which it has in the report on a run that was there to scan.
+pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
+    let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
+    if is_to_scan { section } else { place }
 }
 
 fn section(title: &'static str, blocks: Vec<Block>) -> Section {
