@@ -22,8 +22,8 @@ pub use gate::GateItem;
 pub use indications::Indication;
 pub use maps::Figure;
 pub use page::html;
-pub use task::TaskPart;
 pub use run_part::{Driver, Files, RunPart, TetherPart};
+pub use task::TaskPart;
 
 use crate::{
     account::{Account, account},
@@ -224,6 +224,7 @@ impl Document {
         let place = |file| indications::indications(file, &flown, &ground);
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
+        let shapes = Shapes::of(&layers, &floor.missed);
         let pictures = Pictures::draw(&layers, &floor, &indications, past);
         let mut document = Self {
             number: number(past),
@@ -241,7 +242,7 @@ impl Document {
             pictures,
             scenario: past[0].fold.run.as_deref().unwrap_or(run).scenario.clone(),
             size: gate::size(run),
-            shapes: Shapes::of(&layers, &floor.missed),
+            shapes,
             is_to_scan,
             task: past.last().and_then(TaskPart::of),
             is_whole_floor: evidence.asks_for_everything(),

@@ -44,10 +44,7 @@ impl<'a> Datum<'a> {
     /// A place, to a tenth of a millimetre.
     pub(crate) fn at(&self, p: Point) -> Value {
         let (sin, cos) = self.turn_rad.sin_cos();
-        json!([
-            rounded(self.east_m + p.x * cos - p.y * sin),
-            rounded(self.north_m + p.x * sin + p.y * cos)
-        ])
+        json!([rounded(self.east_m + p.x * cos - p.y * sin), rounded(self.north_m + p.x * sin + p.y * cos)])
     }
 
     /// Polygons with holes as one geometry.

@@ -191,8 +191,9 @@ fn warnings(planned: &Planned) -> String {
 /// The floor, for people.
 fn floor(floor: &PlannedFloor) -> String {
     let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, scanned, scanned_exact } = floor;
-    let exact =
-        scanned_exact.map(|share| format!(", {} % by exact area", percent_text(share, 2))).unwrap_or_default();
+    let exact = scanned_exact
+        .map(|share| format!(", {} % by exact area", percent_text(share, 2)))
+        .unwrap_or_default();
     format!(
         "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n\
          scanned   {} % of it in cells of the report{exact}\n",

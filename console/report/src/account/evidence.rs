@@ -4,8 +4,8 @@ use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    Boundary, Cell, CellRun, Floor, FloorMaker, KindRun, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch,
-    ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
+    Boundary, Cell, CellRun, Floor, FloorMaker, KindRun, Obstacle, ObstacleId, Point, Pose, Shape,
+    ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.

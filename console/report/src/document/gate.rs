@@ -134,7 +134,14 @@ fn calibration(document: &Document) -> Answered {
         ("calibration_after", facts.calibration_after.is_some()),
         ("station_check", facts.station_check.is_some()),
     ]);
-    (if lacks.is_empty() { format!("stated in section {}", number_of(document.is_to_scan, 8)) } else { String::new() }, lacks)
+    (
+        if lacks.is_empty() {
+            format!("stated in section {}", number_of(document.is_to_scan, 8))
+        } else {
+            String::new()
+        },
+        lacks,
+    )
 }
 
 /// The answer of a report on a run that was not there to scan, to what is asked of scans.

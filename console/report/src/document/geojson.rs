@@ -35,7 +35,11 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
         properties["reachable_floor"] = json!(document.floor.reachable.percent);
     }
     if let Some(task) = &document.task {
-        properties["task"] = task.figures(document).into_iter().map(|(name, m)| (name.to_owned(), json!(rounded(m)))).collect();
+        properties["task"] = task
+            .figures(document)
+            .into_iter()
+            .map(|(name, m)| (name.to_owned(), json!(rounded(m))))
+            .collect();
     }
     let collection = json!({
         "type": "FeatureCollection",

@@ -80,7 +80,8 @@ pub(super) fn indications(
     let mut faults: Vec<Fault> = table.broken.clone();
     faults.extend(table.mixed_marks());
     if runs.len() > 1 && table.has("t_s").or(table.has("time")).is_some() && table.has("run").is_none() {
-        let what = format!("with several runs a column `run` must name the run of each indication: {}", names(runs));
+        let what =
+            format!("with several runs a column `run` must name the run of each indication: {}", names(runs));
         return Err(format!("{file}: line 1: {what}"));
     }
     let mut placed = Vec::new();
@@ -142,12 +143,20 @@ impl Row<'_> {
 
     /// Where the tool was at the time of this row.
     fn on_track<'r>(&self, runs: &'r [Flown<'r>]) -> Result<Placed<'r>, Fault> {
-        let run = self.run_of(runs)?.ok_or_else(|| self.fault("run", format!("must be one of {}", names(runs))))?;
+        let run =
+            self.run_of(runs)?.ok_or_else(|| self.fault("run", format!("must be one of {}", names(runs))))?;
         let (column, t_s) = self.mission_time(run)?;
         let end_s = run.record.track.last().map_or(0.0, |point| f64::from(point.t_s));
         let point = run.record.at(t_s).filter(|_| (0.0..=end_s + 0.5).contains(&t_s)).ok_or_else(|| {
-            let clock = if column == "time" { format!(" is {t_s:.1} s after its beginning, and") } else { String::new() };
-            self.fault(column, format!("{}{clock}: the run lasts from 0 to {end_s:.1} s", self.text_of(column)))
+            let clock = if column == "time" {
+                format!(" is {t_s:.1} s after its beginning, and")
+            } else {
+                String::new()
+            };
+            self.fault(
+                column,
+                format!("{}{clock}: the run lasts from 0 to {end_s:.1} s", self.text_of(column)),
+            )
         })?;
         for (name, offset_m) in [("left_m", self.left_m), ("ahead_m", self.ahead_m)] {
             if offset_m.abs() > run.reach_m + ROUNDING_M {

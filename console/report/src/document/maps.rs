@@ -136,7 +136,10 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     if marks.unnumbered > 0 {
         let unnumbered = counted(marks.unnumbered, "indication");
         let section = number_of(layers.is_to_scan, 7);
-        let _ = write!(note, " {unnumbered} have no room for their numbers: their places are in section {section}.");
+        let _ = write!(
+            note,
+            " {unnumbered} have no room for their numbers: their places are in section {section}."
+        );
     }
     let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
     let missed = if layers.is_to_scan {

@@ -334,7 +334,9 @@ fn ring_with_island() -> Vec<Point> {
     let far = |k: i32| k.abs() == 3;
     let all = (-3..=3).flat_map(|x| (-3..=3).map(move |y| (x, y)));
     let is_missed = |(x, y): &(i32, i32)| far(*x) || far(*y) || (x.abs() <= 1 && y.abs() <= 1);
-    all.filter(is_missed).map(|(x, y)| Point::new(1.05 + 0.1 * f64::from(x), 0.55 + 0.1 * f64::from(y))).collect()
+    all.filter(is_missed)
+        .map(|(x, y)| Point::new(1.05 + 0.1 * f64::from(x), 0.55 + 0.1 * f64::from(y)))
+        .collect()
 }
 
 fn area_m2(ring: &serde_json::Value) -> f64 {
@@ -374,7 +376,8 @@ fn zones_stations_and_plates_are_in_the_files_for_other_programs() {
     let document = Document::new(&runs, Context::default()).unwrap();
     let map: serde_json::Value = serde_json::from_str(&geojson::geojson(&document, &runs)).unwrap();
     let named = |layer: &str, name: &str| {
-        let is_it = |f: &&serde_json::Value| f["properties"]["layer"] == layer && f["properties"]["name"] == name;
+        let is_it =
+            |f: &&serde_json::Value| f["properties"]["layer"] == layer && f["properties"]["name"] == name;
         map["features"].as_array().unwrap().iter().find(is_it).unwrap()["geometry"]["type"].clone()
     };
     let types = [named("no_go_zones", "sump"), named("stations", "S3"), named("plates", "A-01")];
@@ -390,7 +393,10 @@ fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
     let path = vec![Point::new(-1.75, 0.0), Point::new(1.75, 0.0)];
     let follow = TaskConfig::Follow { path, tolerance_m: 0.2 };
     let goto = TaskConfig::Goto { goal: Point::new(1.0, 1.0), tolerance_m: 0.1 };
-    for (task, figures) in [(follow, ["preset path of 2 points, 3.5 m", "preset_path_m,3.5"]), (goto, ["goal at 1.00, 1.00 m", "straight_to_goal_m,2.926"])] {
+    for (task, figures) in [
+        (follow, ["preset path of 2 points, 3.5 m", "preset_path_m,3.5"]),
+        (goto, ["goal at 1.00, 1.00 m", "straight_to_goal_m,2.926"]),
+    ] {
         let mut run = round_tank(0.1);
         run.mission.task = task;
         let missed: Vec<Point> = ring_with_island();
@@ -402,11 +408,14 @@ fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
         let texts = [geojson::geojson(&document, &runs), dxf::dxf(&document, &runs), json.clone()];
         assert!(page.contains(figures[0]) && tables[0].contains(figures[1]), "{}", tables[0]);
         assert!(tables[1].lines().count() == 1 && tables[2].lines().count() == 1, "{tables:?}");
-        assert!(texts.iter().all(|text| !text.contains("\"missed\"") && !text.contains("POLYLINE\n8\nMISSED")));
+        assert!(
+            texts.iter().all(|text| !text.contains("\"missed\"") && !text.contains("POLYLINE\n8\nMISSED"))
+        );
         assert!(!json.contains("missed_area_m2\":0") && !json.contains("critical_zone\":"), "{json}");
         assert!(!page.contains("% of the reachable floor was scanned") && !page.contains(">missed<"), "page");
         let asked: Vec<&String> = document.gate.iter().flat_map(|item| &item.missing).collect();
-        let unwanted = ["inspection.missed_accepted", "inspection.critical_zone_accepted", "inspection.plates_waiver"];
+        let unwanted =
+            ["inspection.missed_accepted", "inspection.critical_zone_accepted", "inspection.plates_waiver"];
         assert!(asked.iter().all(|key| !unwanted.contains(&key.as_str())), "{asked:?}");
         for section in 1..=9 {
             assert!(page.contains(&format!(r#"<h2 id="s{section}">"#)), "section {section}");
@@ -427,12 +436,17 @@ fn a_run_that_was_not_there_to_scan_is_reported_alone() {
 
 #[test]
 fn a_run_without_a_plan_and_without_a_tether_speaks_of_neither() {
-    let document = Document::new(&[past_of(round_tank(0.1), &ring_with_island())], Context::default()).unwrap();
+    let document =
+        Document::new(&[past_of(round_tank(0.1), &ring_with_island())], Context::default()).unwrap();
     let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
     assert!(reasons.contains("the run had no plan") && !reasons.contains("lanes"), "{reasons}");
     let mut cut = past_without(&ring_with_island());
     let plan = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
-    cut.fold.evidence.as_mut().unwrap().plan(&plan, &[vec![Point::new(1.0, 5.0), Point::new(1.0, -5.0)]], true);
+    cut.fold.evidence.as_mut().unwrap().plan(
+        &plan,
+        &[vec![Point::new(1.0, 5.0), Point::new(1.0, -5.0)]],
+        true,
+    );
     cut.summary = cut.fold.summary();
     let page = html(&Document::new(&[cut], Context::default()).unwrap());
     assert!(!page.contains("unwound") && !page.contains("start and anchor"), "no tether");

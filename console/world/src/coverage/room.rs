@@ -41,8 +41,11 @@ impl Room {
     ) -> Self {
         let solids: Vec<Obstacle> = (0..)
             .zip(shapes)
-            .map(|(id, shape)| {
-                Obstacle { id: ObstacleId(id), name: String::new(), shape: shape.clone(), known: true }
+            .map(|(id, shape)| Obstacle {
+                id: ObstacleId(id),
+                name: String::new(),
+                shape: shape.clone(),
+                known: true,
             })
             .collect();
         let mut cores = Core::of_wall(boundary);

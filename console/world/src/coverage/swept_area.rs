@@ -328,7 +328,8 @@ mod tests {
         let corners = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.202), (0.0, 1.202)];
         let boundary = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
         let floor = FloorMaker::new(&world(boundary.clone(), vec![]), 0.1, 0.1, 0.6, Point::new(1.0, 0.6));
-        let (mut cells, mut area) = (CoverageGrid::new(floor.clone().into_floor()), SweptArea::new(&boundary));
+        let (mut cells, mut area) =
+            (CoverageGrid::new(floor.clone().into_floor()), SweptArea::new(&boundary));
         for y in [0.3, 0.902] {
             for (a, b) in [(0.0, 3.0), (3.0, 6.0)] {
                 let (a, b) = (Pose::new(a, y, 0.0), Pose::new(b, y, 0.0));

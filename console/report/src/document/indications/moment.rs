@@ -45,10 +45,8 @@ pub(in crate::document) fn began(name: &str) -> Option<Timestamp> {
     let stamp = name.split('-').next()?;
     let at = |range: std::ops::Range<usize>| stamp.get(range);
     let is_stamp = stamp.len() == 16 && stamp.as_bytes()[8] == b'T' && stamp.ends_with('Z');
-    let text = format!(
-        "{}-{}-{}T{}:{}:{}Z",
-        at(0..4)?, at(4..6)?, at(6..8)?, at(9..11)?, at(11..13)?, at(13..15)?
-    );
+    let text =
+        format!("{}-{}-{}T{}:{}:{}Z", at(0..4)?, at(4..6)?, at(6..8)?, at(9..11)?, at(11..13)?, at(13..15)?);
     text.parse().ok().filter(|_| is_stamp)
 }
 

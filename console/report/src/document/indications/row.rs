@@ -39,7 +39,11 @@ impl<'a> Row<'a> {
     ///
     /// # Errors
     /// Everything that is wrong with its cells.
-    pub(super) fn of(table: &'a Table, cells: &'a Cells, thickness_mm: Option<f64>) -> Result<Self, Vec<Fault>> {
+    pub(super) fn of(
+        table: &'a Table,
+        cells: &'a Cells,
+        thickness_mm: Option<f64>,
+    ) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let [t_s, left_m, ahead_m, x_m, y_m, size_mm, depth_mm] = NUMBERS.map(|name| {
             number(table.cell(cells, name)).unwrap_or_else(|what| {
@@ -76,9 +80,10 @@ impl<'a> Row<'a> {
             (Some(_), Some(_), _) if left_m.or(ahead_m).is_some() => {
                 Some(("left_m", "x_m and y_m say where it lies: leave left_m and ahead_m empty"))
             }
-            (Some(_), Some(_), true) => {
-                Some(("x_m", "the row says both when it was found and where it lies: leave one of them empty"))
-            }
+            (Some(_), Some(_), true) => Some((
+                "x_m",
+                "the row says both when it was found and where it lies: leave one of them empty",
+            )),
             (Some(_), Some(_), false) | (None, None, true) => None,
             (Some(_), None, _) if !is_bad("y_m") => Some(("y_m", "empty; x_m and y_m belong together")),
             (None, Some(_), _) if !is_bad("x_m") => Some(("x_m", "empty; x_m and y_m belong together")),
@@ -124,7 +129,10 @@ impl<'a> Row<'a> {
             (None, _) => Ok(("t_s", self.t_s.unwrap_or(0.0))),
             (Some(clock), Some(began)) => Ok(("time", clock.after_s(began))),
             (Some(_), None) => {
-                let what = format!("when run {} began is not in the name of its folder; give t_s, the mission time", run.name);
+                let what = format!(
+                    "when run {} began is not in the name of its folder; give t_s, the mission time",
+                    run.name
+                );
                 Err(self.fault("time", what))
             }
         }
@@ -145,6 +153,8 @@ fn number(text: &str) -> Result<Option<f64>, String> {
     match read {
         Some(value) if value.is_finite() && value.abs() <= MOST => Ok(Some(value)),
         Some(_) => Err(format!("`{text}`: must be a finite number")),
-        None => Err(format!("`{text}` is no number; write 12.5 or 12,5, without marks for thousands and without units")),
+        None => Err(format!(
+            "`{text}` is no number; write 12.5 or 12,5, without marks for thousands and without units"
+        )),
     }
 }

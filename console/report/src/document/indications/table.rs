@@ -41,8 +41,10 @@ impl Table {
     pub(super) fn read(text: &str) -> Result<Self, Fault> {
         // The reader counts a line when it has come to its end.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end().to_owned() + "\n";
-        let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
-        let delimiter = [b';', b'\t'].into_iter().find(|mark| first.as_bytes().contains(mark)).unwrap_or(b',');
+        let first =
+            text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
+        let delimiter =
+            [b';', b'\t'].into_iter().find(|mark| first.as_bytes().contains(mark)).unwrap_or(b',');
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter)
             .comment(Some(b'#'))
@@ -75,9 +77,7 @@ impl Table {
         }
         let table = Self { names, rows, broken };
         match (table.has("t_s").or(table.has("time")), table.has("x_m").zip(table.has("y_m"))) {
-            (None, None) => {
-                Err(at_line(1, "no column says where: add t_s or time, or x_m and y_m".into()))
-            }
+            (None, None) => Err(at_line(1, "no column says where: add t_s or time, or x_m and y_m".into())),
             _ if table.has("x_m").is_some() != table.has("y_m").is_some() => {
                 Err(at_line(1, "x_m and y_m belong together".into()))
             }
@@ -106,11 +106,14 @@ impl Table {
     /// A file in which some numbers have a decimal comma and others a decimal point: which is which nobody can tell.
     pub(super) fn mixed_marks(&self) -> Option<Fault> {
         let marked = |mark: char| {
-            let has = |cells: &&Cells| super::row::NUMBERS.iter().any(|name| self.cell(cells, name).contains(mark));
+            let has =
+                |cells: &&Cells| super::row::NUMBERS.iter().any(|name| self.cell(cells, name).contains(mark));
             self.rows.iter().find(has).map(|cells| cells.line)
         };
         let (comma, point) = (marked(',')?, marked('.')?);
-        let what = format!("numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep to one");
+        let what = format!(
+            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep to one"
+        );
         Some(Fault { line: comma.min(point), column: None, what })
     }
 }

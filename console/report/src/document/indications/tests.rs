@@ -17,7 +17,6 @@ fn record() -> Record {
     record
 }
 
-
 /// A tank of radius 12 m with a column of radius 0.3 m at (5, 0.25).
 fn nearest_solid(at: Point) -> (String, f64) {
     let (wall_m, column_m) = (12.0 - at.coords.norm(), (at - Point::new(5.0, 0.25)).norm() - 0.3);
@@ -28,11 +27,8 @@ fn read(text: &str, names: &[&str]) -> Result<Vec<Indication>, String> {
     let record = record();
     let run = |name| Flown { name, record: &record, began: began(name), reach_m: 0.3 };
     let runs: Vec<Flown<'_>> = names.iter().copied().map(run).collect();
-    let ground = Ground {
-        thickness_mm: Some(8.0),
-        nearest_solid: &nearest_solid,
-        plate_at: &|_| Some("R-01".into()),
-    };
+    let ground =
+        Ground { thickness_mm: Some(8.0), nearest_solid: &nearest_solid, plate_at: &|_| Some("R-01".into()) };
     indications(("found.csv", text), &runs, &ground)
 }
 
@@ -55,7 +51,11 @@ fn an_indication_lies_beside_the_robot_at_its_time_with_the_error_of_then() {
 
 #[test]
 fn semicolons_tabs_and_decimal_commas_are_read_as_other_programs_write_them() {
-    for text in ["t_s;left_m;depth_mm\n4,3;0,2;2,4\n", "\u{feff}T_S\tleft_m\tdepth_mm\n4,3\t0,2\t2,4\n", "t_s,left_m,depth_mm\n\"4,3\",\"0,2\",\"2,4\"\n"] {
+    for text in [
+        "t_s;left_m;depth_mm\n4,3;0,2;2,4\n",
+        "\u{feff}T_S\tleft_m\tdepth_mm\n4,3\t0,2\t2,4\n",
+        "t_s,left_m,depth_mm\n\"4,3\",\"0,2\",\"2,4\"\n",
+    ] {
         let pit = one(text);
         assert_eq!((pit.t_s, pit.depth_mm), (Some(4.3), Some(2.4)), "{text}");
     }
@@ -104,7 +104,10 @@ fn every_fault_has_its_line_and_column() {
     assert!(refused("t_s,x,y\n1,2,3\n").contains("says both when it was found and where it lies"));
     assert!(refused("t_s,x,y\n,2,\n").contains("line 2, y_m: empty; x_m and y_m belong together"));
     assert!(refused("kind\npit\n").contains("line 1: no column says where"));
-    assert!(refused("time\n2026-13-01T00:00:00Z\n").contains("line 2, time: `2026-13-01T00:00:00Z` is no time of day"));
+    assert!(
+        refused("time\n2026-13-01T00:00:00Z\n")
+            .contains("line 2, time: `2026-13-01T00:00:00Z` is no time of day")
+    );
 }
 
 #[test]
@@ -114,7 +117,11 @@ fn with_several_runs_each_indication_names_its_own() {
     assert_eq!(two("run,t_s\nc,1\n").unwrap_err(), "found.csv: line 2, run: c: must be one of a, b");
     assert_eq!(two("run,t_s\nb,1\n").unwrap()[0].run.as_deref(), Some("b"));
     assert_eq!(two("x,y\n1,1\n").unwrap()[0].run, None);
-    assert!(two("run,time\nb,04:01:02\n").unwrap_err().contains("line 2, time: when run b began is not in the name"));
+    assert!(
+        two("run,time\nb,04:01:02\n")
+            .unwrap_err()
+            .contains("line 2, time: when run b began is not in the name")
+    );
 }
 
 #[test]

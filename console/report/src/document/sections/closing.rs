@@ -82,7 +82,8 @@ pub(super) fn limitations(document: &Document) -> Vec<Block> {
     items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
     items.extend([
         "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
-        "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the code that applies."
+            .to_owned(),
     ]);
     let code = Value::fact(document.inspection.code.as_ref(), "code");
     vec![Block::List(items), Block::Facts(vec![("Code and edition", code)])]

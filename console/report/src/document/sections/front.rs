@@ -42,7 +42,10 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
         answered,
         items: document.gate.len(),
         fields: fields(document),
-        verdict: document.task.as_ref().map_or_else(|| verdict(document), |task| task::verdict(document, task)),
+        verdict: document
+            .task
+            .as_ref()
+            .map_or_else(|| verdict(document), |task| task::verdict(document, task)),
         shares: document.task.as_ref().map_or_else(|| shares(document), |task| task::shares(document, task)),
         bases: document.is_to_scan.then(|| bases(document)),
         todo: todo(document),

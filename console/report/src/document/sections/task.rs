@@ -32,7 +32,9 @@ pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
     let what = task.words();
     let lead = match outcome {
         Some(Outcome::Complete) => format!("The task is complete: {what}."),
-        Some(other) => format!("Not complete: {what}. The mission ended ({}).", other.word().replace('_', " ")),
+        Some(other) => {
+            format!("Not complete: {what}. The mission ended ({}).", other.word().replace('_', " "))
+        }
         None => format!("Not complete: {what}. The recording stops before the end of the mission."),
     };
     let is_complete = outcome == Some(Outcome::Complete);
@@ -46,7 +48,8 @@ pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
 
 /// The large figures.
 pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
-    let figure = |value: String, unit: &'static str, of: &'static str, about: String| Share { value, unit, of, about };
+    let figure =
+        |value: String, unit: &'static str, of: &'static str, about: String| Share { value, unit, of, about };
     match task {
         TaskPart::Follow { tracking: Some(tracking), .. } => {
             let near_m = Tracking::NEAR_M;
@@ -76,11 +79,16 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
             let run = document.runs.last();
             let by = if left_true_m.is_some() { "by the true position" } else { "by the estimated position" };
             let left = left_true_m.or(*left_m).map(|m| {
-                figure(number(m, 2), "m", "to the goal at the end", format!("{by}; reached within {tolerance_m} m"))
+                figure(
+                    number(m, 2),
+                    "m",
+                    "to the goal at the end",
+                    format!("{by}; reached within {tolerance_m} m"),
+                )
             });
-            let path = run.and_then(|run| run.path_length_m).map(|m| {
-                figure(number(m, 1), "m", "path", "driven, by the true position".into())
-            });
+            let path = run
+                .and_then(|run| run.path_length_m)
+                .map(|m| figure(number(m, 1), "m", "path", "driven, by the true position".into()));
             let time = run.map(|run| {
                 figure(number(run.mission_time_s, 1), "s", "mission time", clock(run.mission_time_s))
             });
@@ -102,7 +110,8 @@ fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
 
 /// The figures of the task, and the map.
 fn figures(document: &Document, task: &TaskPart) -> Vec<Block> {
-    let mut table = Table::new("Figures of the task", &[("Figure", "", ""), ("Value", "", "r nw"), ("", "", "full")]);
+    let mut table =
+        Table::new("Figures of the task", &[("Figure", "", ""), ("Value", "", "r nw"), ("", "", "full")]);
     for (name, value, note) in rows(document, task) {
         table.row(vec![name.into(), value.into(), Value::from(note)]);
     }
@@ -114,9 +123,17 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
     let none = String::new;
     let mut rows = match task {
         TaskPart::Goto { goal, tolerance_m, straight_m, left_m, left_true_m } => vec![
-            ("Goal", format!("{}, {} m", number(goal.x, 2), number(goal.y, 2)), format!("reached within {tolerance_m} m")),
+            (
+                "Goal",
+                format!("{}, {} m", number(goal.x, 2), number(goal.y, 2)),
+                format!("reached within {tolerance_m} m"),
+            ),
             ("Straight from start to goal", metres(*straight_m, 2), none()),
-            ("Distance to the goal at the end", left_m.map_or_else(none, |m| metres(m, 3)), "by the estimated position".into()),
+            (
+                "Distance to the goal at the end",
+                left_m.map_or_else(none, |m| metres(m, 3)),
+                "by the estimated position".into(),
+            ),
             (
                 "Distance to the goal at the end",
                 left_true_m.map_or_else(none, |m| metres(m, 3)),
@@ -127,18 +144,42 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
             let mut rows = vec![("Preset path", metres(*preset_m, 2), format!("{points} points"))];
             if let Some(tracking) = tracking {
                 let near_m = Tracking::NEAR_M;
-                rows.push(("Precision", format!("{} %", per_cent(tracking.precision)), format!("of the driven path within {near_m} m of the preset path")));
-                rows.push(("Recall", format!("{} %", per_cent(tracking.recall)), format!("of the preset points within {near_m} m of the driven path")));
-                rows.push(("RMS error, cross-track", metres(tracking.cross_track_rmse_m, 3), "from the preset path".into()));
-                rows.extend(tracking.rmse_m.map(|m| ("RMS error", metres(m, 3), "from the preset points, in their order".to_owned())));
+                rows.push((
+                    "Precision",
+                    format!("{} %", per_cent(tracking.precision)),
+                    format!("of the driven path within {near_m} m of the preset path"),
+                ));
+                rows.push((
+                    "Recall",
+                    format!("{} %", per_cent(tracking.recall)),
+                    format!("of the preset points within {near_m} m of the driven path"),
+                ));
+                rows.push((
+                    "RMS error, cross-track",
+                    metres(tracking.cross_track_rmse_m, 3),
+                    "from the preset path".into(),
+                ));
+                rows.extend(tracking.rmse_m.map(|m| {
+                    ("RMS error", metres(m, 3), "from the preset points, in their order".to_owned())
+                }));
             }
             rows
         }
     };
     if let Some(run) = document.runs.last() {
-        rows.extend(run.path_length_m.map(|m| ("Path", metres(m, 2), "by the true position; simulation only".to_owned())));
-        rows.push(("Mission time", format!("{} s", number(run.mission_time_s, 1)), clock(run.mission_time_s)));
-        rows.extend(run.clearance_min_m.map(|m| ("Least clearance", metres(m, 3), format!("required: {} m", run.clearance_m))));
+        rows.extend(
+            run.path_length_m
+                .map(|m| ("Path", metres(m, 2), "by the true position; simulation only".to_owned())),
+        );
+        rows.push((
+            "Mission time",
+            format!("{} s", number(run.mission_time_s, 1)),
+            clock(run.mission_time_s),
+        ));
+        rows.extend(
+            run.clearance_min_m
+                .map(|m| ("Least clearance", metres(m, 3), format!("required: {} m", run.clearance_m))),
+        );
         rows.extend(run.collisions.map(|n| ("Collisions", n.to_string(), none())));
     }
     rows.retain(|(_, value, _)| !value.is_empty());

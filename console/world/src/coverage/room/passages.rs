@@ -65,7 +65,8 @@ impl Connected {
         let doubtful = doubtful(floor, room, &necks);
         let mut groups = Groups::of_cells(room, floor, has_room, &doubtful);
         for neck in necks.iter().filter(|neck| room.has(neck.at)) {
-            let [one, other] = [neck.through, -neck.through].map(|way| groups.follow(room, floor, neck.at, way));
+            let [one, other] =
+                [neck.through, -neck.through].map(|way| groups.follow(room, floor, neck.at, way));
             groups.join(one, other);
         }
         for corner in room.corners() {
@@ -94,7 +95,8 @@ impl Connected {
 impl Groups {
     /// Groups of cells with room that lie side by side; where it is doubtful, only with room on the way between them.
     fn of_cells(room: &Room, floor: &Floor, has_room: &[bool], doubtful: &[bool]) -> Self {
-        let mut groups = Self { of_cell: vec![NONE; has_room.len()], parents: vec![], trails: BTreeMap::new() };
+        let mut groups =
+            Self { of_cell: vec![NONE; has_room.len()], parents: vec![], trails: BTreeMap::new() };
         let leads = |from: usize, to: usize| {
             !(doubtful[from] || doubtful[to]) || room.is_way(floor.center(from), floor.center(to))
         };
@@ -136,7 +138,13 @@ impl Groups {
     }
 
     /// The group to which the robot can drive straight from a place with room, towards `ahead` if that is given.
-    fn seen_from(&self, room: &Room, floor: &Floor, place: Point, ahead: Option<(Point, Vector)>) -> Option<u32> {
+    fn seen_from(
+        &self,
+        room: &Room,
+        floor: &Floor,
+        place: Point,
+        ahead: Option<(Point, Vector)>,
+    ) -> Option<u32> {
         let (column, row) = cell_under(floor, place);
         let mut seen: Vec<(Point, u32)> = Vec::new();
         for y in row - ABOUT_CELLS..=row + ABOUT_CELLS {
@@ -144,9 +152,10 @@ impl Groups {
                 seen.extend(self.trails.get(&(x, y)).into_iter().flatten());
                 let is_cell = (0..floor.width as i64).contains(&x) && (0..floor.height as i64).contains(&y);
                 let cell = is_cell.then(|| y as usize * floor.width + x as usize);
-                seen.extend(cell.filter(|cell| self.of_cell[*cell] != NONE).map(|cell| {
-                    (floor.center(cell), self.of_cell[cell])
-                }));
+                seen.extend(
+                    cell.filter(|cell| self.of_cell[*cell] != NONE)
+                        .map(|cell| (floor.center(cell), self.of_cell[cell])),
+                );
             }
         }
         seen.retain(|(at, _)| ahead.is_none_or(|(from, way)| (at - from).dot(&way) > TIE_M));
@@ -279,7 +288,8 @@ impl Core {
             (nearest_on_segment(self.a, self.b, other.b), other.b),
         ];
         let apart_m = |(one, other): &(Point, Point)| (other - one).norm();
-        let (one, to) = pairs.into_iter().min_by(|a, b| apart_m(a).total_cmp(&apart_m(b))).unwrap_or(pairs[0]);
+        let (one, to) =
+            pairs.into_iter().min_by(|a, b| apart_m(a).total_cmp(&apart_m(b))).unwrap_or(pairs[0]);
         let way = (to - one).try_normalize(0.0).unwrap_or_else(Vector::zeros);
         (one + way * self.radius_m, to - way * other.radius_m)
     }

@@ -114,11 +114,7 @@ fn of_arc((center, radius_m): (Point, f64), a: Point, b: Point) -> Vec<Point> {
     }
     let half_m = (radius_m * radius_m - off_m * off_m).max(0.0).sqrt();
     let is_on = |at_m: &f64| (-TOUCH_M..=length_m + TOUCH_M).contains(at_m);
-    [to_foot_m - half_m, to_foot_m + half_m]
-        .into_iter()
-        .filter(is_on)
-        .map(|at_m| a + along * at_m)
-        .collect()
+    [to_foot_m - half_m, to_foot_m + half_m].into_iter().filter(is_on).map(|at_m| a + along * at_m).collect()
 }
 
 fn of_sides((a, b): (Point, Point), (c, d): (Point, Point)) -> Vec<Point> {
