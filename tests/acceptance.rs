@@ -23,6 +23,9 @@ mod engines;
 #[path = "acceptance/faults.rs"]
 mod faults;
 #[cfg(target_os = "linux")]
+#[path = "acceptance/foreign.rs"]
+mod foreign_files;
+#[cfg(target_os = "linux")]
 #[path = "acceptance/hostile.rs"]
 mod hostile;
 #[path = "acceptance/imported.rs"]
@@ -65,6 +68,8 @@ mod signing;
 #[cfg(target_os = "linux")]
 #[path = "acceptance/slurm.rs"]
 mod slurm;
+#[path = "acceptance/stopping.rs"]
+mod stopping;
 #[cfg(unix)]
 #[path = "acceptance/terminal.rs"]
 mod terminal;

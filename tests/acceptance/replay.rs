@@ -23,7 +23,7 @@ fn a_run_is_listed_verified_and_exported() {
     assert_eq!(exported.code, Some(0), "{exported:?}");
     let again = bench.tankops(&["export", name, "--rrd", "again.rrd"]);
     assert_eq!(again.code, Some(2), "{again:?}");
-    assert!(again.err.contains("never overwritten"), "{again:?}");
+    assert!(again.err.contains("already exists; choose another name"), "{again:?}");
 }
 
 #[test]

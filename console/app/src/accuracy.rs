@@ -2,7 +2,7 @@
 
 use crate::{
     cli::AccuracyArgs,
-    output::{say_json, write_file},
+    output::{check_free, say_json, write_file},
 };
 use flight::{
     failure::{COMPLETE, bad_input},
@@ -10,7 +10,7 @@ use flight::{
 };
 use positioning::{AccuracyMap, advise};
 use report::{
-    forecast::{ForecastReport, clearance_warning, forecast},
+    forecast::{ForecastReport, clearance_warning, forecast, mirror_warning},
     print::{say, warn_line},
 };
 use scenario::Scenario;
@@ -19,6 +19,7 @@ use std::process::ExitCode;
 /// `tankops accuracy`.
 pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
+    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let forecast = forecast(mission, &drawing);
     let map = AccuracyMap::new(&drawing, &forecast);
@@ -36,9 +37,10 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// Warns of a scan with so little clearance that the position error may use it up.
-pub(crate) fn warn_of_clearance(scenario: &Scenario) {
-    if let Some(warning) = clearance_warning(&scenario.mission, &scenario.sim.world.as_drawn()) {
+/// Warns of a scan with so little clearance that the position error may use it up, and of stations on a line.
+pub(crate) fn warn_of_positions(scenario: &Scenario) {
+    let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
+    for warning in [clearance_warning(mission, &drawing), mirror_warning(mission, &drawing)].into_iter().flatten() {
         warn_line(&format!("warning: {}: {warning}", scenario.shown_name));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::cli::EventsArgs;
 use flight::failure::COMPLETE;
+use foreign::plain_json;
 use recording::{JournalLine, JournalReader, journal_of};
 use report::print::warn_line;
 use runs::find;
@@ -33,7 +34,9 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
         if t_s < from_s || !is_wanted(&line, &args.kind) {
             continue;
         }
-        if let Err(error) = out.write_all(line.raw).and_then(|()| out.write_all(b"\n")) {
+        // The same values, whatever characters they have.
+        let text = String::from_utf8_lossy(line.raw);
+        if let Err(error) = out.write_all(plain_json(&text).as_bytes()).and_then(|()| out.write_all(b"\n")) {
             return ended(&error);
         }
     }

@@ -1,6 +1,6 @@
 //! `tankops export`: a past run as another file.
 
-use crate::cli::ExportArgs;
+use crate::{cli::ExportArgs, output::check_free};
 use ::locate::MeasuredWriter;
 use anyhow::Context;
 use flight::failure::{COMPLETE, bad_input};
@@ -18,8 +18,8 @@ use std::{
 pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
     let to = &args.to;
-    if let Some(there) = [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten().find(|file| file.exists()) {
-        return Err(bad_input(format!("{} already exists; exports are never overwritten", there.display())));
+    for file in [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten() {
+        check_free(file, None)?;
     }
     let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
         let written = write(&folder, file);

@@ -1,7 +1,7 @@
 //! Flying a mission without a terminal: `tankops run`, and `tankops` where there is no terminal.
 
 use crate::{
-    accuracy::warn_of_clearance,
+    accuracy::warn_of_positions,
     cli::{LogsArg, RunArgs},
     output::pretty_json,
     progress,
@@ -66,7 +66,7 @@ fn fly_beside(
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     planners::check_installed(scenario, plugins)?;
-    warn_of_clearance(scenario);
+    warn_of_positions(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {
         RunLog::create(&logs.folder(), &scenario.name, &scenario.mission.planner.id, scenario.seed)?

@@ -1,6 +1,9 @@
 //! `tankops import`: a scenario from a drawing or a list of columns.
 
-use crate::{cli::ImportArgs, output::write_file};
+use crate::{
+    cli::ImportArgs,
+    output::{check_free, write_file},
+};
 use ::import::{FloorPlan, ImportError, columns, drawing};
 use flight::failure::{COMPLETE, bad_input};
 use report::print::{say, say_line};
@@ -14,8 +17,8 @@ const LISTED: usize = 10;
 /// `tankops import FILE -o SCENARIO`.
 pub(crate) fn import(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
-    if output.exists() {
-        return Err(bad_input(format!("{} already exists; choose another name", output.display())));
+    for file in [Some(output), args.svg.as_ref()].into_iter().flatten() {
+        check_free(file, Some(args.force))?;
     }
     let plan = read(args)?;
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();

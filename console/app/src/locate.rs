@@ -1,15 +1,19 @@
 //! `tankops locate`: readings of a real system to fixes, track, recording and report.
 
+mod words;
+
 use crate::{
     cli::{FindArg, LocateArgs},
-    output::say_json,
+    input,
+    output::{check_free, say_json},
 };
-use ::locate::{Fixes, Survey, Tally, Task};
+use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
 use flight::{
-    failure::{COMPLETE, bad_input, exit_code},
+    failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
     scenarios,
 };
 use mission::Event;
+use positioning::Wrong;
 use report::{
     Expect, PlannerCalls,
     print::{say, say_line, warn_line},
@@ -17,16 +21,14 @@ use report::{
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
 use serde::Serialize;
+use world::StationId;
 use std::{
-    fmt::Write as _,
+    collections::BTreeMap,
     fs::File,
     io::{self, BufWriter},
     path::Path,
     process::ExitCode,
 };
-
-/// A speed of sound that is less known than this, as a share, does not serve to correct ranges.
-const DOUBTFUL_SCALE: f64 = 0.005;
 
 /// The figures as JSON.
 #[derive(Serialize)]
@@ -41,8 +43,63 @@ struct Figures<'a> {
     range_scale: Option<[f64; 2]>,
     /// By how much ranges were too long because clocks differ, metres, and its standard deviation.
     clock_offset_m: Option<[f64; 2]>,
+    /// What the residuals of the whole session say, with what was found out taken out.
+    session: Session<'a>,
+    /// Stations with several readings in one emission.
+    repeated_readings: Option<RepeatedReadings<'a>>,
+    sides: Sides,
+    /// Readings that no place in the tank explains.
+    impossible: Vec<Impossible<'a>>,
+    /// The first time of the file, in UTC, where times have dates.
+    first_time: Option<&'a str>,
     #[serde(flatten)]
     tally: &'a Tally,
+}
+
+#[derive(Serialize)]
+struct Session<'a> {
+    /// By which share all ranges are too long.
+    scale: Option<TooLong>,
+    /// By how many metres those of each station are too long.
+    stations_m: BTreeMap<&'a str, TooLong>,
+}
+
+#[derive(Serialize)]
+struct TooLong {
+    value: f64,
+    sigma: f64,
+    /// More than chance, and more than the stated errors allow for.
+    proven: bool,
+}
+
+#[derive(Serialize)]
+struct RepeatedReadings<'a> {
+    emissions: u64,
+    scatter_over_noise: f64,
+    suspect: bool,
+    widest_station: &'a str,
+    widest_m: f64,
+    /// Mission time, seconds.
+    widest_t_s: f64,
+}
+
+/// Fixes with a mirror image, by what decides between the two.
+#[derive(Serialize)]
+struct Sides {
+    by_walls: u64,
+    by_start_and_track: u64,
+    undecided: u64,
+}
+
+#[derive(Serialize)]
+struct Impossible<'a> {
+    station: &'a str,
+    count: u64,
+    /// Metres; absent if it is no number.
+    first_m: Option<f64>,
+    most_m: f64,
+    /// Mission time, seconds.
+    first_t_s: f64,
 }
 
 /// `tankops locate READINGS --scenario FILE`.
@@ -54,33 +111,38 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
             scenario.shown_name
         )));
     }
+    let readings = input::file(&args.readings)?;
     let task = Task {
-        file: &args.readings,
+        file: readings.path(),
+        shown: readings.shown(),
         scenario: &scenario,
         sound_speed_m_s: args.sound_speed,
         finds_sound_speed: args.find.contains(&FindArg::SoundSpeed),
         finds_clock_offset: args.find.contains(&FindArg::ClockOffset),
         skips_bad_rows: args.skip_bad_rows,
     };
-    if let Some(file) = args.output.as_ref().filter(|file| file.exists()) {
-        return Err(bad_input(format!("{} already exists; choose another name", file.display())));
-    }
+    args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let survey = task.survey()?;
-    let (tally, kept) = located(args, &task, &survey)?;
+    let (tally, doubts, kept) = located(args, &task, &survey)?;
     if args.json {
-        say_json("the figures", &figures(args, &survey, &tally))?;
+        say_json("the figures", &figures(args, &scenario, &survey, (&tally, &doubts)))?;
     } else {
-        say(&human(args, &scenario, &survey, &tally))?;
+        say(&words::human(args, &scenario, &survey, (&tally, &doubts), readings.shown()))?;
     }
     match &kept {
         Some(kept) if kept.problem().is_some() => warn_line(&kept.text()),
         Some(kept) if !args.json => say_line(&kept.text())?,
         _ => {}
     }
-    Ok(ExitCode::from(exit_code(COMPLETE, kept.as_ref())))
+    let result = if tally.has_fix() { COMPLETE } else { ENDED_OTHERWISE };
+    Ok(ExitCode::from(exit_code(result, kept.as_ref())))
 }
 
-fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(Tally, Option<Kept>)> {
+fn located(
+    args: &LocateArgs,
+    task: &Task,
+    survey: &Survey,
+) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
     let scenario = task.scenario;
     let mut table = args.output.as_deref().map(|file| table(file, scenario)).transpose()?;
     let mut log = if args.no_record {
@@ -89,7 +151,7 @@ fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(T
         Some(RunLog::create(&args.logs.folder(), &scenario.name, "located", scenario.seed)?)
     };
     let (mut tally, mut refused) = (Tally::default(), None);
-    task.locate(survey, |events: &[Event]| {
+    let doubts = task.locate(survey, |events: &[Event]| {
         tally.take(events);
         if let Some(log) = &mut log {
             log.keep(events);
@@ -104,7 +166,7 @@ fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(T
     }
     let calls = PlannerCalls { plan: 0, step: 0, p50_us: None, p99_us: None, faults: 0 };
     let kept = log.and_then(|log| log.close(CLOSE_TIMEOUT, calls, None, &Expect::default()).kept);
-    Ok((tally, kept))
+    Ok((tally, doubts, kept))
 }
 
 fn table(file: &Path, scenario: &Scenario) -> anyhow::Result<Fixes<BufWriter<File>>> {
@@ -117,7 +179,12 @@ fn not_written(file: &Path, error: &io::Error) -> anyhow::Error {
     bad_input(format!("the fixes cannot be written: {error}: {}", file.display()))
 }
 
-fn figures<'a>(args: &LocateArgs, survey: &'a Survey, tally: &'a Tally) -> Figures<'a> {
+fn figures<'a>(
+    args: &LocateArgs,
+    scenario: &'a Scenario,
+    survey: &'a Survey,
+    (tally, doubts): (&'a Tally, &'a Doubts),
+) -> Figures<'a> {
     let pair = |(value, sigma): (f64, f64)| [value, sigma];
     let found = |what| survey.calibration.as_ref().filter(|_| args.find.contains(&what));
     let scale = found(FindArg::SoundSpeed).map(|calibration| pair(calibration.scale()));
@@ -132,73 +199,50 @@ fn figures<'a>(args: &LocateArgs, survey: &'a Survey, tally: &'a Tally) -> Figur
             .map(|([scale, sigma], speed)| [speed / (1.0 + scale), speed * sigma]),
         range_scale: scale,
         clock_offset_m: found(FindArg::ClockOffset).map(|calibration| pair(calibration.offset_m())),
+        session: session(scenario, survey),
+        repeated_readings: repeated(scenario, survey),
+        sides: Sides {
+            by_walls: doubts.sides_by_walls,
+            by_start_and_track: doubts.sides_by_track,
+            undecided: doubts.sides_open,
+        },
+        impossible: impossible(scenario, doubts),
+        first_time: survey.dates.as_ref().map(|[first, _]| first.as_str()),
         tally,
     }
 }
 
-fn human(args: &LocateArgs, scenario: &Scenario, survey: &Survey, tally: &Tally) -> String {
-    let mut text = String::new();
-    let mut line = |label: &str, value: String| {
-        let _ = writeln!(text, "{label:<16} {value}");
-    };
-    line("readings", format!("{}, {} rows of {}", args.readings.display(), survey.rows, survey.kind.word()));
-    if survey.bad > 0 {
-        line("left out", format!("{} bad rows", survey.bad));
-        survey.problems.iter().for_each(|problem| line("", problem.to_string()));
-    }
-    if !survey.ignored.is_empty() {
-        line("ignored columns", survey.ignored.join(", "));
-    }
-    if !survey.has_motion {
-        line("motion", "not measured; up to the robot's maximum speed in any direction".into());
-    }
-    let found = figures(args, survey, tally);
-    if let Some([scale, sigma]) = found.range_scale {
-        let speed = found.sound_speed_m_per_s.map(|[speed, sigma]| format!(", {speed:.2} ± {sigma:.2} m/s"));
-        let (percent, sigma) = (scale * 100.0, sigma * 100.0);
-        line(
-            "speed of sound",
-            format!("ranges too long by {percent:.3} ± {sigma:.3} %{}", speed.unwrap_or_default()),
-        );
-    }
-    if let Some([offset_m, sigma_m]) = found.clock_offset_m {
-        let time = args.sound_speed.map(|speed| format!(", {:.1} µs", offset_m / speed * 1e6));
-        line(
-            "clock offset",
-            format!("ranges too long by {offset_m:.4} ± {sigma_m:.4} m{}", time.unwrap_or_default()),
-        );
-    }
-    if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
-        line("", "poorly known: the robot has to come near stations and go far from them".into());
-    }
-    let fixes: u64 = tally.fixes.values().sum();
-    let by_word: Vec<String> = tally.fixes.iter().map(|(word, count)| format!("{count} {word}")).collect();
-    line("fixes", format!("{fixes} of {} emissions ({})", tally.emissions, by_word.join(", ")));
-    if let Some(off_m) = start_off_m(scenario, tally) {
-        let note = "the track is wrong until three fixes in a row agree; correct the start";
-        line("start", format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"));
-    }
-    tally.failed.iter().for_each(|(why, count)| line("no fix", format!("{count} times: {why}")));
-    for (id, count) in &tally.left_out {
-        let station = scenario.sim.world.stations.iter().find(|station| station.id.0 == *id);
-        let name = station.map_or("?", |station| station.name.as_str());
-        line("left out", format!("station {name} from {count} fixes: its residual exceeded the gate"));
-    }
-    let metres = |[mean_m, most_m]: [f64; 2]| format!("{mean_m:.3} m mean, {most_m:.3} m maximum");
-    let mut figure = |label: &str, what: &str, figures: Option<[f64; 2]>| {
-        if let Some(figures) = figures {
-            line(label, format!("{what} {}", metres(figures)));
-        }
-    };
-    figure("track", "95 % error by covariance", tally.error_95_m);
-    figure("true error", "of fixes", tally.fix_error_m);
-    figure("", "of the track", tally.track_error_m);
-    text
+fn name_of(scenario: &Scenario, id: u32) -> &str {
+    let station = scenario.sim.world.stations.iter().find(|station| station.id.0 == id);
+    station.map_or("?", |station| station.name.as_str())
 }
 
-/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong.
-fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
-    let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;
-    let off_m = (first - scenario.mission.start.position).norm();
-    (off_m > 2.0 * error_95_m + 3.0 * scenario.mission.start_sigma_m).then_some(off_m)
+fn session<'a>(scenario: &'a Scenario, survey: &Survey) -> Session<'a> {
+    let verdict = &survey.verdict;
+    let of = |wrong: &Wrong| TooLong { value: wrong.value, sigma: wrong.sigma, proven: wrong.is_proven };
+    let station = |(id, wrong): &(StationId, Wrong)| (name_of(scenario, id.0), of(wrong));
+    Session { scale: verdict.scale.as_ref().map(of), stations_m: verdict.stations.iter().map(station).collect() }
+}
+
+fn repeated<'a>(scenario: &'a Scenario, survey: &Survey) -> Option<RepeatedReadings<'a>> {
+    let worst = survey.repeats.worst?;
+    Some(RepeatedReadings {
+        emissions: survey.repeats.emissions,
+        scatter_over_noise: survey.repeats.factor(),
+        suspect: survey.repeats.are_wide() || survey.repeats.wide > 0,
+        widest_station: name_of(scenario, worst.station.0),
+        widest_m: worst.apart_m,
+        widest_t_s: worst.t_s - survey.first_s,
+    })
+}
+
+fn impossible<'a>(scenario: &'a Scenario, doubts: &Doubts) -> Vec<Impossible<'a>> {
+    let of = |(id, refused): (&u32, &Refused)| Impossible {
+        station: name_of(scenario, *id),
+        count: refused.count,
+        first_m: refused.range_m.is_finite().then_some(refused.range_m),
+        most_m: refused.most_m,
+        first_t_s: refused.t_s,
+    };
+    doubts.impossible.iter().map(of).collect()
 }

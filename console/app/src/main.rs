@@ -7,7 +7,9 @@ mod events;
 mod export;
 mod headless;
 mod import;
+mod input;
 mod locate;
+mod machine;
 mod manual;
 mod map;
 mod new_planner;
@@ -28,6 +30,7 @@ mod study_folder;
 mod threads;
 mod trial;
 mod tune;
+mod waiting;
 
 use clap::Parser;
 use cli::{Cli, Command, ConsoleArgs, LogsArg};
@@ -102,7 +105,9 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
         return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
     }
+    machine::check()?;
     threads::check(threads::needed(cli.command.as_ref()))?;
+    let _pipes = waiting::for_pipes(cli.command.as_ref());
     let plugins = PluginDirs {
         requires_sandbox: cli.plugins.require_sandbox,
         ..PluginDirs::standard(&cli.plugins.plugin_dir)

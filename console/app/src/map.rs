@@ -1,6 +1,9 @@
 //! `tankops map`: what becomes of an occupancy map.
 
-use crate::{cli::MapArgs, output::write_file};
+use crate::{
+    cli::MapArgs,
+    output::{check_free, write_file},
+};
 use ::import::{MapFloor, OccupancyMap};
 use flight::failure::{COMPLETE, bad_input};
 use report::{drawing, print::say};
@@ -9,6 +12,7 @@ use world::{Obstacle, ObstacleId, Point, Shape, World};
 
 /// `tankops map`.
 pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
+    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let map = OccupancyMap::read(&args.map).map_err(|error| bad_input(error.to_string()))?;
     let start = args.start.map(|[x, y]| Point::new(x, y));
     if let Some(solid) = start.filter(|start| !map.is_free_at(*start)) {

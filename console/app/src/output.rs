@@ -2,27 +2,55 @@
 
 use anyhow::Context;
 use flight::failure::bad_input;
+use foreign::{plain_json, plain_lines};
 use report::print::say_line;
 use serde::Serialize;
-use std::{io, path::Path};
+use std::{borrow::Cow, fs, io, path::Path};
 
-/// A value as JSON for people to read; `name` is what an error calls it.
+/// A value as JSON for people to read, in plain characters; `name` is what an error calls it.
 pub(crate) fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String> {
     let text = serde_json::to_string_pretty(value).with_context(|| format!("writing {name} as JSON"))?;
-    Ok(text + "\n")
+    Ok(plain_json(&text).into_owned() + "\n")
 }
 
 /// Writes a value to stdout as a line of JSON; `name` is what an error calls it.
 pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()> {
-    Ok(say_line(&serde_json::to_string(value).with_context(|| format!("writing {name} as JSON"))?)?)
+    let text = serde_json::to_string(value).with_context(|| format!("writing {name} as JSON"))?;
+    Ok(say_line(&plain_json(&text))?)
 }
 
-/// Writes a file that the user asked for, whole or not at all; `name` is what an error calls it.
+/// Makes sure that a file that the user asked for may be written: what is there is never written over, also behind a link, unless
+/// that is asked for; `force` is `None` where a command has no `--force`. Pipes and devices are written to as they are.
+///
+/// # Errors
+/// There is a file, or a link that leads nowhere yet.
+pub(crate) fn check_free(file: &Path, force: Option<bool>) -> anyhow::Result<()> {
+    let is_free = match fs::symlink_metadata(file) {
+        Err(_) => true,
+        Ok(_) => fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()),
+    };
+    if is_free || force == Some(true) {
+        return Ok(());
+    }
+    let instead = if force.is_some() { "choose another name, or --force" } else { "choose another name" };
+    Err(bad_input(format!("{} already exists; {instead}", file.display())))
+}
+
+/// Writes a file that the user asked for ([`check_free`]), whole or not at all; `name` is what an error calls it.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
-    runs::write_whole(file, text.as_bytes()).map_err(|error| {
+    runs::write_whole(file, in_plain(file, text).as_bytes()).map_err(|error| {
         let why = format!("{name} cannot be written: {error}: {}", file.display());
         if is_of_machine(&error) { anyhow::anyhow!(why) } else { bad_input(why) }
     })
+}
+
+/// The text of a file in plain characters; a page is made so where it is set, and signed as it is.
+fn in_plain<'a>(file: &Path, text: &'a str) -> Cow<'a, str> {
+    match file.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+        "json" | "geojson" => plain_json(text),
+        "html" => text.into(),
+        _ => plain_lines(text),
+    }
 }
 
 /// Whether an error is one of the machine: another file name would not help.
@@ -30,4 +58,36 @@ fn is_of_machine(error: &io::Error) -> bool {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     // EIO has no kind of its own.
     matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge) || error.raw_os_error() == Some(5)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn nothing_is_written_over_unless_it_is_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, nowhere] = ["file", "link", "nowhere"].map(|name| folder.path().join(name));
+        fs::write(&file, "kept").unwrap();
+        symlink(&file, &link).unwrap();
+        symlink(folder.path().join("none"), &nowhere).unwrap();
+        for there in [file.as_path(), &link, &nowhere, folder.path()] {
+            let refused = check_free(there, Some(false)).unwrap_err().to_string();
+            assert!(refused.ends_with("already exists; choose another name, or --force"), "{refused}");
+            assert!(check_free(there, None).unwrap_err().to_string().ends_with("choose another name"));
+            assert!(check_free(there, Some(true)).is_ok());
+        }
+        assert!(check_free(Path::new("/dev/null"), None).is_ok());
+        assert!(check_free(&folder.path().join("new"), None).is_ok());
+    }
+
+    #[test]
+    fn files_are_in_plain_characters() {
+        let plain = |file: &str, text| in_plain(Path::new(file), text).into_owned();
+        assert_eq!(plain("a.geojson", "{\"a\": \"\u{9b}\"}\n"), "{\"a\": \"\\u009b\"}\n");
+        assert_eq!(plain("a.dxf", "0\nTEXT\n\u{202e}"), "0\nTEXT\n�");
+    }
 }

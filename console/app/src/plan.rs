@@ -2,7 +2,7 @@
 
 use crate::{
     cli::PlanArgs,
-    output::{say_json, write_file},
+    output::{check_free, say_json, write_file},
     progress,
 };
 use flight::{
@@ -23,8 +23,8 @@ use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let format = args.output.as_deref().map(format_of).transpose()?;
-    if let Some(output) = args.output.as_deref().filter(|output| output.exists()) {
-        return Err(bad_input(format!("{} already exists; choose another name", output.display())));
+    for file in [&args.output, &args.svg].into_iter().flatten() {
+        check_free(file, Some(args.force))?;
     }
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);

@@ -1,6 +1,6 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
-use crate::{accuracy::warn_of_clearance, output::pretty_json};
+use crate::{accuracy::warn_of_positions, output::pretty_json};
 use flight::{
     failure::{BAD_INPUT, COMPLETE},
     planners::check_installed,
@@ -88,7 +88,7 @@ fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
     }
     let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
     check_installed(&scenario, plugins).map_err(|error| error.to_string())?;
-    warn_of_clearance(&scenario);
+    warn_of_positions(&scenario);
     Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
 }
 

@@ -2,13 +2,14 @@
 
 use crate::{
     cli::ReportArgs,
-    output::{pretty_json, write_file},
+    output::{check_free, pretty_json, write_file},
     signing::{
         Chain, refuse_doubts, refuse_not_recomputed, refuse_open_items, refuse_other_signer, register, seal,
         signature,
     },
 };
 use flight::failure::{COMPLETE, bad_input};
+use foreign::MOST_TEXT_BYTES;
 use planner_host::PluginDirs;
 use report::{
     Document, Inspection, PastRun,
@@ -18,6 +19,7 @@ use report::{
 use runs::{Past, find};
 use std::{
     fs,
+    io::Read,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -100,7 +102,7 @@ fn may_write(
     (revisions, folders): (&[Revision], &[PathBuf]),
 ) -> anyhow::Result<()> {
     if !output.exists() {
-        return Ok(());
+        return check_free(output, Some(force));
     }
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
@@ -114,10 +116,7 @@ fn may_write(
     if output.extension().is_none_or(|suffix| suffix != "html") && folders.iter().any(is_in) {
         return Err(bad_input(format!("{path} is a file of the run; choose another name")));
     }
-    if force {
-        return Ok(());
-    }
-    Err(bad_input(format!("{} already exists; choose another name, or --force", output.display())))
+    check_free(output, Some(force))
 }
 
 /// The facts of the scenario, and those of the file in their place.
@@ -129,7 +128,15 @@ fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspecti
 }
 
 fn read_text(file: &Path) -> anyhow::Result<String> {
-    fs::read_to_string(file).map_err(|error| bad_input(format!("{} cannot be read: {error}", file.display())))
+    let refused = |why: String| bad_input(format!("{} cannot be read: {why}", file.display()));
+    // It may be a pipe.
+    let mut bytes = Vec::new();
+    let read = fs::File::open(file).and_then(|file| file.take(MOST_TEXT_BYTES + 1).read_to_end(&mut bytes));
+    read.map_err(|error| refused(error.to_string()))?;
+    if bytes.len() as u64 > MOST_TEXT_BYTES {
+        return Err(refused(format!("it is longer than {} MB", MOST_TEXT_BYTES >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|error| refused(error.to_string()))
 }
 
 /// The files of a format with their texts.

@@ -1,6 +1,9 @@
 //! `tankops rescan`: a mission for what past runs have missed.
 
-use crate::{cli::RescanArgs, output::write_file};
+use crate::{
+    cli::RescanArgs,
+    output::{check_free, write_file},
+};
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     planners,
@@ -15,9 +18,7 @@ use std::process::ExitCode;
 /// `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let (output, min_area_m2) = (&args.output, args.min_area_m2);
-    if output.exists() {
-        return Err(bad_input(format!("{} already exists; choose another name", output.display())));
-    }
+    check_free(output, Some(args.force))?;
     if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
         return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
     }

@@ -77,7 +77,7 @@ mod tests {
     fn answered(tick: u32) -> Event {
         let ask = Some(AskId::from((mission::WorkerId(2), tick)));
         let command = Command::still(Status::Waiting);
-        event(tick, EventKind::Shadowed { of: Box::new(EventKind::Commanded { ask, command }) })
+        event(tick, EventKind::Shadowed { of: Box::new(EventKind::Commanded { ask, command, asked: None }) })
     }
 
     #[test]

@@ -3,9 +3,7 @@
 use crate::failure::bad_input;
 use anyhow::anyhow;
 use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
-use planner_host::{
-    PluginDirs, Survey, Surveyor, WorkerCommand, check_descriptors, parameter_problems, survey,
-};
+use planner_host::{PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, parameter_problems, survey};
 use scenario::Scenario;
 
 /// What there is to choose from.
@@ -34,7 +32,7 @@ pub fn found(plugins: &PluginDirs) -> Found {
 /// # Errors
 /// Every objection, with its place in the scenario; or the machine lets no planner run.
 pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
-    check_descriptors().map_err(anyhow::Error::msg)?;
+    check_limits(plugins).map_err(anyhow::Error::msg)?;
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
     let worker = WorkerCommand::default();
     let surveyor = Surveyor::new(plugins, &worker);

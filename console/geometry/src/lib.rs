@@ -4,9 +4,11 @@
 //! east; SI units throughout.
 
 pub mod boundary;
+pub mod braking;
 pub mod convex;
 pub mod follower;
 pub mod motion;
+pub mod pace;
 pub mod polyline;
 pub mod pose;
 pub mod shape;
@@ -14,7 +16,9 @@ pub mod shape;
 pub mod symmetric;
 
 pub use boundary::Boundary;
+pub use braking::Braking;
 pub use follower::PathFollower;
 pub use motion::{Drive, Limits, Motion};
+pub use pace::{Amphibious, Pace};
 pub use pose::{Point, Pose, Vector, direction_or, unit_vector, wrap_angle_rad};
 pub use shape::Shape;

@@ -1,6 +1,6 @@
 //! How a robot moves, its limits, and the control law that turns a planner's command into a drive within them.
 
-use crate::{Point, Pose, Vector, unit_vector, wrap_angle_rad};
+use crate::{Amphibious, Point, Pose, Vector, unit_vector, wrap_angle_rad};
 
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
@@ -36,6 +36,9 @@ pub enum Motion {
 ///     w_max_rad_per_s: 1.0,
 ///     radius_m: 0.25,
 ///     sensing_range_m: 2.0,
+///     acceleration_m_per_s2: 0.5,
+///     tick_s: 0.1,
+///     amphibious: None,
 /// };
 /// assert_eq!(limits.motion as u32, 1);
 /// ```
@@ -52,6 +55,27 @@ pub struct Limits {
     pub radius_m: f64,
     /// Range at which it sees obstacles, metres.
     pub sensing_range_m: f64,
+    /// Largest change of its speed, metres per second squared.
+    #[cfg_attr(feature = "serde", serde(default = "usual_acceleration"))]
+    pub acceleration_m_per_s2: f64,
+    /// Length of a tick, seconds: a command takes effect for so long before the next one can.
+    #[cfg_attr(feature = "serde", serde(default = "usual_tick"))]
+    pub tick_s: f64,
+    /// For a robot that walks and swims: what holds in each mode. What is above are the larger limits of both.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub amphibious: Option<Amphibious>,
+}
+
+/// That of a robot whose scenario does not give it; journals of before do not say it, metres per second squared.
+#[cfg(feature = "serde")]
+fn usual_acceleration() -> f64 {
+    0.5
+}
+
+/// The same for the length of a tick, seconds.
+#[cfg(feature = "serde")]
+fn usual_tick() -> f64 {
+    0.1
 }
 
 /// How a robot is to move until the next tick.
@@ -89,7 +113,11 @@ impl Drive {
 /// ```
 /// use geometry::{Drive, Limits, Motion, Vector, motion::{TURN_FIRST_RAD, drive_for}};
 /// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
-/// let limits = Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m };
+/// # let (acceleration_m_per_s2, tick_s, amphibious) = (0.5, 0.1, None);
+/// let limits = Limits {
+///     motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+///     amphibious,
+/// };
 /// let east = Drive::Velocity(Vector::new(0.3, 0.0));
 /// let sent = drive_for(east, 0.2, &limits, TURN_FIRST_RAD);
 /// let Drive::Twist { w_rad_per_s, .. } = sent else { unreachable!("a unicycle takes twists") };
@@ -116,7 +144,11 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
 /// ```
 /// use geometry::{Drive, Limits, Motion, Pose, Vector, motion::{TURN_FIRST_RAD, rollout}};
 /// # let (motion, radius_m, sensing_range_m) = (Motion::Unicycle, 0.25, 2.0);
-/// let limits = Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m };
+/// # let (acceleration_m_per_s2, tick_s, amphibious) = (0.5, 0.1, None);
+/// let limits = Limits {
+///     motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+///     amphibious,
+/// };
 /// let north = Drive::Velocity(Vector::new(0.0, 0.3));
 /// let way = rollout(north, Pose::new(0.0, 0.0, 0.0), &limits, TURN_FIRST_RAD, 5.0);
 /// let end = way.last().unwrap();
@@ -173,7 +205,12 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
 
 /// The velocity, shortened to a speed if it exceeds it by more than rounding: a velocity that was shortened before stays as
 /// it is to the bit.
-fn at_most(velocity: Vector, speed_m_per_s: f64) -> Vector {
+///
+/// ```
+/// use geometry::{Vector, motion::at_most};
+/// assert_eq!(at_most(Vector::new(3.0, 4.0), 1.0), Vector::new(0.6, 0.8));
+/// ```
+pub fn at_most(velocity: Vector, speed_m_per_s: f64) -> Vector {
     let speed = velocity.norm();
     if speed > speed_m_per_s * (1.0 + ROUNDING) { velocity * (speed_m_per_s / speed) } else { velocity }
 }
@@ -184,7 +221,16 @@ mod tests {
     use proptest::prelude::*;
 
     fn limits(motion: Motion) -> Limits {
-        Limits { motion, v_max_m_per_s: 0.4, w_max_rad_per_s: 1.0, radius_m: 0.25, sensing_range_m: 2.0 }
+        Limits {
+            motion,
+            v_max_m_per_s: 0.4,
+            w_max_rad_per_s: 1.0,
+            radius_m: 0.25,
+            sensing_range_m: 2.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
+            amphibious: None,
+        }
     }
 
     #[test]

@@ -88,7 +88,7 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Named>, Vec<String>), Vec
         let disc = disc(&fields, &record, delimiter != b',', tank_radius_m);
         let shape = disc.map_err(|(field, what)| problems.push(Wrong::new(line, field, what))).ok();
         let given = fields.name(&record).filter(|name| !name.is_empty());
-        let name = given.map_or_else(|| format!("column {}", columns.len() + 1), str::to_owned);
+        let name = given.map_or_else(|| format!("column {}", columns.len() + 1), foreign::seen);
         if !names.insert(name.clone()) {
             problems.push(Wrong::new(line, "name", format!("`{name}` is there twice")));
         }

@@ -252,7 +252,7 @@ impl Left {
         if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
             let line = kept.map(|kept| kept.text() + "\n").unwrap_or_default();
             let text = report::human(&closed.summary) + &line;
-            let _ = std::io::stdout().write_all(text.as_bytes());
+            let _ = report::print::say(&text);
         }
         if let Some(signal) = self.signal {
             return ExitCode::from(128 + number(signal));

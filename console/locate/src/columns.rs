@@ -1,7 +1,8 @@
 //! The columns of a file of readings, and what a row of cells says.
 
-use crate::problem::Problem;
+use crate::{clock, problem::Problem};
 use csv::StringRecord;
+use report::document::csv::cell;
 use std::collections::HashMap;
 use world::{Odometry, Point, Pose, Station, StationId};
 
@@ -9,6 +10,9 @@ use world::{Odometry, Point, Pose, Station, StationId};
 type Column = (&'static str, &'static [(&'static str, f64)]);
 
 const TIME: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6)];
+const TIME_OR_DATE: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6), ("", DATED)];
+/// A time of the day and the date, without a unit.
+const DATED: f64 = 0.0;
 const LENGTH: &[(&str, f64)] = &[("_m", 1.0), ("_mm", 1e-3)];
 const ANGLE: &[(&str, f64)] = &[("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)];
 const NAME: &[(&str, f64)] = &[("", 1.0)];
@@ -29,7 +33,7 @@ const TRUE_Y: usize = 12;
 const TRUE_HEADING: usize = 13;
 
 const COLUMNS: [Column; 14] = [
-    ("t", TIME),
+    ("t", TIME_OR_DATE),
     ("emission", NAME),
     ("station", NAME),
     ("range", LENGTH),
@@ -76,6 +80,8 @@ pub(crate) struct Columns {
 pub(crate) struct Row {
     pub line: u64,
     pub t_s: f64,
+    /// Whether the time was written with a date: seconds since 1970.
+    pub is_dated: bool,
     /// Rows of one emission belong together.
     pub emission: Option<String>,
     pub range: Option<Heard>,
@@ -103,8 +109,13 @@ impl Columns {
         let mut at = [None; COLUMNS.len()];
         for (index, name) in names.iter().enumerate() {
             let Some((column, factor)) = known(name) else { continue };
-            if at[column].replace((index, factor)).is_some() {
-                return Err(format!("column {name}: {} is there twice", COLUMNS[column].0));
+            match at[column] {
+                // A column with a unit counts more than a date beside it.
+                Some((_, present)) if factor <= DATED && present > DATED => {}
+                Some((_, present)) if present > DATED || factor <= DATED => {
+                    return Err(format!("column {name}: {} is there twice", COLUMNS[column].0));
+                }
+                _ => at[column] = Some((index, factor)),
             }
         }
         let is_there = |column: usize| at[column].is_some();
@@ -117,7 +128,7 @@ impl Columns {
         } else if measured > 1 {
             Some("more than one column says what was measured; keep one of range, arrival and tdoa")
         } else if !has_time {
-            Some("no column t_s (or t_ms, t_us); only files with `arrival_s` and `emission` do without")
+            Some("no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` do without")
         } else if !is_there(RANGE) && sound_speed_m_s.is_none() {
             Some("times need the speed of sound: add --sound-speed with metres per second")
         } else if is_there(TRUE_X) != is_there(TRUE_Y) {
@@ -130,11 +141,13 @@ impl Columns {
         }
         let by_number = stations.iter().map(|station| (station.id.0.to_string(), station.id));
         let by_name = stations.iter().map(|station| (station.name.clone(), station.id));
+        // As a table names them.
+        let by_cell = stations.iter().map(|station| (cell(&station.name), station.id));
         Ok(Self {
             names,
             at,
             sound_speed_m_s: sound_speed_m_s.unwrap_or(1.0),
-            stations: by_number.chain(by_name).collect(),
+            stations: by_number.chain(by_cell).chain(by_name).collect(),
             station_names: stations.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", "),
             has_commas: false,
         })
@@ -148,7 +161,8 @@ impl Columns {
 
     /// Columns that say nothing here.
     pub(crate) fn ignored(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().map(String::as_str).filter(|name| known(name).is_none())
+        let is_used = |index: usize| self.at.iter().flatten().any(|(used, _)| *used == index);
+        self.names.iter().enumerate().filter(move |(index, _)| !is_used(*index)).map(|(_, name)| name.as_str())
     }
 
     /// Whether the motion between readings was measured.
@@ -184,9 +198,11 @@ impl Columns {
         });
         let truth = number(TRUE_X)?.zip(number(TRUE_Y)?);
         let heading_rad = number(TRUE_HEADING)?.unwrap_or_default();
+        let time_cell = if self.has(T) { T } else { ARRIVAL };
         Ok(Row {
             line,
             t_s,
+            is_dated: clock::is_date(self.cell(cells, time_cell)),
             emission: Some(self.cell(cells, EMISSION)).filter(|text| !text.is_empty()).map(str::to_owned),
             range: self.heard(cells, line, range_m)?,
             motion,
@@ -216,10 +232,6 @@ impl Columns {
             let what = format!("the scenario has no station `{written}`; it has {}", self.station_names);
             self.problem(line, STATION, what)
         })?;
-        if self.kind() == Kind::Ranges && !(1e-3..=1e6).contains(&range_m) {
-            let what = format!("{range_m} m is not a possible distance in a tank");
-            return Err(self.problem(line, measured.unwrap_or(RANGE), what));
-        }
         let repetitions = match self.cell(cells, REPETITIONS) {
             "" => 1,
             text => {
@@ -245,9 +257,18 @@ impl Columns {
         if text.is_empty() {
             return Ok(None);
         }
+        if [T, ARRIVAL, EMITTED].contains(&column) && clock::is_date(text) {
+            return clock::seconds(text).map(Some).map_err(|what| self.problem(line, column, what));
+        }
         let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
-        let number = parsed.ok().filter(|number| number.is_finite());
+        // What an instrument writes for no range is a range that cannot be, and not a bad row.
+        let is_word = [RANGE, ARRIVAL, DIFFERENCE].contains(&column) && (column != ARRIVAL || self.has(T));
+        let number = parsed.ok().filter(|number| number.is_finite() || is_word);
         let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;
+        if factor <= DATED {
+            let what = format!("`{text}` has no unit; call the column t_s, t_ms or t_us, or write dates, as {}", clock::EXAMPLE);
+            return Err(self.problem(line, column, what));
+        }
         Ok(Some(number * factor))
     }
 
@@ -267,7 +288,10 @@ fn known(name: &str) -> Option<(usize, f64)> {
     let lower = name.to_lowercase().replace(['µ', 'μ'], "u");
     let words: Vec<&str> =
         lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    let name = words.join("_");
+    let mut name = words.join("_");
+    if let Some(unit) = name.strip_prefix("timestamp").or(name.strip_prefix("time")) {
+        name = format!("t{unit}");
+    }
     COLUMNS.iter().enumerate().find_map(|(index, (base, units))| {
         let suffix = name.strip_prefix(base)?;
         let (_, factor) = units.iter().find(|(unit, _)| *unit == suffix)?;

@@ -3,6 +3,7 @@
 use crate::columns::Kind;
 use mission::{Event, EventKind};
 use positioning::{Fix, Integrity, fix::ellipse_95};
+use report::document::csv::cell;
 use std::io::{self, Write};
 use world::{Point, Pose, Station};
 
@@ -59,17 +60,17 @@ impl<W: Write> Fixes<W> {
     fn fix(&mut self, fix: &Fix) -> io::Result<()> {
         let name = |id| self.stations.iter().find(|station| station.id == id).map_or("", |s| s.name.as_str());
         let out: Vec<&str> = fix.excluded.iter().map(|(id, _)| name(*id)).collect();
+        let out = cell(&out.join(" ")).replace('"', "\"\"");
         let [xx, xy, yy] = [(0, 0), (0, 1), (1, 1)].map(|at| fix.covariance[at]);
         let protection = fix.protection_level_m.map(|level_m| level_m.to_string()).unwrap_or_default();
         write!(
             self.out,
-            "{},{},{xx},{xy},{yy},{},{},{},\"{}\",{},{},{protection},",
+            "{},{},{xx},{xy},{yy},{},{},{},\"{out}\",{},{},{protection},",
             fix.position.x,
             fix.position.y,
             fix.ellipse_95().0,
             word(fix.integrity),
             fix.used.len(),
-            out.join(" "),
             fix.chi2,
             fix.gdop,
         )

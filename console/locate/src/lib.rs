@@ -4,20 +4,27 @@
 //! A file is read twice, row by row: once to check it and to find out about clocks and sound, once to locate. Memory does not
 //! grow with it.
 
+mod clock;
 mod columns;
+mod doubts;
 mod fixes;
+mod found;
 mod located;
 mod measured;
 mod moments;
 mod problem;
+mod repeats;
 mod rows;
 mod tally;
 
 pub use columns::Kind;
 pub use fixes::Fixes;
+pub use found::Found;
+pub use doubts::{Doubts, Refused};
 pub use located::{Survey, Task};
 pub use measured::MeasuredWriter;
 pub use problem::Problem;
+pub use repeats::{Repeated, Repeats};
 pub use tally::Tally;
 
 #[cfg(test)]

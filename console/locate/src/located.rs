@@ -2,33 +2,36 @@
 
 use crate::{
     columns::{Columns, Kind},
+    doubts::Doubts,
+    found::Found,
     moments::{Moment, Moments},
     problem::Problem,
+    repeats::{Repeats, Scatter},
     rows::Rows,
 };
 use flight::{Flight, failure::bad_input};
 use mission::{Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice, event::Measured};
-use positioning::{Calibration, RangeNoise, Ranging, SolverKind, Unknowns};
+use positioning::{Doubt, Possible, RangeNoise, SolverKind, Verdict};
 use scenario::Scenario;
 use std::path::Path;
-use world::{ObstacleMap, RangeSet};
+use world::ObstacleMap;
+
+mod learning;
 
 /// Bad rows that an error lists.
 const LISTED: usize = 10;
-/// Times that a session is taken at most to find out about clocks and sound,
-const ROUNDS: usize = 10;
-/// or until that changes by less than this share of its standard deviation.
-const SETTLED: f64 = 0.1;
-/// Offsets of clocks up to some of these are looked for, metres.
-const OFFSET_SIGMA_M: f64 = 20.0;
-/// Errors of the speed of sound up to some of these are looked for, as a share.
-const SOUND_SIGMA_RATIO: f64 = 0.05;
+/// A gap between motions of more than this many times their usual distance in time is one: some were lost.
+const GAP: f64 = 5.0;
+/// Distances in time of so many motions are looked at to know the usual one.
+const INTERVALS: usize = 4_096;
 
 /// What is to be located, and how.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a> {
     /// The readings.
     pub file: &'a Path,
+    /// What people know them by.
+    pub shown: &'a str,
     /// Stations, tank, start and noise.
     pub scenario: &'a Scenario,
     /// Metres per second; for times.
@@ -57,33 +60,71 @@ pub struct Survey {
     /// Columns that say nothing here.
     pub ignored: Vec<String>,
     /// What was found out about clocks and sound; absent if it was not asked for.
-    pub calibration: Option<Calibration>,
-    first_s: f64,
+    pub calibration: Option<Found>,
+    /// What the residuals say of sound and stations, with that taken out.
+    pub verdict: Verdict,
+    /// How several readings of one station in one emission scatter.
+    pub repeats: Repeats,
+    /// The first time as it is in the file, seconds.
+    pub first_s: f64,
+    /// First and last time with their date, in UTC; absent where times have none.
+    pub dates: Option<[String; 2]>,
+    /// Time between motions beyond which some were lost, seconds.
+    gap_s: f64,
 }
 
 impl Task<'_> {
     fn open(&self) -> anyhow::Result<(Moments, Columns)> {
-        let shown = self.file.display();
+        let shown = self.shown;
         let rows = Rows::open(self.file).map_err(|what| bad_input(format!("{shown}: {what}")))?;
         let stations = &self.scenario.sim.world.stations;
         let mut columns = Columns::new(rows.header(), stations, self.sound_speed_m_s)
             .map_err(|what| bad_input(format!("{shown}: {what}")))?;
         columns.has_commas = rows.has_commas();
-        Ok((Moments::new(rows, columns.clone()), columns))
+        Ok((Moments::new(rows, columns.clone(), self.possible()), columns))
     }
 
-    /// Reads the whole file once: what it holds, what is wrong with it, and what it says about clocks and sound.
+    fn noise(&self) -> RangeNoise {
+        let normal = RangeNoise::Gaussian { sigma_ratio: self.scenario.mission.range_sigma_ratio };
+        self.scenario.mission.locating.noise.unwrap_or(normal)
+    }
+
+    /// What ranges can be before anything is taken out of them.
+    fn possible(&self) -> Possible {
+        let world = &self.scenario.sim.world;
+        let too_long = if self.finds_sound_speed { learning::MOST_TOO_LONG } else { 0.0 };
+        let noise = (&self.noise(), self.scenario.mission.locating.timing);
+        Possible::new(&world.boundary, &world.stations, noise, too_long)
+    }
+
+    fn scatter(&self, kind: Kind) -> Scatter {
+        // Without the time of emission nobody knows how far off a station is; the span of the stations is as far as it can be.
+        let (low, high) = self.scenario.sim.world.boundary.bounds();
+        let distance_m = (kind == Kind::Differences).then(|| (high - low).amax() / 2.0);
+        Scatter { noise: self.noise(), timing: self.scenario.mission.locating.timing, distance_m }
+    }
+
+    /// Reads the whole file once: what it holds, and what is wrong with it; and again for what it says of clocks and sound.
     ///
     /// # Errors
     /// It cannot be read, or has bad rows and those are not to be left out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
-        let calibration = self.calibration(&columns)?;
-        let (mut problems, mut bad, mut first_s) = (Vec::new(), 0, None);
+        self.check_findable(&columns)?;
+        let (mut problems, mut bad) = (Vec::new(), 0);
+        let (mut first, mut last): (Option<Moment>, Option<Moment>) = (None, None);
+        let (mut repeats, scatter) = (Repeats::default(), self.scatter(columns.kind()));
+        let (mut intervals_s, mut moved_s): (Vec<f64>, Option<f64>) = (Vec::new(), None);
         for moment in moments.by_ref() {
             match moment {
                 Ok(moment) => {
-                    first_s.get_or_insert(moment.t_s);
+                    repeats.take(&moment, &scatter);
+                    if moment.odometry.is_some() {
+                        let since_s = moved_s.replace(moment.t_s).map(|before_s| moment.t_s - before_s);
+                        intervals_s.extend(since_s.filter(|_| intervals_s.len() < INTERVALS));
+                    }
+                    first.get_or_insert_with(|| moment.clone());
+                    last = Some(moment);
                 }
                 Err(problem) => {
                     bad += 1;
@@ -93,26 +134,38 @@ impl Task<'_> {
                 }
             }
         }
+        problems.sort_by_key(|problem: &Problem| problem.line);
         let is_cut = problems.iter().any(|problem| problem.is_end);
         if bad > 0 && (is_cut || !self.skips_bad_rows) {
             return Err(bad_input(self.listed(&problems, bad)));
         }
-        let first_s = first_s.ok_or_else(|| bad_input(format!("{}: no rows", self.file.display())))?;
-        let calibration = calibration.map(|calibration| self.calibrated(calibration)).transpose()?;
+        let (first, last) =
+            first.zip(last).ok_or_else(|| bad_input(format!("{}: no rows", self.shown)))?;
+        let calibration = self.found(&columns)?;
+        let assumed = match calibration {
+            None if self.scenario.mission.locating.calibrate_sound_speed => self.found_under_way(&columns)?,
+            found => found,
+        };
+        let verdict = self.judged(&columns, assumed.as_ref())?.verdict();
+        intervals_s.sort_by(f64::total_cmp);
         Ok(Survey {
             kind: columns.kind(),
-            has_motion: columns.has_motion(),
+            has_motion: columns.has_motion() && moved_s.is_some(),
             rows: moments.count,
-            bad,
+            bad: bad + moments.left_behind,
             problems,
             ignored: columns.ignored().map(str::to_owned).collect(),
             calibration,
-            first_s,
+            verdict,
+            repeats,
+            first_s: first.t_s,
+            dates: first.is_dated.then(|| [first.t_s, last.t_s].map(crate::clock::written)),
+            gap_s: intervals_s.get(intervals_s.len() / 2).map_or(f64::INFINITY, |usual_s| GAP * usual_s),
         })
     }
 
     fn listed(&self, problems: &[Problem], bad: u64) -> String {
-        let file = self.file.display();
+        let file = self.shown;
         let mut lines: Vec<String> = problems.iter().map(|problem| format!("{file}, {problem}")).collect();
         let more = bad - problems.len() as u64;
         lines.extend((more > 0).then(|| format!("and {more} more")));
@@ -125,66 +178,18 @@ impl Task<'_> {
         lines.join("\n")
     }
 
-    fn calibration(&self, columns: &Columns) -> anyhow::Result<Option<Calibration>> {
-        if !self.finds_clock_offset && !self.finds_sound_speed {
-            return Ok(None);
-        }
-        if columns.kind() == Kind::Differences {
-            return Err(bad_input(format!(
-                "{}: without the time of emission there is neither a clock offset nor a speed of sound to be found; add a \
-                 column emitted_s",
-                self.file.display()
-            )));
-        }
-        let unknowns = Unknowns {
-            sound_sigma_ratio: if self.finds_sound_speed { SOUND_SIGMA_RATIO } else { 0.0 },
-            survey_sigma_m: 0.0,
-            offset_sigma_m: if self.finds_clock_offset { OFFSET_SIGMA_M } else { 0.0 },
-        };
-        Ok(Some(Calibration::new(&self.scenario.sim.world.stations, unknowns)))
-    }
-
-    /// What the session says of clocks and sound, taken again until it no longer changes.
-    fn calibrated(&self, mut calibration: Calibration) -> anyhow::Result<Calibration> {
-        for _ in 0..ROUNDS {
-            let before = (calibration.scale().0, calibration.offset_m().0);
-            calibration = calibration.again();
-            for moment in self.open()?.0.flatten() {
-                self.learn(&mut calibration, &moment);
-            }
-            let ((scale, scale_sigma), (offset_m, offset_sigma_m)) =
-                (calibration.scale(), calibration.offset_m());
-            let is_settled = (scale - before.0).abs() <= SETTLED * scale_sigma
-                && (offset_m - before.1).abs() <= SETTLED * offset_sigma_m;
-            if is_settled {
-                break;
-            }
-        }
-        Ok(calibration)
-    }
-
-    fn learn(&self, calibration: &mut Calibration, moment: &Moment) {
-        let locating = &self.scenario.mission.locating;
-        let normal = RangeNoise::Gaussian { sigma_ratio: self.scenario.mission.range_sigma_ratio };
-        let noise = locating.noise.unwrap_or(normal);
-        if let Ok(rangings) = locating.aggregation.aggregate(&moment.ranges, &noise) {
-            // A cycle without a position contributes nothing; its fix states why there is none.
-            let _ = calibration.take(&rangings, None);
-        }
-    }
-
     /// Locates; gives the events of each moment, as a run has them.
     ///
     /// # Errors
     /// The file cannot be read any more.
-    pub fn locate(&self, survey: &Survey, mut take: impl FnMut(&[Event])) -> anyhow::Result<()> {
+    pub fn locate(&self, survey: &Survey, mut take: impl FnMut(&[Event])) -> anyhow::Result<Doubts> {
         let (moments, _) = self.open()?;
         let config = self.config(survey);
         let mut opened = Flight::prepare(self.scenario, false).opened();
         if let EventKind::RunOpened(run) = &mut opened.kind {
             run.mission = config.clone();
             run.measured = Some(Measured {
-                file: self.file.display().to_string(),
+                file: self.shown.to_owned(),
                 sha256: recording::sha256(self.file)?,
             });
         }
@@ -192,23 +197,32 @@ impl Task<'_> {
         let mut track = Track {
             locator: Locator::new(&config, &drawing),
             map: ObstacleMap::new(&drawing.boundary, &drawing.obstacles),
-            // Two standard deviations are as far as it can have come.
-            wander_m_per_s: if survey.has_motion { 0.0 } else { config.limits.v_max_m_per_s / 2.0 },
+            most_m_per_s: config.limits.v_max_m_per_s,
+            most_rad_per_s: config.limits.w_max_rad_per_s,
+            gap_s: survey.gap_s,
+            has_moved: false,
+            doubts: Doubts::default(),
             radius_m: config.limits.radius_m,
             tick: 0,
             t_s: 0.0,
         };
         take(&[opened]);
+        let scatter = self.scatter(survey.kind);
+        let doubtful_scale = survey.verdict.scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         for mut moment in moments.flatten() {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
-                correct(calibration, &mut moment.ranges);
+                calibration.correct(&mut moment.ranges);
             }
+            let repeats = survey.repeats.doubt_m(&moment, &scatter);
+            let is_suspect = repeats.is_some() || survey.verdict.is_wrong();
+            let sigma_m = repeats.unwrap_or_default();
+            track.locator.doubt(Doubt { ratio: doubtful_scale, sigma_m, is_suspect });
             take(&track.events(&moment));
         }
-        let reason = format!("end of {}", self.file.display());
+        let reason = format!("end of {}", self.shown);
         take(&[track.event(EventKind::Ended { outcome: Outcome::Complete, reason })]);
-        Ok(())
+        Ok(track.doubts)
     }
 
     /// The mission as far as locating goes.
@@ -223,24 +237,22 @@ impl Task<'_> {
         if survey.kind == Kind::Differences || survey.calibration.is_some() {
             config.locating.calibrate_sound_speed = false;
         }
+        if let Some(found) = &survey.calibration {
+            config.locating.scale_sigma_ratio = found.scale().1;
+        }
         config
-    }
-}
-
-/// Takes out what is common to all ranges.
-fn correct(calibration: &Calibration, sets: &mut [RangeSet]) {
-    for set in sets {
-        let singles: Vec<Ranging> =
-            set.ranges_m.iter().map(|range_m| Ranging::single(set.station, *range_m, 1.0)).collect();
-        set.ranges_m = calibration.corrected(&singles).iter().map(|ranging| ranging.range_m).collect();
-        set.ranges_m.retain(|range_m| *range_m > 0.0);
     }
 }
 
 struct Track {
     locator: Locator,
     map: ObstacleMap,
-    wander_m_per_s: f64,
+    most_m_per_s: f64,
+    most_rad_per_s: f64,
+    gap_s: f64,
+    /// Whether any motion was measured yet.
+    has_moved: bool,
+    doubts: Doubts,
     radius_m: f64,
     tick: u64,
     t_s: f64,
@@ -254,9 +266,11 @@ impl Track {
     fn events(&mut self, moment: &Moment) -> Vec<Event> {
         let waited_s = moment.t_s - self.t_s;
         self.t_s = moment.t_s;
-        if self.wander_m_per_s > 0.0 {
-            self.locator.wander(self.wander_m_per_s * waited_s);
+        let is_measured = moment.odometry.is_some() && (!self.has_moved || waited_s <= self.gap_s);
+        if !is_measured && waited_s > 0.0 {
+            self.locator.wander(self.most_m_per_s * waited_s, self.most_rad_per_s * waited_s);
         }
+        self.has_moved |= moment.odometry.is_some();
         let truth = moment.truth.map(|pose| EventKind::Truth {
             pose,
             clearance_m: self.map.clearance_m(pose.position) - self.radius_m,
@@ -265,10 +279,13 @@ impl Track {
         let readings = world::Readings {
             ranging_cycle: !moment.ranges.is_empty(),
             ranges: moment.ranges.clone(),
-            odometry: moment.odometry,
+            odometry: moment.odometry.unwrap_or_default(),
             ..world::Readings::default()
         };
         let located = self.locator.take(&readings);
+        if readings.ranging_cycle {
+            self.doubts.take(self.t_s, self.locator.sides(), self.locator.impossible());
+        }
         let events = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
         self.tick += 1;
         events

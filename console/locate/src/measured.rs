@@ -1,5 +1,6 @@
 //! Readings of a run, written in the form that is read here.
 
+use report::document::csv::cell;
 use std::io::{self, Write};
 use world::{Odometry, Pose, RangeSet, Readings, Station};
 
@@ -32,8 +33,9 @@ impl<W: Write> MeasuredWriter<W> {
         writeln!(self.out, "{t_s},,,{forward_m},{sideways_m},{turn_rad},{x},{y},{heading_rad}")?;
         for RangeSet { station, ranges_m } in &readings.ranges {
             let name = self.stations.iter().find(|s| s.id == *station).map_or("", |s| s.name.as_str());
+            let name = quoted(&cell(name));
             for range_m in ranges_m {
-                writeln!(self.out, "{t_s},{},{range_m},,,,,,", quoted(name))?;
+                writeln!(self.out, "{t_s},{},{range_m},,,,,,", name)?;
             }
         }
         Ok(())
@@ -47,7 +49,7 @@ impl<W: Write> MeasuredWriter<W> {
 
 /// A name as a cell.
 fn quoted(name: &str) -> String {
-    if name.contains(['"', ',', '\n', '#']) {
+    if name.contains(['"', ',', ';', '\n', '#']) {
         format!("\"{}\"", name.replace('"', "\"\""))
     } else {
         name.into()

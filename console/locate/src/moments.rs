@@ -1,11 +1,13 @@
 //! Rows of one time or emission put together.
 
 use crate::{
+    clock,
     columns::{Columns, Heard, Kind, Row},
     problem::Problem,
     rows::Rows,
 };
 use csv::StringRecord;
+use positioning::Possible;
 use world::{Odometry, Pose, RangeSet};
 
 /// Differences of arrival times become ranges by adding this to the time since the first arrival, metres: a range is positive.
@@ -18,10 +20,14 @@ pub(crate) struct Moment {
     pub t_s: f64,
     /// One set per station heard.
     pub ranges: Vec<RangeSet>,
-    /// Motion since the moment before.
-    pub odometry: Odometry,
+    /// The readings behind them, row by row.
+    pub heard: Vec<Heard>,
+    /// Motion since the moment before, if it was measured.
+    pub odometry: Option<Odometry>,
     /// Where the robot truly was, if somebody knows.
     pub truth: Option<Pose>,
+    /// Whether the time is written with a date.
+    pub is_dated: bool,
 }
 
 /// The moments of a file, and between them what is wrong with rows.
@@ -31,17 +37,45 @@ pub(crate) struct Moments {
     cells: StringRecord,
     /// The moment that is being put together, and the row that began it.
     open: Option<(Row, Moment)>,
+    /// What differences of arrivals can be in the tank.
+    possible: Possible,
+    last: Option<Place>,
+    back: Option<Back>,
+    /// What is wrong with a row that waits for rows going back in time to be told first.
+    waiting: Option<Row>,
+    /// Rows that are earlier than what came before them, but for the first of each stretch.
+    pub left_behind: u64,
     /// Rows read.
     pub count: u64,
 }
 
+/// Where a time stands.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    line: u64,
+    t_s: f64,
+}
+
+/// Rows that are earlier than what came before them.
+#[derive(Debug, Clone, Copy)]
+struct Back {
+    first: Place,
+    before: Place,
+    last_line: u64,
+    rows: u64,
+}
+
 impl Moments {
-    pub(crate) fn new(rows: Rows, columns: Columns) -> Self {
-        Self { rows, columns, cells: StringRecord::new(), open: None, count: 0 }
+    pub(crate) fn new(rows: Rows, columns: Columns, possible: Possible) -> Self {
+        let cells = StringRecord::new();
+        Self { rows, columns, cells, open: None, possible, last: None, back: None, waiting: None, left_behind: 0, count: 0 }
     }
 
     /// The next row, or what is wrong with it.
     fn row(&mut self) -> Option<Result<Row, Problem>> {
+        if let Some(row) = self.waiting.take() {
+            return Some(Ok(row));
+        }
         let read = self.rows.next(&mut self.cells).transpose()?;
         self.count += 1;
         Some(read.and_then(|line| self.columns.row(&self.cells, line)))
@@ -49,25 +83,59 @@ impl Moments {
 
     /// Takes in a row; gives the moment that it ends, if it begins another.
     fn take(&mut self, row: Row) -> Result<Option<Moment>, Problem> {
+        let place = Place { line: row.line, t_s: row.t_s };
         match &mut self.open {
-            Some((first, moment)) if belongs(&row, first) => {
+            Some((first, moment)) if belongs(&row, first) && self.back.is_none() => {
                 moment.add(&row);
+                self.last = Some(place);
                 return Ok(None);
             }
             Some((first, _)) if row.t_s < first.t_s => {
-                let what = format!("{} s is earlier than the row before ({} s)", row.t_s, first.t_s);
-                return Err(self.columns.wrong_time(row.line, what));
+                self.went_back(place);
+                return Ok(None);
             }
             _ => {}
         }
+        if let Some(back) = self.back.take() {
+            self.waiting = Some(row);
+            return Err(self.told(&back));
+        }
+        self.last = Some(place);
         let moment = Moment::of(&row);
         Ok(self.open.replace((row, moment)).map(|(_, moment)| self.whole(moment)))
+    }
+
+    /// Counts a row that is earlier than what came before; the first of them stands for all.
+    fn went_back(&mut self, place: Place) {
+        match &mut self.back {
+            Some(back) => (back.last_line, back.rows) = (place.line, back.rows + 1),
+            None => {
+                let before = self.last.unwrap_or(place);
+                self.back = Some(Back { first: place, before, last_line: place.line, rows: 1 });
+            }
+        }
+    }
+
+    fn told(&mut self, back: &Back) -> Problem {
+        let Back { first, before, last_line, rows } = *back;
+        self.left_behind += rows - 1;
+        let as_text = |t_s: f64| {
+            let is_dated = self.open.as_ref().is_some_and(|(row, _)| row.is_dated);
+            if is_dated { clock::written(t_s) } else { format!("{t_s} s") }
+        };
+        let (earlier, later) = (as_text(first.t_s), as_text(before.t_s));
+        let until = match rows {
+            1 => String::new(),
+            _ => format!("; the {rows} rows up to line {last_line} are earlier than that"),
+        };
+        let what = format!("time goes back here: {earlier}, after {later} in line {}{until}; sort the rows by time", before.line);
+        self.columns.wrong_time(first.line, what)
     }
 
     /// A moment of which nothing more comes.
     fn whole(&self, mut moment: Moment) -> Moment {
         if self.columns.kind() == Kind::Differences {
-            moment.count_from_first();
+            moment.count_from_first(&self.possible);
         }
         moment
     }
@@ -85,6 +153,9 @@ impl Iterator for Moments {
                 Err(problem) => return Some(Err(problem)),
             }
         }
+        if let Some(back) = self.back.take() {
+            return Some(Err(self.told(&back)));
+        }
         self.open.take().map(|(_, moment)| Ok(self.whole(moment)))
     }
 }
@@ -100,12 +171,20 @@ fn belongs(row: &Row, first: &Row) -> bool {
 impl Moment {
     fn of(first: &Row) -> Self {
         let mut moment =
-            Self { t_s: first.t_s, ranges: Vec::new(), odometry: Odometry::default(), truth: None };
+            Self {
+                t_s: first.t_s,
+                ranges: Vec::new(),
+                heard: Vec::new(),
+                odometry: None,
+                truth: None,
+                is_dated: first.is_dated,
+            };
         moment.add(first);
         moment
     }
 
     fn add(&mut self, row: &Row) {
+        self.heard.extend(row.range);
         if let Some(Heard { station, range_m, repetitions }) = row.range {
             let index = self.ranges.iter().position(|set| set.station == station);
             let index = index.unwrap_or_else(|| {
@@ -116,17 +195,22 @@ impl Moment {
             self.ranges[index].ranges_m.extend((0..repetitions).map(|_| range_m));
         }
         if let Some(Odometry { forward_m, sideways_m, turn_rad }) = row.motion {
-            self.odometry.forward_m += forward_m;
-            self.odometry.sideways_m += sideways_m;
-            self.odometry.turn_rad += turn_rad;
+            let sum = self.odometry.get_or_insert_default();
+            sum.forward_m += forward_m;
+            sum.sideways_m += sideways_m;
+            sum.turn_rad += turn_rad;
         }
         self.truth = row.truth.or(self.truth);
     }
 
-    /// Counts ranges of which only the differences matter from the first arrival.
-    fn count_from_first(&mut self) {
-        let least_m = self.ranges.iter().flat_map(|set| &set.ranges_m).copied().fold(f64::INFINITY, f64::min);
-        for range_m in self.ranges.iter_mut().flat_map(|set| &mut set.ranges_m) {
+    /// Counts ranges of which only the differences matter from the first arrival that can be.
+    fn count_from_first(&mut self, possible: &Possible) {
+        let least_m = {
+            let (sets, _) = possible.differences(&self.ranges);
+            sets.iter().flat_map(|set| &set.ranges_m).copied().fold(f64::INFINITY, f64::min)
+        };
+        let heard = self.heard.iter_mut().map(|heard| &mut heard.range_m);
+        for range_m in self.ranges.iter_mut().flat_map(|set| &mut set.ranges_m).chain(heard) {
             *range_m += BASE_M - least_m;
         }
     }

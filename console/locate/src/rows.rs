@@ -1,5 +1,6 @@
 //! Rows of cells out of a file, one at a time.
 
+mod encoding;
 mod messages;
 mod text;
 
@@ -9,15 +10,18 @@ use messages::Messages;
 use recording::open_regular;
 use std::{
     fs::File,
-    io::{self, BufRead, BufReader, Seek},
-    path::Path,
+    io::{self, BufRead, BufReader, Read, Seek},
+    path::{Path, PathBuf},
 };
 use text::Text;
+
+/// What a file of messages begins with.
+const MCAP: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// A file that gives rows.
 pub(crate) enum Rows {
     /// Text with a line of names first.
-    Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool },
+    Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool, file: PathBuf },
     /// Messages as JSON objects, whose keys are the names.
     Messages(Box<Messages>),
 }
@@ -28,15 +32,21 @@ impl Rows {
     /// # Errors
     /// It cannot be read, or has no names.
     pub(crate) fn open(file: &Path) -> Result<Self, String> {
-        let opened = open_regular(file).map_err(|error| error.to_string())?;
-        if file.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("mcap")) {
+        let mut opened = open_regular(file).map_err(|error| error.to_string())?;
+        let mut magic = [0; MCAP.len()];
+        let is_mcap = opened.read_exact(&mut magic).is_ok() && magic == *MCAP;
+        opened.rewind().map_err(|error| error.to_string())?;
+        if is_mcap || file.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("mcap")) {
             return Ok(Self::Messages(Box::new(Messages::open(opened)?)));
         }
-        Self::text(opened)
+        Self::text(opened, file)
     }
 
-    fn text(file: File) -> Result<Self, String> {
-        let mut text = BufReader::with_capacity(1 << 16, Text::new(file));
+    fn text(opened: File, path: &Path) -> Result<Self, String> {
+        if let Some(wide) = encoding::wide(path) {
+            return Err(wide);
+        }
+        let mut text = BufReader::with_capacity(1 << 16, Text::new(opened));
         let (delimiter, skip) = delimiter(&mut text).map_err(|error| error.to_string())?;
         let mut file = text.into_inner().into_file();
         file.seek(io::SeekFrom::Start(skip)).map_err(|error| error.to_string())?;
@@ -47,12 +57,12 @@ impl Rows {
             .from_reader(BufReader::with_capacity(1 << 16, Text::new(file)));
         let header = match reader.headers() {
             Ok(header) => header.clone(),
-            Err(error) => return Err(of_csv(&error, line_of(&reader)).to_string()),
+            Err(error) => return Err(of_csv(&error, line_of(&reader), path).to_string()),
         };
         if header.is_empty() {
             return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
         }
-        Ok(Self::Csv { reader, header, has_commas: delimiter != b',' })
+        Ok(Self::Csv { reader, header, has_commas: delimiter != b',', file: path.to_owned() })
     }
 
     /// The names of the columns.
@@ -74,10 +84,10 @@ impl Rows {
     /// What is wrong with the row; the one after it can still be read.
     pub(crate) fn next(&mut self, cells: &mut StringRecord) -> Result<Option<u64>, Problem> {
         match self {
-            Self::Csv { reader, .. } => match reader.read_record(cells) {
+            Self::Csv { reader, file, .. } => match reader.read_record(cells) {
                 Ok(true) => Ok(Some(line_of(reader) - lines_within(cells))),
                 Ok(false) => Ok(None),
-                Err(error) => Err(of_csv(&error, line_of(reader))),
+                Err(error) => Err(of_csv(&error, line_of(reader), file)),
             },
             Self::Messages(messages) => messages.next(cells),
         }
@@ -94,13 +104,13 @@ fn lines_within(cells: &StringRecord) -> u64 {
     cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
 }
 
-fn of_csv(error: &csv::Error, line: u64) -> Problem {
+fn of_csv(error: &csv::Error, line: u64, file: &Path) -> Problem {
     let is_end = matches!(error.kind(), csv::ErrorKind::Io(_));
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("{len} cells, and the first line has {expected_len}")
         }
-        csv::ErrorKind::Utf8 { .. } => "no UTF-8 text; save the readings in UTF-8".into(),
+        csv::ErrorKind::Utf8 { .. } => encoding::narrow(file, line),
         csv::ErrorKind::Io(error) => error.to_string(),
         _ => error.to_string(),
     };

@@ -1,6 +1,6 @@
 //! Figures of fixes and track.
 
-use crate::fixes::word;
+use crate::fixes::{self, word};
 use mission::{Event, EventKind};
 use positioning::{Integrity, fix::ellipse_95};
 use serde::Serialize;
@@ -18,6 +18,8 @@ pub struct Tally {
     pub failed: BTreeMap<String, u64>,
     /// Position of the first fix, tank frame, metres.
     pub first_fix_m: Option<Point>,
+    /// Mission time of the first fix, seconds.
+    pub first_fix_t_s: Option<f64>,
     /// Longer half axis of the 95 % ellipse of the first fix, metres.
     pub first_fix_error_95_m: Option<f64>,
     /// How often each station was left out by its residual, by number.
@@ -56,6 +58,11 @@ impl Mean {
 }
 
 impl Tally {
+    /// Whether any emission gave a position that its own ranges do not contradict.
+    pub fn has_fix(&self) -> bool {
+        self.fixes.keys().any(|word| *word != fixes::word(Integrity::Alarm))
+    }
+
     /// Takes in the events of a moment.
     pub fn take(&mut self, events: &[Event]) {
         let mut truth: Option<Point> = None;
@@ -66,6 +73,7 @@ impl Tally {
                 EventKind::Fixed { fix } => {
                     *self.fixes.entry(word(fix.integrity)).or_default() += 1;
                     self.first_fix_m.get_or_insert(fix.position);
+                    self.first_fix_t_s.get_or_insert(event.t_s);
                     self.first_fix_error_95_m.get_or_insert_with(|| fix.ellipse_95().0);
                     for (station, reason) in &fix.excluded {
                         if matches!(reason, positioning::Exclusion::Residual { .. }) {

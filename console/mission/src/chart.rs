@@ -2,6 +2,7 @@
 
 use crate::{
     ask::{Site, SiteObstacle, SiteZone},
+    governor::{Outline, Solid},
     config::MissionConfig,
     drift::Drift,
     event::EventKind,
@@ -84,6 +85,40 @@ impl Chart {
     pub(crate) fn has_room(&self, at: Point, room_m: f64) -> bool {
         let mut no_go = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
         self.map.clearance_m(at) >= room_m && no_go.all(|zone| zone.shape.distance_m(at) >= room_m)
+    }
+
+    /// Whether nothing that the hull must not touch is within a reach of a place, metres: nothing that is seen, where it is
+    /// seen, and nothing on the chart.
+    pub(crate) fn is_free(&self, at: Point, reach_m: f64) -> bool {
+        let seen_m = |(_, shape): &(ObstacleId, Shape)| shape.distance_m(at);
+        self.has_room(at, reach_m) && self.in_sight.iter().all(|seen| seen_m(seen) >= reach_m)
+    }
+
+    /// What the hull must not touch within a reach of a place, metres: what is seen stands where it is seen, and what moved
+    /// away out of sight is nowhere.
+    pub(crate) fn solids(&self, at: Point, reach_m: f64) -> Vec<Solid<'_>> {
+        let is_seen = |id: ObstacleId| self.in_sight.iter().any(|(seen, _)| *seen == id);
+        let seen = self.in_sight.iter().map(|(_, shape)| (shape, true));
+        let near = self.map.within(at, reach_m);
+        let charted = near.into_iter().filter(|near| !is_seen(near.id) && !self.is_gone(near.index));
+        let charted = charted.map(|near| (&self.world.obstacles[near.index].shape, false));
+        let zones = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+        let shapes = seen.chain(charted).chain(zones.map(|zone| (&zone.shape, false)));
+        let near_shapes = shapes.filter(|(shape, _)| shape.distance_m(at) < reach_m);
+        let mut solids: Vec<_> =
+            near_shapes.map(|(shape, is_seen)| Solid { outline: Outline::Shape(shape), is_seen }).collect();
+        if self.world.boundary.wall_distance_m(at) < reach_m {
+            solids.push(Solid { outline: Outline::Wall(&self.world.boundary), is_seen: false });
+        }
+        solids
+    }
+
+    /// Whether an obstacle moved away out of sight.
+    fn is_gone(&self, index: usize) -> bool {
+        let found = self.found.iter().find(|found| found.index == index);
+        found.is_some_and(|found| {
+            found.drift.velocity().is_some() && self.now_s - found.drift.seen_s() > OUT_OF_SIGHT_S
+        })
     }
 
     /// Distances and neighbours on the chart.
@@ -207,9 +242,7 @@ impl Chart {
         let obstacle = &self.world.obstacles[index];
         let found = self.found.iter().find(|found| found.index == index);
         let velocity = found.and_then(|found| found.drift.velocity());
-        let is_gone = velocity.is_some()
-            && found.is_some_and(|found| self.now_s - found.drift.seen_s() > OUT_OF_SIGHT_S);
-        (!is_gone).then(|| SiteObstacle {
+        (!self.is_gone(index)).then(|| SiteObstacle {
             id: obstacle.id.0,
             discovered: !obstacle.known,
             velocity_m_per_s: velocity.unwrap_or_default(),

@@ -3,7 +3,7 @@
 use crate::planner::PlannerChoice;
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use planner_api::{Limits, Motion, TetherLimits};
-use positioning::{Aggregation, Forecast, RangeNoise, SolverKind};
+use positioning::{Aggregation, Forecast, RangeNoise, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, coverage::Tool, tether};
 
@@ -78,6 +78,12 @@ pub struct Locating {
     pub aggregation: Aggregation,
     /// How ranges become a fix.
     pub solver: SolverKind,
+    /// How the times behind single ranges err besides.
+    #[serde(skip_serializing_if = "Timing::is_none")]
+    pub timing: Timing,
+    /// Standard deviation of what all ranges may be too long by as a share, whatever the repetitions.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub scale_sigma_ratio: f64,
     /// Whether the speed of sound is found out under way.
     pub calibrate_sound_speed: bool,
     /// Ranges per station and cycle, as far as forecasts of the accuracy go.
@@ -86,10 +92,17 @@ pub struct Locating {
     pub needs_line_of_sight: bool,
 }
 
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_zero(number: &f64) -> bool {
+    *number <= 0.0
+}
+
 impl Default for Locating {
     fn default() -> Self {
         Self {
             noise: None,
+            timing: Timing::default(),
+            scale_sigma_ratio: 0.0,
             aggregation: Aggregation::default(),
             solver: SolverKind::default(),
             calibrate_sound_speed: false,
@@ -250,6 +263,7 @@ impl MissionConfig {
         let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };
         Forecast {
             noise: self.locating.noise.unwrap_or(normal),
+            timing: self.locating.timing,
             repetitions: self.locating.repetitions,
             needs_line_of_sight: self.locating.needs_line_of_sight,
             cell_m,

@@ -12,6 +12,7 @@ mod candidate;
 mod driving;
 mod floor;
 mod fork;
+mod governing;
 mod holding;
 mod orders;
 mod planning;
@@ -37,6 +38,7 @@ use crate::{
 };
 pub use driving::Sending;
 use floor::ScannedFloor;
+use governing::Governor;
 pub use fork::Fork;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
@@ -45,6 +47,9 @@ use slot::{LeftPlan, PlannerSlot};
 use stepping::PlaceOnPlan;
 use workers::Workers;
 use world::{Floor, Point, Readings, World};
+
+/// A robot that turns at least this fast turns about in the time that it is given at a corner, radians per second.
+const BRISK_RAD_PER_S: f64 = 0.75;
 
 /// What enters the engine at the top of a tick.
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +98,8 @@ pub struct Mission {
     /// The plan that was flown when the planner that drives took over.
     left: Option<LeftPlan>,
     workers: Workers,
+    /// What limits the commands.
+    governor: Governor,
     /// Where the robot was let go that moves until something happens.
     stepped_from: Option<PlaceOnPlan>,
     happened: Happened,
@@ -125,6 +132,7 @@ impl Mission {
     /// `drawing` is the tank as drawn, `floor` its grid; `seed` is handed to planners for their random choices.
     pub fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
         let start = config.start.position;
+        let governor = Governor::new(&config, &drawing.zones);
         Self {
             tick: 0,
             tether: config
@@ -144,6 +152,7 @@ impl Mission {
             better_plan_due_s: None,
             left: None,
             workers: Workers::default(),
+            governor,
             stepped_from: None,
             happened: Happened {
                 events: Vec::new(),
@@ -208,7 +217,9 @@ impl Mission {
 
     /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
     pub fn act(&mut self) -> Step {
+        self.update_mode();
         let drive = self.drive();
+        self.follow_drive(drive);
         self.end_step();
         let (tick, t_s) = (self.tick, self.now_s());
         // What it has grown to is kept for the next tick.
@@ -260,10 +271,15 @@ impl Mission {
         match &self.phase {
             // A robot that stands for its planner is kept from no corner.
             Phase::Running(_) if self.robot_waits() => {}
-            Phase::Running(_) => self.task.wait(self.config.tick_s),
+            Phase::Running(_) => self.task.wait(self.config.tick_s * self.briskness()),
             Phase::Held(hold) if hold.by.blames_planner() => self.replace_failed_planner(),
             Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}
         }
+    }
+
+    /// How fast time passes for a robot at a corner: one that turns slowly is given longer to come round.
+    fn briskness(&self) -> f64 {
+        (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
     }
 
     /// Whether the robot stands because it has no plan, or no planner, yet.

@@ -267,8 +267,21 @@ pub enum EventKind {
         /// Which ask this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// The planner's command; what was sent to the robot.
+        /// What was sent to the robot: the planner's command, within the robot's limits and so that it can stop.
         command: Command,
+        /// What the planner asked for, where that would have been too fast to stop in time.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        asked: Option<Command>,
+    },
+    /// The robot has been driven more slowly than the planner asks for, for some time, so that it can stop; reported for the
+    /// first of a row.
+    SpeedLimited {
+        /// The speed that the planner asks for, metres per second.
+        asked_m_per_s: f64,
+        /// The speed that the robot is sent, metres per second.
+        sent_m_per_s: f64,
+        /// What the robot would need to stop from the speed asked for, metres.
+        needs_m: f64,
     },
     /// The planner explained itself in drawings.
     Drawn {

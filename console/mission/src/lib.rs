@@ -13,6 +13,7 @@ pub mod config;
 mod drift;
 pub mod engine;
 pub mod event;
+mod governor;
 mod locate;
 pub mod order;
 pub mod phase;

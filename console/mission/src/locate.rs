@@ -3,7 +3,8 @@
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
 use positioning::{
-    Exclusion, Fix, FixError, Integrity, MotionNoise, Positioner, PositionerConfig, RangeNoise,
+    Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner, PositionerConfig, RangeNoise,
+    Sides,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -24,6 +25,8 @@ pub struct Locator {
     last_cycle_failed: bool,
     lost: bool,
     alarmed: bool,
+    impossible: Vec<Impossible>,
+    sides: Sides,
 }
 
 impl Locator {
@@ -35,6 +38,8 @@ impl Locator {
             start_sigma_m: config.start_sigma_m,
             heading_sigma_rad: config.start_heading_sigma_rad,
             noise: locating.noise.unwrap_or(normal),
+            timing: locating.timing,
+            scale_sigma_ratio: locating.scale_sigma_ratio,
             aggregation: locating.aggregation,
             solver: locating.solver,
             calibrate_sound_speed: locating.calibrate_sound_speed,
@@ -56,6 +61,8 @@ impl Locator {
             last_cycle_failed: false,
             lost: false,
             alarmed: false,
+            impossible: Vec::new(),
+            sides: Sides::One,
         }
     }
 
@@ -68,9 +75,24 @@ impl Locator {
         }
     }
 
-    /// Makes the position less known by a motion that nothing measured, of this standard deviation in x and in y, metres.
-    pub fn wander(&mut self, sigma_m: f64) {
-        self.positioner.wander(sigma_m);
+    /// Makes the pose less known by a motion that nothing measured, of at most so many metres and radians.
+    pub fn wander(&mut self, most_m: f64, most_rad: f64) {
+        self.positioner.wander(most_m, most_rad);
+    }
+
+    /// Trusts the ranges of the next cycles less.
+    pub fn doubt(&mut self, doubt: Doubt) {
+        self.positioner.doubt(doubt);
+    }
+
+    /// Ranges of the last cycle that no place in the tank explains.
+    pub fn impossible(&self) -> &[Impossible] {
+        &self.impossible
+    }
+
+    /// What decided between the last fix and its mirror image.
+    pub fn sides(&self) -> Sides {
+        self.sides
     }
 
     /// Takes what was sensed since the last tick; gives the resulting events.
@@ -85,6 +107,7 @@ impl Locator {
     fn cycle(&mut self, readings: &Readings) -> Vec<EventKind> {
         let heard = readings.ranges.iter().filter(|set| !self.unused.contains(&set.station));
         let mut result = self.positioner.cycle(&heard.cloned().collect::<Vec<_>>());
+        (self.impossible, self.sides) = (std::mem::take(&mut result.impossible), result.sides);
         if let Ok(fix) = &mut result.fix {
             let by_order = fix.excluded.iter_mut().filter(|(station, _)| self.unused.contains(station));
             by_order.for_each(|(_, reason)| *reason = Exclusion::ByOrder);

@@ -49,6 +49,9 @@ mod tests {
         w_max_rad_per_s: 1.0,
         radius_m: 0.2,
         sensing_range_m: 2.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
 
     #[test]

@@ -50,12 +50,17 @@ impl PluginDirs {
         Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
+    /// The paths of all files that are named like a plugin, folder by folder.
+    pub(crate) fn candidates(&self) -> Vec<PathBuf> {
+        self.folders.iter().flat_map(|dir| named_like_plugins(dir)).collect()
+    }
+
     /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
     /// content as an earlier one is the same plugin and left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
         let cache = Cache::new(self.cache.as_deref());
-        for path in self.folders.iter().flat_map(|dir| named_like_plugins(dir)) {
+        for path in self.candidates() {
             let plugin = cache.seen(&path).unwrap_or_else(|| {
                 let plugin = PluginFile::read(path);
                 cache.note(&plugin);

@@ -43,4 +43,4 @@ pub use stats::{CallStats, HostStats, Memory};
 pub use supervisor::{Waker, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, Surveyor, check_plugin, survey};
 pub use user_folder::user_folder;
-pub use worker::{check_descriptors, worker_main};
+pub use worker::{check_limits, worker_main};

@@ -3,8 +3,9 @@
 pub mod adviser;
 
 use crate::{
-    fix::ellipse_95,
-    noise::RangeNoise,
+    fix::{Ranging, ellipse_95},
+    noise::{RangeNoise, Timing},
+    sides::mirrored,
     quality::{NO_GEOMETRY, inverse_of},
 };
 use nalgebra::Matrix2;
@@ -23,6 +24,9 @@ const REACHED_M: f64 = 1e-3;
 pub struct Forecast {
     /// How single ranges scatter.
     pub noise: RangeNoise,
+    /// How their times err besides.
+    #[serde(default)]
+    pub timing: Timing,
     /// Ranges per station and cycle.
     pub repetitions: u32,
     /// Whether a station is of no use where an obstacle hides it.
@@ -40,6 +44,9 @@ pub struct Accuracy {
     pub gdop: Option<f64>,
     /// Stations heard.
     pub heard: u32,
+    /// The place on the other side of stations on a line which their ranges do not tell from this one, metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<Point>,
 }
 
 /// The forecast for every cell of the floor, row by row from the south west corner.
@@ -103,15 +110,40 @@ impl Forecast {
     /// The forecast for one place.
     pub fn at(&self, place: Point, stations: &[Station], map: &ObstacleMap) -> Accuracy {
         let heard =
-            stations.iter().filter(|s| !self.needs_line_of_sight || is_in_sight(map, place, s.position));
+            || stations.iter().filter(|s| !self.needs_line_of_sight || is_in_sight(map, place, s.position));
         let mut sum = Seen::default();
-        heard.for_each(|station| sum.add(&self.seen(place, station.position)));
+        heard().for_each(|station| sum.add(&self.seen(place, station.position)));
         let covariance = sum.covariance();
         Accuracy {
             error_95_m: covariance.map(|covariance| ellipse_95(&covariance).0),
             gdop: covariance.and_then(|_| sum.gdop()),
             heard: sum.heard,
+            mirror: covariance.and_then(|_| self.mirror(place, heard(), stations)),
         }
+    }
+
+    fn mirror<'a>(
+        &self,
+        place: Point,
+        heard: impl Iterator<Item = &'a Station>,
+        stations: &[Station],
+    ) -> Option<Point> {
+        let expected = |station: &Station| {
+            let range_m = (place - station.position).norm().max(NEAREST_M);
+            Ranging::single(station.id, range_m, self.sigma_m(range_m))
+        };
+        mirrored(&heard.map(expected).collect::<Vec<_>>(), stations, place)
+    }
+
+    /// Standard deviation of the ranges of one station in a cycle, metres.
+    fn sigma_m(&self, distance_m: f64) -> f64 {
+        let repetitions = f64::from(self.repetitions.max(1));
+        let single_m = self.noise.sigma_ratio() * distance_m;
+        let share_m = (single_m / repetitions.sqrt()).max(crate::aggregate::SIGMA_FLOOR_M);
+        if self.timing.is_none() {
+            return share_m;
+        }
+        share_m.hypot(self.timing.mean_sigma_m(single_m, repetitions))
     }
 
     /// The information one station gives at a place.
@@ -120,9 +152,7 @@ impl Forecast {
         let distance_m = away.norm().max(NEAREST_M);
         let direction = away / distance_m;
         let square = direction * direction.transpose();
-        let repetitions = f64::from(self.repetitions.max(1));
-        let sigma_m =
-            (self.noise.sigma_ratio() * distance_m / repetitions.sqrt()).max(crate::aggregate::SIGMA_FLOOR_M);
+        let sigma_m = self.sigma_m(distance_m);
         Seen { heard: 1, geometry: square, information: square / sigma_m.powi(2) }
     }
 }

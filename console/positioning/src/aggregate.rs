@@ -84,7 +84,8 @@ impl Aggregation {
         // `max` also turns what is no number into the floor.
         let at_least_m = sigma_m.max(SIGMA_FLOOR_M);
         let sigma_m = at_least_m.min(RANGE_LIMIT_M);
-        Ok(Ranging { station: set.station, range_m, sigma_m, repetitions, least_m, most_m })
+        let station = set.station;
+        Ok(Ranging { station, range_m, sigma_m, repetitions, least_m, most_m, timing_sigma_m: 0.0 })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     aggregate::{RANGE_LIMIT_M, is_usable},
-    fix::{FixError, Ranging},
+    fix::{FixError, Ranging, share_sigma_m},
 };
 use nalgebra::Rotation2;
 use std::f64::consts::TAU;
@@ -22,6 +22,8 @@ pub(crate) struct Anchor {
     pub at: Point,
     pub range_m: f64,
     pub sigma_m: f64,
+    /// The part of `sigma_m` that is the same at every distance.
+    pub timing_sigma_m: f64,
 }
 
 /// A station as seen from a position that is tried.
@@ -35,6 +37,8 @@ pub(crate) struct View {
     pub residual_m: f64,
     /// Standard deviation expected of the residual, metres.
     pub sigma_m: f64,
+    /// Metres over which it would grow by itself.
+    pub growth_m: f64,
 }
 
 impl View {
@@ -52,16 +56,40 @@ impl View {
 impl Anchor {
     /// The station as seen from `position`.
     ///
-    /// The scatter of a range is a share of the true distance, so its sigma is taken to the computed distance.
+    /// The scatter of a range, but for that of its time, is a share of the true distance, so its sigma is taken to the computed
+    /// distance.
     pub(crate) fn view_from(&self, position: Point) -> View {
         let away = position - self.at;
         let distance_m = away.norm().max(NEAREST_M);
-        View {
-            distance_m,
-            direction: away / distance_m,
-            residual_m: self.range_m - distance_m,
-            sigma_m: self.sigma_m * distance_m / self.range_m,
+        let (sigma_m, growth_m) = if self.timing_sigma_m > 0.0 {
+            let share_m = share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m);
+            let variance = share_m * share_m + self.timing_sigma_m * self.timing_sigma_m;
+            (variance.sqrt(), variance * distance_m / (share_m * share_m).max(1e-18))
+        } else {
+            (self.sigma_m * distance_m / self.range_m, distance_m)
+        };
+        let residual_m = self.range_m - distance_m;
+        View { distance_m, direction: away / distance_m, residual_m, sigma_m, growth_m }
+    }
+
+    /// By how much the residual in its own sigmas falls, for each metre that the distance grows.
+    pub(crate) fn steepness(&self, view: &View) -> f64 {
+        if self.timing_sigma_m > 0.0 {
+            1.0 / view.sigma_m + view.sigmas() / view.growth_m
+        } else {
+            // d/dl of (r - l) / (s l) is -r / (s l^2).
+            self.range_m / (view.sigma_m * view.distance_m)
         }
+    }
+
+    /// The range with the same error at another distance.
+    pub(crate) fn at_range(&self, range_m: f64) -> Self {
+        let sigma_m = if self.timing_sigma_m > 0.0 {
+            share_sigma_m(self.sigma_m, self.timing_sigma_m, range_m / self.range_m).hypot(self.timing_sigma_m)
+        } else {
+            self.sigma_m / self.range_m * range_m
+        };
+        Self { range_m, sigma_m, ..*self }
     }
 }
 
@@ -76,7 +104,7 @@ pub(crate) fn anchored(ranges: &[Ranging], stations: &[Station]) -> Result<Vec<A
 }
 
 fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
-    let Ranging { station, range_m, sigma_m, .. } = *ranging;
+    let Ranging { station, range_m, sigma_m, timing_sigma_m, .. } = *ranging;
     if !is_usable(range_m) || !(1e-9..=RANGE_LIMIT_M).contains(&sigma_m) {
         return Err(FixError::BadRange { station });
     }
@@ -86,7 +114,7 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
     if at.coords.iter().any(|c| c.is_nan()) {
         return Err(FixError::UnknownStation { station });
     }
-    Ok(Anchor { station, at, range_m, sigma_m })
+    Ok(Anchor { station, at, range_m, sigma_m, timing_sigma_m })
 }
 
 /// Places on the range circle of a station that is close by; none if there is no such station.

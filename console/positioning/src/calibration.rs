@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use world::{Point, Station};
 
 /// Largest error of the assumed sound speed that is believed, as a share.
-const MOST_SCALE: f64 = 0.3;
+pub(crate) const MOST_SCALE: f64 = 0.3;
 /// Largest share of a scale error that cannot be distinguished from zero.
 const LEAST_SCALE: f64 = 1e-6;
 /// Rounds of fitting the position together with what is common to the ranges of a cycle.
@@ -152,6 +152,7 @@ impl Calibration {
         let one = |r: &Ranging| Ranging {
             range_m: (r.range_m - offset_m) * by,
             sigma_m: (r.sigma_m * by).hypot(r.range_m * self.scale_sigma).hypot(self.offset_sigma_m),
+            timing_sigma_m: r.timing_sigma_m * by,
             least_m: (r.least_m - offset_m) * by,
             most_m: (r.most_m - offset_m) * by,
             ..*r
@@ -276,7 +277,12 @@ impl Cycle {
         let by = 1.0 / (1.0 + common.scale);
         let shrunk: Vec<Anchor> = anchors
             .iter()
-            .map(|a| Anchor { range_m: (a.range_m - common.offset_m) * by, sigma_m: a.sigma_m * by, ..*a })
+            .map(|a| Anchor {
+                range_m: (a.range_m - common.offset_m) * by,
+                sigma_m: a.sigma_m * by,
+                timing_sigma_m: a.timing_sigma_m * by,
+                ..*a
+            })
             .collect();
         if shrunk.iter().any(|a| a.range_m <= 0.0) {
             return Ok(None);

@@ -25,6 +25,10 @@ const SETTLED_M: f64 = 1e-9;
 pub struct Differences;
 
 impl PositionSolver for Differences {
+    fn excess_m(&self, fix: &Fix, ranges: &[Ranging], stations: &[Station]) -> f64 {
+        common_excess_m(fix, ranges, stations).unwrap_or_default()
+    }
+
     fn solve(&self, ranges: &[Ranging], stations: &[Station], prior: Option<Prior>) -> Result<Fix, FixError> {
         let anchors = anchored(ranges, stations)?;
         if anchors.len() < NEEDED {
@@ -34,12 +38,7 @@ impl PositionSolver for Differences {
             .filter_map(|start| descend(&anchors, start))
             .min_by(|a, b| a.cost.total_cmp(&b.cost))
             .ok_or(FixError::NotConverged { iterations: MAX_ITERATIONS })?;
-        let shares = |a: &Anchor| Anchor {
-            range_m: a.range_m - found.excess_m,
-            sigma_m: a.sigma_m / a.range_m * (a.range_m - found.excess_m),
-            ..*a
-        };
-        let ranges: Vec<Anchor> = anchors.iter().map(shares).collect();
+        let ranges: Vec<Anchor> = anchors.iter().map(|a| a.at_range(a.range_m - found.excess_m)).collect();
         if ranges.iter().any(|a| a.range_m <= 0.0) {
             return Err(FixError::NotConverged { iterations: MAX_ITERATIONS });
         }
@@ -136,7 +135,7 @@ fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
         let error = (view.residual_m - state.z) / view.sigma_m;
         let by = Vector3::new(view.direction.x, view.direction.y, 1.0) / view.sigma_m;
         // The sigma grows with the distance, too.
-        let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.distance_m);
+        let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.growth_m);
         slope.cost += error * error;
         slope.gradient -= by * error;
         slope.curvature += by * by.transpose();

@@ -19,13 +19,36 @@ pub struct Ranging {
     pub least_m: f64,
     /// The longest repetition, metres.
     pub most_m: f64,
+    /// The part of `sigma_m` that is the same at every distance, metres; the rest is a share of the distance.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub timing_sigma_m: f64,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_zero(number: &f64) -> bool {
+    *number <= 0.0
 }
 
 impl Ranging {
     /// A range of a single repetition.
     pub fn single(station: StationId, range_m: f64, sigma_m: f64) -> Self {
-        Self { station, range_m, sigma_m, repetitions: 1, least_m: range_m, most_m: range_m }
+        let (least_m, most_m) = (range_m, range_m);
+        Self { station, range_m, sigma_m, repetitions: 1, least_m, most_m, timing_sigma_m: 0.0 }
     }
+
+    /// The standard deviation that the error has at a distance, metres.
+    pub fn sigma_at_m(&self, distance_m: f64) -> f64 {
+        if self.timing_sigma_m > 0.0 {
+            share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m).hypot(self.timing_sigma_m)
+        } else {
+            self.sigma_m * distance_m / self.range_m
+        }
+    }
+}
+
+/// The part of a standard deviation that is a share of the distance, at so many times the distance, metres.
+pub(crate) fn share_sigma_m(sigma_m: f64, timing_sigma_m: f64, times: f64) -> f64 {
+    (sigma_m * sigma_m - timing_sigma_m * timing_sigma_m).max(0.0).sqrt() * times
 }
 
 /// How well a station fits the fix.
@@ -54,6 +77,13 @@ pub enum Exclusion {
     },
     /// The operator excluded it.
     ByOrder,
+    /// None of its ranges can be: no place in the tank explains one.
+    Impossible {
+        /// One of them, metres.
+        range_m: f64,
+        /// The longest one that can be, metres.
+        most_m: f64,
+    },
 }
 
 /// How far the fix can be trusted.
@@ -131,10 +161,12 @@ impl Fix {
     }
 }
 
+/// Squared distance in standard deviations up to which 95 % of a normal distribution in the plane lie: -2 ln 0.05.
+pub(crate) const ELLIPSE_95: f64 = 5.991_464_547_107_982;
+
 /// Half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
-    // Quantile of the chi-squared distribution with two degrees of freedom: -2 ln 0.05.
-    let scale = -2.0 * 0.05_f64.ln();
+    let scale = ELLIPSE_95;
     let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
     let (middle, spread) = (f64::midpoint(a, c), (((a - c) / 2.0).powi(2) + b * b).sqrt());
     let half = |eigenvalue: f64| (scale * eigenvalue.max(0.0)).sqrt();
@@ -218,6 +250,11 @@ pub type Prior = (Point, Matrix2<f64>);
 
 /// A way from ranges to a fix.
 pub trait PositionSolver {
+    /// By how much all ranges behind a fix are too long, metres, where the solver finds that out.
+    fn excess_m(&self, _fix: &Fix, _ranges: &[Ranging], _stations: &[Station]) -> f64 {
+        0.0
+    }
+
     /// Computes the position from the ranges.
     ///
     /// Solvers use the prior to choose between mirror solutions, and with fewer than three stations need it.

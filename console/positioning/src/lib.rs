@@ -5,6 +5,7 @@
 
 pub mod fix;
 pub mod noise;
+pub mod possible;
 
 pub mod aggregate;
 pub mod bounded;
@@ -22,12 +23,15 @@ pub mod ekf;
 pub mod fixed_lag;
 pub mod particle;
 pub mod positioner;
+pub mod session;
 
 mod anchor;
 #[cfg(test)]
 mod draws;
 mod pair;
 mod quality;
+mod sides;
+mod solver_kind;
 
 pub use accuracy::{
     Accuracy, AccuracyMap, Forecast,
@@ -42,10 +46,14 @@ pub use ekf::{Ekf, MotionNoise};
 pub use fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging, Residual};
 pub use fixed_lag::FixedLag;
 pub use linear::LinearLs;
-pub use noise::RangeNoise;
+pub use noise::{RangeNoise, Timing};
 pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
-pub use positioner::{CycleResult, Estimate, Positioner, PositionerConfig, SolverKind};
-pub use quality::alarm_limit;
+pub use positioner::{CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
+pub use possible::{Impossible, Possible};
+pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
+pub use session::{Session, Verdict, Wrong};
+pub use sides::{Sides, mirrored};
+pub use solver_kind::SolverKind;
 pub use weighted::WeightedLinear;

@@ -1,9 +1,17 @@
 //! How single ranges scatter, as far as the estimator knows.
 
+use crate::fix::Ranging;
 use serde::{Deserialize, Serialize};
 
 /// Degrees of freedom of [`RangeNoise::HeavyTailed`].
 pub(crate) const TAIL_FREEDOM: f64 = 3.0;
+
+/// Harmonics of the error of rounding that are added up; the rest is a fortieth of the whole at most.
+const HARMONICS: u32 = 24;
+/// Standard deviations that no normal error exceeds,
+const NORMAL_EXTREME: f64 = 6.0;
+/// and no error of [`RangeNoise::HeavyTailed`], but for one in some ten thousand.
+const TAIL_EXTREME: f64 = 30.0;
 
 /// The distribution of the error of a range as a share of the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -50,6 +58,16 @@ impl RangeNoise {
         .filter(|ratio| (1e-9..1.0).contains(ratio))
     }
 
+    /// Largest error as a share of the distance: the bound, or what one error in a hundred million exceeds.
+    pub(crate) fn extreme_ratio(&self) -> f64 {
+        match *self {
+            Self::Uniform { ratio } | Self::Triangular { ratio } => ratio,
+            Self::Gaussian { sigma_ratio } => NORMAL_EXTREME * sigma_ratio,
+            Self::HeavyTailed { sigma_ratio } => TAIL_EXTREME * sigma_ratio,
+        }
+        .abs()
+    }
+
     /// Standard deviation of the midrange of `n` errors as a share of the distance.
     pub fn midrange_sigma_ratio(&self, n: f64) -> f64 {
         match *self {
@@ -78,6 +96,98 @@ impl RangeNoise {
                 // In units of the scale, which is the standard deviation over sqrt(k / (k - 2)).
                 let t2 = (error_ratio / sigma_ratio).powi(2) * TAIL_FREEDOM / (TAIL_FREEDOM - 2.0);
                 (1.0 + t2 / TAIL_FREEDOM).powf(-f64::midpoint(TAIL_FREEDOM, 1.0))
+            }
+        }
+    }
+}
+
+/// Errors of ranges that are the same at every distance: those of the times that the ranges are computed from.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Timing {
+    /// Standard deviation of a single range, metres: the jitter of a time of flight times the speed of sound.
+    pub jitter_m: f64,
+    /// Ranges are whole multiples of this, metres: a sampling period times the speed of sound; 0: they are not.
+    pub resolution_m: f64,
+}
+
+impl Timing {
+    /// Whether there are no such errors.
+    pub fn is_none(&self) -> bool {
+        !(self.jitter_m > 0.0 || self.resolution_m > 0.0)
+    }
+
+    /// Standard deviation of the mean of `n` ranges, metres, whose other errors have the standard deviation `share_sigma_m` each.
+    ///
+    /// Rounding errs by a twelfth of the squared step. As far as the other errors spread ranges over several steps it is fresh in every
+    /// range; what is left repeats (the Fourier series of the error of rounding, averaged over the distance).
+    pub fn mean_sigma_m(&self, share_sigma_m: f64, n: f64) -> f64 {
+        let step_m = self.resolution_m;
+        let mut repeats_m2 = 0.0;
+        let rounding_m2 = step_m * step_m / 12.0;
+        if step_m > 0.0 {
+            let spread = share_sigma_m.hypot(self.jitter_m) / step_m;
+            let harmonic = |k: u32| {
+                let k = f64::from(k) * std::f64::consts::PI;
+                (-(2.0 * k * spread).powi(2)).exp() / (2.0 * k * k)
+            };
+            repeats_m2 = ((1..=HARMONICS).map(harmonic).sum::<f64>() * step_m * step_m).min(rounding_m2);
+        }
+        let fresh_m2 = self.jitter_m * self.jitter_m + rounding_m2 - repeats_m2;
+        (repeats_m2 + fresh_m2.max(0.0) / n.max(1.0)).sqrt()
+    }
+
+    /// The largest error of a range, metres.
+    pub(crate) fn extreme_m(&self) -> f64 {
+        NORMAL_EXTREME * self.jitter_m + self.resolution_m
+    }
+
+    /// Adds these errors to those of ranges that were brought down to one of each station.
+    pub fn apply(&self, rangings: &mut [Ranging], noise: &RangeNoise) {
+        if self.is_none() {
+            return;
+        }
+        for ranging in rangings {
+            let single_m = noise.sigma_ratio() * ranging.range_m;
+            let timing_m = self.mean_sigma_m(single_m, f64::from(ranging.repetitions));
+            // A range that is all but 0 by chance has no error of its own that could be taken to other distances.
+            ranging.sigma_m = ranging.sigma_m.min(single_m).hypot(timing_m);
+            ranging.timing_sigma_m = timing_m;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draws::Draws;
+
+    /// Measured standard deviation of the mean of `n` rounded ranges.
+    fn measured_m(timing: Timing, share_sigma_m: f64, n: u32) -> f64 {
+        let mut draws = Draws::new(0.0, 1, 11);
+        let mut squares = 0.0;
+        for _ in 0..4_000 {
+            let distance_m = 5.0 + draws.even();
+            let sum: f64 = (0..n)
+                .map(|_| {
+                    let spread_m = share_sigma_m.hypot(timing.jitter_m) * draws.bell();
+                    ((distance_m + spread_m) / timing.resolution_m).round() * timing.resolution_m
+                })
+                .sum();
+            squares += (sum / f64::from(n) - distance_m).powi(2);
+        }
+        (squares / 4_000.0).sqrt()
+    }
+
+    #[test]
+    fn rounding_repeats_as_far_as_nothing_else_spreads_the_ranges() {
+        for (jitter_m, share_sigma_m) in [(0.0, 0.0), (0.01, 0.0), (0.05, 0.02), (0.0, 0.1), (0.2, 0.1)] {
+            let timing = Timing { jitter_m, resolution_m: 0.3 };
+            for n in [1, 4, 20] {
+                let share_m = share_sigma_m / f64::from(n).sqrt();
+                let said_m = timing.mean_sigma_m(share_sigma_m, f64::from(n)).hypot(share_m);
+                let found_m = measured_m(timing, share_sigma_m, n);
+                assert!((said_m / found_m - 1.0).abs() < 0.06, "{jitter_m} {share_sigma_m} {n}: {said_m} {found_m}");
             }
         }
     }

@@ -2,10 +2,11 @@
 
 use crate::{
     anchor::{Anchor, anchored, on_near_circle},
-    fix::{Fix, FixError, PositionSolver, Prior, Ranging},
+    fix::{ELLIPSE_95, Fix, FixError, PositionSolver, Prior, Ranging},
     linear::{conditioning, solve_linear},
     pair::solve_pair,
     quality::{assess, inverse_of},
+    sides::MIRROR_CONDITIONING,
 };
 use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
@@ -14,8 +15,6 @@ use world::{Point, Station, Vector};
 const MAX_ITERATIONS: usize = 60;
 /// The search ends when a step is shorter than this share of the longest range.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// Stations nearer to a line than this condition number leave a second position that has to be looked at.
-const MIRROR_CONDITIONING: f64 = 5.0;
 /// A second position fits nearly as well if its chi-squared is worse by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
@@ -102,6 +101,16 @@ fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Min
     }
 }
 
+/// The place on the other side of the stations that fits nearly as well as a place that fits; none if there is no such place, or the two
+/// are one within their error.
+pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
+    let cost = Slope::at(anchors, at).cost;
+    let other = descend(anchors, reflected(anchors, at)).ok()?;
+    let away = other.position - at;
+    let is_other = away.dot(&(information_at(anchors, at) * away)) > ELLIPSE_95;
+    (is_other && other.cost < cost + MIRROR_MARGIN).then_some(other.position)
+}
+
 /// Squared distance from a prior in its own sigmas; metres squared if it has no usable covariance.
 fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
     let away = position - near;
@@ -162,8 +171,7 @@ impl Slope {
         for anchor in anchors {
             let view = anchor.view_from(position);
             let error = view.residual_m / view.sigma_m;
-            // d/dl of (r - l) / (s l) is -r / (s l^2).
-            let steepness = anchor.range_m / (view.sigma_m * view.distance_m);
+            let steepness = anchor.steepness(&view);
             let square = view.direction * view.direction.transpose();
             slope.cost += error * error;
             slope.gradient -= view.direction * (steepness * error);

@@ -1,120 +1,44 @@
 //! The estimate that a mission keeps: odometry every tick, ranges every cycle.
 
+mod config;
+
+pub use config::PositionerConfig;
+
 use crate::{
-    aggregate::Aggregation,
-    bounded::Bounded,
-    calibration::{Calibration, Unknowns},
-    consensus::Consensus,
-    differences::{Differences, common_excess_m},
-    ekf::{Ekf, MotionNoise},
-    fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
-    linear::LinearLs,
-    noise::RangeNoise,
-    nonlinear::Nls,
-    screened::Screened,
-    weighted::WeightedLinear,
+    calibration::{Calibration, MOST_SCALE, Unknowns},
+    differences::common_excess_m,
+    ekf::Ekf,
+    fix::{Exclusion, Fix, FixError, Integrity, Prior, Ranging, ellipse_95},
+    possible::{Impossible, Possible},
+    sides::{Sides, both, is_behind},
+    solver_kind::SolverKind,
 };
-use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
-use world::{Boundary, Odometry, Pose, RangeSet, Station, StationId};
+use nalgebra::{Matrix2, Matrix3};
+use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
 /// So many sound fixes in a row that contradict the filter prove the filter wrong.
 const PATIENCE: u32 = 3;
+/// Standard deviation of a position that is to be preferred to its mirror image, metres.
+const MIRROR_SIGMA_M: f64 = 0.01;
+/// A range that cannot be is shown up to this length, metres.
+const MOST_SHOWN_M: f64 = 1e9;
 /// Doubt about the heading after the filter was proved wrong, radians.
 const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 
-/// Which solver turns ranges into fixes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SolverKind {
-    /// [`LinearLs`].
-    Linear,
-    /// [`WeightedLinear`].
-    WeightedLinear,
-    /// [`Nls`].
-    #[default]
-    Nls,
-    /// [`Bounded`] by the bound of the noise; [`Nls`] where the noise has none, and, with the fix suspect, where no
-    /// position is left.
-    Bounded,
-    /// [`Consensus`] among late ranges.
-    Consensus,
-    /// [`Differences`]: all ranges of a cycle are too long by one unknown length.
-    Differences,
+/// Why ranges are trusted less than their noise says: fixes of them are suspect, and wider.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Doubt {
+    /// What may be wrong with all ranges, as a share of the distance.
+    pub ratio: f64,
+    /// What may be wrong with all ranges, metres.
+    pub sigma_m: f64,
+    /// Whether fixes are suspect even if nothing is known about how wrong they are.
+    pub is_suspect: bool,
 }
 
-impl SolverKind {
-    /// Turns ranges into a fix; a single station that contradicts all others is left out.
-    ///
-    /// # Errors
-    /// See [`FixError`].
-    pub fn solve(
-        self,
-        ranges: &[Ranging],
-        stations: &[Station],
-        noise: &RangeNoise,
-        prior: Option<Prior>,
-    ) -> Result<Fix, FixError> {
-        match (self, noise.bound_ratio()) {
-            (Self::Linear, _) => Screened(LinearLs).solve(ranges, stations, prior),
-            (Self::WeightedLinear, _) => Screened(WeightedLinear).solve(ranges, stations, prior),
-            (Self::Consensus, _) => Consensus::default().solve(ranges, stations, prior),
-            (Self::Differences, _) => Screened(Differences).solve(ranges, stations, prior),
-            (Self::Bounded, Some(ratio)) => {
-                Bounded { ratio }.solve(ranges, stations, prior).or_else(|error| match error {
-                    FixError::EmptySet { .. } => doubted(Screened(Nls).solve(ranges, stations, prior)),
-                    other => Err(other),
-                })
-            }
-            (Self::Nls | Self::Bounded, _) => Screened(Nls).solve(ranges, stations, prior),
-        }
-    }
-}
-
-fn doubted(fix: Result<Fix, FixError>) -> Result<Fix, FixError> {
-    fix.map(|fix| Fix { integrity: fix.integrity.min_trust(Integrity::Suspect), ..fix })
-}
-
-/// What the positioner has to know beforehand.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PositionerConfig {
-    /// The surveyed stations.
-    pub stations: Vec<Station>,
-    /// Where the robot stands at the start.
-    pub start: Pose,
-    /// Standard deviation of the start's position, metres.
-    pub start_sigma_m: f64,
-    /// Standard deviation of the start's heading, radians.
-    pub heading_sigma_rad: f64,
-    /// How single ranges scatter.
-    pub noise: RangeNoise,
-    /// How odometry errs.
-    pub odometry: MotionNoise,
-    /// How repetitions become one range.
-    pub aggregation: Aggregation,
-    /// How ranges become a fix.
-    pub solver: SolverKind,
-    /// The wall of the tank: a fix clearly behind it is none.
-    pub boundary: Option<Boundary>,
-    /// Whether the speed of sound is found out under way; needs four stations.
-    pub calibrate_sound_speed: bool,
-}
-
-impl PositionerConfig {
-    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as [`MotionNoise::default`].
-    pub fn new(stations: Vec<Station>, start: Pose) -> Self {
-        Self {
-            stations,
-            start,
-            start_sigma_m: 0.05,
-            heading_sigma_rad: 0.05,
-            noise: RangeNoise::Gaussian { sigma_ratio: 0.03 },
-            odometry: MotionNoise::default(),
-            aggregation: Aggregation::default(),
-            solver: SolverKind::default(),
-            boundary: None,
-            calibrate_sound_speed: false,
-        }
+impl Doubt {
+    fn is_any(&self) -> bool {
+        self.is_suspect || self.ratio > 0.0 || self.sigma_m > 0.0
     }
 }
 
@@ -136,14 +60,27 @@ pub struct CycleResult {
     pub fix: Result<Fix, FixError>,
     /// Whether the fix, or what single ranges there were, went into the estimate.
     pub accepted: bool,
+    /// Ranges that cannot be, which were left out.
+    pub impossible: Vec<Impossible>,
+    /// What decides between the fix and its mirror image.
+    pub sides: Sides,
 }
 
 /// Ranges and odometry in, pose with covariance out.
 #[derive(Debug, Clone)]
 pub struct Positioner {
     config: PositionerConfig,
+    /// What ranges can be in the tank, if its wall is known.
+    possible: Option<Possible>,
     filter: Ekf,
     sound: Calibration,
+    doubt: Doubt,
+    /// Whether some motion was not measured, so that the heading may be lost.
+    has_wandered: bool,
+    /// Whether any fix has confirmed where the robot was put down,
+    is_confirmed: bool,
+    /// and whether the estimate knows the side of stations on a line.
+    knows_side: bool,
     refused_in_a_row: u32,
     /// The first of the refused fixes in a row, and where the filter was then.
     first_refused: Option<(Fix, Pose)>,
@@ -154,17 +91,37 @@ impl Positioner {
     pub fn new(config: PositionerConfig) -> Self {
         let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         let sound = Calibration::new(&config.stations, Unknowns::default());
-        Self { config, filter, sound, refused_in_a_row: 0, first_refused: None }
+        let too_long_ratio = if config.calibrate_sound_speed { MOST_SCALE } else { 0.0 };
+        let noise = (&config.noise, config.timing);
+        let possible =
+            config.boundary.as_ref().map(|wall| Possible::new(wall, &config.stations, noise, too_long_ratio));
+        Self {
+            config,
+            possible,
+            filter,
+            sound,
+            doubt: Doubt::default(),
+            has_wandered: false,
+            is_confirmed: false,
+            knows_side: true,
+            refused_in_a_row: 0,
+            first_refused: None,
+        }
     }
 
     /// Moves the estimate by one tick of odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
-        self.filter.predict(odometry);
+        if self.has_wandered {
+            self.filter.predict_unsure(odometry);
+        } else {
+            self.filter.predict(odometry);
+        }
     }
 
-    /// Makes the position less known by a motion that nothing measured, of this standard deviation in x and in y, metres.
-    pub fn wander(&mut self, sigma_m: f64) {
-        self.filter.doubt_motion(&Odometry { forward_m: sigma_m, ..Odometry::default() });
+    /// Makes the pose less known by a motion that nothing measured; see [`Ekf::wander`].
+    pub fn wander(&mut self, most_m: f64, most_rad: f64) {
+        self.filter.wander(most_m, most_rad);
+        self.has_wandered = true;
     }
 
     /// Takes in a ranging cycle: ranges to a fix, the fix into the estimate unless its residuals raise an alarm.
@@ -172,26 +129,63 @@ impl Positioner {
     /// With one or two stations there is no fix to be had without help: with two the estimate chooses the mirror, with
     /// one the range itself goes into the estimate.
     pub fn cycle(&mut self, sets: &[RangeSet]) -> CycleResult {
-        let mut rangings = match self.config.aggregation.aggregate(sets, &self.config.noise) {
-            Ok(rangings) => rangings,
-            Err(error) => return CycleResult { rangings: Vec::new(), fix: Err(error), accepted: false },
+        let (sets, impossible) = match &self.possible {
+            Some(possible) if self.are_distances() => possible.ranges(sets),
+            Some(possible) => possible.differences(sets),
+            None => (sets.into(), Vec::new()),
         };
+        let mut result = CycleResult {
+            rangings: Vec::new(),
+            fix: Err(FixError::TooFewStations { have: 0, need: 2 }),
+            accepted: false,
+            impossible,
+            sides: Sides::One,
+        };
+        let mut rangings = match self.config.aggregation.aggregate(&sets, &self.config.noise) {
+            Ok(rangings) => rangings,
+            Err(error) => return CycleResult { fix: Err(error), ..result },
+        };
+        self.config.timing.apply(&mut rangings, &self.config.noise);
         if self.config.calibrate_sound_speed {
             let prior = (self.filter.pose().position, self.filter.position_covariance());
             // A cycle without a position contributes nothing; the fix states why there is none.
             let _ = self.sound.take(&rangings, Some(prior));
             rangings = self.sound.corrected(&rangings);
         }
-        let mut fix = self.solve(&rangings);
-        if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &fix) {
+        self.widen(&mut rangings);
+        result.fix = self.solve(&rangings, &result.impossible);
+        if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &result.fix) {
             take_excess_out(fix, &mut rangings, &self.config.stations);
         }
-        let accepted = match &mut fix {
-            Ok(fix) => self.take_fix(fix, &rangings),
+        result.accepted = match &mut result.fix {
+            Ok(fix) => {
+                result.sides = self.sides(fix);
+                self.take_fix(fix, &rangings, result.sides)
+            }
             Err(FixError::TooFewStations { .. }) if self.are_distances() => self.take_ranges(&rangings),
             Err(_) => false,
         };
-        CycleResult { rangings, fix, accepted }
+        if let (true, Ok(fix)) = (self.doubt.is_any(), &mut result.fix) {
+            fix.integrity = fix.integrity.min_trust(Integrity::Suspect);
+        }
+        CycleResult { rangings, ..result }
+    }
+
+    /// Widens ranges by what they may all be wrong by.
+    fn widen(&self, rangings: &mut [Ranging]) {
+        let Doubt { ratio, sigma_m, .. } = self.doubt;
+        let share = self.config.scale_sigma_ratio.hypot(ratio);
+        if share > 0.0 || sigma_m > 0.0 {
+            for ranging in rangings {
+                ranging.sigma_m = ranging.sigma_m.hypot(share * ranging.range_m).hypot(sigma_m);
+                ranging.timing_sigma_m = ranging.timing_sigma_m.hypot(sigma_m);
+            }
+        }
+    }
+
+    /// Trusts the ranges of the next cycles less.
+    pub fn doubt(&mut self, doubt: Doubt) {
+        self.doubt = doubt;
     }
 
     /// Where the robot is believed to be.
@@ -204,17 +198,45 @@ impl Positioner {
         self.filter.error_95_m()
     }
 
-    fn solve(&self, rangings: &[Ranging]) -> Result<Fix, FixError> {
-        let prior = (self.filter.pose().position, self.filter.position_covariance());
+    fn prior(&self) -> Prior {
+        (self.filter.pose().position, self.filter.position_covariance())
+    }
+
+    fn solve(&self, rangings: &[Ranging], impossible: &[Impossible]) -> Result<Fix, FixError> {
         let config = &self.config;
-        let mut fix = config.solver.solve(rangings, &config.stations, &config.noise, Some(prior))?;
+        let solved = |prior| config.solver.solve(rangings, &config.stations, &config.noise, Some(prior));
+        let mut fix = solved(self.prior())?;
         if let Some(boundary) = &config.boundary {
+            if let Some(other) = fix.mirror.filter(|_| is_behind(boundary, fix.position, &fix.covariance)) {
+                fix = solved((other, Matrix2::identity() * MIRROR_SIGMA_M.powi(2)))?;
+            }
             fix.check_inside(boundary)?;
         }
         let silent = config.stations.iter().map(|s| s.id).filter(|id| !is_heard(*id, rangings));
-        fix.excluded.extend(silent.map(|id| (id, Exclusion::Silent)));
+        let why = |id| {
+            let found = impossible.iter().find(|range| range.station == id);
+            found.map_or(Exclusion::Silent, |range| Exclusion::Impossible {
+                // `max` also turns what is no number into a number.
+                range_m: range.range_m.max(-MOST_SHOWN_M).min(MOST_SHOWN_M),
+                most_m: range.most_m,
+            })
+        };
+        fix.excluded.extend(silent.map(|id| (id, why(id))));
         fix.excluded.sort_by_key(|(id, _)| *id);
         Ok(fix)
+    }
+
+    /// What decides between a fix and its mirror image; a fix of which that is open is suspect.
+    fn sides(&self, fix: &mut Fix) -> Sides {
+        if !matches!(fix.integrity, Integrity::Ok | Integrity::Untestable) {
+            return Sides::One;
+        }
+        let prior = self.knows_side.then(|| self.prior());
+        let sides = Sides::of(fix, self.config.boundary.as_ref(), prior);
+        if let Sides::Open { .. } = sides {
+            fix.integrity = Integrity::Suspect;
+        }
+        sides
     }
 
     /// Whether single ranges are distances; otherwise only all of them together say anything.
@@ -223,12 +245,16 @@ impl Positioner {
     }
 
     /// Hands a fix to the filter; a fix that contradicts the filter is suspect.
-    fn take_fix(&mut self, fix: &mut Fix, rangings: &[Ranging]) -> bool {
+    fn take_fix(&mut self, fix: &mut Fix, rangings: &[Ranging], sides: Sides) -> bool {
         if fix.integrity == Integrity::Alarm {
             return false;
         }
+        if let Sides::Open { other, contradicts } = sides {
+            return self.take_both(fix, other, contradicts);
+        }
         if self.filter_accepts(fix, rangings) {
             (self.refused_in_a_row, self.first_refused) = (0, None);
+            (self.is_confirmed, self.knows_side) = (true, true);
             return true;
         }
         // A fix that can be tested and passed speaks against the filter; others do not.
@@ -247,6 +273,21 @@ impl Positioner {
         let (turn_rad, sigma_rad) = turned.unwrap_or((0.0, RESTART_HEADING_SIGMA_RAD));
         self.filter.restart_at(fix.position, &fix.covariance, turn_rad, sigma_rad);
         true
+    }
+
+    /// Takes in a fix of which nobody knows the side: the estimate holds both sides from then on, if it contradicts both or is worse.
+    ///
+    /// Nothing is merged, because two such fixes together know the side no better than one.
+    fn take_both(&mut self, fix: &Fix, other: Point, contradicts: bool) -> bool {
+        self.refused_in_a_row = if contradicts { self.refused_in_a_row + 1 } else { 0 };
+        let is_disproved = contradicts && (!self.is_confirmed || self.refused_in_a_row >= PATIENCE);
+        let (position, covariance) = both(fix, other);
+        if !is_disproved && self.filter.error_95_m() < ellipse_95(&covariance).0 {
+            return false;
+        }
+        (self.refused_in_a_row, self.first_refused, self.knows_side) = (0, None, false);
+        self.filter.restart_at(position, &covariance, 0.0, RESTART_HEADING_SIGMA_RAD);
+        false
     }
 
     /// By how much the heading was wrong while fixes were refused, radians, with the standard deviation: the angle between the
@@ -283,7 +324,7 @@ impl Positioner {
             let station = self.config.stations.iter().find(|s| s.id == ranging.station);
             station.is_some_and(|station| {
                 let expected_m = (filter.pose().position - station.position).norm();
-                let sigma_m = ranging.sigma_m * expected_m / ranging.range_m;
+                let sigma_m = ranging.sigma_at_m(expected_m);
                 filter.update_range(station.position, ranging.range_m, sigma_m).accepted
             })
         };
@@ -300,7 +341,11 @@ fn take_excess_out(fix: &Fix, rangings: &mut [Ranging], stations: &[Station]) {
     let Some(excess_m) = common_excess_m(fix, rangings, stations) else { return };
     for ranging in rangings {
         let range_m = ranging.range_m - excess_m;
-        ranging.sigma_m *= range_m / ranging.range_m;
+        if ranging.timing_sigma_m > 0.0 {
+            ranging.sigma_m = ranging.sigma_at_m(range_m);
+        } else {
+            ranging.sigma_m *= range_m / ranging.range_m;
+        }
         ranging.least_m -= excess_m;
         ranging.most_m -= excess_m;
         ranging.range_m = range_m;

@@ -12,6 +12,9 @@ const SUSPECT_Z: f64 = 2.326_347_874;
 /// Normal quantile beyond which residuals raise an alarm: one honest fix in 1000.
 pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 
+/// Normal quantile beyond which readings do not scatter as their noise: one honest set in 10 000.
+const SCATTER_Z: f64 = 3.719_016_485;
+
 /// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
 const PROTECTION_SIGMAS: f64 = 4.0;
 /// Where a place this many standard deviations off is not ruled out, errors are no ellipse.
@@ -108,6 +111,11 @@ pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     } else {
         Integrity::Ok
     }
+}
+
+/// Sum of squared normalised differences beyond which readings do not scatter as their noise: one honest sum in 10 000.
+pub fn scatter_limit(degrees_of_freedom: u32) -> f64 {
+    chi_squared_quantile(SCATTER_Z, degrees_of_freedom)
 }
 
 /// Sum of squared normalised residuals beyond which ranges contradict each other.

@@ -51,8 +51,8 @@ impl<S: PositionSolver> Screened<S> {
         let mut fix = self.0.solve(&others, stations, prior).ok()?;
         let station = stations.iter().find(|s| s.id == left_out.station)?;
         let distance_m = (fix.position - station.position).norm();
-        let gate_m = residual_gate_m(left_out.sigma_m * distance_m / left_out.range_m);
-        let residual_m = left_out.range_m - distance_m;
+        let gate_m = residual_gate_m(left_out.sigma_at_m(distance_m));
+        let residual_m = left_out.range_m - self.0.excess_m(&fix, &others, stations) - distance_m;
         fix.excluded.push((left_out.station, Exclusion::Residual { residual_m, gate_m }));
         (fix.integrity == Integrity::Ok && residual_m.abs() > gate_m).then_some(fix)
     }

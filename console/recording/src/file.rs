@@ -4,6 +4,7 @@
 //! comparison with what the path shows finds it.
 
 use crate::identity::hexadecimal;
+use foreign::open_regular;
 use sha2::{Digest, Sha256};
 use std::{
     fs::{self, File, OpenOptions},
@@ -12,42 +13,35 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Opens a regular file: a device or a pipe may never end.
-///
-/// # Errors
-/// It is no regular file, or cannot be opened.
-pub fn open_regular(path: &Path) -> io::Result<File> {
-    let not_regular = || io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file");
-    // Looked at before it is opened, since opening a pipe waits for a writer.
-    if fs::metadata(path)?.is_file() { File::open(path) } else { Err(not_regular()) }
-}
-
-/// The text of a regular file.
-///
-/// # Errors
-/// It is no regular file, cannot be read, or is no UTF-8.
-pub fn read_regular(path: &Path) -> io::Result<String> {
-    let mut bytes = Vec::new();
-    open_regular(path)?.read_to_end(&mut bytes)?;
-    let no_text = |error: std::string::FromUtf8Error| {
-        let at_byte = error.utf8_error().valid_up_to() + 1;
-        io::Error::new(io::ErrorKind::InvalidData, format!("no text: byte {at_byte} is not UTF-8"))
-    };
-    String::from_utf8(bytes).map_err(no_text)
-}
-
 /// SHA-256 of a file, hexadecimal.
 ///
 /// # Errors
 /// It is no regular file, or cannot be read.
 pub fn sha256(path: &Path) -> io::Result<String> {
-    let (mut file, mut hasher, mut chunk) = (open_regular(path)?, Sha256::new(), vec![0; 1 << 18]);
-    loop {
-        match file.read(&mut chunk)? {
+    sha256_while(path, |_| true)
+}
+
+/// [`sha256`], given up as soon as `goes_on` says so, which hears how many bytes were read.
+///
+/// # Errors
+/// As [`sha256`]; [`io::ErrorKind::Interrupted`] if it was given up.
+pub fn sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
+    digest(&mut open_regular(path)?, goes_on)
+}
+
+/// SHA-256 of everything that a reader gives, hexadecimal.
+pub(crate) fn digest(from: &mut dyn Read, mut goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
+    let (mut hasher, mut chunk, mut bytes) = (Sha256::new(), vec![0; 1 << 18], 0);
+    while goes_on(bytes) {
+        match from.read(&mut chunk)? {
             0 => return Ok(hexadecimal(&hasher.finalize())),
-            length => hasher.update(&chunk[..length]),
+            length => {
+                hasher.update(&chunk[..length]);
+                bytes += length as u64;
+            }
         }
     }
+    Err(io::Error::new(io::ErrorKind::Interrupted, "given up"))
 }
 
 /// SHA-256 of some bytes, hexadecimal.

@@ -7,15 +7,17 @@ mod ending;
 mod fast;
 mod follow;
 mod frames;
+mod limits;
 mod lines;
 mod packer;
+mod plain;
 mod reader;
 mod ticks;
 mod unpacker;
 mod upgrade;
 mod writer;
 
-pub use ending::{events_sha256, read_ending};
+pub use ending::{events_sha256, events_sha256_while, read_ending};
 pub use reader::{JournalLine, JournalPlace, JournalReader};
 pub use ticks::{Difference, RecordedTick, Ticks};
 pub use upgrade::with_todays_names;

@@ -8,6 +8,7 @@
 //!
 //! Nothing here prints: what the recording SDK has to say goes to `tracing`.
 
+pub mod ahead;
 mod backlog;
 pub mod error;
 pub mod export;
@@ -26,13 +27,14 @@ pub mod thread;
 pub use self::mcap::export_mcap;
 pub use error::RecordingError;
 pub use export::export;
-pub use file::{FileChange, open_regular, read_regular, sha256, sha256_of};
+pub use file::{FileChange, sha256, sha256_of, sha256_while};
+pub use foreign::{open_regular, read_regular};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{
     Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalPlace, JournalReader,
-    JournalWriter, PLAIN_JOURNAL_FILE, RecordedTick, Ticks, events_sha256, journal_of, read_ending,
-    with_todays_names,
+    JournalWriter, PLAIN_JOURNAL_FILE, RecordedTick, Ticks, events_sha256, events_sha256_while, journal_of,
+    read_ending, with_todays_names,
 };
 pub use marker::{FAILURE_FILE, recorded_failure};
 pub use recorder::{RECORDING_FILE, Recorder};

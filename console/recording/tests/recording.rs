@@ -6,6 +6,8 @@ mod content;
 mod damaged;
 #[path = "recording/disk.rs"]
 mod disk;
+#[path = "recording/hostile.rs"]
+mod hostile;
 #[path = "recording/journal.rs"]
 mod journal;
 #[path = "recording/recorder.rs"]

@@ -17,7 +17,7 @@ mod sections;
 mod shapes;
 mod task;
 
-pub use facts::{Inspection, unreadable};
+pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use maps::Figure;

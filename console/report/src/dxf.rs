@@ -110,6 +110,6 @@ impl Drawing {
         self.entity("TEXT", layer);
         self.place(at);
         self.pair(40, LETTERS_M);
-        self.pair(1, text.replace(char::is_control, " "));
+        self.pair(1, foreign::plain(text));
     }
 }

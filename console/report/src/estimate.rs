@@ -1,5 +1,7 @@
 //! What a plan promises before anything moves: time, coverage, clearance, tether, accuracy, and where each is worst.
 
+mod time;
+
 use mission::{MissionConfig, TaskConfig};
 use positioning::AccuracyMap;
 use serde::{Deserialize, Serialize};
@@ -10,11 +12,6 @@ use world::{
 
 /// Distance between the points of a path that are looked at, metres.
 const SAMPLE_M: f64 = 0.1;
-/// The robot stops to turn by more than this at a corner, radians; by less it turns on the way.
-const CORNER_RAD: f64 = 0.5;
-/// Slowing down before a corner and getting under way again, seconds: measured with the coverage planners' follower
-/// (99 corners of cover-square).
-const CORNER_S: f64 = 0.9;
 
 /// A figure and where on the path it is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -45,7 +42,7 @@ pub struct TetherEstimate {
 pub struct Estimate {
     /// Length of the path, metres.
     pub length_m: f64,
-    /// Time to drive it at full speed, with stops to turn at corners, seconds.
+    /// Time to drive it, as fast as the robot can stop in time, with stops to turn at corners, seconds.
     pub time_s: f64,
     /// Whether it achieves the whole task.
     pub complete: bool,
@@ -67,31 +64,19 @@ impl Estimate {
     /// Costs one look at every tenth of a metre of the path; with a tether the cable is dragged along it once.
     pub fn new(mission: &MissionConfig, drawing: &World, path: &[Point], complete: bool) -> Self {
         let sampled = polyline::resampled(path, SAMPLE_M);
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         let (accuracy_worst, without_fix_m) = accuracy(mission, drawing, &sampled);
         Self {
             length_m: polyline::length_m(path),
-            time_s: time_s(mission, path),
+            time_s: time::time_s(mission, &map, path),
             complete,
             reachable: reachable(mission, drawing, path),
-            clearance_min: clearance(mission, drawing, &sampled),
+            clearance_min: clearance(mission, &map, &sampled),
             tether: tether(mission, drawing, &sampled),
             accuracy_worst,
             without_fix_m,
         }
     }
-}
-
-fn time_s(mission: &MissionConfig, path: &[Point]) -> f64 {
-    let limits = &mission.limits;
-    let ways = path.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| way.norm() > 1e-9);
-    let (mut time_s, mut before) = (0.0, None::<world::Vector>);
-    for way in ways {
-        let turn_rad = before.map_or(0.0, |before| before.angle(&way));
-        let (drive_s, turn_s) = (way.norm() / limits.v_max_m_per_s, turn_rad / limits.w_max_rad_per_s);
-        time_s += if turn_rad > CORNER_RAD { drive_s + turn_s + CORNER_S } else { drive_s.max(turn_s) };
-        before = Some(way);
-    }
-    time_s
 }
 
 fn reachable(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<f64> {
@@ -105,8 +90,7 @@ fn reachable(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option
     Some(grid.fraction_reachable())
 }
 
-fn clearance(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Worst> {
-    let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+fn clearance(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> Option<Worst> {
     let hull_m = mission.limits.radius_m;
     path.iter()
         .map(|at| Worst { value: map.clearance_m(*at) - hull_m, at: *at })
@@ -176,7 +160,7 @@ mod tests {
     use super::*;
     use world::{Boundary, Obstacle, ObstacleId};
 
-    fn mission() -> MissionConfig {
+    pub(super) fn mission() -> MissionConfig {
         let limits = serde_json::json!({
             "motion": "unicycle", "v_max_m_per_s": 0.5, "w_max_rad_per_s": 1.0, "radius_m": 0.3, "sensing_range_m": 2.0
         });
@@ -192,7 +176,7 @@ mod tests {
         serde_json::from_value(mission).unwrap()
     }
 
-    fn drawing() -> World {
+    pub(super) fn drawing() -> World {
         let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
         let obstacle = Obstacle { id: ObstacleId(1), name: "C1".into(), shape: column, known: true };
         World {
@@ -212,9 +196,12 @@ mod tests {
         let clearance = estimate.clearance_min.unwrap();
         assert!((clearance.at - Point::new(2.5, 0.0)).norm() < 0.2, "{clearance:?}");
         assert!((clearance.value - (1.0 - mission.limits.radius_m)).abs() < 0.02, "{clearance:?}");
-        let drive_s = 12.5 / mission.limits.v_max_m_per_s;
-        let turn_s = std::f64::consts::FRAC_PI_2 / mission.limits.w_max_rad_per_s;
-        assert!((estimate.time_s - drive_s - turn_s - CORNER_S).abs() < 1e-9);
+        let limits = &mission.limits;
+        let drive_s = 12.5 / limits.v_max_m_per_s;
+        let turn_s = std::f64::consts::FRAC_PI_2 / limits.w_max_rad_per_s + limits.tick_s;
+        // It stops twice.
+        let stops_s = 2.0 * limits.v_max_m_per_s / limits.acceleration_m_per_s2;
+        assert!((estimate.time_s - drive_s - turn_s - stops_s).abs() < 0.1, "{}", estimate.time_s);
         assert_eq!((estimate.tether, estimate.accuracy_worst, estimate.reachable), (None, None, None));
     }
 
@@ -224,13 +211,12 @@ mod tests {
         let circle: Vec<Point> = (0..=200)
             .map(|i| {
                 let (sin, cos) = (f64::from(i) * 0.03).sin_cos();
-                Point::new(5.0 * cos, 5.0 * sin)
+                Point::new(7.0 * cos, 7.0 * sin)
             })
             .collect();
-        let time_s = time_s(&mission, &circle);
-        assert!(
-            (time_s - polyline::length_m(&circle) / mission.limits.v_max_m_per_s).abs() < 1e-6,
-            "{time_s}"
-        );
+        let time_s = Estimate::new(&mission, &drawing(), &circle, true).time_s;
+        let start_and_stop_s = mission.limits.v_max_m_per_s / mission.limits.acceleration_m_per_s2;
+        let driven_s = polyline::length_m(&circle) / mission.limits.v_max_m_per_s;
+        assert!((time_s - driven_s - start_and_stop_s).abs() < 0.1, "{time_s}");
     }
 }

@@ -19,6 +19,8 @@ use world::{Obstacle, Point, Pose, Zone};
 
 /// So many faults are named.
 const MOST_FAULTS: usize = 20;
+/// Most planners that are listed.
+const MOST_PLANNERS: usize = 1000;
 
 /// What is known of a run from the events so far.
 #[derive(Debug, Default)]
@@ -302,7 +304,7 @@ impl Fold {
             known.planner = Some(choice.id.clone());
             known.planner_version = Some(info.version.clone());
         }
-        if !known.planners.contains(&choice.id) {
+        if known.planners.len() < MOST_PLANNERS && !known.planners.contains(&choice.id) {
             known.planners.push(choice.id.clone());
         }
         if known.planner.as_ref() == Some(&choice.id) {

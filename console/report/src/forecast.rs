@@ -1,7 +1,10 @@
 //! How well the stations will locate the robot, place by place, and where they should stand: for scripts and people, and
 //! as a picture.
 
+mod mirror;
+
 use crate::drawing::forecast::svg;
+pub use mirror::{Mirrored, line_of_stations};
 use mission::{MissionConfig, TaskConfig};
 use positioning::{Accuracy, AccuracyMap, Advice, Forecast};
 use serde::Serialize;
@@ -28,6 +31,9 @@ pub struct ForecastReport<'a> {
     blind_share: f64,
     beyond_limit_share: f64,
     beyond_limit_area_m2: f64,
+    /// Floor with a mirror image that the ranges do not tell from it; absent if there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mirror: Option<Mirrored>,
     /// The worst first.
     beyond_limit: Vec<Place>,
     map: &'a AccuracyMap,
@@ -77,6 +83,7 @@ impl<'a> ForecastReport<'a> {
             blind_share: 1.0 - errors.len() as f64 / n_floor,
             beyond_limit_share: beyond.len() as f64 / n_floor,
             beyond_limit_area_m2: beyond.len() as f64 * map.cell_m * map.cell_m,
+            mirror: Mirrored::of(mission, drawing, map),
             beyond_limit: beyond,
             map,
             advice,
@@ -107,6 +114,10 @@ impl<'a> ForecastReport<'a> {
             self.beyond_limit_area_m2,
             self.limit_m
         );
+        if let Some(mirror) = &self.mirror {
+            let [first, second] = mirror.sentences();
+            let _ = writeln!(text, "mirror    {first};\n          {second}");
+        }
         for place in self.beyond_limit.iter().take(MOST_SHOWN) {
             let error = place.accuracy.error_95_m.map_or("no fix".into(), |m| format!("{m:.3} m"));
             let _ = writeln!(
@@ -151,6 +162,15 @@ pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<Str
              hull may touch a wall; more clearance or better stations are right (`tankops accuracy`)"
         )
     })
+}
+
+/// Warns of stations so nearly on a line that the ranges leave two places, and says what decides between them.
+///
+/// Costs as much as the map.
+pub fn mirror_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
+    let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
+    let [first, second] = Mirrored::of(mission, drawing, &map)?.sentences();
+    Some(format!("{first}; {second} (`tankops accuracy`)"))
 }
 
 /// What the mission's own estimator may expect of its stations.

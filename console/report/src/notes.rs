@@ -97,7 +97,7 @@ impl Notes {
 fn checked(text: &str) -> Result<String, String> {
     let text = text.trim();
     match text.chars().count() {
-        0..=MOST_LETTERS => Ok(text.replace(char::is_control, " ")),
+        0..=MOST_LETTERS => Ok(foreign::plain(text).into_owned()),
         letters => Err(format!("the text has {letters} characters; at most {MOST_LETTERS}")),
     }
 }

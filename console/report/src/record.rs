@@ -18,6 +18,9 @@ use world::{Point, Pose};
 /// Shares of the floor are kept this far apart, seconds.
 const PROGRESS_S: f64 = 5.0;
 
+/// So many changes of the planner are kept.
+const MOST_PLANNERS: usize = 1000;
+
 /// Where the robot believed to be in a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackPoint {
@@ -119,7 +122,9 @@ impl Record {
                     tether.lie(point, reel_off_m, *pull_factor, (bends, robot));
                 }
             }
-            EventKind::PlannerChosen { info, .. } if self.planners.last() != Some(info) => {
+            EventKind::PlannerChosen { info, .. }
+                if self.planners.len() < MOST_PLANNERS && self.planners.last() != Some(info) =>
+            {
                 self.planners.push((**info).clone());
             }
             EventKind::Fixed { fix } => self.stations.fix(fix),

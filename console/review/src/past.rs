@@ -57,7 +57,8 @@ pub fn report_page(folder: &Path) -> anyhow::Result<Option<String>> {
 /// # Errors
 /// The scenario in its journal is refused.
 pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
-    let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    let scenario =
+        Scenario::recorded(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
     Ok(scenario.map_err(|errors| bad_input(errors.render()))?.inspection)
 }
 
@@ -66,7 +67,8 @@ pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
 /// # Errors
 /// The scenario in its journal is refused.
 pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
-    let scenario = Scenario::parse(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    let scenario =
+        Scenario::recorded(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
     let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
     // The bounds are those of a mission, and readings that were located are none.
     let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };

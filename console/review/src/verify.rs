@@ -19,20 +19,26 @@ use mission::{
 };
 use planner_host::PluginDirs;
 use planners::{Asked, BEHIND, Replayed};
-use recording::{Difference, JournalError, RecordedTick, Ticks, journal_of};
+use recording::{
+    Difference, JournalError, RecordedTick, Ticks,
+    ahead::{self, Giver},
+    journal_of,
+};
 use report::document::{Revision, SignedRun};
 use runs::{Past, RunError, end_is_missing, signed_list};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
     path::Path,
-    sync::mpsc::{SyncSender, sync_channel},
+    sync::mpsc::sync_channel,
     thread::{self, ScopedJoinHandle},
 };
 
-/// Ticks that are read together, and how many such batches are read ahead.
+/// Ticks that are read together, and after so many bytes of lines no more.
 const BATCH: usize = 64;
-const BATCHES: usize = 8;
+const BATCH_BYTES: u64 = 1 << 18;
+/// What is read ahead, bytes of lines.
+const AHEAD_BYTES: u64 = 1 << 20;
 
 /// What was found.
 #[derive(Debug, Default)]
@@ -208,7 +214,7 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
             path.display()
         )));
     }
-    let mut scenario = Scenario::parse(&opened.scenario_toml, "the scenario in the journal")
+    let mut scenario = Scenario::recorded(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
     // Runs of before this key made no better plans.
     scenario.mission.better_plan = opened.mission.better_plan;
@@ -219,16 +225,16 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
 fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     let mut ticks = Ticks::open(path)?;
     let (scenario, flight) = prepared(path, &mut ticks)?;
-    let (sender, read) = sync_channel(BATCHES);
+    let (giver, read) = ahead::queue(AHEAD_BYTES);
     thread::scope(|scope| {
-        let reading = scope.spawn(move || read_ahead(ticks, &sender));
+        let reading = scope.spawn(move || read_ahead(ticks, &giver));
         let (again, asking) = plugins
             .map(|plugins| {
                 let ((again, updates), scenario) = (sync_channel(BEHIND), &scenario);
                 (again, scope.spawn(move || Asked::of(host(scenario, plugins), &updates)))
             })
             .unzip();
-        let findings = recompute(flight, Replayed::sending_to(again), read.into_iter().flatten());
+        let findings = recompute(flight, Replayed::sending_to(again), read.flatten());
         let no_end = reading.join().map_err(|_| anyhow::anyhow!("reading the journal panicked"))?;
         let asked = asking.map(ScopedJoinHandle::join).transpose();
         let planners = asked.map_err(|_| anyhow::anyhow!("asking the planners panicked"))?;
@@ -237,14 +243,16 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
 }
 
 /// Reads a journal ahead of who compares it, up to its end, an error, or the first difference; why it has no end.
-fn read_ahead(
-    mut ticks: Ticks,
-    sender: &SyncSender<Vec<Result<RecordedTick, JournalError>>>,
-) -> Option<String> {
+fn read_ahead(mut ticks: Ticks, giver: &Giver<Vec<Result<RecordedTick, JournalError>>>) -> Option<String> {
     loop {
-        let batch: Vec<_> = std::iter::from_fn(|| ticks.next_tick().transpose()).take(BATCH).collect();
-        let is_last = batch.len() < BATCH || batch.iter().any(Result::is_err);
-        if sender.send(batch).is_err() || is_last {
+        let (mut batch, mut bytes, mut is_last) = (Vec::new(), 0, false);
+        while !is_last && batch.len() < BATCH && bytes < BATCH_BYTES {
+            let tick = ticks.next_tick().transpose();
+            is_last = tick.as_ref().is_none_or(Result::is_err);
+            bytes += tick.iter().flatten().map(RecordedTick::bytes).sum::<u64>();
+            batch.extend(tick);
+        }
+        if !giver.give(batch, bytes) || is_last {
             return ticks.no_end();
         }
     }

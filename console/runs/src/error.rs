@@ -9,6 +9,9 @@ pub enum RunError {
     /// The folder for runs takes none: why, and what to do.
     #[error("{0}")]
     Logs(String),
+    /// The machine grants too little: which limit, and what to do.
+    #[error("{0}")]
+    Machine(String),
     /// There is no such run.
     #[error(
         "there is no run {}: neither a folder with {JOURNAL_FILE} nor the beginning of a name in {}, nor `latest`; `tankops runs` lists them",

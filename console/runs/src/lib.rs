@@ -5,9 +5,11 @@
 //! fits it ([`standing()`]).
 
 mod beside;
+mod budget;
 mod error;
 mod files;
 mod folder;
+mod glance;
 mod kept;
 mod list;
 mod log;

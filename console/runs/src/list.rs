@@ -1,14 +1,16 @@
 //! Past runs, listed.
 
 use crate::{
+    budget::Budget,
     error::RunError,
     folder::past_runs,
+    glance::Glance,
     notes::read_notes,
-    report_file::Reported,
-    standing::{Standing, standing},
+    report_file::{Now, Reported},
+    standing::{Standing, standing_within},
 };
-use recording::{JournalReader, journal_of};
-use report::{Fold, Summary, notes::Notes};
+use recording::journal_of;
+use report::{Summary, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -40,12 +42,18 @@ pub struct Listed {
     pub bookmarks: usize,
 }
 
-/// The past runs in a folder, oldest first; also those that have lost their journal.
+/// The past runs in a folder, oldest first; also those that have lost their journal. Of long journals without a report only the
+/// beginning and the end are read.
 ///
 /// # Errors
 /// The folder cannot be read.
 pub fn list(logs: &Path) -> Result<Vec<Listed>, RunError> {
-    Ok(past_runs(logs)?.iter().map(|folder| look_at(folder)).collect())
+    let budget = Budget::of_a_list();
+    // The newest ones are what is looked for.
+    let mut listed: Vec<Listed> =
+        past_runs(logs)?.iter().rev().map(|folder| look_at(folder, &budget)).collect();
+    listed.reverse();
+    Ok(listed)
 }
 
 /// Past runs as lines for people.
@@ -79,12 +87,12 @@ fn people(run: &Listed) -> Option<String> {
     (!words.is_empty()).then(|| format!("[{}]", words.join("; ")))
 }
 
-fn look_at(folder: &Path) -> Listed {
-    match standing(folder) {
+fn look_at(folder: &Path, budget: &Budget) -> Listed {
+    match standing_within(folder, budget) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
             let reported = || Reported::read(folder).ok().flatten();
-            let note = note.or_else(|| reported()?.recording_doubt(folder, None));
+            let note = note.or_else(|| reported()?.recording_doubt(folder, Now::Within(budget)));
             listed(folder, word(&summary), Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {
@@ -92,7 +100,7 @@ fn look_at(folder: &Path) -> Listed {
             listed(folder, "RECORDING FAILED", Some(&summary), Some(note))
         }
         Standing::Running => listed(folder, "RUNNING", None, None),
-        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure),
+        Standing::JournalOnly { doubt, failure } => by_journal(folder, doubt.as_deref(), failure, budget),
     }
 }
 
@@ -122,14 +130,18 @@ fn word(summary: &Summary) -> &'static str {
 }
 
 /// A run of which only the journal says what happened.
-fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>) -> Listed {
-    let (summary, damage) = rebuild(&journal_of(folder));
+fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budget: &Budget) -> Listed {
+    let Glance { summary, damage, is_partial } = Glance::at(&journal_of(folder), budget);
     let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
     // Whatever became of the report: the journal has the run to its end.
     let ended = summary.outcome.filter(|_| damage.is_none());
     match (ended, failure, damage) {
         (Some(outcome), ..) => {
-            let source = doubt.map_or("without a report", |_| "figures from the journal");
+            let source = match (doubt, is_partial) {
+                (None, false) => "without a report",
+                (Some(_), false) => "figures from the journal",
+                (_, true) => "figures from the beginning and the end of the journal, which is long",
+            };
             listed(folder, outcome.word(), Some(&summary), with(source))
         }
         (None, _, Some(damage)) => listed(folder, "UNREADABLE", Some(&summary), with(&damage)),
@@ -148,16 +160,4 @@ fn held(summary: &Summary) -> String {
         || "the journal is empty".into(),
         |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
     )
-}
-
-/// What a journal says, up to the first damage, and what the damage is.
-fn rebuild(journal: &Path) -> (Summary, Option<String>) {
-    let mut fold = Fold::new();
-    let damage = JournalReader::open(journal).and_then(|reader| {
-        reader.into_iter().try_for_each(|event| {
-            fold.apply(&event?);
-            Ok(())
-        })
-    });
-    (fold.summary(), damage.err().map(|error| error.to_string()))
 }

@@ -7,7 +7,7 @@ use report::{Expect, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
     sync::Arc,
-    time::{Duration, Instant},
+    time::{Duration, Instant, SystemTime},
 };
 
 /// How long closing a run may take before it is abandoned with a message.
@@ -37,6 +37,7 @@ impl RunLog {
     /// # Errors
     /// They cannot be made.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
+        check_clock(SystemTime::now())?;
         let folder = RunFolder::create(logs, scenario, planner, seed)?;
         let recorder = RunRecorder::start(folder.path(), Options::default())?;
         let beside = Some(Beside::new(folder.path()));
@@ -137,10 +138,31 @@ impl RunLog {
     }
 }
 
+/// A recording carries the time of the machine, which has to be one of our days.
+fn check_clock(now: SystemTime) -> Result<(), RunError> {
+    if now >= SystemTime::UNIX_EPOCH {
+        return Ok(());
+    }
+    Err(RunError::Machine(
+        "no run can be recorded: the clock of the machine stands before 1970; set it".into(),
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use mission::Outcome;
+
+    #[test]
+    fn a_clock_before_1970_is_named() {
+        assert!(check_clock(SystemTime::now()).is_ok() && check_clock(SystemTime::UNIX_EPOCH).is_ok());
+        let error = check_clock(SystemTime::UNIX_EPOCH - Duration::from_secs(1)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "no run can be recorded: the clock of the machine stands before 1970; set it"
+        );
+        assert!(!error.is_input());
+    }
 
     #[test]
     fn a_run_whose_recorder_is_not_done_in_time_still_says_how_it_ended() {

@@ -2,6 +2,7 @@
 
 use crate::{error::RunError, log::CLOSE_TIMEOUT};
 use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
+use rustix::process::{Resource, getrlimit};
 use std::{
     fs::{self, File},
     io::{self, Write},
@@ -31,6 +32,12 @@ pub(crate) enum LogsError {
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
     NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
+    /// The system lets no file grow to what a run needs.
+    #[error(
+        "cannot keep runs in {}: the system lets no file grow beyond {} kB, at least {} MB are needed: `ulimit -f {}`",
+        logs.display(), limit_bytes / 1000, megabytes(MIN_FREE_BYTES), MIN_FREE_BYTES >> 10
+    )]
+    FilesTooSmall { logs: PathBuf, limit_bytes: u64 },
 }
 
 /// Checks that runs can be kept in a folder, as a run that begins does, and leaves nothing behind.
@@ -86,7 +93,10 @@ fn record_and_read(folder: &Path) -> Result<u64, RunError> {
 
 impl From<LogsError> for RunError {
     fn from(error: LogsError) -> Self {
-        Self::Logs(error.to_string())
+        match error {
+            LogsError::FilesTooSmall { .. } => Self::Machine(error.to_string()),
+            _ => Self::Logs(error.to_string()),
+        }
     }
 }
 
@@ -108,6 +118,9 @@ fn check_folder(logs: &Path) -> Result<(), LogsError> {
     // A file system that does not know its size does not say that it is full.
     if let Some(free_bytes) = free_bytes(logs).filter(|free_bytes| *free_bytes < MIN_FREE_BYTES) {
         return Err(LogsError::NoSpace { logs: logs.to_owned(), free_bytes, needed_bytes: MIN_FREE_BYTES });
+    }
+    if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|limit| *limit < MIN_FREE_BYTES) {
+        return Err(LogsError::FilesTooSmall { logs: logs.to_owned(), limit_bytes: limit });
     }
     probe(logs).map_err(|error| LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() })
 }

@@ -1,7 +1,8 @@
 //! The notes of people, in a file of their own beside the journal: no file of the run changes.
 
 use crate::whole::write_whole;
-use recording::{journal_of, read_regular};
+use foreign::read_json;
+use recording::journal_of;
 use report::notes::Notes;
 use serde_json::{Map, Value};
 use std::{io, path::Path};
@@ -25,7 +26,7 @@ pub fn read_notes(folder: &Path) -> Result<Notes, String> {
             MOST_BYTES >> 20
         ));
     }
-    let text = match read_regular(&path) {
+    let text = match read_json(&path, MOST_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
         Err(error) => return Err(format!("{}: {error}", path.display())),

@@ -1,14 +1,29 @@
 //! Past runs, read from their journals.
 
-use crate::{error::RunError, report_file::Reported, standing::is_locked};
+use crate::{
+    error::RunError,
+    report_file::{Now, Reported},
+    standing::is_locked,
+};
 use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
-use recording::{JournalError, JournalReader, RECORDING_FILE, events_sha256, journal_of, sha256, sha256_of};
+use recording::{
+    JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of,
+    sha256_while,
+};
 use report::{Fold, Logs, PastRun, Record, Summary, document::Files};
-use std::{fs, path::Path, sync::mpsc::sync_channel, thread};
+use std::{
+    fs, iter,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+};
 use world::{CellRun, Floor};
 
-/// Events that are read ahead at a time.
+/// Events that are read ahead at a time, and after so many bytes of lines no more.
 const BATCH: usize = 512;
+const BATCH_BYTES: u64 = 1 << 18;
+/// What is read ahead, bytes of lines.
+const AHEAD_BYTES: u64 = 1 << 20;
 
 /// A past run.
 #[derive(Debug)]
@@ -76,21 +91,29 @@ fn each_event(
     folder: &Path,
     mut take: impl FnMut(Event),
 ) -> Result<[Option<String>; 2], JournalError> {
-    let (send, receive) = sync_channel::<Vec<Event>>(4);
+    let (give, taken) = ahead::queue::<Vec<Event>>(AHEAD_BYTES);
+    let is_damaged = AtomicBool::new(false);
+    let is_wanted = |_| !is_damaged.load(Ordering::Relaxed);
     thread::scope(|scope| {
-        let hashing = scope
-            .spawn(|| [events_sha256(&journal_of(folder)).ok(), sha256(&folder.join(RECORDING_FILE)).ok()]);
+        let hashing = scope.spawn(|| {
+            let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
+            [events_sha256_while(&journal, is_wanted).ok(), sha256_while(&recording, is_wanted).ok()]
+        });
         let reading = scope.spawn(move || {
             loop {
-                let batch = reader.by_ref().take(BATCH).collect::<Result<Vec<Event>, JournalError>>()?;
-                if batch.is_empty() || send.send(batch).is_err() {
+                let begin = reader.bytes();
+                let next = || if reader.bytes() < begin + BATCH_BYTES { reader.next() } else { None };
+                let batch = iter::from_fn(next).take(BATCH).collect::<Result<Vec<Event>, JournalError>>()?;
+                if batch.is_empty() || !give.give(batch, reader.bytes() - begin) {
                     return Ok(());
                 }
             }
         });
-        receive.into_iter().flatten().for_each(&mut take);
+        taken.flatten().for_each(&mut take);
         let read: Result<(), JournalError> =
             reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        // Nothing is proven of what cannot be read.
+        is_damaged.store(read.is_err(), Ordering::Relaxed);
         let digests = hashing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         read.map(|()| digests)
     })
@@ -110,7 +133,7 @@ fn files(
     let doubts_of = |reported: &Reported| {
         [
             reported.journal_doubt(journal_sha256.as_deref()),
-            reported.recording_doubt(folder, recording_sha256.as_deref()),
+            reported.recording_doubt(folder, Now::Is(recording_sha256.as_deref())),
             reported.figures_doubt(is_todays.then_some(summary)),
         ]
     };

@@ -2,9 +2,10 @@
 
 mod figures;
 
-use crate::files::REPORT_FILE;
+use crate::{budget::Budget, files::REPORT_FILE};
+use foreign::{plain_json, read_json};
 use mission::{Event, EventKind};
-use recording::{RECORDING_FILE, events_sha256, journal_of, read_ending, read_regular, sha256, sha256_of};
+use recording::{RECORDING_FILE, journal_of, read_ending, sha256_of};
 use report::Summary;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -42,9 +43,11 @@ impl<'a> ReportFile<'a> {
         recording_bytes: Option<u64>,
     ) -> serde_json::Result<String> {
         let unsealed = Self { run, summary, journal_bytes, recording_bytes, report_sha256: String::new() };
-        let text = serde_json::to_string_pretty(&unsealed)? + "\n";
-        let report_sha256 = digest_of_lines(&text);
-        Ok(serde_json::to_string_pretty(&Self { report_sha256, ..unsealed })? + "\n")
+        let text = |report: &Self| -> serde_json::Result<String> {
+            Ok(plain_json(&serde_json::to_string_pretty(report)?).into_owned() + "\n")
+        };
+        let report_sha256 = digest_of_lines(&text(&unsealed)?);
+        text(&Self { report_sha256, ..unsealed })
     }
 }
 
@@ -70,12 +73,23 @@ struct Source {
     report_sha256: Option<String>,
 }
 
+/// Longest report, bytes: the missed areas of the largest floor, and a hundred times as much.
+const MOST_BYTES: u64 = 8 << 20;
+
 /// What is said of a journal that its report was not made from.
 const NOT_THE_ONE: &str =
     "the journal is not the one that the report was made from: their SHA-256 digests differ";
 
 /// What is said of a recording that its report was not made with.
 const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; put the file back, or write another one with `tankops export`";
+
+/// What is known of the digest of a recording.
+pub(crate) enum Now<'a> {
+    /// It was computed; `None` if the file cannot be read.
+    Is(Option<&'a str>),
+    /// It is computed if length and time of the file do not say enough, as for lists.
+    Within(&'a Budget),
+}
 
 /// The report of a run as it is on disk, and what it says against the files beside it.
 pub(crate) struct Reported {
@@ -89,7 +103,7 @@ impl Reported {
     /// # Errors
     /// It cannot be read, as a sentence.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, String> {
-        match read_regular(&folder.join(REPORT_FILE)) {
+        match read_json(&folder.join(REPORT_FILE), MOST_BYTES) {
             Ok(text) => {
                 let source = serde_json::from_str(&text).map_err(|error| damaged(&error))?;
                 Ok(Some(Self { text, source }))
@@ -103,7 +117,7 @@ impl Reported {
     ///
     /// # Errors
     /// Why it is not believed, as a sentence.
-    pub(crate) fn summary(&self, folder: &Path) -> Result<Box<Summary>, String> {
+    pub(crate) fn summary(&self, folder: &Path, budget: &Budget) -> Result<Box<Summary>, String> {
         let report = serde_json::from_str(&self.text)
             .map(recording::with_todays_names)
             .map_err(|error| damaged(&error))?;
@@ -114,7 +128,7 @@ impl Reported {
         let path = journal_of(folder);
         let no_journal = |error: io::Error| format!("{} cannot be read: {error}", name_of(&path));
         let untouched = is_untouched(&path, self.source.journal_bytes, folder).map_err(no_journal)?;
-        if !untouched && events_sha256(&path).map_err(no_journal)? != *then {
+        if !untouched && budget.events_sha256(&path).map_err(no_journal)? != *then {
             return Err(NOT_THE_ONE.to_owned());
         }
         if untouched && self.source.report_sha256.is_some() {
@@ -143,21 +157,30 @@ impl Reported {
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
-    /// What speaks against the recording whose digest is `sha256_now`; `None` to look at length and time first, as lists do.
-    /// A recording that is not there any more can be made again, and is no doubt.
-    pub(crate) fn recording_doubt(&self, folder: &Path, sha256_now: Option<&str>) -> Option<String> {
+    /// What speaks against the recording. A recording that is not there any more can be made again, and is no doubt.
+    pub(crate) fn recording_doubt(&self, folder: &Path, now: Now<'_>) -> Option<String> {
         let (then, path) = (self.source.recording_sha256.as_deref()?, folder.join(RECORDING_FILE));
         if !path.exists() {
             return None;
         }
-        let is_same = match sha256_now {
-            Some(now) => now == then,
-            None => {
-                is_untouched(&path, self.source.recording_bytes, folder).unwrap_or(false)
-                    || sha256(&path).is_ok_and(|now| now == then)
-            }
+        let budget = match now {
+            Now::Is(now) => return (now != Some(then)).then(|| NOT_THE_RECORDING.to_owned()),
+            Now::Within(budget) => budget,
         };
-        (!is_same).then(|| NOT_THE_RECORDING.to_owned())
+        if is_untouched(&path, self.source.recording_bytes, folder).unwrap_or(false) {
+            return None;
+        }
+        let length = fs::metadata(&path).map_or(0, |file| file.len());
+        if self.source.recording_bytes.is_some_and(|then| then != length) {
+            return Some(NOT_THE_RECORDING.to_owned());
+        }
+        match budget.sha256(&path) {
+            Ok(now) if now == then => None,
+            Err(error) if error.kind() == io::ErrorKind::QuotaExceeded => {
+                Some(format!("{RECORDING_FILE}: {error}"))
+            }
+            Ok(_) | Err(_) => Some(NOT_THE_RECORDING.to_owned()),
+        }
     }
 
     /// What speaks against its figures: the journal gives others, or the file was changed. `figures`: those that the journal

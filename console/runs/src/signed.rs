@@ -1,7 +1,8 @@
 //! Signed reports of a run: which there are, and that none is changed.
 
 use crate::{error::RunError, register::Register, whole::write_whole};
-use recording::{read_regular, sha256};
+use foreign::read_json;
+use recording::sha256;
 use report::document::Revision;
 use std::{
     io,
@@ -10,6 +11,8 @@ use std::{
 
 /// The list of signed reports in the folder of a run.
 pub const SIGNED_FILE: &str = "signed.json";
+/// Longest list, bytes: ten thousand signatures.
+const MOST_BYTES: u64 = 8 << 20;
 
 /// The signed reports of the run in a folder, in their order.
 ///
@@ -18,7 +21,7 @@ pub const SIGNED_FILE: &str = "signed.json";
 pub fn signed_list(folder: &Path) -> Result<Vec<Revision>, RunError> {
     let path = folder.join(SIGNED_FILE);
     let reading = || RunError::during(format!("reading the list of signed reports: {}", path.display()));
-    let text = match read_regular(&path) {
+    let text = match read_json(&path, MOST_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => return Err(reading()(error)),

@@ -1,12 +1,10 @@
 //! How a past run stands, by its report, its journal and the signs that its writer left.
 
-use crate::{files::LOCK_FILE, report_file::Reported};
+use crate::{budget::Budget, files::LOCK_FILE, report_file::Reported};
+use foreign::open_regular;
 use recording::recorded_failure;
 use report::Summary;
-use std::{
-    fs::{File, TryLockError},
-    path::Path,
-};
+use std::{fs::TryLockError, path::Path};
 
 /// How a past run stands.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,9 +29,14 @@ pub enum Standing {
 /// The journal is the truth and the report a copy of what it says: a report that cannot be read, or does not fit the
 /// journal, counts for nothing.
 pub fn standing(folder: &Path) -> Standing {
+    standing_within(folder, &Budget::of_one_run())
+}
+
+/// [`standing()`], read within a budget.
+pub(crate) fn standing_within(folder: &Path, budget: &Budget) -> Standing {
     let failure = recorded_failure(folder);
     let summary = Reported::read(folder)
-        .and_then(|reported| reported.map(|reported| reported.summary(folder)).transpose());
+        .and_then(|reported| reported.map(|reported| reported.summary(folder, budget)).transpose());
     let doubt = match summary {
         Ok(Some(summary)) => return reported(summary, failure),
         Ok(None) => None,
@@ -55,7 +58,7 @@ fn reported(summary: Box<Summary>, failure: Option<String>) -> Standing {
 
 /// Whether somebody is writing to the run in a folder.
 pub(crate) fn is_locked(folder: &Path) -> bool {
-    let locked = File::open(folder.join(LOCK_FILE))
+    let locked = open_regular(&folder.join(LOCK_FILE))
         .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     locked.unwrap_or(false)
 }

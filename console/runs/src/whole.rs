@@ -1,8 +1,10 @@
 //! Files that are there whole or not at all.
 
+use rustix::fs::OFlags;
 use std::{
-    fs::{self, File, OpenOptions},
+    fs::{self, File, Metadata, OpenOptions},
     io::{self, Write},
+    os::unix::fs::{MetadataExt, OpenOptionsExt},
     path::{Path, PathBuf},
 };
 
@@ -35,7 +37,21 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// The system refuses.
 pub fn write_by_draft(path: &Path, draft: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_in(path, draft, bytes, || OpenOptions::new().write(true).create(true).truncate(false).open(draft))
+    write_in(path, draft, bytes, || open_draft(draft))
+}
+
+/// A draft of ours, or a new one in place of what else is there: a link or a pipe would lead elsewhere.
+fn open_draft(draft: &Path) -> io::Result<File> {
+    let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
+    let there = OpenOptions::new().write(true).custom_flags(flags.bits().cast_signed()).open(draft);
+    let is_ours = |about: &Metadata| about.is_file() && about.nlink() == 1;
+    if let Some(file) = there.ok().filter(|file| file.metadata().is_ok_and(|about| is_ours(&about))) {
+        return Ok(file);
+    }
+    match fs::remove_file(draft) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => File::create_new(draft),
+    }
 }
 
 /// Where a file is drafted: `NAME.part`.
@@ -168,5 +184,25 @@ mod tests {
         }
         assert_eq!(fs::read(&file).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_draft_that_leads_elsewhere_is_not_written_to() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, draft, victim] = ["file", "file.part", "victim"].map(|name| folder.path().join(name));
+        fs::write(&victim, "precious").unwrap();
+        let links: [fn(&Path, &Path) -> io::Result<()>; 2] =
+            [|to, at| std::os::unix::fs::symlink(to, at), |to, at| fs::hard_link(to, at)];
+        for link in links {
+            link(&victim, &draft).unwrap();
+            write_whole(&file, b"new").unwrap();
+            assert_eq!(
+                (fs::read(&file).unwrap(), fs::read(&victim).unwrap()),
+                (b"new".to_vec(), b"precious".to_vec())
+            );
+        }
+        assert!(std::process::Command::new("mkfifo").arg(&draft).status().unwrap().success());
+        write_whole(&file, b"newer").unwrap();
+        assert_eq!((fs::read(&file).unwrap(), draft.exists()), (b"newer".to_vec(), false));
     }
 }

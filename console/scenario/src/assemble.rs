@@ -13,17 +13,28 @@ use super::{
     task, tether,
 };
 use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
-use sim::{AeConfig, Mover, RobotConfig, SimConfig};
+use planner_api::{Limits, Motion};
+use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
+
+/// Clearance that is kept at least where ranges scatter, metres.
+const LEAST_CLEARANCE_M: f64 = 0.05;
 
 /// A start this near to the first path point stands on it, metres.
 const ON_PATH_M: f64 = 1e-3;
 
 /// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-pub(crate) fn assemble(text: &str, shown_name: &str, table: &DeTable<'_>) -> Result<Scenario, Vec<Problem>> {
+/// `also`: what else is looked for.
+pub(crate) fn assemble(
+    text: &str,
+    shown_name: &str,
+    table: &DeTable<'_>,
+    also: fn(&Source<'_>, &DeTable<'_>),
+) -> Result<Scenario, Vec<Problem>> {
     let source = Source::new(text);
     let scenario = read(&Section::root(&source, table, schema::ROOT), text, shown_name);
+    also(&source, table);
     let problems = source.into_problems();
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -89,10 +100,10 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         start_sigma_m: robot.start_sigma_m,
         tick_s: rest.tick_s,
         time_limit_s: rest.time_limit_s,
-        limits: robot.limits,
+        limits: Limits { tick_s: rest.tick_s, ..robot.limits },
         swath_m: rest.swath_m,
         scan: rest.scan,
-        clearance_m: rest.clearance_m,
+        clearance_m: kept_clearance_m(rest.clearance_m, &robot, &ae),
         cell_m: rest.cell_m,
         position_limit_m: rest.position_limit_m,
         position_lost_hold_s: rest.position_lost_hold_s,
@@ -189,6 +200,12 @@ fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     };
     let along = if ahead.norm() > 0.0 { ahead.y.atan2(ahead.x) } else { 0.0 };
     Some(Pose { position, heading_rad: robot.start_heading_rad.unwrap_or(along) })
+}
+
+/// The clearance that is kept: a hull whose place is only estimated would touch what it passes without any.
+fn kept_clearance_m(clearance_m: f64, robot: &Robot, ae: &AeConfig) -> f64 {
+    let is_exact = robot.limits.motion == Motion::Point || ae.noise == NoiseModel::None;
+    if is_exact { clearance_m } else { clearance_m.max(LEAST_CLEARANCE_M) }
 }
 
 /// The last place of the mission.
@@ -357,12 +374,12 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         radius_m: robot.limits.radius_m,
         v_max_m_per_s: robot.limits.v_max_m_per_s,
         w_max_rad_per_s: robot.limits.w_max_rad_per_s,
-        acceleration_m_per_s2: robot.acceleration_m_per_s2,
+        acceleration_m_per_s2: robot.limits.acceleration_m_per_s2,
         sensing_range_m: robot.limits.sensing_range_m,
         slip_mean: robot.slip_mean,
         slip_sigma: robot.slip_sigma,
         odometry_sigma_ratio: robot.odometry_sigma_ratio,
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
-        amphibious: robot.amphibious,
+        amphibious: robot.limits.amphibious,
     }
 }

@@ -2,12 +2,12 @@
 
 use super::{
     problem::{Complaint, ScenarioErrors},
-    schema,
+    readable, schema,
     section::Section,
     source::Source,
     syntax_error,
 };
-use report::{Inspection, document::unreadable};
+use report::Inspection;
 use toml::de::DeTable;
 
 /// Longest fact, characters: more than a sheet of paper.
@@ -52,14 +52,10 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
     })
 }
 
-/// A text of people; none if it is empty. What a reader could not see, or what would have him read something else than is
-/// written, is refused: the text is part of what is signed. So is a placeholder, which says that nothing is known.
+/// A text of people; none if it is empty. A placeholder, which says that nothing is known, is refused.
 fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     // What is empty is not known.
     let text = section.text(key).filter(|text| !text.trim().is_empty())?;
-    if let Some(odd) = unreadable(&text) {
-        section.complain(key, Complaint::OutOfRange(format!("text that can be read: {odd} cannot")));
-    }
     if is_placeholder(&text) {
         let wanted = "the fact, or no such key: a placeholder is not signed".to_owned();
         section.complain(key, Complaint::OutOfRange(wanted));
@@ -88,6 +84,7 @@ pub fn inspection(text: &str, shown_name: &str) -> Result<Inspection, ScenarioEr
     let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
     let source = Source::new(text);
     let read = section(&Section::root(&source, table.get_ref(), schema::INSPECTION_FILE));
+    readable::check(&source, table.get_ref());
     let problems = source.into_problems();
     match read {
         Some(read) if problems.is_empty() => Ok(read),

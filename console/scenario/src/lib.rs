@@ -16,6 +16,7 @@ mod outline;
 mod planner_keys;
 mod problem;
 mod ranging;
+mod readable;
 mod renamed;
 mod render;
 mod rescan;
@@ -37,6 +38,7 @@ pub use settings::Settings;
 use mission::MissionConfig;
 use report::{Expect, Inspection};
 use sim::SimConfig;
+use source::Source;
 use std::{fs::File, io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
@@ -89,11 +91,27 @@ impl Scenario {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn parse(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
+        Self::checked(text, shown_name, readable::check)
+    }
+
+    /// Reads the scenario of a past run from its text, which was accepted then: older runs have names that would be refused now.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn recorded(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
+        Self::checked(text, shown_name, |_, _| {})
+    }
+
+    fn checked(
+        text: &str,
+        shown_name: &str,
+        also: fn(&Source<'_>, &DeTable<'_>),
+    ) -> Result<Self, ScenarioErrors> {
         if text.len() > LIMIT_KB * 1000 {
             return Err(ScenarioErrors::of_file(shown_name, Complaint::TooLarge { limit_kb: LIMIT_KB }));
         }
         let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
-        assemble::assemble(text, shown_name, table.get_ref()).map_err(|problems| ScenarioErrors {
+        assemble::assemble(text, shown_name, table.get_ref(), also).map_err(|problems| ScenarioErrors {
             shown_name: shown_name.to_owned(),
             text: text.to_owned(),
             problems,

@@ -2,8 +2,8 @@
 
 use super::{floor::Names, problem::Complaint, section::Section};
 use mission::{Locating, spelling::nearest};
-use positioning::{Aggregation, RangeNoise, SolverKind};
-use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault};
+use positioning::{Aggregation, RangeNoise, SolverKind, Timing};
+use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault, TimingErrors};
 use world::{Boundary, Station, StationId};
 
 /// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
@@ -12,12 +12,14 @@ const ON_WALL_M: f64 = 0.01;
 /// Reads `[ae]` without its stations.
 pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
-    let (noise, dropout_probability) = (noise(section), section.number("dropout_probability"));
+    let (noise, timing) = (noise(section), timing(section));
+    let dropout_probability = section.number("dropout_probability");
     let (outages_s, disturbances) = (section.times("outages_s"), disturbances(section));
     Some(AeConfig {
         period_s: period_s?,
         repetitions: repetitions? as u32,
         noise: noise?,
+        timing: timing?,
         dropout_probability: dropout_probability?,
         outages_s: outages_s?,
         disturbances: disturbances?,
@@ -39,9 +41,15 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
         let must_be = "another solver: only uniform and triangular noise have bounds";
         section.complain("solver", Complaint::OutOfRange(must_be.into()));
     }
+    let TimingErrors { jitter_m, resolution_m } = ae.timing;
+    if !ae.timing.is_none() {
+        refuse_beside_timing(section, solver, aggregation);
+    }
     let behind = ae.disturbances.behind_columns;
     Some(Locating {
         noise,
+        timing: Timing { jitter_m, resolution_m },
+        scale_sigma_ratio: 0.0,
         aggregation: match aggregation? {
             "midrange" => Aggregation::Midrange,
             "trimmed-mean" => Aggregation::TrimmedMean,
@@ -59,6 +67,28 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
         repetitions: ae.repetitions,
         needs_line_of_sight: !matches!(behind, BehindColumns::Heard | BehindColumns::Creeping),
     })
+}
+
+/// Complains of methods that take the noise for a share of the distance, where times err, too.
+fn refuse_beside_timing(section: &Section<'_>, solver: Option<&str>, aggregation: Option<&str>) {
+    if solver == Some("bounded") {
+        let must_be = "another solver: with noise.jitter_m or noise.resolution_m the noise has no bounds";
+        section.complain("solver", Complaint::OutOfRange(must_be.into()));
+    }
+    if let Some("midrange" | "posterior") = aggregation {
+        let must_be = "\"mean\" or \"trimmed-mean\" with noise.jitter_m or noise.resolution_m";
+        section.complain("aggregation", Complaint::OutOfRange(must_be.into()));
+    }
+}
+
+/// Errors of the times behind the ranges.
+fn timing(section: &Section<'_>) -> Option<TimingErrors> {
+    if !section.has("noise") {
+        return Some(TimingErrors::default());
+    }
+    let noise = section.table("noise")?;
+    let (jitter_m, resolution_m) = (noise.number("jitter_m"), noise.number("resolution_m"));
+    Some(TimingErrors { jitter_m: jitter_m?, resolution_m: resolution_m? })
 }
 
 /// What goes wrong with ranges besides their scatter, but for the faults of single stations.

@@ -54,7 +54,7 @@ impl<'a> Spot<'a> {
     /// the place in it.
     fn shown(&self) -> (String, usize) {
         let first = (self.column - 1).saturating_sub(WINDOW / 2);
-        let cut = |c: char| if c.is_control() { ' ' } else { c };
+        let cut = |c: char| if foreign::is_plain(c) { c } else { ' ' };
         let shown: String = self.source.chars().skip(first).take(WINDOW).map(cut).collect();
         (shown.trim_end().to_owned(), self.column - 1 - first)
     }

@@ -18,7 +18,9 @@ pub fn rescan(
     found: &BTreeSet<ObstacleId>,
     drawn: &[Zone],
 ) -> Result<String, TomlError> {
-    let mut document: DocumentMut = with_todays_keys(&opened.scenario_toml).parse()?;
+    // Older runs may have names that would be refused now.
+    let text = with_todays_keys(&opened.scenario_toml);
+    let mut document: DocumentMut = foreign::plain_lines(&text).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
     document["about"] = value(format!("What {} missed", names.join(" and ")));

@@ -7,10 +7,8 @@ use world::{Amphibious, Pace, Point};
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Robot {
-    /// What it can do.
+    /// What it can do, but for the length of a tick, which is the mission's.
     pub limits: Limits,
-    /// Largest change of speed, metres per second squared.
-    pub acceleration_m_per_s2: f64,
     /// Where it starts, if given.
     pub start: Option<Point>,
     /// Heading at the start, radians, if given.
@@ -27,8 +25,6 @@ pub(crate) struct Robot {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// How it walks and swims, if it does both.
-    pub amphibious: Option<Amphibious>,
 }
 
 impl Robot {
@@ -81,8 +77,11 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
             w_max_rad_per_s: fastest.w_max_rad_per_s,
             radius_m: radius_m?,
             sensing_range_m: sensing_range_m?,
+            acceleration_m_per_s2: acceleration?,
+            // The mission says how long a tick is.
+            tick_s: 0.0,
+            amphibious,
         },
-        acceleration_m_per_s2: acceleration?,
         start,
         start_heading_rad: heading_deg.map(f64::to_radians),
         start_sigma_m: start_sigma_m?,
@@ -91,7 +90,6 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
-        amphibious,
     })
 }
 

@@ -361,6 +361,8 @@ static NOISE: &[Key] = &[
     word("model", &["none", "uniform", "triangular", "gaussian", "heavy-tailed"]),
     number("ratio", "", above(0.0).up_to(0.9)).or_none("for `uniform`, `triangular`"),
     number("sigma_ratio", "", above(0.0).up_to(0.9)).or_none("for `gaussian`, `heavy-tailed`"),
+    number("jitter_m", "m", at_least(0.0).up_to(100.0)).or(0.0),
+    number("resolution_m", "m", at_least(0.0).up_to(100.0)).or(0.0),
 ];
 
 /// Why a goal is not reached more closely.

@@ -479,7 +479,7 @@ fn wrong_type(wanted: &str, remedy: &str) -> Complaint {
 }
 
 fn shortened(name: &str) -> String {
-    let clean = name.chars().filter(|c| !c.is_control());
+    let clean = name.chars().filter(|c| foreign::is_plain(*c));
     if name.chars().count() > 64 { clean.take(63).chain(['…']).collect() } else { clean.collect() }
 }
 

@@ -42,7 +42,7 @@ impl<'a> Source<'a> {
     pub(crate) fn excerpt(&self, at: &Range<usize>) -> String {
         let written = self.text.get(at.clone()).unwrap_or_default();
         let mut line: String = written.split_whitespace().collect::<Vec<_>>().join(" ");
-        line.retain(|c| !c.is_control());
+        line.retain(foreign::is_plain);
         if line.chars().count() > 40 {
             line = line.chars().take(39).chain(['…']).collect();
         }

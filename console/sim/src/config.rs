@@ -89,6 +89,23 @@ pub struct Disturbances {
     pub faults: Vec<StationFault>,
 }
 
+/// Errors of ranges that are the same at every distance: those of the times that the ranges are computed from.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TimingErrors {
+    /// Standard deviation of the normal error of each range, metres.
+    pub jitter_m: f64,
+    /// Ranges are rounded to whole multiples of this, metres; 0: they are not.
+    pub resolution_m: f64,
+}
+
+impl TimingErrors {
+    /// Whether there are none.
+    pub fn is_none(&self) -> bool {
+        !(self.jitter_m > 0.0 || self.resolution_m > 0.0)
+    }
+}
+
 /// Acoustic-emission ranging.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AeConfig {
@@ -98,6 +115,9 @@ pub struct AeConfig {
     pub repetitions: u32,
     /// How they scatter.
     pub noise: NoiseModel,
+    /// How their times err besides.
+    #[serde(default, skip_serializing_if = "TimingErrors::is_none")]
+    pub timing: TimingErrors,
     /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
     /// Intervals of mission time without any ranges, seconds: from, to.

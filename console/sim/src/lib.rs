@@ -14,7 +14,7 @@ mod simulator;
 mod sweep;
 
 pub use config::{
-    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
+    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault, TimingErrors,
     TetherTruth, Track, Truth,
 };
 pub use ranging::Sounder;

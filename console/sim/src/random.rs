@@ -27,6 +27,8 @@ pub(crate) struct RandomStreams {
     pub disturbance: Pcg64,
     /// Survey errors of the stations.
     pub survey: Pcg64,
+    /// Errors of times.
+    pub timing: Pcg64,
 }
 
 impl RandomStreams {
@@ -39,6 +41,7 @@ impl RandomStreams {
             slip: stream(4),
             disturbance: stream(5),
             survey: stream(6),
+            timing: stream(7),
         }
     }
 }

@@ -3,7 +3,7 @@
 mod path;
 
 use crate::{
-    config::{AeConfig, StationFault},
+    config::{AeConfig, StationFault, TimingErrors},
     random::{RandomStreams, normal, reported_m},
 };
 use path::Propagation;
@@ -110,10 +110,18 @@ fn measure(
         let is_heard = streams.disturbance.random::<f64>() >= what.ping_dropout_probability;
         if let Some(path) = path.filter(|_| is_heard) {
             let scale = 1.0 + what.sound_speed_error_ratio;
-            ranges_m.push(reported_m(path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m));
+            let range_m = path.length_m * (1.0 + error) * scale + excess_range_m + ping_late_m;
+            ranges_m.push(reported_m(timed_m(config.timing, range_m, streams)));
         }
     }
     RangeSet { station: station.id, ranges_m }
+}
+
+/// A range with the errors of its time, metres.
+fn timed_m(timing: TimingErrors, range_m: f64, streams: &mut RandomStreams) -> f64 {
+    let TimingErrors { jitter_m, resolution_m } = timing;
+    let jittered_m = if jitter_m > 0.0 { range_m + jitter_m * normal(&mut streams.timing) } else { range_m };
+    if resolution_m > 0.0 { (jittered_m / resolution_m).round() * resolution_m } else { jittered_m }
 }
 
 /// An exponential number with mean 1.
@@ -132,6 +140,7 @@ mod tests {
             period_s: 0.3,
             repetitions: 3,
             noise: NoiseModel::Uniform { ratio: 0.05 },
+            timing: TimingErrors::default(),
             dropout_probability: 0.0,
             outages_s: vec![],
             disturbances: Disturbances::default(),

@@ -145,7 +145,7 @@ impl Simulator {
         let Some(amphibious) = self.config.robot.amphibious else { return };
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
         self.mode = self.mode.toward(medium, amphibious.transition_steps);
-        self.tracks.set_limits(amphibious.pace(self.mode));
+        self.tracks.set_limits(amphibious.pace(self.mode.weight()));
     }
 
     /// Moves the moving obstacles; returns whether one runs into the hull.

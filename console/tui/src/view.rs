@@ -22,6 +22,7 @@ mod plan;
 mod planner;
 mod plugins;
 mod position;
+mod readable;
 mod result;
 mod review;
 mod shadow;
@@ -80,6 +81,7 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
         framed(&look, frame, area, arrangement);
     }
     lists::draw(&look, frame, area);
+    readable::make(frame.buffer_mut());
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());
     }

@@ -21,8 +21,8 @@ pub use coverage::{
     SweptArea, Tool,
 };
 /// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
-pub use geometry::{self, Boundary, Point, Pose, Shape, Vector, polyline, shape};
-pub use medium::{Amphibious, Medium, Mode, Pace};
+pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};
+pub use medium::{Medium, Mode};
 pub use obstacles::{Near, ObstacleMap};
 pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};

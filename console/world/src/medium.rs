@@ -1,4 +1,4 @@
-//! Dry and flooded floor, and a robot that moves differently in each.
+//! Dry and flooded floor, and which way of moving each calls for.
 
 use crate::tank::{Zone, ZoneKind};
 use geometry::Point;
@@ -12,26 +12,6 @@ pub enum Medium {
     Land,
     /// Water: it swims.
     Underwater,
-}
-
-/// How fast a robot may move.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Pace {
-    /// Largest speed, metres per second.
-    pub v_max_m_per_s: f64,
-    /// Largest turn rate, radians per second.
-    pub w_max_rad_per_s: f64,
-}
-
-/// The limits of an amphibious robot in both of its modes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Amphibious {
-    /// On dry floor.
-    pub land: Pace,
-    /// Under water.
-    pub underwater: Pace,
-    /// Ticks for a complete change of mode; 0 for an instant one.
-    pub transition_steps: u32,
 }
 
 /// The mode of an amphibious robot, from walking (weight 0) to swimming (weight 1).
@@ -57,50 +37,12 @@ impl Medium {
     }
 }
 
-impl Amphibious {
-    /// The limits of Yang et al. 2021, Table 1, with their transition of 20 steps.
-    pub const YANG_2021: Self = Self {
-        land: Pace { v_max_m_per_s: 0.13, w_max_rad_per_s: 0.12 },
-        underwater: Pace { v_max_m_per_s: 0.23, w_max_rad_per_s: 0.31 },
-        transition_steps: 20,
-    };
-
-    /// The limits in a mode, interpolated linearly between both.
-    ///
-    /// ```
-    /// use world::{Amphibious, Medium, Mode};
-    /// let robot = Amphibious::YANG_2021;
-    /// assert_eq!(robot.pace(Mode::of(Medium::Underwater)).v_max_m_per_s, 0.23);
-    /// ```
-    pub fn pace(&self, mode: Mode) -> Pace {
-        let between = |land: f64, underwater: f64| land + (underwater - land) * mode.weight;
-        Pace {
-            v_max_m_per_s: between(self.land.v_max_m_per_s, self.underwater.v_max_m_per_s),
-            w_max_rad_per_s: between(self.land.w_max_rad_per_s, self.underwater.w_max_rad_per_s),
-        }
-    }
-
-    /// The larger limits of both modes.
-    ///
-    /// ```
-    /// use world::Amphibious;
-    /// let robot = Amphibious::YANG_2021;
-    /// assert_eq!(robot.fastest().w_max_rad_per_s, 0.31);
-    /// ```
-    pub fn fastest(&self) -> Pace {
-        Pace {
-            v_max_m_per_s: self.land.v_max_m_per_s.max(self.underwater.v_max_m_per_s),
-            w_max_rad_per_s: self.land.w_max_rad_per_s.max(self.underwater.w_max_rad_per_s),
-        }
-    }
-}
-
 impl Mode {
     /// The mode that a medium calls for.
     ///
     /// ```
     /// use world::{Amphibious, Medium, Mode};
-    /// assert_eq!(Amphibious::YANG_2021.pace(Mode::of(Medium::Land)).v_max_m_per_s, 0.13);
+    /// assert_eq!(Amphibious::YANG_2021.pace(Mode::of(Medium::Land).weight()).v_max_m_per_s, 0.13);
     /// ```
     pub fn of(medium: Medium) -> Self {
         Self { weight: if medium == Medium::Underwater { 1.0 } else { 0.0 } }
@@ -111,7 +53,7 @@ impl Mode {
     /// ```
     /// use world::{Amphibious, Medium, Mode};
     /// let mode = Mode::of(Medium::Land).toward(Medium::Underwater, 20);
-    /// assert!((Amphibious::YANG_2021.pace(mode).v_max_m_per_s - 0.135).abs() < 1e-12);
+    /// assert!((Amphibious::YANG_2021.pace(mode.weight()).v_max_m_per_s - 0.135).abs() < 1e-12);
     /// ```
     #[must_use]
     pub fn toward(self, medium: Medium, transition_steps: u32) -> Self {
@@ -137,7 +79,7 @@ impl Mode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Shape;
+    use geometry::{Amphibious, Shape};
 
     fn zone(kind: ZoneKind, radius_m: f64) -> Zone {
         Zone { name: String::new(), kind, shape: Shape::Disc { center: Point::origin(), radius_m } }
@@ -157,7 +99,7 @@ mod tests {
         for _ in 0..10 {
             mode = mode.toward(Medium::Land, robot.transition_steps);
         }
-        assert!((robot.pace(mode).v_max_m_per_s - 0.18).abs() < 1e-12);
+        assert!((robot.pace(mode.weight()).v_max_m_per_s - 0.18).abs() < 1e-12);
         for _ in 0..10 {
             mode = mode.toward(Medium::Land, robot.transition_steps);
         }

@@ -97,6 +97,7 @@ impl Planner for ApfDwa {
         let changed =
             self.around.look(pose.position, reach_m, &bodies, |id| velocity_of(id) != Vector2::zeros());
         self.hybrid.take_change(changed);
+        self.hybrid.set_tick(sensed.dt_s);
         let state = State { pose, twist };
         let decision =
             self.hybrid.decide(&state, sensed.target, sensed.path_ahead, &self.around, velocity_of);

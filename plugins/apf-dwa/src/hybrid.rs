@@ -75,6 +75,11 @@ impl Hybrid {
         &self.settings
     }
 
+    /// A command takes effect for so long from now on, seconds.
+    pub fn set_tick(&mut self, tick_s: f64) {
+        self.settings.window.dt_s = tick_s;
+    }
+
     /// What it remembers of virtual goals.
     pub fn guide(&self) -> &Guide {
         &self.guide
@@ -128,7 +133,7 @@ impl Hybrid {
         let mode =
             self.mode.map_or_else(|| Mode::of(medium), |mode| mode.toward(medium, robot.transition_steps));
         self.mode = Some(mode);
-        robot.pace(mode)
+        robot.pace(mode.weight())
     }
 }
 

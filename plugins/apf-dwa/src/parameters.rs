@@ -37,25 +37,25 @@ const SQUARE: ParamSpec = float("square_m", "Distance of virtual goals", "m", 0.
 const HOLD: ParamSpec = int("hold_steps", "Steps with a virtual goal", "", 1, 100_000, 300)
     .help("A virtual goal is kept for this many steps at most; the paper gives no number.")
     .group(FIELD);
-const LAND_SPEED: ParamSpec = float("land_speed_max_m_per_s", "Speed on land", "m/s", 0.0, 10.0, 0.13)
-    .help("Largest speed on dry floor; 0 takes the robot's own limit everywhere.")
+const LAND_SPEED: ParamSpec = float("land_speed_max_m_per_s", "Speed on land", "m/s", 0.0, 10.0, 0.0)
+    .help("Largest speed on dry floor; 0 takes the robot's own. Table 1 of the paper has 0.13.")
     .group(ROBOT);
-const LAND_TURN: ParamSpec = float("land_turn_rad_per_s", "Turn rate on land", "rad/s", 0.001, 10.0, 0.12)
-    .help("Largest turn rate on dry floor.")
+const LAND_TURN: ParamSpec = float("land_turn_rad_per_s", "Turn rate on land", "rad/s", 0.0, 10.0, 0.0)
+    .help("Largest turn rate on dry floor; 0 takes the robot's own. Table 1 of the paper has 0.12.")
     .group(ROBOT);
 const WATER_SPEED: ParamSpec =
-    float("underwater_speed_max_m_per_s", "Speed under water", "m/s", 0.001, 10.0, 0.23)
-        .help("Largest speed in zones that are flooded.")
+    float("underwater_speed_max_m_per_s", "Speed under water", "m/s", 0.0, 10.0, 0.0)
+        .help("Largest speed in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.23.")
         .group(ROBOT);
 const WATER_TURN: ParamSpec =
-    float("underwater_turn_rad_per_s", "Turn rate under water", "rad/s", 0.001, 10.0, 0.31)
-        .help("Largest turn rate in zones that are flooded.")
+    float("underwater_turn_rad_per_s", "Turn rate under water", "rad/s", 0.0, 10.0, 0.0)
+        .help("Largest turn rate in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.31.")
         .group(ROBOT);
-const TRANSITION: ParamSpec = int("transition_steps", "Steps of transition", "", 0, 10_000, 20)
-    .help("Steps in which the limits of one mode change into those of the other; 0 is at once.")
+const TRANSITION: ParamSpec = int("transition_steps", "Steps of transition", "", -1, 10_000, -1)
+    .help("Steps in which the limits of one mode change into those of the other; 0 is at once, -1 the robot's own.")
     .group(ROBOT);
-const ACCELERATION: ParamSpec = float("acceleration_m_per_s2", "Acceleration", "m/s2", 0.001, 100.0, 0.1)
-    .help("Largest change of speed; the paper gives none.")
+const ACCELERATION: ParamSpec = float("acceleration_m_per_s2", "Acceleration", "m/s2", 0.0, 100.0, 0.0)
+    .help("Largest change of speed; 0 takes the robot's own. The paper gives none.")
     .group(ROBOT);
 const TURN_ACCELERATION: ParamSpec =
     float("turn_acceleration_rad_per_s2", "Turn acceleration", "rad/s2", 0.001, 100.0, 0.4)
@@ -119,7 +119,10 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     let push = square.push(config.float("k_rep"), config.float("rho_0_m"), config.float("wall_gain"));
     let by = if config.choice("guide") == "square" { GuideBy::Square } else { GuideBy::Corners };
     let window = Window {
-        acceleration_m_per_s2: config.float("acceleration_m_per_s2"),
+        acceleration_m_per_s2: or_own(
+            config.float("acceleration_m_per_s2"),
+            site.limits.acceleration_m_per_s2,
+        ),
         turn_acceleration_rad_per_s2: config.float("turn_acceleration_rad_per_s2"),
         weights: Weights {
             heading: config.float("weight_heading"),
@@ -140,16 +143,20 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
 /// How the robot walks and swims, never faster than the robot itself.
 fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
     let own = Pace { v_max_m_per_s: site.limits.v_max_m_per_s, w_max_rad_per_s: site.limits.w_max_rad_per_s };
-    let pace = |speed: &str, turn: &str| Pace {
-        v_max_m_per_s: config.float(speed).min(own.v_max_m_per_s),
-        w_max_rad_per_s: config.float(turn).min(own.w_max_rad_per_s),
+    let own = site.limits.amphibious.unwrap_or(Amphibious { land: own, underwater: own, transition_steps: 0 });
+    let pace = |own: Pace, speed: &str, turn: &str| Pace {
+        v_max_m_per_s: or_own(config.float(speed), own.v_max_m_per_s),
+        w_max_rad_per_s: or_own(config.float(turn), own.w_max_rad_per_s),
     };
-    if config.float("land_speed_max_m_per_s") == 0.0 {
-        return Amphibious { land: own, underwater: own, transition_steps: 0 };
-    }
+    let steps = u32::try_from(config.int("transition_steps"));
     Amphibious {
-        land: pace("land_speed_max_m_per_s", "land_turn_rad_per_s"),
-        underwater: pace("underwater_speed_max_m_per_s", "underwater_turn_rad_per_s"),
-        transition_steps: config.int("transition_steps") as u32,
+        land: pace(own.land, "land_speed_max_m_per_s", "land_turn_rad_per_s"),
+        underwater: pace(own.underwater, "underwater_speed_max_m_per_s", "underwater_turn_rad_per_s"),
+        transition_steps: steps.unwrap_or(own.transition_steps),
     }
+}
+
+/// A limit that is set, never above the robot's own, or the robot's own.
+fn or_own(set: f64, own: f64) -> f64 {
+    if set > 0.0 { set.min(own) } else { own }
 }

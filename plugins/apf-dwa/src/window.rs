@@ -1,6 +1,7 @@
 //! The dynamic window (Fox et al. 1997, as in Yang et al. 2021, eq. 20-23).
 
 use crate::near::NearThings;
+use geometry::Braking;
 use world::{Pace, Point, Pose, Vector};
 
 /// Speeds looked at.
@@ -13,7 +14,7 @@ const HORIZON_S: f64 = 3.0;
 const STEP_S: f64 = 0.2;
 /// Places on an arc.
 const N_PLACES: usize = 15;
-/// Distances count up to this much, metres.
+/// Distances beyond what is kept count up to this much, metres.
 const CAP_M: f64 = 1.0;
 /// Turn rate when no arc is allowed, as a share of the largest.
 const TURN_SHARE: f64 = 0.3;
@@ -69,7 +70,7 @@ impl Window {
     /// before it touches anything. Where no arc is allowed it brakes and turns slowly toward the reference.
     pub fn choose(&self, pose: &Pose, now: Twist, pace: Pace, reference: Vector, near: &NearThings) -> Twist {
         let (speeds, turns) = (self.speeds(now, pace), self.turns(now, pace));
-        let here_m = near.distance_m(&[pose.position], 0.0, CAP_M) - self.keep_m;
+        let here_m = self.spare_m(near, &[pose.position], 0.0);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(N_SPEEDS * N_TURNS);
         for w_rad_per_s in spread::<N_TURNS>(turns) {
             let places = arc_per_speed(pose, w_rad_per_s);
@@ -77,7 +78,7 @@ impl Window {
             let off_rad = Vector::new(end_rad.cos(), end_rad.sin()).angle(&reference);
             for v_m_per_s in spread::<N_SPEEDS>(speeds) {
                 let points = places.map(|offset| pose.position + offset * v_m_per_s);
-                let distance_m = near.distance_m(&points, STEP_S, CAP_M) - self.keep_m;
+                let distance_m = self.spare_m(near, &points, STEP_S);
                 let twist = Twist { v_m_per_s, w_rad_per_s };
                 if self.is_allowed(v_m_per_s, distance_m, here_m) {
                     let heading = std::f64::consts::PI - off_rad;
@@ -88,12 +89,18 @@ impl Window {
         self.best(&candidates).unwrap_or_else(|| turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
+    /// Room beyond what is kept, on the way over some places, metres; no more than counts.
+    fn spare_m(&self, near: &NearThings, points: &[Point], step_s: f64) -> f64 {
+        near.distance_m(points, step_s, CAP_M + self.keep_m) - self.keep_m
+    }
+
     /// Whether it can stop in time. A robot that is too near already may move where it does not get nearer.
     fn is_allowed(&self, v_m_per_s: f64, distance_m: f64, here_m: f64) -> bool {
         if here_m < 0.0 {
             return distance_m >= here_m - 1e-9;
         }
-        distance_m >= 0.0 && v_m_per_s * v_m_per_s <= 2.0 * distance_m * self.acceleration_m_per_s2
+        let braking = Braking { acceleration_m_per_s2: self.acceleration_m_per_s2, tick_s: 0.0 };
+        distance_m >= 0.0 && braking.way_m(v_m_per_s) <= distance_m
     }
 
     fn best(&self, candidates: &[Candidate]) -> Option<Twist> {
@@ -113,7 +120,9 @@ impl Window {
     fn speeds(&self, now: Twist, pace: Pace) -> (f64, f64) {
         let change = self.acceleration_m_per_s2 * self.dt_s;
         let low = (now.v_m_per_s - change).max(0.0);
-        (low, (now.v_m_per_s + change).min(pace.v_max_m_per_s).max(low))
+        // From more than this it does not stop within the way that is looked at.
+        let most = pace.v_max_m_per_s.min(self.acceleration_m_per_s2 * HORIZON_S);
+        (low, (now.v_m_per_s + change).min(most).max(low))
     }
 
     fn turns(&self, now: Twist, pace: Pace) -> (f64, f64) {
@@ -210,6 +219,23 @@ mod tests {
         let near = discs(&[(1.5, 0.05, 0.4), (2.5, 0.9, 0.4)]);
         for (pose, _) in run(&near, Vector::x(), 400) {
             assert!(near.distance_m(&[pose.position], 0.0, 9.0) >= 0.3 - 1e-6);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn whatever_the_hull_and_the_clearance_it_keeps_them(
+            radius_m in 0.2..2.0_f64, clearance_m in 0.0..1.5_f64, x in 0.3..2.0_f64, y in -1.0..1.0_f64,
+        ) {
+            let window = Window { keep_m: radius_m + clearance_m, ..WINDOW };
+            let near = discs(&[(radius_m + clearance_m + 0.4 + x, y, 0.4)]);
+            let (mut pose, mut twist) = (Pose::new(0.0, 0.0, 0.0), Twist::default());
+            for _ in 0..300 {
+                twist = window.choose(&pose, twist, WATER, Vector::x(), &near);
+                pose = moved(&pose, twist, 0.1);
+                let least_m = near.distance_m(&[pose.position], 0.0, 99.0);
+                prop_assert!(least_m >= radius_m + clearance_m - 1e-3, "{least_m}");
+            }
         }
     }
 

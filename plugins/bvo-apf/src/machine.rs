@@ -9,6 +9,7 @@ use crate::{
     view::View,
 };
 use field::{Sides, oscillation::Oscillation};
+use geometry::Braking;
 use std::{collections::BTreeSet, f64::consts::PI};
 use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, Solid, guard, wall_contacts};
 use world::{Point, Vector};
@@ -25,6 +26,8 @@ const GAIN_M: f64 = 1.0;
 const ROUNDS: f64 = 2.5;
 /// On the way back the trap is examined again after this distance, metres.
 const LOOK_BACK_M: f64 = 0.05;
+/// A robot in thought stops at once.
+const IN_THOUGHT: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.0 };
 
 /// What the machine is doing.
 #[derive(Debug, Clone)]
@@ -256,7 +259,7 @@ impl Machine {
         }
         // The guard lets a distance be used up in half a second: a step of it is one at twice the speed.
         let speed = 2.0 * length_m;
-        let slid = guard::slide(way * speed, &contacts, keep_m, speed) * 0.5;
+        let slid = guard::slide(way * speed, &contacts, keep_m, speed, &IN_THOUGHT) * 0.5;
         let full = slid.try_normalize(1e-9).map_or(slid, |along| along * length_m);
         let stays_clear =
             contacts.iter().all(|c| c.away.dot(&full) >= (keep_m - c.distance_m).min(0.0) - 1e-9);

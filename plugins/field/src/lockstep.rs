@@ -152,6 +152,9 @@ mod tests {
             w_max_rad_per_s: 1.0,
             radius_m: 0.0,
             sensing_range_m: 3.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
+            amphibious: None,
         };
         let site = Site {
             revision: 0,

@@ -35,7 +35,7 @@ extern "C" {
 #endif
 
 #define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
-#define TP_ABI_MINOR 3u /* raised when something is added at the end of a struct */
+#define TP_ABI_MINOR 4u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
 
@@ -132,6 +132,13 @@ typedef struct tp_site {
   double sensing_range;     /* how far it sees obstacles */
   double swath;             /* width of floor scanned in one pass */
   double clearance;         /* distance to keep between hull and anything solid */
+  /* since 1.4 */
+  double acceleration;      /* largest change of speed; 0 if the console does not say */
+  double tick;              /* length of a tick: a command takes effect for so long */
+  uint32_t is_amphibious;   /* 1 for a robot that walks and swims: v_max and w_max are the larger limits of both */
+  uint32_t transition_ticks; /* for a complete change from walking to swimming */
+  double land_v_max, land_w_max;             /* outside zones that are flooded */
+  double underwater_v_max, underwater_w_max; /* within them */
 } tp_site;
 
 typedef struct tp_plan_in {
@@ -285,7 +292,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 TP_ASSERT(sizeof(void *) == 8, "tankops planners are 64-bit libraries");
 TP_ASSERT(sizeof(tp_str) == 16 && sizeof(tp_vec2) == 16 && sizeof(tp_pose) == 24, "layout");
 TP_ASSERT(sizeof(tp_outline) == 24 && sizeof(tp_obstacle) == 48 && sizeof(tp_zone) == 32, "layout");
-TP_ASSERT(sizeof(tp_site) == 128 && offsetof(tp_site, boundary) == 16, "layout");
+TP_ASSERT(sizeof(tp_site) == 184 && offsetof(tp_site, boundary) == 16, "layout");
 TP_ASSERT(offsetof(tp_site, obstacles) == 40 && offsetof(tp_site, zones) == 56, "layout");
 TP_ASSERT(offsetof(tp_site, motion) == 72, "layout");
 TP_ASSERT(sizeof(tp_plan_in) == 224 && offsetof(tp_plan_in, covariance) == 48, "layout");

@@ -19,7 +19,7 @@ pub const MAGIC: [u8; 8] = *b"TANKPLAN";
 /// Libraries of another major version are refused.
 pub const MAJOR: u32 = 1;
 /// Raised when something is added at the end of a struct.
-pub const MINOR: u32 = 3;
+pub const MINOR: u32 = 4;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
 /// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
@@ -140,10 +140,11 @@ const _: () = {
     use std::mem::offset_of;
     assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);
     assert!(size_of::<Outline>() == 24 && size_of::<Obstacle>() == 48 && size_of::<Zone>() == 32);
-    assert!(size_of::<Site>() == 128 && offset_of!(Site, boundary) == 16);
+    assert!(size_of::<Site>() == 184 && offset_of!(Site, boundary) == 16);
     assert!(
         offset_of!(Site, obstacles) == 40 && offset_of!(Site, zones) == 56 && offset_of!(Site, motion) == 72
     );
+    assert!(offset_of!(Site, acceleration) == 128 && offset_of!(Site, land_v_max) == 152);
     assert!(size_of::<PlanIn>() == 224 && offset_of!(PlanIn, covariance) == 48);
     assert!(offset_of!(PlanIn, targets) == 104 && offset_of!(PlanIn, site) == 136);
     assert!(offset_of!(PlanIn, regions) == 144 && offset_of!(PlanIn, reel) == 160);

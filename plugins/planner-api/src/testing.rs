@@ -77,7 +77,11 @@ impl Bench {
     /// #     fn step(&mut self, _: &Sensed<'_>, _: &Ctx<'_>) -> Result<Command> { Ok(Command::twist(0.0, 0.0)) }
     /// # }
     /// # let (v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m) = (0.4, 1.0, 0.25, 3.0);
-    /// # let limits = Limits { motion: Motion::Point, v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m };
+    /// # let (motion, acceleration_m_per_s2, tick_s, amphibious) = (Motion::Point, 0.5, 0.1, None);
+    /// # let limits = Limits {
+    /// #     motion, v_max_m_per_s, w_max_rad_per_s, radius_m, sensing_range_m, acceleration_m_per_s2, tick_s,
+    /// #     amphibious,
+    /// # };
     /// # let (boundary, obstacles, zones) = (Boundary::Circle { radius_m: 5.0 }, &[], &[]);
     /// # let site = Site { revision: 1, boundary, obstacles, zones, limits, swath_m: 0.5, clearance_m: 0.1, seed: 1 };
     /// let bench = testing::Bench::new();

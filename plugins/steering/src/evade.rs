@@ -158,6 +158,9 @@ mod tests {
         w_max_rad_per_s: 1.0,
         radius_m: 0.25,
         sensing_range_m: 3.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
 
     fn exact_pose(position: Point) -> PoseEstimate {

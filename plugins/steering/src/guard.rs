@@ -1,9 +1,10 @@
 //! The last word before a velocity leaves: nothing moves toward what is already as near as allowed.
 
 use crate::contact::Contact;
-use geometry::Vector;
+use geometry::{Braking, Vector};
 
-/// Time over which a distance may be used up, seconds: several ticks, so that the hull comes to rest before it touches.
+/// Time over which a distance may be used up, seconds: several ticks, so that the hull comes to rest before it touches. A robot
+/// that needs longer to stop is slower.
 const BRAKING_S: f64 = 0.5;
 /// The fastest the guard drives the robot away from something too near, as a share of the largest speed.
 const RETREAT_SHARE: f64 = 0.4;
@@ -15,17 +16,29 @@ struct HalfPlane {
     least: f64,
 }
 
+/// The largest speed toward something with so much room before it, metres per second; negative where there is too little.
+fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
+    let used_up = room_m / BRAKING_S;
+    if room_m > 0.0 { used_up.min(braking.speed_within(room_m)) } else { used_up }
+}
+
 /// The velocity nearest to `wanted` that keeps a distance `keep_m` from every contact.
 ///
-/// Toward a contact at distance `d` no more than `(d - keep_m) / 0.5 s` is allowed, so the robot slides along what it
-/// would run into; nearer than `keep_m` it is driven away. Where that is impossible, as in a gap narrower than both
+/// Toward a contact at distance `d` no more than `(d - keep_m) / 0.5 s` is allowed, and no more than what the robot can stop
+/// from within `d - keep_m`, so it slides along what it would run into; nearer than `keep_m` it is driven away. Where that is impossible, as in a gap narrower than both
 /// distances together, it may move along the gap but not across.
-pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64) -> Vector {
+pub fn slide(
+    wanted: Vector,
+    contacts: &[Contact],
+    keep_m: f64,
+    v_max: f64,
+    braking: &Braking,
+) -> Vector {
     let planes: Vec<HalfPlane> = contacts
         .iter()
         .map(|c| HalfPlane {
             away: c.away,
-            least: ((keep_m - c.distance_m) / BRAKING_S).min(RETREAT_SHARE * v_max),
+            least: (-fastest_toward(c.distance_m - keep_m, braking)).min(RETREAT_SHARE * v_max),
         })
         .filter(|plane| plane.least > -v_max)
         .collect();
@@ -36,12 +49,18 @@ pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64) -> V
 }
 
 /// A velocity of the same direction, so slow that a robot that still heads elsewhere stays clear while it turns.
-pub fn braked(velocity: Vector, heading: Vector, contacts: &[Contact], keep_m: f64) -> Vector {
+pub fn braked(
+    velocity: Vector,
+    heading: Vector,
+    contacts: &[Contact],
+    keep_m: f64,
+    braking: &Braking,
+) -> Vector {
     let speed = velocity.norm();
     let allowed = contacts.iter().fold(speed, |allowed, contact| {
         let closing = -contact.away.dot(&heading);
         let room_m = (contact.distance_m - keep_m).max(0.0);
-        if closing > 0.05 { allowed.min(room_m / BRAKING_S / closing) } else { allowed }
+        if closing > 0.05 { allowed.min(fastest_toward(room_m, braking) / closing) } else { allowed }
     });
     // Never quite still: the direction of the command is what the robot turns into.
     let share = if speed > 0.0 { (allowed / speed).max(0.02) } else { 0.0 };
@@ -75,6 +94,9 @@ mod tests {
     use crate::contact::Source;
     use proptest::prelude::*;
 
+    /// Stops as quickly as it likes.
+    const QUICK: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.1 };
+
     fn contact(bearing_rad: f64, distance_m: f64) -> Contact {
         let away = -Vector::new(bearing_rad.cos(), bearing_rad.sin());
         Contact { source: Source::Wall, distance_m, away }
@@ -82,30 +104,37 @@ mod tests {
 
     #[test]
     fn it_slides_along_what_is_ahead() {
-        let safe = slide(Vector::new(0.3, 0.1), &[contact(0.0, 0.1)], 0.1, 0.4);
+        let safe = slide(Vector::new(0.3, 0.1), &[contact(0.0, 0.1)], 0.1, 0.4, &QUICK);
         assert!((safe - Vector::new(0.0, 0.1)).norm() < 1e-9);
     }
 
     #[test]
     fn it_backs_out_of_what_is_too_near() {
-        let safe = slide(Vector::new(0.3, 0.0), &[contact(0.0, 0.05)], 0.1, 0.4);
+        let safe = slide(Vector::new(0.3, 0.0), &[contact(0.0, 0.05)], 0.1, 0.4, &QUICK);
         assert!(safe.x < -0.05);
     }
 
     #[test]
     fn in_a_narrow_gap_it_moves_along_but_not_across() {
         let sides = [contact(0.0, 0.05), contact(std::f64::consts::PI, 0.05)];
-        let safe = slide(Vector::new(0.3, 0.2), &sides, 0.1, 0.4);
+        let safe = slide(Vector::new(0.3, 0.2), &sides, 0.1, 0.4, &QUICK);
         assert!((safe - Vector::new(0.0, 0.2)).norm() < 1e-9);
     }
 
     #[test]
     fn a_robot_that_heads_into_a_column_creeps_until_it_has_turned() {
         let velocity = Vector::new(0.0, 0.4);
-        let toward = braked(velocity, Vector::x(), &[contact(0.0, 0.1)], 0.1);
-        let along = braked(velocity, Vector::y(), &[contact(0.0, 0.1)], 0.1);
+        let toward = braked(velocity, Vector::x(), &[contact(0.0, 0.1)], 0.1, &QUICK);
+        let along = braked(velocity, Vector::y(), &[contact(0.0, 0.1)], 0.1, &QUICK);
         assert!(toward.norm() < 0.01 && toward.norm() > 0.0);
         assert!((along - velocity).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_robot_that_stops_slowly_approaches_slowly() {
+        let lazy = Braking { acceleration_m_per_s2: 0.1, tick_s: 0.1 };
+        let safe = slide(Vector::new(0.4, 0.0), &[contact(0.0, 0.3)], 0.1, 0.4, &lazy);
+        assert!((safe.x - lazy.speed_within(0.2)).abs() < 1e-9 && safe.x < 0.2);
     }
 
     proptest! {
@@ -115,7 +144,7 @@ mod tests {
             around in prop::collection::vec((0.0..6.3_f64, -0.2..0.5_f64), 0..7),
         ) {
             let contacts: Vec<Contact> = around.iter().map(|(b, d)| contact(*b, *d)).collect();
-            let safe = slide(Vector::new(wanted.0, wanted.1), &contacts, 0.1, 0.4);
+            let safe = slide(Vector::new(wanted.0, wanted.1), &contacts, 0.1, 0.4, &QUICK);
             prop_assert!(safe.norm() <= 0.4 + 1e-9);
             for c in &contacts {
                 let allowed = ((c.distance_m - 0.1) / BRAKING_S).max(0.0);

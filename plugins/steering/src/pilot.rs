@@ -11,7 +11,7 @@ use crate::{
     stall::{Remedy, Stall},
     tick::Tick,
 };
-use geometry::{Boundary, Limits, Motion, Point, Vector};
+use geometry::{Boundary, Braking, Limits, Motion, Point, Vector, motion::heading_error_rad};
 use planner_api::{Command, Drive, PoseEstimate, Sensed, Site, Status};
 
 /// The guard keeps this much more than the mission demands, for it lets the hull touch its limit, metres.
@@ -24,6 +24,12 @@ const WEDGED_SHARE: f64 = 0.05;
 const ARRIVING_M: f64 = 0.5;
 /// After this share of the time to being stuck, and every such share again, another remedy is tried.
 const REMEDY_SHARE: f64 = 0.3;
+/// A robot goes no further than this between two commands, metres: it aims a little ahead.
+const TICK_MOST_M: f64 = 0.1;
+/// Share of the turn rate that an arc to the aim may take; the rest is for corrections.
+const TURN_SHARE: f64 = 0.9;
+/// Nearer aims make the arc no tighter, metres.
+const LEAST_REACH_M: f64 = 0.15;
 /// How much of the last direction is kept, so that noise does not shake the robot.
 const SMOOTHING: f64 = 0.5;
 
@@ -103,7 +109,8 @@ impl Pilot {
     pub fn velocity(&mut self, flight: &Flight, tick: &Tick<'_>, wanted: Vector, near: &[Contact]) -> Vector {
         let along = wanted.try_normalize(1e-9);
         let speed = self.speed(flight, tick, along.unwrap_or_else(Vector::zeros), near);
-        let velocity = self.smoothed(along, tick) * speed;
+        let direction = self.smoothed(along, tick);
+        let velocity = direction * speed.min(self.turning_speed(direction, tick));
         let keep_m = self.keep_m(flight, &tick.pose);
         let spare_m = flight.guard_m.max(self.clearance_m + SPARE_M) - self.clearance_m;
         let safe = self.guarded(velocity, tick, keep_m);
@@ -152,24 +159,41 @@ impl Pilot {
         let missing_m = (tick.target - tick.pose.position).norm();
         let arriving = if tick.is_last { missing_m / ARRIVING_M } else { 1.0 };
         let share = near.fold(1.0, f64::min).min(arriving).max(flight.min_share);
-        self.limits.v_max_m_per_s * share
+        let braking = Braking::of(&self.limits);
+        let arrived = if tick.is_last { braking.speed_within(missing_m) } else { f64::INFINITY };
+        let least = flight.min_share * self.limits.v_max_m_per_s;
+        let stops = arrived.min(braking.speed_within(self.limits.sensing_range_m)).max(least);
+        (self.limits.v_max_m_per_s * share).min(stops).min(TICK_MOST_M / self.limits.tick_s.max(1e-3))
+    }
+
+    /// The largest speed in a direction from which a robot with a heading comes round to the target, metres per second.
+    fn turning_speed(&self, direction: Vector, tick: &Tick<'_>) -> f64 {
+        if self.limits.motion == Motion::Point {
+            return f64::INFINITY;
+        }
+        let off_rad = heading_error_rad(direction, tick.pose.heading_rad).abs();
+        let reach_m = (tick.target - tick.pose.position).norm().max(LEAST_REACH_M);
+        // Of the speed only the part along the heading is driven.
+        let bend = 2.0 * off_rad.sin() * off_rad.cos() / reach_m;
+        if bend > 1e-9 { TURN_SHARE * self.limits.w_max_rad_per_s / bend } else { f64::INFINITY }
     }
 
     fn guarded(&self, wanted: Vector, tick: &Tick<'_>, keep_m: f64) -> Vector {
         let (hull_m, v_max) = (self.limits.radius_m, self.limits.v_max_m_per_s);
-        let reach_m = keep_m + v_max;
+        let braking = Braking::of(&self.limits);
+        let reach_m = keep_m + v_max.max(braking.distance_m(v_max).min(self.limits.sensing_range_m));
         let pose = &tick.pose;
         let solid = tick.bodies.iter().flat_map(|body| body.contacts(pose.position, hull_m));
         let contacts: Vec<Contact> = solid
             .filter(|contact| contact.distance_m < reach_m)
             .chain(wall_contacts(&self.wall, pose.position, hull_m, reach_m))
             .collect();
-        let safe = guard::slide(wanted, &contacts, keep_m, v_max);
+        let safe = guard::slide(wanted, &contacts, keep_m, v_max, &braking);
         match self.limits.motion {
             Motion::Point => safe,
             Motion::Unicycle => {
                 let heading = Vector::new(pose.heading_rad.cos(), pose.heading_rad.sin());
-                guard::braked(safe, heading, &contacts, keep_m)
+                guard::braked(safe, heading, &contacts, keep_m, &braking)
             }
         }
     }

@@ -6,7 +6,7 @@ use flight::{
     failure::bad_input,
     planners::{Found, check_choices, choice_of},
 };
-use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_descriptors};
+use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_limits};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, fs, path::Path};
@@ -20,7 +20,7 @@ pub(crate) struct Here {
 impl Here {
     /// Looks at the program and at every plugin.
     pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
-        check_descriptors().map_err(anyhow::Error::msg)?;
+        check_limits(plugins).map_err(anyhow::Error::msg)?;
         let worker = WorkerCommand::default();
         let surveyor = Surveyor::new(plugins, &worker);
         let survey = surveyor.survey();

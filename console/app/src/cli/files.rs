@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct LocateArgs {
     /// Readings as CSV, or as MCAP with JSON messages of the same names: `t_s`, `station`, and `range_m`, `arrival_s` (with or
-    /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us.
+    /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us. `-` reads standard input.
     pub readings: PathBuf,
     /// Scenario with tank, stations, start and noise.
     #[arg(long, value_name = "FILE")]
@@ -27,6 +27,9 @@ pub(crate) struct LocateArgs {
     /// Write fixes and track as CSV to this file.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long, requires = "output")]
+    pub force: bool,
     /// Write neither journal nor recording.
     #[arg(long)]
     pub no_record: bool,
@@ -60,6 +63,9 @@ pub(crate) struct MapArgs {
     /// Draw wall and pieces to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long, requires = "svg")]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -67,7 +73,7 @@ pub(crate) struct ImportArgs {
     /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES, or list of columns (.csv) with the fields `x_m`, `y_m`,
     /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name.
     pub file: PathBuf,
-    /// Scenario file to write; must not exist.
+    /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
     /// Inner radius of the tank of a list of columns, in metres.
@@ -86,6 +92,9 @@ pub(crate) struct ImportArgs {
     /// Draw the floor to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// A unit of length of drawings.

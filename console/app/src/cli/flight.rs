@@ -52,9 +52,12 @@ pub(crate) struct PlanArgs {
     /// Draw the tank, obstacles, preset path and planned path to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Write the plan to this file, which must not exist: .csv (points), .geojson or .dxf.
+    /// Write the plan to this file: .csv (points), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -69,6 +72,9 @@ pub(crate) struct AccuracyArgs {
     /// Draw the forecast to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Write over files that are there already.
+    #[arg(long, requires = "svg")]
+    pub force: bool,
     /// Find the best places on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,

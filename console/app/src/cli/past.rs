@@ -51,9 +51,12 @@ pub(crate) struct RescanArgs {
     /// Run folders, or their names in the logs folder: a scan and any re-scans of it.
     #[arg(required = true, value_name = "RUN")]
     pub runs: Vec<PathBuf>,
-    /// Scenario file to write; must not exist.
+    /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
+    /// Write over files that are there already.
+    #[arg(long)]
+    pub force: bool,
     /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
     #[arg(long, value_name = "AREA", default_value_t = review::MIN_AREA_M2)]
     pub min_area_m2: f64,

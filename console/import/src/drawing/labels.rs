@@ -16,7 +16,7 @@ pub(super) fn text(entity: &Entity) -> Option<String> {
         }
         _ => return None,
     };
-    let plain = plain.replace(char::is_control, " ");
+    let plain = foreign::seen(&plain);
     let words: Vec<&str> = plain.split_whitespace().collect();
     let name: String = words.join(" ").chars().take(LONGEST).collect();
     (!name.is_empty()).then_some(name)

@@ -2,13 +2,14 @@
 
 use anyhow::Context;
 use mission::Event;
-use recording::{JournalPlace, JournalReader, journal_of};
+use recording::{
+    JournalPlace, JournalReader,
+    ahead::{self, Giver, Taker},
+    journal_of,
+};
 use std::{
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError, Weak,
-        mpsc::{Receiver, SyncSender, sync_channel},
-    },
+    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
     thread,
     time::{Duration, Instant},
 };
@@ -25,9 +26,11 @@ const LEAST_SPACING: u64 = 1 << 18;
 const MOST_MARKS: usize = 100_000;
 /// How often the screen hears how far the journal is read.
 const NEWS: Duration = Duration::from_millis(100);
-/// Events that are read at a time, and how many such batches are read ahead.
+/// Events that are read at a time, and after so many bytes of lines no more.
 const BATCH: usize = 512;
-const BATCHES: usize = 4;
+const BATCH_BYTES: u64 = 1 << 18;
+/// What is read ahead, bytes of lines.
+const AHEAD_BYTES: u64 = 1 << 20;
 
 /// The run as its events tell it up to a moment.
 pub(super) struct Frame {
@@ -90,13 +93,13 @@ impl Reel {
             n_marks: 0,
             kept_at: None,
         };
-        let (sender, batches) = sync_channel(BATCHES);
+        let (giver, batches) = ahead::queue(AHEAD_BYTES);
         thread::Builder::new()
             .name("replay reader".into())
-            .spawn(move || read_ahead(reader, &sender))
+            .spawn(move || read_ahead(reader, &giver))
             .and_then(|_| {
                 let name = "replay loader".to_owned();
-                thread::Builder::new().name(name).spawn(move || loading.take_all(&batches, &report))
+                thread::Builder::new().name(name).spawn(move || loading.take_all(batches, &report))
             })
             .context("starting the threads that read the journal")?;
         Ok(reel)
@@ -119,10 +122,14 @@ struct Batch {
 struct End(Option<String>);
 
 /// Reads a journal until its end, or until nobody wants the events any more.
-fn read_ahead(mut reader: JournalReader, batches: &SyncSender<Batch>) {
+fn read_ahead(mut reader: JournalReader, batches: &Giver<Batch>) {
     loop {
         let mut batch = Batch { events: Vec::with_capacity(BATCH), next: reader.place(), end: None };
-        while batch.end.is_none() && batch.events.len() < BATCH {
+        let begin = reader.bytes();
+        let is_full = |batch: &Batch, reader: &JournalReader| {
+            batch.events.len() == BATCH || reader.bytes() >= begin + BATCH_BYTES
+        };
+        while batch.end.is_none() && !is_full(&batch, &reader) {
             match reader.next() {
                 Some(Ok(event)) => {
                     batch.events.push((batch.next, event));
@@ -133,7 +140,7 @@ fn read_ahead(mut reader: JournalReader, batches: &SyncSender<Batch>) {
             }
         }
         let is_last = batch.end.is_some();
-        if batches.send(batch).is_err() || is_last {
+        if !batches.give(batch, reader.bytes() - begin) || is_last {
             return;
         }
     }
@@ -157,7 +164,7 @@ struct Loading {
 }
 
 impl Loading {
-    fn take_all(mut self, batches: &Receiver<Batch>, report: &impl Fn(tui::model::replay::Reel) -> bool) {
+    fn take_all(mut self, batches: Taker<Batch>, report: &impl Fn(tui::model::replay::Reel) -> bool) {
         let mut reported: Option<Instant> = None;
         for batch in batches {
             let Some(reel) = self.reel.upgrade() else { return };

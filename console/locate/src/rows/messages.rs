@@ -13,6 +13,12 @@ use std::{collections::HashMap, fs::File, io::Read};
 /// Longest record that is read, bytes: a damaged length is not what memory is asked for.
 const LONGEST_RECORD: usize = 64_000_000;
 
+/// Longest message that is a row, bytes.
+const LONGEST_ROW: usize = 1 << 16;
+/// So many times as long as the file is what is packed in it at most, and so much is given in any case, bytes.
+const MOST_EXPANSION: u64 = 1000;
+const FREE_BYTES: u64 = 64 << 20;
+
 /// The messages of a file, in the order of the file.
 pub(crate) struct Messages {
     file: File,
@@ -23,6 +29,9 @@ pub(crate) struct Messages {
     /// The message that gave the header.
     first: Option<Map<String, Value>>,
     count: u64,
+    /// Bytes that were read, and bytes of records in them.
+    read: u64,
+    held: u64,
 }
 
 impl Messages {
@@ -37,6 +46,8 @@ impl Messages {
             header: StringRecord::new(),
             first: None,
             count: 0,
+            read: 0,
+            held: 0,
         };
         let first = messages.message().map_err(|problem| problem.to_string())?;
         let first = first.ok_or_else(|| {
@@ -89,7 +100,7 @@ impl Messages {
 
     /// The next message.
     fn message(&mut self) -> Result<Option<Map<String, Value>>, Problem> {
-        let Self { file, reader, channels, count, .. } = self;
+        let Self { file, reader, channels, count, read, held, .. } = self;
         let problem = |line: u64, what: String| Problem { line, column: None, what, is_end: false };
         let damaged = |line: u64, error: &dyn std::fmt::Display| Problem {
             is_end: true,
@@ -98,12 +109,21 @@ impl Messages {
         while let Some(event) = reader.next_event() {
             match event.map_err(|error| damaged(*count + 1, &error))? {
                 LinearReadEvent::ReadRequest(length) => {
-                    let read = file.read(reader.insert(length));
-                    reader.notify_read(read.map_err(|error| damaged(*count, &error))?);
+                    let length = file.read(reader.insert(length)).map_err(|error| damaged(*count, &error))?;
+                    *read += length as u64;
+                    reader.notify_read(length);
                 }
                 // No record has this number; zeros are what a file that was never written holds.
                 LinearReadEvent::Record { opcode: 0, .. } => {
                     return Err(damaged(*count + 1, &"a record of kind 0"));
+                }
+                LinearReadEvent::Record { data, .. }
+                    if {
+                        *held += data.len() as u64;
+                        *held > FREE_BYTES + MOST_EXPANSION * *read
+                    } =>
+                {
+                    return Err(damaged(*count, &"it unpacks to more than a recording does"));
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {
@@ -115,6 +135,12 @@ impl Messages {
                             return Err(damaged(*count, &"a message without a channel"));
                         };
                         // Other topics of a recording are none of our business.
+                        if encoding == "json" && data.len() > LONGEST_ROW {
+                            return Err(problem(
+                                *count,
+                                format!("topic {topic}: a message of {} bytes", data.len()),
+                            ));
+                        }
                         if encoding == "json" {
                             let row = serde_json::from_slice(&data);
                             let bad =

@@ -201,9 +201,9 @@ impl Mission {
     /// The inputs of a command on the way along a task and a plan.
     pub(super) fn step_ask(&self, task: &Task, plan: Option<&PathFollower>) -> StepAsk {
         let pose = self.locator.pose_estimate();
-        let (v_m_per_s, w_rad_per_s) = match self.happened.last_drive {
-            Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
-            Drive::Velocity(velocity) => (velocity.norm(), 0.0),
+        let w_rad_per_s = match self.happened.last_drive {
+            Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
+            Drive::Velocity(_) => 0.0,
         };
         // Lanes are followed by the task itself, which knows how far it is.
         let path_ahead = match task {
@@ -215,7 +215,7 @@ impl Mission {
             t_s: self.now_s(),
             dt_s: self.config.tick_s,
             pose,
-            v_m_per_s,
+            v_m_per_s: self.speed_m_per_s(),
             w_rad_per_s,
             target: task.target(),
             targets_ahead: task.targets_ahead(AHEAD_M).to_vec(),

@@ -48,8 +48,11 @@ impl Mission {
         if let Some(Verdict::Replan(reason)) = verdict {
             self.active.want_plan(reason);
         }
-        let sent = self.sending().as_sent(command);
-        self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent });
+        let wanted = self.sending().as_sent(command);
+        let sent = self.governed(wanted);
+        let asked = (sent != wanted).then_some(wanted);
+        self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
+        self.note_limit(wanted, sent);
         if gait == Gait::OneTick {
             self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
         }

@@ -27,6 +27,8 @@ impl Mission {
             candidate.leave_worker();
         }
         mission.shadow = None;
+        // The robot of the forecast stands.
+        mission.governor.stand();
         // Nobody is there to take one.
         if mission.config.better_plan == BetterPlan::Offer {
             mission.config.better_plan = BetterPlan::Off;

@@ -54,6 +54,9 @@ mod tests {
             w_max_rad_per_s: 0.5,
             radius_m: 0.3,
             sensing_range_m: 3.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
+            amphibious: None,
         };
         let turning = Effort::of(&path, &limits(Motion::Unicycle));
         assert!((turning.length_m - 8.0).abs() < 1e-12 && (turning.rotation_rad - TAU / 2.0).abs() < 1e-12);

@@ -100,6 +100,13 @@ impl Event {
                 format!("collision at {:.2}, {:.2} m", pose.position.x, pose.position.y),
             ),
             EventKind::Held { by, .. } => line(severity::of_hold(by), "mission", by.to_string()),
+            EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => line(
+                Severity::Info,
+                "robot",
+                format!(
+                    "speed limited to {sent_m_per_s:.2} m/s: from {asked_m_per_s:.2} m/s the robot needs {needs_m:.2} m to stop"
+                ),
+            ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };
@@ -318,6 +325,9 @@ fn exclusion_text(reason: &Exclusion) -> String {
         Exclusion::ByOrder => "excluded by the operator".into(),
         Exclusion::Residual { residual_m, gate_m } => {
             format!("residual {residual_m:.2} m, gate {gate_m:.2} m")
+        }
+        Exclusion::Impossible { range_m, most_m } => {
+            format!("range {range_m:.2} m, impossible in this tank (at most {most_m:.2} m)")
         }
     }
 }

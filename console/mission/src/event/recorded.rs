@@ -96,7 +96,7 @@ impl EventKind {
     /// What the planner answered, as far as the mission made use of it; `None` for events that close no ask.
     ///
     /// The cost of a plan is not recorded, since nobody reads it, and a command is the one that was sent. A plan that no
-    /// planner can have given (the journal was edited) is a fault. `is_plan`: whether a plan was asked for.
+    /// planner can have given (the journal was edited) is a fault. A command that was limited is the one that was asked for. `is_plan`: whether a plan was asked for.
     pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
             Self::PlannerChosen { ask: Some(_), info, .. }
@@ -109,7 +109,9 @@ impl EventKind {
             Self::BetterPlanned { path, complete, legs, cuts, .. } => {
                 without_return_path(0, path, *complete, legs, cuts).map(Given::Plan)
             }
-            Self::Commanded { ask: Some(_), command } => Ok(Given::Command(*command)),
+            Self::Commanded { ask: Some(_), command, asked } => {
+                Ok(Given::Command(asked.unwrap_or(*command)))
+            }
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
             Self::Discarded { plan: Some(plan), .. } => return plan.recorded_answer(is_plan),
             Self::Discarded { .. } if is_plan => Ok(Given::Plan(Plan::default())),

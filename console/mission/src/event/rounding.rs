@@ -113,6 +113,9 @@ impl EventKind {
                 round_point(position);
                 [heading_rad, clearance_m].into_iter().for_each(round);
             }
+            Self::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => {
+                [asked_m_per_s, sent_m_per_s, needs_m].into_iter().for_each(round);
+            }
             Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),
             Self::Fixed { fix } => round_fix(fix),
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {
@@ -153,8 +156,8 @@ fn round_covariance<const N: usize>(covariance: &mut SMatrix<f64, N, N>) {
     covariance.iter_mut().for_each(|x| *x = significant(*x));
 }
 
-fn round_ranging(Ranging { range_m, sigma_m, least_m, most_m, .. }: &mut Ranging) {
-    [range_m, sigma_m, least_m, most_m].into_iter().for_each(round);
+fn round_ranging(Ranging { range_m, sigma_m, least_m, most_m, timing_sigma_m, .. }: &mut Ranging) {
+    [range_m, sigma_m, least_m, most_m, timing_sigma_m].into_iter().for_each(round);
 }
 
 fn round_fix(fix: &mut Fix) {
@@ -164,8 +167,10 @@ fn round_fix(fix: &mut Fix) {
         [&mut residual.residual_m, &mut residual.sigma_m].into_iter().for_each(round);
     }
     for (_, why) in &mut fix.excluded {
-        if let Exclusion::Residual { residual_m, gate_m } = why {
-            [residual_m, gate_m].into_iter().for_each(round);
+        match why {
+            Exclusion::Residual { residual_m: one, gate_m: other }
+            | Exclusion::Impossible { range_m: one, most_m: other } => [one, other].into_iter().for_each(round),
+            Exclusion::Silent | Exclusion::ByOrder => {}
         }
     }
     [&mut fix.chi2, &mut fix.gdop, &mut fix.conditioning].into_iter().for_each(round);

@@ -110,7 +110,7 @@ impl<'a> Sink<'a> {
 /// A text of the plugin for people: at most so many bytes, nothing that moves a cursor.
 pub(super) fn plain(raw: Str, most: usize) -> String {
     // SAFETY: the plugin promises that its texts are as long as they say.
-    body::plain(&unsafe { raw.to_text(most) })
+    foreign::plain(&unsafe { raw.to_text(most) }).into_owned()
 }
 
 /// Takes the first of some things as long as there is room.

@@ -8,7 +8,7 @@ use super::about::{self, About};
 use super::files::{LIBRARIES, LIBRARY_CACHE};
 use super::listener::Call;
 use super::{PLUGIN, Stage};
-use crate::wire::body::is_plain;
+use foreign::is_plain;
 use std::fs::File;
 use std::os::unix::fs::FileExt;
 

@@ -1,7 +1,7 @@
 //! How a process ended, in words that are the same in every run.
 
 use crate::wire::CHANNEL_LOST;
-use crate::wire::body::is_plain;
+use foreign::is_plain;
 use rustix::process::Signal;
 use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;

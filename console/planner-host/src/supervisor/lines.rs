@@ -1,6 +1,6 @@
 //! What a process prints, line by line, for people.
 
-use crate::wire::body::plain;
+use foreign::plain;
 
 /// So many lines are kept until somebody takes them, enough for the trace of a panic; of more only the number is known.
 const MOST: usize = 256;
@@ -43,7 +43,7 @@ impl Lines {
         if std::mem::take(&mut self.is_cut) {
             return;
         }
-        let text = plain(&String::from_utf8_lossy(&self.partial));
+        let text = plain(&String::from_utf8_lossy(&self.partial)).into_owned();
         self.partial.clear();
         if self.whole.len() < MOST {
             self.whole.push(text);

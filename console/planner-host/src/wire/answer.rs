@@ -326,7 +326,7 @@ mod tests {
     fn a_text_moves_no_cursor_and_turns_no_line_round() {
         let mut writer = Writer::default();
         writer.text("a\u{1b}[2Jb\u{202e}c\u{9b}d\u{200b}");
-        assert_eq!(Body(&writer.into_bytes()).text(), Ok("a [2Jb c d ".to_owned()));
+        assert_eq!(Body(&writer.into_bytes()).text(), Ok("a�[2Jb�c�d�".to_owned()));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Numbers, texts and points as bytes.
 
+use foreign::plain;
 use nalgebra::{Matrix3, Point2};
 use planner_api::PoseEstimate;
 
@@ -114,21 +115,6 @@ impl Writer {
     }
 }
 
-/// A text of strangers for people.
-pub(crate) fn plain(text: &str) -> String {
-    if text.chars().all(is_plain) {
-        return text.to_owned();
-    }
-    text.chars().map(|c| if is_plain(c) { c } else { ' ' }).collect()
-}
-
-/// Whether a character of strangers moves no cursor, turns no line round and is not there without being seen.
-pub(crate) fn is_plain(c: char) -> bool {
-    let is_unseen =
-        matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
-    !c.is_control() && !is_unseen
-}
-
 /// A body that is not what its kind says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Malformed;
@@ -192,7 +178,7 @@ impl<'a> Body<'a> {
         if bytes.len() > LONGEST_TEXT {
             return Err(Malformed);
         }
-        std::str::from_utf8(bytes).map(plain).map_err(|_| Malformed)
+        std::str::from_utf8(bytes).map(|text| plain(text).into_owned()).map_err(|_| Malformed)
     }
 
     pub(crate) fn point(&mut self) -> Read<Point2<f64>> {

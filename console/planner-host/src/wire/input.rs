@@ -7,7 +7,7 @@ use planner_api::{
     ZoneKind,
 };
 use std::sync::Arc;
-use world::Shape;
+use world::{Amphibious, Pace, Shape};
 
 impl Writer {
     fn outline(&mut self, outline: &Outline<'_>) -> &mut Self {
@@ -35,6 +35,20 @@ impl Writer {
             .f64(limits.w_max_rad_per_s)
             .f64(limits.radius_m)
             .f64(limits.sensing_range_m)
+            .f64(limits.acceleration_m_per_s2)
+            .f64(limits.tick_s)
+            .amphibious(limits.amphibious.as_ref())
+    }
+
+    fn amphibious(&mut self, both: Option<&Amphibious>) -> &mut Self {
+        self.flag(both.is_some());
+        if let Some(Amphibious { land, underwater, transition_steps }) = both {
+            for pace in [land, underwater] {
+                self.f64(pace.v_max_m_per_s).f64(pace.w_max_rad_per_s);
+            }
+            self.u32(*transition_steps);
+        }
+        self
     }
 
     pub(crate) fn site(&mut self, site: &Site<'_>) -> &mut Self {
@@ -134,6 +148,18 @@ impl Body<'_> {
         Ok(SiteZone { kind, shape: self.outline()? })
     }
 
+    fn pace(&mut self) -> Read<Pace> {
+        Ok(Pace { v_max_m_per_s: self.f64()?, w_max_rad_per_s: self.f64()? })
+    }
+
+    fn amphibious(&mut self) -> Read<Option<Amphibious>> {
+        if !self.flag()? {
+            return Ok(None);
+        }
+        let (land, underwater) = (self.pace()?, self.pace()?);
+        Ok(Some(Amphibious { land, underwater, transition_steps: self.u32()? }))
+    }
+
     fn limits(&mut self) -> Read<Limits> {
         let motion = match self.u8()? {
             0 => Motion::Point,
@@ -146,6 +172,9 @@ impl Body<'_> {
             w_max_rad_per_s: self.f64()?,
             radius_m: self.f64()?,
             sensing_range_m: self.f64()?,
+            acceleration_m_per_s2: self.f64()?,
+            tick_s: self.f64()?,
+            amphibious: self.amphibious()?,
         })
     }
 

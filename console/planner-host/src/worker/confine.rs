@@ -1,8 +1,9 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
 use super::Socket;
+use crate::discovery::PluginDirs;
 use crate::loader::File;
-use crate::sandbox::{ClosedOff, close_all_but, seal};
+use crate::sandbox::{ClosedOff, PLUGIN_AT, close_all_but, seal};
 use crate::wire::answer::Sealed;
 use crate::wire::body::Writer;
 use crate::wire::{SHUT_DOWN_WITHIN, kind};
@@ -20,14 +21,29 @@ const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
 const LARGEST_FILE: u64 = 64 << 20;
 
-/// Makes sure that a worker can have its socket where it belongs, before one is started.
+/// Makes sure, before a worker is started, that it can have its socket and its plugin where they belong, and that the system lets
+/// every plugin in these folders be set aside.
 ///
 /// # Errors
 /// A sentence about the limit that is too low.
-pub fn check_descriptors() -> Result<(), String> {
-    match getrlimit(Resource::Nofile).current {
-        Some(limit) if limit <= SOCKET_AT as u64 => Err(format!(
+pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
+    let last = SOCKET_AT.max(PLUGIN_AT) as u64;
+    if let Some(limit) = getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
+        return Err(format!(
             "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
+        ));
+    }
+    let largest = plugins.candidates().into_iter().filter_map(|path| {
+        let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
+        Some((length, path))
+    });
+    // What is beyond the largest file that a worker may write is for its own limit.
+    let largest = largest.filter(|(length, _)| *length <= LARGEST_FILE).max();
+    match (getrlimit(Resource::Fsize).current, largest) {
+        (Some(limit), Some((length, path))) if limit < length => Err(format!(
+            "the system lets no file grow beyond {limit} bytes, and {} has {length}: `ulimit -f {}`",
+            path.display(),
+            LARGEST_FILE / 1024
         )),
         _ => Ok(()),
     }

@@ -64,6 +64,9 @@ pub(crate) fn with_site<R>(call: impl FnOnce(&Site<'_>) -> R) -> R {
         w_max_rad_per_s: 1.0,
         radius_m: 0.2,
         sensing_range_m: 3.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Circle { radius_m: 10.0 };
     call(&Site {

@@ -1,7 +1,8 @@
 //! How the belief moves with the odometry.
 
 use super::{Covariance, Ekf, SLIP, State, TURN_BIAS};
-use nalgebra::Vector2;
+use crate::fix::ELLIPSE_95;
+use nalgebra::{Matrix2, Vector2};
 use world::Odometry;
 
 /// Odometry of one tick beyond this is no motion of a robot, metres or radians.
@@ -10,6 +11,10 @@ const MOTION_LIMIT: f64 = 1e3;
 const FRESH_SHARE: f64 = 0.3;
 /// Fresh odometry error across the way as a share of that along it.
 const ACROSS_SHARE: f64 = 0.3;
+/// Half width of the 95 % interval of one normal number, in standard deviations.
+const HALF_WIDTH_95: f64 = 1.96;
+/// A heading that is less known than this, radians, does not say which way a motion went.
+const LOST_HEADING_RAD: f64 = 0.35;
 /// Change of slip and turn error within a metre, as a share of what they may be.
 const WANDER_SHARE: f64 = 0.05;
 
@@ -73,6 +78,40 @@ impl Ekf {
             noise.sigma_per_m.powi(2) * wander,
             noise.heading_sigma_per_tick_rad.powi(2) * wander,
         )
+    }
+
+    /// Makes the belief wide enough for a motion that nothing measured: of at most `most_m` metres in any direction, and of at most
+    /// `most_rad` radians.
+    ///
+    /// Every place of the 95 % ellipse, moved by so much, lies in the new ellipse, and its longer half axis grows by just so much:
+    /// of all ellipses that hold the sum of an ellipse and a disc (Kurzhanski) it is the one that is shortest. Several short motions
+    /// give the same as a long one. The covariance is no variance of chance then: a robot that drives straight on at its top
+    /// speed is at the rim.
+    pub fn wander(&mut self, most_m: f64, most_rad: f64) {
+        if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {
+            return;
+        }
+        let half_m = self.error_95_m().max(1e-9);
+        let stretch = (half_m + most_m) / half_m;
+        let mut stretched = Covariance::identity();
+        stretched.fixed_view_mut::<2, 2>(0, 0).copy_from(&(Matrix2::identity() * stretch.sqrt()));
+        self.covariance = stretched * self.covariance * stretched;
+        let mut position = self.covariance.fixed_view_mut::<2, 2>(0, 0);
+        position += Matrix2::identity() * ((half_m + most_m) * most_m / ELLIPSE_95);
+        let heading_sigma_rad = self.covariance[(2, 2)].sqrt() + most_rad / HALF_WIDTH_95;
+        self.covariance[(2, 2)] = heading_sigma_rad * heading_sigma_rad;
+        self.keep_sound();
+    }
+
+    /// Moves the belief by what the odometry says where the heading may be lost: then only the length of the way counts.
+    pub fn predict_unsure(&mut self, odometry: &Odometry) {
+        let way_m = odometry.forward_m.hypot(odometry.sideways_m);
+        let is_lost = self.covariance[(2, 2)] > LOST_HEADING_RAD * LOST_HEADING_RAD;
+        self.moved_by(odometry);
+        if is_lost {
+            // The robot may have gone the opposite way.
+            self.wander(2.0 * way_m, 0.0);
+        }
     }
 
     /// Makes the position as uncertain as if the tracks had slipped all the way of the last motion.

@@ -2,14 +2,15 @@
 
 use super::{
     frames,
+    limits::is_light,
     lines::{Lines, is_packed},
     unpacker::FrameStart,
 };
-use crate::{file::open_regular, identity::hexadecimal};
+use crate::file::digest;
+use foreign::open_regular;
 use mission::{Event, EventKind};
-use sha2::{Digest, Sha256};
 use std::{
-    io::{self, Seek, SeekFrom},
+    io::{self, Read, Seek, SeekFrom},
     path::Path,
 };
 
@@ -30,10 +31,27 @@ pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
         file.metadata()?.len().saturating_sub(TAIL_BYTES)
     };
     file.seek(SeekFrom::Start(start))?;
-    let mut tail = Vec::new();
-    Lines::of(file, path, FrameStart::default())?.text().read_to_end(&mut tail)?;
-    let parsed = tail.rsplit(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
+    let tail = tail_of(Lines::of(file, path, FrameStart::default())?.text())?;
+    let parsed = tail
+        .rsplit(|byte| *byte == b'\n')
+        .filter(|line| is_light(line))
+        .filter_map(|line| serde_json::from_slice(line).ok());
     Ok(parsed.into_iter().find(|event: &Event| matches!(event.kind, EventKind::Ended { .. })))
+}
+
+/// The last bytes that a reader gives, a good deal more than [`TAIL_BYTES`].
+fn tail_of(lines: &mut dyn Read) -> io::Result<Vec<u8>> {
+    let most = 16 * TAIL_BYTES as usize;
+    let (mut tail, mut chunk) = (Vec::new(), vec![0; most]);
+    loop {
+        let length = lines.read(&mut chunk)?;
+        tail.extend_from_slice(&chunk[..length]);
+        if length == 0 {
+            return Ok(tail);
+        }
+        let surplus = tail.len().saturating_sub(most);
+        tail.drain(..surplus);
+    }
 }
 
 /// SHA-256 of the lines of a journal, hexadecimal: equal for equal runs.
@@ -41,12 +59,14 @@ pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
 /// # Errors
 /// It is no regular file, or cannot be read or decompressed.
 pub fn events_sha256(path: &Path) -> io::Result<String> {
+    events_sha256_while(path, |_| true)
+}
+
+/// [`events_sha256`], given up as soon as `goes_on` says so, which hears how many bytes of lines were read.
+///
+/// # Errors
+/// As [`events_sha256`]; [`io::ErrorKind::Interrupted`] if it was given up.
+pub fn events_sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     let mut lines = Lines::of(open_regular(path)?, path, FrameStart::default())?;
-    let (mut hasher, mut chunk) = (Sha256::new(), vec![0; 1 << 18]);
-    loop {
-        match lines.text().read(&mut chunk)? {
-            0 => return Ok(hexadecimal(&hasher.finalize())),
-            length => hasher.update(&chunk[..length]),
-        }
-    }
+    digest(lines.text(), goes_on)
 }

@@ -1,8 +1,13 @@
-//! The events of every tick, read straight into their fields: the general reader of an event first reads it as any value and
-//! then sorts out what it is, which takes several times as long.
+//! The events of every tick, and plans, read straight into their fields: the general reader of an event first reads it as any value
+//! and then sorts out what it is, which takes several times as long and, for a plan of a million points, as much memory.
 
-use mission::{AskId, Event, EventKind, event::TetherContact};
-use planner_api::{Command, LegTag, PoseEstimate};
+mod within;
+
+use mission::{
+    AskId, Event, EventKind,
+    event::{Effort, TetherContact},
+};
+use planner_api::{Command, Leg, LegTag, PoseEstimate, Reason};
 use positioning::{Fix, Ranging};
 use serde::Deserialize;
 use world::{CellRun, Point, Pose};
@@ -35,7 +40,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
         b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),
         b"ranged" => read!(line, Ranged { ranges: Vec<Ranging>; }),
         b"fixed" => read!(line, Fixed { fix: Fix; }),
-        b"commanded" => read!(line, Commanded { command: Command; ask: Option<AskId> }),
+        b"commanded" => read!(line, Commanded { command: Command; ask: Option<AskId>, asked: Option<Command> }),
         b"tether_truth" => read!(
             line,
             TetherTruth { length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64; }
@@ -55,6 +60,21 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
                 paid_out_m: Option<f64>, return_length_m: Option<f64>
             }
         ),
+        b"planned" => read!(
+            line,
+            Planned {
+                planner: String, reason: Reason, path: Vec<Point>, length_m: f64, complete: bool;
+                ask: Option<AskId>, return_path: usize, legs: Vec<Leg>, cuts: Vec<Vec<Point>>
+            }
+        ),
+        b"better_planned" => read!(
+            line,
+            BetterPlanned {
+                ask: AskId, planner: String, path: Vec<Point>, complete: bool, flown: Effort, better: Effort;
+                legs: Vec<Leg>, cuts: Vec<Vec<Point>>, objection: Option<String>
+            }
+        ),
+        b"shadowed" | b"discarded" => within::event(line),
         _ => None,
     }
 }
@@ -87,7 +107,12 @@ mod tests {
         });
         let drive =
             json!({ "drive": { "twist": { "v_m_per_s": 0.4, "w_rad_per_s": 0.1 } }, "status": "moving" });
+        let plan = json!({ "event": "planned", "ask": [1, 3], "planner": "navfn", "reason": "start", "path": [[0.0, 1.0], [2.0, 0.1]],
+            "length_m": 2.5, "complete": true, "legs": [{ "tag": "swath", "first": 0, "last": 1 }], "cuts": [[[0.0, 0.0], [1.0, 1.0]]] });
         let kinds = [
+            plan.clone(),
+            json!({ "event": "shadowed", "of": plan }),
+            json!({ "event": "discarded", "ask": [1, 3], "plan": plan }),
             json!({ "event": "estimated", "pose": estimate }),
             json!({ "event": "truth", "pose": pose, "clearance_m": 0.123_456_789, "collided": false }),
             json!({ "event": "fixed", "fix": fix }),
@@ -116,6 +141,7 @@ mod tests {
             r#"{"tick":1,"t_s":0.1,"event":"held","by":"operator"}"#,
             r#"{"tick":1,"t_s":0.1,"event":"truth","pose":1}"#,
             r#"{"event":"resumed","tick":1,"t_s":0.1}"#,
+            r#"{"tick":1,"t_s":0.1,"event":"shadowed","of":{"event":"resumed"}}"#,
             "",
         ];
         assert!(lines.iter().all(|line| event(line.as_bytes()).is_none()));

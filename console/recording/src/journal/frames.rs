@@ -14,22 +14,28 @@ const HEADER_BYTES: u64 = 6;
 const CHECKSUM_BYTES: i64 = 4;
 const BLOCK_HEADER_BYTES: u64 = 3;
 
-/// Where in the file each frame begins, bytes; of what else is in it only the frames before.
+/// Frames are named this far apart, bytes of the file: a damaged one may have millions of empty ones.
+const BETWEEN: u64 = 4096;
+
+/// Where in the file frames begin, bytes, in order: the first one, and others that are not near to the one before; of what else is
+/// in it only the frames before.
 pub(super) fn starts(file: &File) -> io::Result<Vec<u64>> {
     let mut walk = Walk { file: BufReader::new(file), at: 0 };
     walk.file.rewind()?;
-    let mut starts = Vec::new();
+    let mut starts: Vec<u64> = Vec::new();
     loop {
         let start = walk.at;
-        match walk.frame() {
-            Ok(true) => starts.push(start),
+        let is_cut_off = match walk.frame() {
+            Ok(true) => false,
             Ok(false) => return Ok(starts),
             // The last frame of a writer that was killed.
-            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                starts.extend((walk.at > start).then_some(start));
-                return Ok(starts);
-            }
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => true,
             Err(error) => return Err(error),
+        };
+        let is_apart = starts.last().is_none_or(|last| start >= last + BETWEEN);
+        starts.extend((walk.at > start && is_apart).then_some(start));
+        if is_cut_off {
+            return Ok(starts);
         }
     }
 }

@@ -8,11 +8,11 @@ use super::{
     unpacker::FrameStart,
     upgrade,
 };
-use crate::file::open_regular;
-use mission::{Event, event::JOURNAL_VERSION};
+use foreign::open_regular;
+use mission::{Event, EventKind, event::JOURNAL_VERSION};
 use serde::Deserialize;
 use std::{
-    io::{self, Read, Seek, SeekFrom},
+    io::{self, BufRead, Read, Seek, SeekFrom},
     path::{Path, PathBuf},
 };
 
@@ -21,7 +21,8 @@ use std::{
 pub struct JournalLine<'a> {
     /// Its bytes as they are in the file, without the newline.
     pub raw: &'a [u8],
-    /// What they say. Keys that no event has, and white space, are only in `raw`.
+    /// What they say, in plain characters ([`foreign::is_plain`]) but for the scenario's text, which stays as it was read. Keys that
+    /// no event has, and white space, are only in `raw`.
     pub event: Event,
 }
 
@@ -46,11 +47,13 @@ impl JournalPlace {
 
 /// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
 ///
-/// Ends after the first error.
+/// Ends after the first error. Holds one line at a time; what asks for more than any journal does is an error.
 pub struct JournalReader {
     lines: Lines,
     path: PathBuf,
     text: Vec<u8>,
+    pace: Pace,
+    is_verbatim: bool,
     /// Bytes of the lines that were read.
     bytes: u64,
     line: usize,
@@ -59,6 +62,9 @@ pub struct JournalReader {
     truncated: Option<String>,
     unended_bytes: u64,
 }
+
+/// What is read of the end of a journal without frames, bytes.
+const END_BYTES: u64 = 1 << 20;
 
 /// What the first line of a journal of any version contains.
 #[derive(Deserialize)]
@@ -75,6 +81,14 @@ impl JournalReader {
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
         Self::of(file, path, FrameStart::default())
+    }
+
+    /// Opens a journal whose events are to be compared: their texts stay as they are, whatever characters they have.
+    ///
+    /// # Errors
+    /// As [`JournalReader::open`].
+    pub(super) fn open_verbatim(path: &Path) -> Result<Self, JournalError> {
+        Ok(Self { is_verbatim: true, ..Self::open(path)? })
     }
 
     /// Opens a journal that somebody else may still be writing: at the end of the file `goes_on` is asked, which waits a
@@ -101,6 +115,31 @@ impl JournalReader {
         Ok(Self { bytes, line: lines, version, ..reader })
     }
 
+    /// Opens a journal somewhat before its end, for who wants to know how far it goes; its first line is not among what is read,
+    /// unless it is short. Lines are counted from there.
+    ///
+    /// # Errors
+    /// As [`JournalReader::open`] and [`JournalReader::next_line`].
+    pub fn open_end(path: &Path) -> Result<Self, JournalError> {
+        let mut reader = Self::open(path)?;
+        reader.next_line()?;
+        let failed = |error| read_error(path, &error);
+        let file = open_regular(path).map_err(failed)?;
+        if is_packed(path) {
+            let starts = frames::starts(&file).map_err(failed)?;
+            return Self::open_at(path, place_in(starts.last().copied().unwrap_or_default(), reader.version));
+        }
+        let length = file.metadata().map_err(failed)?.len();
+        if length <= END_BYTES {
+            return Self::open(path);
+        }
+        let mut end = Self::open_at(path, place_in(length - END_BYTES, reader.version))?;
+        // It begins within a line.
+        let mut cut = end.lines.text().take(MOST_LINE_BYTES as u64);
+        cut.skip_until(b'\n').map_err(failed)?;
+        Ok(end)
+    }
+
     /// Opens a journal at or somewhat before the first event of a mission time, seconds: of what is compressed before it hardly
     /// anything is read. Lines are then counted from there.
     ///
@@ -114,12 +153,7 @@ impl JournalReader {
         reader.next_line()?;
         let failed = |error| read_error(path, &error);
         let starts = frames::starts(&open_regular(path).map_err(failed)?).map_err(failed)?;
-        let place = |file| JournalPlace {
-            frame: FrameStart { file, content: 0 },
-            bytes: 0,
-            lines: usize::from(file > 0),
-            version: reader.version,
-        };
+        let place = |file| place_in(file, reader.version);
         let (mut first, mut after) = (0, starts.len());
         while first + 1 < after {
             let middle = usize::midpoint(first, after);
@@ -127,6 +161,11 @@ impl JournalReader {
             *(if begin.is_some_and(|begin_s| begin_s < t_s) { &mut first } else { &mut after }) = middle;
         }
         Self::open_at(path, place(starts.get(first).copied().unwrap_or_default()))
+    }
+
+    /// Bytes of the lines that were read.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Where the next event begins.
@@ -141,6 +180,8 @@ impl JournalReader {
             lines,
             path: path.to_owned(),
             text: Vec::new(),
+            pace: Pace::default(),
+            is_verbatim: false,
             bytes: 0,
             line: 0,
             version: None,
@@ -195,8 +236,14 @@ impl JournalReader {
     fn read_event(&mut self) -> Result<Option<Event>, JournalError> {
         self.text.clear();
         self.line += 1;
-        let length =
-            self.lines.text().read_until(b'\n', &mut self.text).map_err(|error| self.unreadable(&error))?;
+        // What one long line took is not kept.
+        self.text.shrink_to(1 << 20);
+        let mut line = self.lines.text().take(MOST_LINE_BYTES as u64 + 1);
+        let read = line.read_until(b'\n', &mut self.text);
+        let length = read.map_err(|error| self.unreadable(&error))?;
+        if length > MOST_LINE_BYTES {
+            return Err(self.damaged(1, limits::too_long()));
+        }
         self.bytes += length as u64;
         if length == 0 {
             return Ok(self.end_of_file());
@@ -232,19 +279,43 @@ impl JournalReader {
             self.version = Some(self.check_head()?);
         }
         let is_old = self.version.is_some_and(|version| version < upgrade::RENAMED_IN);
-        let general = || if is_old { upgrade::event(&self.text) } else { serde_json::from_slice(&self.text) };
-        let event = fast::event(&self.text).filter(|_| !is_old).map_or_else(general, Ok);
-        let mut event = event.map_err(|error| self.misunderstood(&error))?;
+        let plain = if self.is_verbatim { None } else { plain::line(&self.text) };
+        let text = plain.as_deref().unwrap_or(&self.text);
+        let quick = if is_old || !limits::is_bearable(text) { None } else { fast::event(text) };
+        let mut event = match quick {
+            Some(event) => event,
+            None if !limits::is_light(text) => {
+                return Err(self.damaged(1, "the line holds more values than any event does".to_owned()));
+            }
+            None if is_old => upgrade::event(text).map_err(|error| self.misunderstood(&error))?,
+            None => serde_json::from_slice(text).map_err(|error| self.misunderstood(&error))?,
+        };
+        if let (EventKind::RunOpened(run), true) = (&mut event.kind, plain.is_some()) {
+            run.scenario_toml = self.scenario_as_written().unwrap_or_default();
+        }
         if self.version.is_some_and(|version| version < upgrade::LINES_WITHOUT_ENDS_SINCE) {
             upgrade::cut_ends(&mut event);
         }
+        self.pace.take(&event, self.text.len()).map_err(|why| self.damaged(1, why))?;
         Ok(event)
+    }
+
+    /// The text of the scenario, which is proven by its digest.
+    fn scenario_as_written(&self) -> Option<String> {
+        #[derive(Deserialize)]
+        struct Written {
+            scenario_toml: String,
+        }
+        serde_json::from_slice::<Written>(&self.text).ok().map(|written| written.scenario_toml)
+    }
+
+    fn damaged(&self, column: usize, why: String) -> JournalError {
+        JournalError::Damaged { line: self.line, column, why, path: self.path.clone() }
     }
 
     fn unreadable(&self, error: &io::Error) -> JournalError {
         if error.kind() == io::ErrorKind::InvalidData {
-            let (line, why, path) = (self.line, error.to_string(), self.path.clone());
-            return JournalError::Damaged { line, column: 1, why, path };
+            return self.damaged(1, error.to_string());
         }
         read_error(&self.path, error)
     }
@@ -255,7 +326,7 @@ impl JournalReader {
             Some(theirs) if theirs < JOURNAL_VERSION && error.is_data() => {
                 JournalError::Older { theirs, ours: JOURNAL_VERSION, line, why, path }
             }
-            _ => JournalError::Damaged { line, column: error.column().max(1), why, path },
+            _ => self.damaged(error.column().max(1), why),
         }
     }
 
@@ -287,6 +358,11 @@ impl Iterator for JournalReader {
 fn without_position(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.split_once(" at line ").map_or(text.clone(), |(sentence, _)| sentence.to_owned())
+}
+
+/// A place in a file of which nothing is known of the lines before.
+fn place_in(file: u64, version: Option<u32>) -> JournalPlace {
+    JournalPlace { frame: FrameStart { file, content: 0 }, bytes: 0, lines: usize::from(file > 0), version }
 }
 
 fn read_error(path: &Path, error: &io::Error) -> JournalError {

@@ -53,6 +53,11 @@ impl RecordedTick {
         })
     }
 
+    /// Bytes of its lines.
+    pub fn bytes(&self) -> u64 {
+        self.lines.iter().map(|(raw, _)| raw.len() as u64).sum()
+    }
+
     /// How many of its lines can be compared.
     pub fn n_compared(&self) -> usize {
         self.to_compare().len()
@@ -113,7 +118,7 @@ impl Ticks {
     /// # Errors
     /// There is none, or its first line is none of a journal.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let reader = JournalReader::open(path)?;
+        let reader = JournalReader::open_verbatim(path)?;
         let mut ticks = Self { reader, ahead: None, ended: false, no_end: None };
         ticks.ahead = ticks.line()?;
         Ok(ticks)

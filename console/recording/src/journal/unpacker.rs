@@ -1,7 +1,14 @@
 //! The lines of a compressed journal, also of one that is still being written or whose writer was killed.
 
+use super::limits::check_expansion;
 use std::io::{self, BufRead, BufReader, Read};
-use zstd::stream::raw::{Decoder, InBuffer, Operation, OutBuffer};
+use zstd::stream::raw::{DParameter, Decoder, InBuffer, Operation, OutBuffer};
+
+/// Frames are remembered this far apart, bytes of lines: a file may have millions of them.
+const BETWEEN_FRAMES: u64 = 1 << 18;
+/// How far back what is compressed may point, as a power of two in bytes: what is written here points back by 128 kB, and `zstd`
+/// at its usual levels by no more than this.
+const MOST_WINDOW: u32 = 23;
 
 /// Where a frame begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,6 +26,7 @@ pub(super) struct Unpacker<R> {
     /// Begins of the frames met so far, in order.
     frames: Vec<FrameStart>,
     at: FrameStart,
+    began: FrameStart,
     in_frame: bool,
     /// Whether the decoder may hold more than it could give.
     holds_back: bool,
@@ -27,14 +35,22 @@ pub(super) struct Unpacker<R> {
 impl<R: Read> Unpacker<R> {
     /// `at`: where in the file and in the lines the first frame begins.
     pub(super) fn new(packed: R, at: FrameStart) -> io::Result<Self> {
-        let (packed, decoder) = (BufReader::with_capacity(1 << 16, packed), Decoder::new()?);
-        Ok(Self { packed, decoder, frames: Vec::new(), at, in_frame: false, holds_back: false })
+        let (packed, mut decoder) = (BufReader::with_capacity(1 << 16, packed), Decoder::new()?);
+        decoder.set_parameter(DParameter::WindowLogMax(MOST_WINDOW))?;
+        Ok(Self { packed, decoder, frames: Vec::new(), at, began: at, in_frame: false, holds_back: false })
     }
 
     /// The last frame that begins at or before so many bytes of lines.
     pub(super) fn frame_before(&self, content: u64) -> FrameStart {
         let after = self.frames.partition_point(|frame| frame.content <= content);
         after.checked_sub(1).map_or(FrameStart::default(), |last| self.frames[last])
+    }
+
+    /// Remembers that a frame begins here, unless one begins a little before.
+    fn remember(&mut self) {
+        if self.frames.last().is_none_or(|last| self.at.content >= last.content + BETWEEN_FRAMES) {
+            self.frames.push(self.at);
+        }
     }
 
     /// Gives what the decoder makes of the next bytes of the file, or of none of them.
@@ -49,6 +65,7 @@ impl<R: Read> Unpacker<R> {
         self.packed.consume(taken);
         self.at.file += taken as u64;
         self.at.content += given as u64;
+        check_expansion(self.at.file - self.began.file, self.at.content - self.began.content)?;
         self.holds_back = given == into.len();
         if rest == 0 {
             (self.in_frame, self.holds_back) = (false, false);
@@ -72,7 +89,7 @@ impl<R: Read> Read for Unpacker<R> {
         while !self.packed.fill_buf()?.is_empty() {
             if !self.in_frame {
                 self.in_frame = true;
-                self.frames.push(self.at);
+                self.remember();
             }
             let given = self.decode(true, into)?;
             if given > 0 {

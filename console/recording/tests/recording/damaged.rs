@@ -33,7 +33,8 @@ proptest! {
             while let Some(line) = reader.next_line()? {
                 n_lines += 1;
                 let as_written = serde_json::from_slice::<mission::Event>(line.raw).ok();
-                assert_eq!(as_written.as_ref(), Some(&line.event));
+                let is_plain = std::str::from_utf8(line.raw).is_ok_and(|raw| foreign::unplain(raw).is_none());
+                assert!(as_written.as_ref() == Some(&line.event) || !is_plain, "{:?}", line.event);
             }
             Ok(())
         });

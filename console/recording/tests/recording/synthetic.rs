@@ -118,6 +118,7 @@ impl Robot {
             repetitions: 5,
             least_m: (truth.position - station.position).norm() + error_m,
             most_m: (truth.position - station.position).norm() + error_m,
+            timing_sigma_m: 0.0,
         };
         let ranges: Vec<_> = stations.iter().map(|station| ranging(station, 0.05 * self.noise())).collect();
         let bad = (tick / 100) % 4 == 3;
@@ -212,7 +213,7 @@ impl Robot {
         let pull = (target - estimate.position).norm();
         kinds.push(EventKind::Scalars { scalars: vec![("potential".into(), 0.5 * pull * pull, "J".into())] });
         let command = Command::velocity(truth.direction() * SPEED_M_PER_S);
-        kinds.push(EventKind::Commanded { ask: Some(ask(tick)), command });
+        kinds.push(EventKind::Commanded { ask: Some(ask(tick)), command, asked: None });
         let runs =
             self.grid.mark_swath(self.before + self.drift, estimate.position, self.opened.mission.swath_m);
         if !runs.is_empty() {
@@ -331,6 +332,9 @@ fn opened() -> RunOpened {
         w_max_rad_per_s: 1.0,
         radius_m: 0.25,
         sensing_range_m: 2.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
     RunOpened {
         journal_version: JOURNAL_VERSION,

@@ -22,15 +22,17 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = Writer::from_writer(Vec::new());
     let _ = writer.write_record(head);
     for row in rows {
-        let _ = writer.write_record(row.into_iter().map(harmless));
+        let _ = writer.write_record(row.into_iter().map(|text| cell(&text)));
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A cell that no spreadsheet computes: a text that begins as a formula does has an apostrophe before it.
-fn harmless(cell: String) -> String {
-    let is_formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
-    if is_formula { format!("'{cell}") } else { cell }
+/// A cell that no spreadsheet computes, in plain characters: a text that begins as a formula does has an apostrophe before it.
+pub fn cell(text: &str) -> String {
+    let cell = foreign::plain_lines(text);
+    let is_formula =
+        cell.starts_with(['=', '+', '-', '@', '|', '%', '\t', '\r']) && cell.parse::<f64>().is_err();
+    if is_formula { format!("'{cell}") } else { cell.into_owned() }
 }
 
 fn plates(document: &Document) -> String {
@@ -169,8 +171,30 @@ mod tests {
 
     #[test]
     fn a_text_that_a_spreadsheet_would_compute_is_kept_as_a_text() {
-        let cells = ["=HYPERLINK(\"http://x\")", "@SUM(A1)", "+1+2", "-1.5", "-pit", "pit", "\tpit", ""];
-        let kept = ["'=HYPERLINK(\"http://x\")", "'@SUM(A1)", "'+1+2", "-1.5", "'-pit", "pit", "'\tpit", ""];
-        assert_eq!(cells.map(|cell| harmless(cell.into())), kept);
+        let cells = [
+            "|calc",
+            "a\u{202e}b\u{9b}",
+            "=HYPERLINK(\"http://x\")",
+            "@SUM(A1)",
+            "+1+2",
+            "-1.5",
+            "-pit",
+            "pit",
+            "\tpit",
+            "",
+        ];
+        let kept = [
+            "'|calc",
+            "a�b�",
+            "'=HYPERLINK(\"http://x\")",
+            "'@SUM(A1)",
+            "'+1+2",
+            "-1.5",
+            "'-pit",
+            "pit",
+            "'\tpit",
+            "",
+        ];
+        assert_eq!(cells.map(cell), kept);
     }
 }

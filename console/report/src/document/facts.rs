@@ -64,16 +64,6 @@ pub struct Inspection {
     pub datum_north_deg: Option<f64>,
 }
 
-/// The first character of a text of people that has no picture, as `U+202E`: control characters but line feed and tab, and those
-/// that change the direction of the text around them or have no width.
-pub fn unreadable(text: &str) -> Option<String> {
-    let is_unreadable = |letter: &char| {
-        letter.is_control() && !matches!(letter, '\n' | '\t')
-            || matches!(letter, '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}')
-    };
-    text.chars().find(is_unreadable).map(|letter| format!("U+{:04X}", u32::from(letter)))
-}
-
 impl Inspection {
     /// The facts with those of a later file in place of the same ones before.
     #[must_use]

@@ -2,7 +2,11 @@
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use world::Station;
+
+/// So many are kept; how many more there were is one of its own.
+const MOST: usize = 50_000;
 
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,15 +38,25 @@ pub(super) struct Incidents {
     all: Vec<Incident>,
     /// When the last event was, seconds.
     last_s: f64,
-    /// What is still open: what ends it, and its index.
-    open: Vec<(String, usize)>,
+    /// What is still open: what ends it, and the indices of those that it ends.
+    open: BTreeMap<String, Vec<usize>>,
+    /// How many were not kept.
+    n_dropped: u64,
 }
 
 impl Incidents {
     /// All of it; that the end is missing is the last of it.
     pub(super) fn all(&self) -> Vec<Incident> {
         let mut all = self.all.clone();
-        if all.last().is_none_or(|last| last.kind != "end") {
+        let has_end = all.last().is_some_and(|last| last.kind == "end");
+        if self.n_dropped > 0 {
+            let text =
+                format!("{} more happened, which are not listed: the journal has them", self.n_dropped);
+            let (t_s, severity) = (self.last_s, Severity::Crit);
+            let at = all.len() - usize::from(has_end);
+            all.insert(at, Incident { t_s, until_s: None, kind: "alarm", severity, text });
+        }
+        if !has_end {
             let text = "cut off: the recording stops before the end of the mission".to_owned();
             all.push(Incident {
                 t_s: self.last_s,
@@ -67,20 +81,21 @@ impl Incidents {
         }
         let Some(line) = event.log_line(&self.stations).filter(|_| !kind.is_empty()) else { return };
         let LogLine { severity, text, .. } = line;
+        // The end of the run is kept whatever happened before.
+        if self.all.len() >= MOST && kind != "end" {
+            self.n_dropped += 1;
+            return;
+        }
         if let Some(key) = begins {
-            self.open.push((key, self.all.len()));
+            self.open.entry(key).or_default().push(self.all.len());
         }
         self.all.push(Incident { t_s: event.t_s, until_s: None, kind, severity, text });
     }
 
     fn end(&mut self, key: &str, t_s: f64) {
-        let all = &mut self.all;
-        self.open.retain(|(open, index)| {
-            if open == key {
-                all[*index].until_s = Some(t_s);
-            }
-            open != key
-        });
+        for index in self.open.remove(key).into_iter().flatten() {
+            self.all[index].until_s = Some(t_s);
+        }
     }
 }
 
@@ -113,4 +128,24 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::Ended { .. } => ("end", None, None),
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::{HoldReason, Outcome, Resumes};
+
+    #[test]
+    fn what_is_not_listed_is_counted_and_the_end_is_kept() {
+        let mut incidents = Incidents::default();
+        let mut at = |tick: u64, kind| incidents.apply(&Event { tick, t_s: tick as f64, kind });
+        for tick in 0..MOST as u64 + 3 {
+            at(tick, EventKind::Held { by: HoldReason::Operator, resumes: Resumes::default() });
+        }
+        at(60_000, EventKind::Ended { outcome: Outcome::Aborted, reason: "ended".into() });
+        let all = incidents.all();
+        assert_eq!((all.len(), all[0].until_s, all[MOST - 1].until_s), (MOST + 2, Some(1.0), Some(50_000.0)));
+        assert!(all[MOST].text.starts_with("3 more happened") && all[MOST].needs_review());
+        assert_eq!(all[MOST + 1].kind, "end");
+    }
 }

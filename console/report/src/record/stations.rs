@@ -38,18 +38,22 @@ pub(super) struct Stations {
 
 impl Stations {
     pub(super) fn new(stations: &[Station]) -> Self {
-        Self { stations: stations.to_vec(), sums: BTreeMap::new() }
+        let sums = stations.iter().map(|station| (station.id, Sums::default())).collect();
+        Self { stations: stations.to_vec(), sums }
     }
 
     pub(super) fn fix(&mut self, fix: &Fix) {
         for residual in &fix.residuals {
-            let sums = self.sums.entry(residual.station).or_default();
+            // A damaged journal may name stations that there are not.
+            let Some(sums) = self.sums.get_mut(&residual.station) else { continue };
             sums.used += 1;
             sums.sum_m += residual.residual_m;
             sums.squares_m2 += residual.residual_m.powi(2);
         }
         for (station, _) in &fix.excluded {
-            self.sums.entry(*station).or_default().rejected += 1;
+            if let Some(sums) = self.sums.get_mut(station) {
+                sums.rejected += 1;
+            }
         }
     }
 

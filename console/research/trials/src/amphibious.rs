@@ -9,6 +9,7 @@ use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site, Zone, ZoneK
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use world::{
+    Amphibious,
     Point, Vector,
     shape::rectangle,
     shortest::{NoWay, Way},
@@ -110,6 +111,9 @@ impl AmphibiousLayout {
                 w_max_rad_per_s: 0.31,
                 radius_m: HULL_M,
                 sensing_range_m: 20.0,
+                acceleration_m_per_s2: 0.1,
+                tick_s: 0.1,
+                amphibious: Some(Amphibious::YANG_2021),
             },
             swath_m: 1.0,
             clearance_m: 0.1,

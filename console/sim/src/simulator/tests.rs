@@ -1,6 +1,6 @@
 use super::*;
 use crate::config::{Mover, Track};
-use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig};
+use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig, TimingErrors};
 use proptest::prelude::*;
 use world::{
     Amphibious, Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, Zone,
@@ -65,6 +65,7 @@ fn config() -> SimConfig {
             period_s: 1.0,
             repetitions: 5,
             noise: NoiseModel::Uniform { ratio: 0.05 },
+            timing: TimingErrors::default(),
             dropout_probability: 0.1,
             outages_s: vec![(3.0, 4.0)],
             disturbances: Disturbances::default(),
@@ -129,7 +130,7 @@ proptest! {
 
     #[test]
     fn any_finite_numbers_in_the_robot_are_survived(
-        numbers in prop::collection::vec(prop_oneof![-3.0..3.0_f64, prop::num::f64::NORMAL, Just(0.0)], 12),
+        numbers in prop::collection::vec(prop_oneof![-3.0..3.0_f64, prop::num::f64::NORMAL, Just(0.0)], 14),
         drives in prop::collection::vec(any_drive(), 1..6),
     ) {
         let n = |i: usize| numbers[i];
@@ -142,7 +143,8 @@ proptest! {
         };
         config.tick_s = n(9);
         config.ae = Some(AeConfig {
-            period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) }, dropout_probability: n(5),
+            period_s: n(10), repetitions: 2, noise: NoiseModel::Gaussian { sigma_ratio: n(11) },
+            timing: TimingErrors { jitter_m: n(12), resolution_m: n(13) }, dropout_probability: n(5),
             outages_s: vec![(n(6), n(7))],
             disturbances: Disturbances {
                 outlier_probability: n(8), outlier_factor: n(9), excess_range_mean_m: n(10), nlos_probability: n(11),

@@ -105,6 +105,7 @@ impl Run {
             | EventKind::TetherTruth { .. }
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
+            | EventKind::SpeedLimited { .. }
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }

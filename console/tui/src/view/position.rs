@@ -170,6 +170,9 @@ fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
     match why {
         Exclusion::Silent => format!("{name} not heard"),
         Exclusion::ByOrder => format!("{name} excluded"),
+        Exclusion::Impossible { range_m, most_m } => {
+            format!("{name} impossible: {} > {} m", text::number(*range_m, 1), text::number(*most_m, 1))
+        }
         Exclusion::Residual { residual_m, gate_m } => {
             format!("{name} rejected: {} > {} m", text::number(*residual_m, 2), text::number(*gate_m, 2))
         }

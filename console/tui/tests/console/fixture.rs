@@ -82,6 +82,9 @@ pub(crate) fn config() -> MissionConfig {
             w_max_rad_per_s: 0.5,
             radius_m: 0.3,
             sensing_range_m: 2.0,
+            acceleration_m_per_s2: 0.5,
+            tick_s: 0.1,
+            amphibious: None,
         },
         swath_m: 0.6,
         scan: ScanConfig::default(),
@@ -313,7 +316,7 @@ impl ScriptedMission {
             ],
         });
         kinds.push(EventKind::Scalars { scalars: vec![("field".into(), 1.25, "m/s".into())] });
-        kinds.push(EventKind::Commanded { ask: None, command: Command::twist(0.2, 0.021) });
+        kinds.push(EventKind::Commanded { ask: None, command: Command::twist(0.2, 0.021), asked: None });
         kinds.into_iter().map(|kind| self.now(kind)).collect()
     }
 
@@ -339,6 +342,7 @@ impl ScriptedMission {
             repetitions: 5,
             least_m: (station.position - here).norm(),
             most_m: (station.position - here).norm(),
+            timing_sigma_m: 0.0,
         };
         world().stations.iter().map(ranging).collect()
     }

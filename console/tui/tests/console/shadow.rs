@@ -47,7 +47,7 @@ fn with_shadow(n_steps: u32) -> Screen {
     );
     for n in 0..n_steps {
         let command = Command::velocity(world::Vector::new(0.3, -0.2));
-        hear(&mut screen, shadowed(EventKind::Commanded { ask: Some(ask(3 + n)), command }));
+        hear(&mut screen, shadowed(EventKind::Commanded { ask: Some(ask(3 + n)), command, asked: None }));
     }
     screen
 }

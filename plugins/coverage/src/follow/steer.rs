@@ -5,7 +5,8 @@
 //! inside.
 
 use planner_api::{Drive, Limits};
-use world::{Point, Vector, geometry::wrap_angle_rad};
+use std::collections::VecDeque;
+use world::{Point, Vector, geometry::{Braking, wrap_angle_rad}};
 
 /// Angle to the aim beyond which the robot turns on the spot, radians.
 const TURN_FIRST_RAD: f64 = 0.5;
@@ -20,6 +21,8 @@ const TURN_SHARE: f64 = 0.9;
 const TURNING_M_PER_S: f64 = 0.15;
 /// Turn of a path that makes a corner, radians.
 const CORNER_RAD: f64 = 0.5;
+/// A bend is what turns within this way, metres: as far as the robot looks ahead.
+const BEND_M: f64 = 0.25;
 /// Nearer than this the robot is at a corner, metres.
 const AT_CORNER_M: f64 = 0.05;
 /// A corner is approached no faster than would reach it in this time, seconds.
@@ -44,10 +47,14 @@ pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Lim
     Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s.max(TURNING_M_PER_S.min(fastest)) * curvature }
 }
 
-/// The speed at which a corner ahead can still be turned at, metres per second; infinite without one in sight.
-pub(super) fn corner_speed(at: Point, ahead: &[Point]) -> f64 {
+/// The speed from which a robot is slow enough at every corner and bend ahead, and at the end of what is ahead, metres per
+/// second.
+pub(super) fn speed_ahead(at: Point, ahead: &[Point], limits: &Limits) -> f64 {
+    let braking = Braking::of(limits);
     let mut along_m = 0.0;
     let mut from = at;
+    let mut fastest = f64::INFINITY;
+    let mut turns = Bends::default();
     for (k, point) in ahead.iter().enumerate() {
         let into = point - from;
         along_m += into.norm();
@@ -55,12 +62,33 @@ pub(super) fn corner_speed(at: Point, ahead: &[Point]) -> f64 {
             let onward = next - point;
             let turn_rad = if into.norm() > AT_CORNER_M { into.angle(&onward) } else { 0.0 };
             if turn_rad > CORNER_RAD {
-                return (along_m / CORNER_S).max(LEAST_M_PER_S);
+                let corner = (along_m / CORNER_S).max(LEAST_M_PER_S);
+                return fastest.min(corner).min(braking.speed_before(along_m, LEAST_M_PER_S));
             }
+            let bend = turns.sharpest_with(along_m, turn_rad);
+            let there = TURN_SHARE * limits.w_max_rad_per_s / bend.max(1e-9);
+            fastest = fastest.min(braking.speed_before(along_m, there.max(LEAST_M_PER_S)));
         }
         from = *point;
     }
-    f64::INFINITY
+    fastest.min(braking.speed_before(along_m, LEAST_M_PER_S))
+}
+
+/// How much a path turns within a short way.
+#[derive(Default)]
+struct Bends {
+    within: VecDeque<(f64, f64)>,
+}
+
+impl Bends {
+    /// How sharply it turns with a turn more at a place along it, radians per metre.
+    fn sharpest_with(&mut self, along_m: f64, turn_rad: f64) -> f64 {
+        self.within.push_back((along_m, turn_rad));
+        while self.within.front().is_some_and(|(at_m, _)| along_m - at_m > BEND_M) {
+            self.within.pop_front();
+        }
+        self.within.iter().map(|(_, turn_rad)| turn_rad).sum::<f64>() / BEND_M
+    }
 }
 
 #[cfg(test)]
@@ -76,6 +104,9 @@ mod tests {
         w_max_rad_per_s: 1.0,
         radius_m: 0.2,
         sensing_range_m: 2.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
 
     #[test]
@@ -91,15 +122,15 @@ mod tests {
     fn a_corner_slows_down_and_a_bend_does_not() {
         let at = Point::origin();
         let straight: Vec<Point> = (1..9).map(|k| Point::new(0.1 * f64::from(k), 0.0)).collect();
-        assert!(corner_speed(at, &straight).is_infinite());
+        assert!(speed_ahead(at, &straight, &LIMITS) > 0.4);
         let mut corner = straight[..3].to_vec();
         corner.push(Point::new(0.3, 0.1));
-        assert!((corner_speed(at, &corner) - 0.5).abs() < 1e-9);
-        assert!((corner_speed(Point::new(0.24, 0.0), &corner[2..]) - 0.1).abs() < 1e-9);
+        assert!((speed_ahead(at, &corner, &LIMITS) - 0.5).abs() < 1e-9);
+        assert!((speed_ahead(Point::new(0.24, 0.0), &corner[2..], &LIMITS) - 0.1).abs() < 1e-9);
         let bend: Vec<Point> = (1..9)
             .map(|k| Point::new((0.2 * f64::from(k)).sin() * 0.5, 0.5 - (0.2 * f64::from(k)).cos() * 0.5))
             .collect();
-        assert!(corner_speed(at, &bend).is_infinite());
+        assert!(speed_ahead(at, &bend, &LIMITS) > 0.4);
     }
 
     #[test]

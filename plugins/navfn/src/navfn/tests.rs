@@ -64,6 +64,9 @@ fn a_passage_that_the_cells_do_not_show_is_found_all_the_same() {
         w_max_rad_per_s: 1.0,
         radius_m: 0.3,
         sensing_range_m: 3.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
     let site = |clearance_m| Site {
         revision: 0,

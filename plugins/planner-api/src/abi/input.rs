@@ -76,6 +76,15 @@ pub struct Site {
     pub sensing_range: f64,
     pub swath: f64,
     pub clearance: f64,
+    // Since 1.4.
+    pub acceleration: f64,
+    pub tick: f64,
+    pub is_amphibious: u32,
+    pub transition_ticks: u32,
+    pub land_v_max: f64,
+    pub land_w_max: f64,
+    pub underwater_v_max: f64,
+    pub underwater_w_max: f64,
 }
 
 /// A request for a plan.

@@ -4,6 +4,7 @@
 
 use super::{Leg, Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
 use crate::{PoseEstimate, Reason, Task, TetherLimits, site};
+use geometry::Pace;
 use nalgebra::{Matrix3, Point2};
 
 fn points(points: &[Point2<f64>]) -> (*const Vec2, u32) {
@@ -55,6 +56,9 @@ pub fn zones(from: &[site::Zone<'_>]) -> Vec<Zone> {
 
 /// A site for the table; `obstacles` and `zones` are those of `from`, already lent.
 pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Site {
+    let pace =
+        Pace { v_max_m_per_s: from.limits.v_max_m_per_s, w_max_rad_per_s: from.limits.w_max_rad_per_s };
+    let (land, underwater) = from.limits.amphibious.map_or((pace, pace), |both| (both.land, both.underwater));
     Site {
         size: size_of::<Site>() as u32,
         revision: from.revision,
@@ -74,6 +78,14 @@ pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Si
         sensing_range: from.limits.sensing_range_m,
         swath: from.swath_m,
         clearance: from.clearance_m,
+        acceleration: from.limits.acceleration_m_per_s2,
+        tick: from.limits.tick_s,
+        is_amphibious: u32::from(from.limits.amphibious.is_some()),
+        transition_ticks: from.limits.amphibious.map_or(0, |both| both.transition_steps),
+        land_v_max: land.v_max_m_per_s,
+        land_w_max: land.w_max_rad_per_s,
+        underwater_v_max: underwater.v_max_m_per_s,
+        underwater_w_max: underwater.w_max_rad_per_s,
     }
 }
 

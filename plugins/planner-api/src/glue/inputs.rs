@@ -6,6 +6,7 @@ use crate::{
     Boundary, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Result, Sensed,
     Site, Task, TetherLimits, Value, Zone, ZoneKind,
 };
+use geometry::{Amphibious, Pace};
 use nalgebra::{Matrix3, Point2};
 
 /// Points where they lie.
@@ -145,12 +146,31 @@ impl SiteParts<'_> {
                 w_max_rad_per_s: self.raw.w_max,
                 radius_m: self.raw.radius,
                 sensing_range_m: self.raw.sensing_range,
+                acceleration_m_per_s2: acceleration(&self.raw),
+                tick_s: self.raw.tick,
+                amphibious: amphibious(&self.raw),
             },
             swath_m: self.raw.swath,
             clearance_m: self.raw.clearance,
             seed: self.raw.seed,
         })
     }
+}
+
+/// Acceleration of a robot that stops at once, as those of a console were that does not say it, metres per second squared.
+const AT_ONCE_M_PER_S2: f64 = 1e3;
+
+fn acceleration(site: &abi::Site) -> f64 {
+    if site.acceleration > 0.0 { site.acceleration } else { AT_ONCE_M_PER_S2 }
+}
+
+fn amphibious(site: &abi::Site) -> Option<Amphibious> {
+    let pace = |v_max_m_per_s, w_max_rad_per_s| Pace { v_max_m_per_s, w_max_rad_per_s };
+    (site.is_amphibious != 0).then(|| Amphibious {
+        land: pace(site.land_v_max, site.land_w_max),
+        underwater: pace(site.underwater_v_max, site.underwater_w_max),
+        transition_steps: site.transition_ticks,
+    })
 }
 
 /// The values of parameters, with keys that are UTF-8.

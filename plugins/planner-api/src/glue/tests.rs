@@ -196,6 +196,9 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], zones: &'a [Zone<'a>]) -> Site<'a> {
         w_max_rad_per_s: 1.0,
         radius_m: 0.25,
         sensing_range_m: 2.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Circle { radius_m: 10.0 };
     Site { revision: 3, boundary, obstacles, zones, limits, swath_m: 0.4, clearance_m: 0.1, seed: 42 }

@@ -67,7 +67,7 @@ impl Mission {
             return self.happened.of_shadow.push(missed);
         }
         self.pass_on_of_shadow(shadow, said);
-        self.note_shadow(shadow, EventKind::Commanded { ask: Some(ask), command });
+        self.note_shadow(shadow, EventKind::Commanded { ask: Some(ask), command, asked: None });
     }
 
     /// Takes a plan; whether it flies from where the robot is decides who promotes the planner.

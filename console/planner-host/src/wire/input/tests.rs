@@ -21,6 +21,9 @@ fn with_site<R>(obstacles: &[Obstacle<'_>], call: impl FnOnce(&Site<'_>) -> R) -
         w_max_rad_per_s: 1.0,
         radius_m: 0.25,
         sensing_range_m: 2.0,
+        acceleration_m_per_s2: 0.5,
+        tick_s: 0.1,
+        amphibious: None,
     };
     let boundary = Boundary::Polygon { vertices: &CORNERS };
     let site = Site {

@@ -1,11 +1,11 @@
 //! What a row says of an indication.
 
 use super::{
-    super::unreadable,
     Flown,
     moment::Clock,
     table::{Cells, Fault, Table},
 };
+use foreign::unplain;
 use world::Point;
 
 /// The columns that there are.
@@ -60,7 +60,7 @@ impl<'a> Row<'a> {
             read
         });
         for name in ["kind", "note"] {
-            if let Some(odd) = unreadable(table.cell(cells, name)) {
+            if let Some(odd) = unplain(table.cell(cells, name)) {
                 faults.push(fault(cells, name, format!("must be text that can be read: {odd} cannot")));
             }
         }

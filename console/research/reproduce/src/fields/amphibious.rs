@@ -117,7 +117,7 @@ fn overspeed_m_per_s(path: &[Point], water: &[Point], transition_steps: u32) -> 
     for pair in path.windows(2) {
         let now = mode.map(|mode| mode.toward(Medium::at(&zones, pair[0]), transition_steps));
         mode = now;
-        let limit = now.map_or(f64::INFINITY, |mode| robot.pace(mode).v_max_m_per_s);
+        let limit = now.map_or(f64::INFINITY, |mode| robot.pace(mode.weight()).v_max_m_per_s);
         most = most.max((pair[1] - pair[0]).norm() / STEP_S - limit);
     }
     if most > ROUNDING_M_PER_S { most } else { 0.0 }

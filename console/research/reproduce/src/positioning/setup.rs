@@ -81,6 +81,7 @@ impl Setup {
             period_s: 1.0,
             repetitions,
             noise,
+            timing: sim::TimingErrors::default(),
             dropout_probability: 0.0,
             outages_s: Vec::new(),
             disturbances: Disturbances::default(),

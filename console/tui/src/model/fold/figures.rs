@@ -86,6 +86,9 @@ fn residual(reason: &Exclusion) -> Reading {
     match reason {
         Exclusion::Silent => Reading { now: "not heard".into(), limit: String::new() },
         Exclusion::ByOrder => Reading { now: "excluded".into(), limit: String::new() },
+        Exclusion::Impossible { range_m, most_m } => {
+            Reading { now: format!("{range_m:.1} m"), limit: format!("{most_m:.1} m") }
+        }
         Exclusion::Residual { residual_m, gate_m } => {
             Reading { now: format!("{residual_m:+.2} m"), limit: format!("{gate_m:.2} m") }
         }

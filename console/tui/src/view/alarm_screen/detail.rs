@@ -72,6 +72,7 @@ fn residuals(look: &Look) -> Option<String> {
         let residual = match why {
             Exclusion::Silent => "not heard".to_owned(),
             Exclusion::ByOrder => "excluded".to_owned(),
+            Exclusion::Impossible { range_m, .. } => format!("{range_m:.1} m impossible"),
             Exclusion::Residual { residual_m, .. } => format!("{residual_m:+.2} m rejected"),
         };
         (*station, residual)

@@ -44,6 +44,7 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerLogged { .. } => "message of the planner",
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
+        EventKind::SpeedLimited { .. } => "speed limited",
         EventKind::Held { .. } => "mission held",
         EventKind::Resumed => "mission resumed",
         EventKind::Ended { .. } => "mission ended",
@@ -80,6 +81,11 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
         EventKind::PositionLost { error_m, limit_m } => {
             vec![("error", metres(*error_m) + " (95 %)"), ("limit", metres(*limit_m))]
         }
+        EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => vec![
+            ("asked for", format!("{} m/s", text::number(*asked_m_per_s, 2))),
+            ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
+            ("to stop", format!("{} from the speed asked for", metres(*needs_m))),
+        ],
         EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
@@ -207,6 +213,10 @@ fn rejected(run: &Run, id: StationId, reason: &Exclusion, range: Option<&Ranging
     let mut facts = vec![("station", station_text(run, id))];
     match (reason, range) {
         (Exclusion::ByOrder, _) => facts.push(("reason", "excluded by the operator".into())),
+        (Exclusion::Impossible { range_m, most_m }, _) => {
+            let reason = format!("{range_m:.2} m is impossible in this tank, at most {most_m:.2} m");
+            facts.push(("reason", reason));
+        }
         (Exclusion::Silent, _) => facts.push(("reason", "not heard in this cycle".into())),
         (Exclusion::Residual { residual_m, .. }, Some(range)) => {
             let expected_m = range.range_m - residual_m;

@@ -1,0 +1,230 @@
+//! What `tankops locate` says to people.
+
+use super::{figures, name_of};
+use crate::cli::LocateArgs;
+use ::locate::{Doubts, Survey, Tally};
+use positioning::Wrong;
+use report::forecast::line_of_stations;
+use scenario::Scenario;
+use std::fmt::Write as _;
+
+/// A speed of sound that is less known than this, as a share, does not serve to correct ranges.
+const DOUBTFUL_SCALE: f64 = 0.005;
+
+/// An error of the speed of sound of more standard deviations than this is worth a word.
+const SURE_SIGMAS: f64 = 4.0;
+
+/// Lines of a label and what it labels.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, label: &str, value: impl AsRef<str>) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{label:<16} {}", value.as_ref());
+    }
+
+    /// Several lines under one label.
+    fn lines(&mut self, label: &str, values: impl IntoIterator<Item = String>) {
+        let mut label = label;
+        for value in values {
+            self.line(std::mem::take(&mut label), value);
+        }
+    }
+}
+
+/// The figures for people.
+pub(super) fn human(
+    args: &LocateArgs,
+    scenario: &Scenario,
+    survey: &Survey,
+    (tally, doubts): (&Tally, &Doubts),
+    shown: &str,
+) -> String {
+    let mut text = Lines::default();
+    of_file(&mut text, survey, shown);
+    of_sound(&mut text, args, scenario, survey, (tally, doubts));
+    text.lines("residuals", residuals(args, scenario, survey));
+    text.lines("repetitions", repetitions(scenario, survey));
+    text.lines("left out", impossible(scenario, doubts));
+    let fixes: u64 = tally.fixes.values().sum();
+    let by_word: Vec<String> = tally.fixes.iter().map(|(word, count)| format!("{count} {word}")).collect();
+    let by_word = if by_word.is_empty() { String::new() } else { format!(" ({})", by_word.join(", ")) };
+    text.line("fixes", format!("{fixes} of {} emissions{by_word}", tally.emissions));
+    text.lines("sides", sides(scenario, doubts));
+    if let Some(off_m) = start_off_m(scenario, tally) {
+        let note = "the track is wrong until three fixes in a row agree; correct the start";
+        text.line("start", format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"));
+    }
+    tally.failed.iter().for_each(|(why, count)| text.line("no fix", format!("{count} times: {why}")));
+    for (id, count) in &tally.left_out {
+        let name = name_of(scenario, *id);
+        text.line("left out", format!("station {name} from {count} fixes: its residual exceeded the gate"));
+    }
+    let metres = |[mean_m, most_m]: [f64; 2]| format!("{mean_m:.3} m mean, {most_m:.3} m maximum");
+    let figures = [
+        ("track", "95 % error by covariance", tally.error_95_m),
+        ("true error", "of fixes", tally.fix_error_m),
+        ("", "of the track", tally.track_error_m),
+    ];
+    for (label, what, figures) in figures {
+        if let Some(figures) = figures {
+            text.line(label, format!("{what} {}", metres(figures)));
+        }
+    }
+    text.0
+}
+
+fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
+    text.line("readings", format!("{shown}, {} rows of {}", survey.rows, survey.kind.word()));
+    if let Some([first, last]) = &survey.dates {
+        text.line("time", format!("{first} to {last} (UTC); mission time counts from the first"));
+    }
+    if survey.bad > 0 {
+        text.line("left out", format!("{} bad rows", survey.bad));
+        survey.problems.iter().for_each(|problem| text.line("", problem.to_string()));
+    }
+    if !survey.ignored.is_empty() {
+        text.line("ignored columns", survey.ignored.join(", "));
+    }
+    if !survey.has_motion {
+        text.line("motion", "not measured; up to the robot's maximum speed in any direction");
+    }
+}
+
+fn of_sound(
+    text: &mut Lines,
+    args: &LocateArgs,
+    scenario: &Scenario,
+    survey: &Survey,
+    told: (&Tally, &Doubts),
+) {
+    let found = figures(args, scenario, survey, told);
+    if let Some([scale, sigma]) = found.range_scale {
+        let speed = found.sound_speed_m_per_s.map(|[speed, sigma]| format!(", {speed:.2} ± {sigma:.2} m/s"));
+        let (percent, sigma) = (scale * 100.0, sigma * 100.0);
+        text.line(
+            "speed of sound",
+            format!("ranges too long by {percent:.3} ± {sigma:.3} %{}", speed.unwrap_or_default()),
+        );
+    }
+    if let Some([offset_m, sigma_m]) = found.clock_offset_m {
+        let time = args.sound_speed.map(|speed| format!(", {:.1} µs", offset_m / speed * 1e6));
+        text.line(
+            "clock offset",
+            format!("ranges too long by {offset_m:.4} ± {sigma_m:.4} m{}", time.unwrap_or_default()),
+        );
+    }
+    if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
+        text.line("", "poorly known: the robot has to come near stations and go far from them");
+    }
+}
+
+/// Errors of sound and stations that the residuals prove.
+fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(scale) = survey.verdict.scale.filter(|scale| scale.is_proven) {
+        let (percent, sigma) = (scale.value.abs() * 100.0, scale.sigma * 100.0);
+        let long = if scale.value > 0.0 { "too long" } else { "too short" };
+        let speed = args.sound_speed.map(|speed| speed / (1.0 + scale.value));
+        let fits = speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
+        lines.push(format!(
+            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of sound, or find it with \
+             --find sound-speed"
+        ));
+    }
+    let harmless = |scale: &Wrong| !scale.is_proven && scale.value.abs() > SURE_SIGMAS * scale.sigma;
+    if let Some(scale) = survey.verdict.scale.filter(harmless).filter(|_| !survey.verdict.is_wrong()) {
+        lines.push(format!(
+            "ranges differ from the scenario by {:+.3} ± {:.3} % throughout, which moves fixes by less than their stated errors",
+            scale.value * 100.0,
+            scale.sigma * 100.0
+        ));
+    }
+    for (id, wrong) in survey.verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven) {
+        let long = if wrong.value > 0.0 { "too long" } else { "too short" };
+        lines.push(format!(
+            "the ranges of station {} are {long} by {:.3} ± {:.3} m: no fix is ok; correct its place in the scenario, its clock or its \
+             threshold, or leave out its rows",
+            name_of(scenario, id.0),
+            wrong.value.abs(),
+            wrong.sigma
+        ));
+    }
+    lines
+}
+
+/// Stations that were read several times in one emission, and scatter too much for repetitions.
+fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
+    let repeats = &survey.repeats;
+    let Some(worst) = repeats.worst.filter(|_| repeats.are_wide() || repeats.wide > 0) else { return Vec::new() };
+    let mut lines = vec![format!(
+        "{} has {} readings at {:.3} s, {:.0} mm apart: repetitions or another emission?",
+        name_of(scenario, worst.station.0),
+        worst.count,
+        worst.t_s - survey.first_s,
+        worst.apart_m * 1e3
+    )];
+    let emissions = repeats.emissions;
+    lines.push(if repeats.are_wide() {
+        format!(
+            "in {emissions} emissions readings of one station scatter {:.1} times as far as the noise of the scenario: none of their \
+             fixes is ok; give each emission its own time, or its name in a column `emission`",
+            repeats.factor()
+        )
+    } else {
+        format!("{} of {emissions} emissions with several readings of a station: their fixes are not ok", repeats.wide)
+    });
+    lines
+}
+
+/// Readings that no place in the tank explains.
+fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
+    let all: u64 = doubts.impossible.values().map(|refused| refused.count).sum();
+    if all == 0 {
+        return Vec::new();
+    }
+    let readings = if all == 1 { "reading that is" } else { "readings that are" };
+    let mut lines = vec![format!("{all} {readings} impossible in this tank")];
+    lines.extend(doubts.impossible.iter().map(|(id, refused)| {
+        let (name, count) = (name_of(scenario, *id), refused.count);
+        let times = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
+        let range = if refused.range_m.is_finite() { format!("{:.3} m", refused.range_m) } else { "no number".into() };
+        format!("station {name}: {range} at {:.3} s{times}; at most {:.2} m", refused.t_s, refused.most_m)
+    }));
+    lines
+}
+
+/// What decides between fixes and their mirror images.
+fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
+    let Doubts { sides_by_walls, sides_by_track, sides_open, .. } = *doubts;
+    let all = sides_by_walls + sides_by_track + sides_open;
+    if all == 0 {
+        return Vec::new();
+    }
+    let line = line_of_stations(&scenario.sim.world.stations);
+    let mut lines = vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits as well")];
+    if sides_by_walls > 0 {
+        lines.push(format!("{sides_by_walls} decided by the wall: the other place lies behind it"));
+    }
+    if sides_by_track > 0 {
+        lines.push(format!("{sides_by_track} decided by robot.start_m and the track from there"));
+    }
+    if sides_open > 0 {
+        let start = if doubts.contradicts_start { "robot.start_m contradicts both places; " } else { "" };
+        lines.push(format!(
+            "{sides_open} cannot be decided and are not ok: {start}correct robot.start_m, or add a station off the line"
+        ));
+    }
+    lines
+}
+
+/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong and the robot
+/// can have come.
+fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
+    let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;
+    let mission = &scenario.mission;
+    let moved_m = mission.limits.v_max_m_per_s * tally.first_fix_t_s.unwrap_or_default();
+    let off_m = (first - mission.start.position).norm();
+    (off_m > 2.0 * error_95_m + 3.0 * mission.start_sigma_m + moved_m).then_some(off_m)
+}

@@ -1,0 +1,50 @@
+//! A scenario that comes through a pipe: whoever writes it may take their time, and the user is told what is waited for.
+
+use crate::cli::{CampaignCommand, Command};
+use report::print::warn_line;
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    fs::OFlags,
+};
+use std::{
+    fs::{File, OpenOptions},
+    os::unix::fs::{FileTypeExt, OpenOptionsExt},
+    path::{Path, PathBuf},
+};
+
+/// After this a note says what is waited for.
+const SOON: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
+
+/// Waits until those of the files that a command reads first and that are pipes have something in them; they must be kept open
+/// until they are read, so that who writes does not lose their reader.
+pub(crate) fn for_pipes(command: Option<&Command>) -> Vec<File> {
+    files(command).iter().filter_map(|file| wait(file)).collect()
+}
+
+fn files(command: Option<&Command>) -> Vec<PathBuf> {
+    match command {
+        Some(Command::Run(args)) => vec![args.scenario.clone()],
+        Some(Command::Plan(args)) => vec![args.scenario.clone()],
+        Some(Command::Accuracy(args)) => vec![args.scenario.clone()],
+        Some(Command::Locate(args)) => vec![args.scenario.clone()],
+        Some(Command::Console(args)) => args.scenario.iter().cloned().collect(),
+        Some(Command::Check { files, .. }) => files.clone(),
+        Some(Command::Campaign(CampaignCommand::Prepare(args))) => vec![args.plan.clone()],
+        Some(Command::Campaign(CampaignCommand::Run(args))) => vec![args.out.plan.clone()],
+        _ => Vec::new(),
+    }
+}
+
+fn wait(file: &Path) -> Option<File> {
+    if !file.metadata().is_ok_and(|about| about.file_type().is_fifo()) {
+        return None;
+    }
+    let pipe =
+        OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(file).ok()?;
+    let has_come = |within| poll(&mut [PollFd::new(&pipe, PollFlags::IN)], within).is_ok_and(|n| n > 0);
+    if !has_come(Some(&SOON)) {
+        warn_line(&format!("note: waiting for what is written to the pipe {}", file.display()));
+        has_come(None);
+    }
+    Some(pipe)
+}

@@ -1,0 +1,166 @@
+//! Text made plain.
+
+use std::{borrow::Cow, fmt::Write};
+
+/// What stands in place of a character that is not plain.
+const INSTEAD: char = '\u{fffd}';
+
+/// Whether a character is one that can be seen, or a space: it moves no cursor, turns no text around, and does not hide.
+///
+/// Not plain are the control characters (C0, DEL, C1), the marks of direction, what has no width or no picture (soft hyphen,
+/// joiners, fillers, selectors of variants, byte order mark), separators of lines and paragraphs, tags, and what is no character.
+pub fn is_plain(c: char) -> bool {
+    let is_hidden = matches!(
+        c,
+        '\u{ad}'
+            | '\u{34f}'
+            | '\u{61c}'
+            | '\u{115f}'..='\u{1160}'
+            | '\u{17b4}'..='\u{17b5}'
+            | '\u{180b}'..='\u{180f}'
+            | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{3164}'
+            | '\u{fe00}'..='\u{fe0f}'
+            | '\u{feff}'
+            | '\u{ffa0}'
+            | '\u{fff0}'..='\u{fffb}'
+            | '\u{1bca0}'..='\u{1bca3}'
+            | '\u{1d173}'..='\u{1d17a}'
+            | '\u{e0000}'..='\u{e0fff}'
+    );
+    let is_none = matches!(u32::from(c) & 0xffff, 0xfffe | 0xffff) || matches!(c, '\u{fdd0}'..='\u{fdef}');
+    !c.is_control() && !is_hidden && !is_none
+}
+
+/// The first character of a text that is not plain, as `U+202E`; ends of lines and tabs count as plain.
+pub fn unplain(text: &str) -> Option<String> {
+    let is_end = |at: usize| text[at..].starts_with("\r\n");
+    let is_odd = |(at, c): &(usize, char)| !is_plain(*c) && !matches!(c, '\n' | '\t') && !is_end(*at);
+    let found = text.char_indices().find(is_odd).map(|(_, c)| c);
+    found.map(|c| format!("U+{:04X}", u32::from(c)))
+}
+
+/// A text on one line: what ends a line or is a tab is a space, everything else that is not plain is `�`.
+pub fn plain(text: &str) -> Cow<'_, str> {
+    let is_end = |c| matches!(c, '\t'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}');
+    replaced(text, |c| if is_end(c) { ' ' } else { INSTEAD })
+}
+
+/// A name of another program without what cannot be seen in it, as soft hyphens and joiners; ends of lines and tabs are spaces.
+pub fn seen(name: &str) -> String {
+    plain(name)
+        .chars()
+        .zip(name.chars())
+        .filter(|(c, written)| *c != INSTEAD || *written == INSTEAD)
+        .map(|(c, _)| c)
+        .collect()
+}
+
+/// A text of several lines: line feeds and tabs stay, everything else that is not plain is `�`.
+pub fn plain_lines(text: &str) -> Cow<'_, str> {
+    let instead = |c| if matches!(c, '\n' | '\t') { c } else { INSTEAD };
+    match text.contains("\r\n") {
+        true => replaced(&text.replace("\r\n", "\n"), instead).into_owned().into(),
+        false => replaced(text, instead),
+    }
+}
+
+fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
+    if text.chars().all(is_plain) {
+        return text.into();
+    }
+    text.chars().map(|c| if is_plain(c) { c } else { instead(c) }).collect::<String>().into()
+}
+
+/// JSON with the same values in which every character is plain: the others are written as `\u202e`.
+///
+/// Line feeds and tabs are white space between values, and JSON has none within them.
+pub fn plain_json(text: &str) -> Cow<'_, str> {
+    let stays = |c: char| is_plain(c) || matches!(c, '\n' | '\t');
+    if text.chars().all(stays) {
+        return text.into();
+    }
+    let mut plain = String::with_capacity(text.len() + 64);
+    for c in text.chars() {
+        if stays(c) {
+            plain.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                let _ = write!(plain, "\\u{unit:04x}");
+            }
+        }
+    }
+    plain.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// One of each kind.
+    const HIDDEN: &str = "\u{0}\u{7}\u{8}\u{1b}\u{7f}\u{90}\u{9b}\u{9d}\u{ad}\u{61c}\u{115f}\u{180e}\u{200b}\u{200d}\u{200f}\u{202a}\u{202e}\
+                          \u{2060}\u{2066}\u{2069}\u{206a}\u{3164}\u{fe0f}\u{feff}\u{fff9}\u{fffe}\u{e0001}\u{e0041}\u{e007f}\u{e0100}";
+
+    #[test]
+    fn what_hides_or_controls_is_shown_instead() {
+        assert!(HIDDEN.chars().all(|c| !is_plain(c)));
+        assert!(
+            plain(HIDDEN).chars().all(|c| c == INSTEAD) && plain_lines(HIDDEN).chars().all(|c| c == INSTEAD)
+        );
+        assert_eq!(plain("a\u{202e}b\u{9b}2Jc"), "a�b�2Jc");
+        assert_eq!(plain("one\ntwo\tthree\u{2028}four\u{85}five"), "one two three four five");
+        assert_eq!(plain_lines("one\n\ttwo\r\n\r"), "one\n\ttwo\n�");
+        assert_eq!((unplain("a\r\n\tb"), unplain("a\rb")), (None, Some("U+000D".into())));
+        assert_eq!(unplain("a\u{ad}b"), Some("U+00AD".into()));
+    }
+
+    #[test]
+    fn ordinary_names_stay_as_they_are() {
+        for name in [
+            "Säule 3",
+            "u\u{308}ber",
+            "Behälter\u{a0}7",
+            "P-07",
+            "タンク",
+            "резервуар",
+            "Ø 25 °C",
+            "�",
+            "⚠ 🛢",
+        ] {
+            assert!(matches!(plain(name), Cow::Borrowed(same) if same == name), "{name:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_seen_is_no_part_of_a_name() {
+        assert_eq!(seen("Pumpen\u{ad}sumpf\u{200b} 1\u{fe0f}\tNord\u{a0}"), "Pumpensumpf 1 Nord\u{a0}");
+        assert_eq!(seen("\u{1b}[2J�"), "[2J�");
+    }
+
+    #[test]
+    fn json_has_the_same_values_in_plain_characters() {
+        let value = serde_json::json!({ "name": HIDDEN, "list": ["a\u{9b}b", "c"] });
+        for text in [
+            serde_json::to_string(&value).expect("JSON"),
+            serde_json::to_string_pretty(&value).expect("JSON"),
+        ] {
+            let plain = plain_json(&text);
+            assert_eq!(unplain(&plain), None);
+            assert_eq!(serde_json::from_str::<serde_json::Value>(&plain).expect("JSON"), value);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_text_becomes_plain_and_stays_so(text in any::<String>()) {
+            let once = plain(&text);
+            prop_assert!(once.chars().all(is_plain));
+            prop_assert_eq!(plain(&once), once.as_ref());
+            prop_assert_eq!(once.chars().count(), text.chars().count());
+            prop_assert_eq!(unplain(&plain_lines(&text)), None);
+        }
+    }
+}

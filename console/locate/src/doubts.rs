@@ -1,0 +1,50 @@
+//! What could not be decided, or was left out, while readings were located.
+
+use positioning::{Impossible, Sides};
+use std::collections::BTreeMap;
+
+/// Ranges of a station that no place in the tank explains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Refused {
+    /// How many.
+    pub count: u64,
+    /// The first of them, metres.
+    pub range_m: f64,
+    /// The longest one that can be, metres.
+    pub most_m: f64,
+    /// Mission time of the first, seconds.
+    pub t_s: f64,
+}
+
+/// What was decided how, and what was left out.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Doubts {
+    /// Fixes whose mirror image lies behind the wall.
+    pub sides_by_walls: u64,
+    /// Fixes whose mirror image is too far from where the robot was before: the start and the track decide.
+    pub sides_by_track: u64,
+    /// Fixes for which nothing decides between two sides.
+    pub sides_open: u64,
+    /// Whether the first of them contradicts the start of the scenario on either side.
+    pub contradicts_start: bool,
+    /// Impossible ranges by the number of the station.
+    pub impossible: BTreeMap<u32, Refused>,
+}
+
+impl Doubts {
+    pub(crate) fn take(&mut self, t_s: f64, sides: Sides, impossible: &[Impossible]) {
+        match sides {
+            Sides::One => {}
+            Sides::ByWalls => self.sides_by_walls += 1,
+            Sides::ByBelief => self.sides_by_track += 1,
+            Sides::Open { contradicts, .. } => {
+                self.contradicts_start |= contradicts && self.sides_by_track + self.sides_by_walls + self.sides_open == 0;
+                self.sides_open += 1;
+            }
+        }
+        for Impossible { station, range_m, most_m } in impossible {
+            let first = Refused { count: 0, range_m: *range_m, most_m: *most_m, t_s };
+            self.impossible.entry(station.0).or_insert(first).count += 1;
+        }
+    }
+}

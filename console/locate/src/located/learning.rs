@@ -1,0 +1,148 @@
+//! What a session says of clocks, sound and stations.
+
+use super::Task;
+use crate::{
+    columns::{Columns, Kind},
+    found::Found,
+    moments::Moment,
+};
+use flight::failure::bad_input;
+use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
+
+/// Times that a session is taken at most to find out about clocks and sound,
+const ROUNDS: usize = 10;
+/// or until that changes by less than this share of its standard deviation.
+const SETTLED: f64 = 0.1;
+/// Offsets of clocks up to some of these are looked for, metres.
+const OFFSET_SIGMA_M: f64 = 20.0;
+/// Errors of the speed of sound up to some of these are looked for, as a share.
+const SOUND_SIGMA_RATIO: f64 = 0.05;
+/// A speed of sound that is no better known than this, as a share, was not found.
+const UNSEEN_SIGMA_RATIO: f64 = 0.05;
+/// By which share ranges may be too long while the speed of sound is sought.
+pub(super) const MOST_TOO_LONG: f64 = 0.3;
+
+impl Task<'_> {
+    fn finds(&self) -> bool {
+        self.finds_clock_offset || self.finds_sound_speed
+    }
+
+    /// # Errors
+    /// Something is sought that such readings never say.
+    pub(super) fn check_findable(&self, columns: &Columns) -> anyhow::Result<()> {
+        if self.finds_clock_offset && columns.kind() == Kind::Differences {
+            return Err(bad_input(format!(
+                "{}: without the time of emission there is no clock offset to be found; leave out --find clock-offset, or add a \
+                 column emitted_s",
+                self.shown
+            )));
+        }
+        Ok(())
+    }
+
+    /// What the session says of clocks and sound, if it was asked for.
+    pub(super) fn found(&self, columns: &Columns) -> anyhow::Result<Option<Found>> {
+        if !self.finds() {
+            return Ok(None);
+        }
+        if columns.kind() == Kind::Differences {
+            return self.scale_of_differences(columns).map(Some);
+        }
+        let unknowns = Unknowns {
+            sound_sigma_ratio: if self.finds_sound_speed { SOUND_SIGMA_RATIO } else { 0.0 },
+            survey_sigma_m: 0.0,
+            offset_sigma_m: if self.finds_clock_offset { OFFSET_SIGMA_M } else { 0.0 },
+        };
+        let calibration = Calibration::new(&self.scenario.sim.world.stations, unknowns);
+        self.calibrated(calibration).map(|calibration| Some(Found::from(&calibration)))
+    }
+
+    /// What the locator is going to find out about the speed of sound by itself.
+    pub(super) fn found_under_way(&self, columns: &Columns) -> anyhow::Result<Option<Found>> {
+        if columns.kind() == Kind::Differences {
+            return Ok(None);
+        }
+        let calibration = Calibration::new(&self.scenario.sim.world.stations, Unknowns::default());
+        self.calibrated(calibration).map(|calibration| Some(Found::from(&calibration)))
+    }
+
+    /// What the session says of clocks and sound, taken again until it no longer changes.
+    fn calibrated(&self, mut calibration: Calibration) -> anyhow::Result<Calibration> {
+        let possible = self.possible();
+        for _ in 0..ROUNDS {
+            let before = (calibration.scale().0, calibration.offset_m().0);
+            calibration = calibration.again();
+            for moment in self.open()?.0.flatten() {
+                // A cycle without a position contributes nothing; its fix states why there is none.
+                let _ = calibration.take(&self.rangings(&possible, &moment, Kind::Ranges), None);
+            }
+            let ((scale, scale_sigma), (offset_m, offset_sigma_m)) =
+                (calibration.scale(), calibration.offset_m());
+            let is_settled = (scale - before.0).abs() <= SETTLED * scale_sigma
+                && (offset_m - before.1).abs() <= SETTLED * offset_sigma_m;
+            if is_settled {
+                break;
+            }
+        }
+        Ok(calibration)
+    }
+
+    /// The share by which all ranges are too long, from differences of arrivals alone.
+    fn scale_of_differences(&self, columns: &Columns) -> anyhow::Result<Found> {
+        let (mut scale, mut sigma) = (0.0, f64::INFINITY);
+        for _ in 0..ROUNDS {
+            let found = Found::of_scale((scale, 0.0));
+            let Some((step, step_sigma)) = self.judged(columns, Some(&found))?.scale() else { break };
+            scale = ((1.0 + scale) * (1.0 + step) - 1.0).clamp(-MOST_TOO_LONG, MOST_TOO_LONG);
+            sigma = step_sigma * (1.0 + scale);
+            if step.abs() <= SETTLED * step_sigma {
+                break;
+            }
+        }
+        if sigma < UNSEEN_SIGMA_RATIO {
+            return Ok(Found::of_scale((scale, sigma)));
+        }
+        let known = if sigma.is_finite() { format!("only to ± {:.0} %", sigma * 100.0) } else { "not at all".into() };
+        Err(bad_input(format!(
+            "{}: the speed of sound shows {known} in these differences of arrivals; it takes fixes in many places, each with five \
+             stations or more, or the time of emission (emitted_s)",
+            self.shown
+        )))
+    }
+
+    /// What the residuals of all fixes say, with what was found out taken out of the ranges.
+    pub(super) fn judged(&self, columns: &Columns, found: Option<&Found>) -> anyhow::Result<Session> {
+        let kind = columns.kind();
+        let stations = &self.scenario.sim.world.stations;
+        let mut session = Session::new(stations, kind == Kind::Differences);
+        let locating = &self.scenario.mission.locating;
+        let solver = if kind == Kind::Differences { SolverKind::Differences } else { locating.solver };
+        let possible = self.possible();
+        for moment in self.open()?.0.flatten() {
+            let mut rangings = self.rangings(&possible, &moment, kind);
+            if let Some(found) = found {
+                found.corrected(&mut rangings);
+            }
+            if let Ok(fix) = solver.solve(&rangings, stations, &self.noise(), None)
+                && fix.integrity != Integrity::Alarm
+            {
+                session.take(&fix);
+            }
+        }
+        Ok(session)
+    }
+
+    /// One range of each station that was heard, of those that can be.
+    fn rangings(&self, possible: &Possible, moment: &Moment, kind: Kind) -> Vec<Ranging> {
+        let locating = &self.scenario.mission.locating;
+        let (sets, _) = match kind {
+            // With an offset of clocks any length can be one.
+            Kind::Ranges if self.finds_clock_offset => (moment.ranges.as_slice().into(), Vec::new()),
+            Kind::Ranges => possible.ranges(&moment.ranges),
+            Kind::Differences => possible.differences(&moment.ranges),
+        };
+        let mut rangings = locating.aggregation.aggregate(&sets, &self.noise()).unwrap_or_default();
+        locating.timing.apply(&mut rangings, &self.noise());
+        rangings
+    }
+}

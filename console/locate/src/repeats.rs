@@ -1,0 +1,138 @@
+//! Several readings of one station in one emission: repetitions, or two emissions under one time.
+
+use crate::moments::Moment;
+use positioning::{RangeNoise, Timing, scatter_limit};
+use world::StationId;
+
+/// A squared difference counts up to this many variances, so that noise with far outliers does not condemn a session.
+const MOST_SQUARES: f64 = 16.0;
+/// Readings that scatter less than this many times as much as the noise, squared, do no harm.
+const HARMLESS: f64 = 1.3;
+/// So many standard deviations of a sum are no chance.
+const SIGNIFICANT: f64 = 5.0;
+
+/// Two readings of one station that are furthest apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Repeated {
+    /// Which station.
+    pub station: StationId,
+    /// Readings in the emission.
+    pub count: u32,
+    /// How far apart they are, metres.
+    pub apart_m: f64,
+    /// Time of the emission as in the file, seconds.
+    pub t_s: f64,
+}
+
+/// How the readings of single stations scatter within emissions.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Repeats {
+    /// Sum of the squared differences from their means over the variance.
+    sum: f64,
+    degrees: u32,
+    /// Emissions with several readings of a station.
+    pub emissions: u64,
+    /// Emissions among them whose readings scatter more than the noise.
+    pub wide: u64,
+    /// The first of those in which they are furthest apart by their noise.
+    pub worst: Option<Repeated>,
+    worst_squares: f64,
+}
+
+/// What is expected of the readings.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scatter {
+    pub noise: RangeNoise,
+    pub timing: Timing,
+    /// Distance to count with where the readings are none, metres.
+    pub distance_m: Option<f64>,
+}
+
+impl Scatter {
+    /// Variance of a reading about the mean of its station, square metres.
+    fn variance_m2(&self, range_m: f64) -> f64 {
+        let share_m = self.noise.sigma_ratio() * self.distance_m.unwrap_or(range_m);
+        let repeats_m = self.timing.mean_sigma_m(share_m, f64::INFINITY);
+        let all_m2 = self.timing.mean_sigma_m(share_m, 1.0).powi(2) - repeats_m.powi(2);
+        (share_m * share_m + all_m2).max(1e-12)
+    }
+}
+
+/// The scatter of one emission.
+struct Once {
+    sum: f64,
+    degrees: u32,
+    worst: Option<(f64, Repeated)>,
+}
+
+impl Once {
+    fn of(moment: &Moment, scatter: &Scatter) -> Self {
+        let mut once = Self { sum: 0.0, degrees: 0, worst: None };
+        for set in &moment.ranges {
+            let rows = || moment.heard.iter().filter(|heard| heard.station == set.station && heard.range_m.is_finite());
+            let count = u32::try_from(rows().count()).unwrap_or(u32::MAX);
+            if count < 2 {
+                continue;
+            }
+            let weight: f64 = rows().map(|heard| f64::from(heard.repetitions)).sum();
+            let mean_m = rows().map(|heard| heard.range_m * f64::from(heard.repetitions)).sum::<f64>() / weight;
+            let variance_m2 = scatter.variance_m2(mean_m);
+            let squares = |heard: &crate::columns::Heard| {
+                let off_m = heard.range_m - mean_m;
+                (off_m * off_m * f64::from(heard.repetitions) / variance_m2).min(MOST_SQUARES)
+            };
+            let sum: f64 = rows().map(squares).sum();
+            let ends = rows().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heard| {
+                (least.min(heard.range_m), most.max(heard.range_m))
+            });
+            let repeated = Repeated { station: set.station, count, apart_m: ends.1 - ends.0, t_s: moment.t_s };
+            let excess = sum / f64::from(count - 1);
+            if once.worst.is_none_or(|(worst, _)| excess > worst) {
+                once.worst = Some((excess, repeated));
+            }
+            once.sum += sum;
+            once.degrees += count - 1;
+        }
+        once
+    }
+
+    fn is_wide(&self) -> bool {
+        self.degrees > 0 && self.sum > scatter_limit(self.degrees)
+    }
+}
+
+impl Repeats {
+    pub(crate) fn take(&mut self, moment: &Moment, scatter: &Scatter) {
+        let once = Once::of(moment, scatter);
+        if once.degrees == 0 {
+            return;
+        }
+        self.sum += once.sum;
+        self.degrees = self.degrees.saturating_add(once.degrees);
+        self.emissions += 1;
+        self.wide += u64::from(once.is_wide());
+        if let Some((excess, repeated)) = once.worst.filter(|(excess, _)| *excess > self.worst_squares) {
+            (self.worst_squares, self.worst) = (excess, Some(repeated));
+        }
+    }
+
+    /// How many times as far as the noise readings scatter, over all emissions.
+    pub fn factor(&self) -> f64 {
+        (self.sum / f64::from(self.degrees.max(1))).sqrt()
+    }
+
+    /// Whether they scatter more than chance and noise make them.
+    pub fn are_wide(&self) -> bool {
+        let degrees = f64::from(self.degrees);
+        let limit = (1.0 + SIGNIFICANT * (2.0 / degrees).sqrt()).max(HARMLESS);
+        self.degrees > 0 && self.sum > limit * degrees
+    }
+
+    /// By how much the readings of an emission may be wrong because of that, metres; `None` if there is no such doubt.
+    pub(crate) fn doubt_m(&self, moment: &Moment, scatter: &Scatter) -> Option<f64> {
+        let once = Once::of(moment, scatter);
+        let is_doubtful = once.is_wide() || (once.degrees > 0 && self.are_wide());
+        let (_, widest) = once.worst.filter(|_| is_doubtful)?;
+        Some(widest.apart_m / 2.0)
+    }
+}

@@ -1,0 +1,127 @@
+//! Commands that are limited: the robot's speed as the mission knows it, and what is said when a planner is slowed down.
+
+use super::Mission;
+use crate::{
+    config::MissionConfig,
+    event::{EventKind, rounded_command},
+    governor::{self, Here, Momentum, Surroundings},
+};
+use geometry::{Braking, Drive};
+use planner_api::{Command, Limits};
+use world::{Medium, Mode, Zone};
+
+/// A planner that is slowed down for this long is named, seconds.
+const NAMED_AFTER_S: f64 = 2.0;
+/// It is named again once it was not slowed down for this long, seconds.
+const NAMED_AGAIN_S: f64 = 10.0;
+/// A speed is limited where less than this share of it is sent.
+const LIMITED_SHARE: f64 = 0.9;
+
+/// What the rule that limits commands remembers.
+#[derive(Debug, Clone)]
+pub(super) struct Governor {
+    momentum: Momentum,
+    /// Whether an amphibious robot walks or swims.
+    mode: Mode,
+    limited: Limited,
+}
+
+/// For how long a planner has been slowed down, or not.
+#[derive(Debug, Clone, Copy, Default)]
+struct Limited {
+    for_s: f64,
+    free_s: f64,
+    is_named: bool,
+}
+
+impl Limited {
+    /// One command more; whether it is time to say that the planner is slowed down.
+    fn update(&mut self, is_limited: bool, tick_s: f64) -> bool {
+        if !is_limited {
+            self.for_s = 0.0;
+            self.free_s += tick_s;
+            self.is_named &= self.free_s < NAMED_AGAIN_S;
+            return false;
+        }
+        self.free_s = 0.0;
+        self.for_s += tick_s;
+        self.for_s >= NAMED_AFTER_S && !std::mem::replace(&mut self.is_named, true)
+    }
+}
+
+impl Governor {
+    /// That of a robot at rest at its start.
+    pub(super) fn new(config: &MissionConfig, zones: &[Zone]) -> Self {
+        let mode = Mode::of(Medium::at(zones, config.start.position));
+        Self { momentum: Momentum::NONE, mode, limited: Limited::default() }
+    }
+
+    /// The robot stands.
+    pub(super) fn stand(&mut self) {
+        self.momentum = Momentum::NONE;
+    }
+}
+
+impl Mission {
+    /// The robot's own speed, metres per second: as far as its acceleration has let it follow the commands.
+    pub(super) fn speed_m_per_s(&self) -> f64 {
+        self.governor.momentum.speed_m_per_s()
+    }
+
+    /// A command, so slow that the robot can stop after it.
+    pub(super) fn governed(&self, command: Command) -> Command {
+        let (here, momentum) = (self.here(), &self.governor.momentum);
+        let reach_m = governor::reach_m(momentum, command.drive, &here);
+        let is_free = self.chart.is_free(here.pose.position, reach_m);
+        if is_free && governor::is_within_sight(momentum, command.drive, &here) {
+            return command;
+        }
+        let solids = self.chart.solids(here.pose.position, reach_m);
+        let around = Surroundings::of(&solids, &here);
+        let drive = governor::governed(momentum, command.drive, &here, &around);
+        rounded_command(Command { drive, ..command })
+    }
+
+    /// Says so when a planner is slowed down for long.
+    pub(super) fn note_limit(&mut self, asked: Command, sent: Command) {
+        let (asked_m_per_s, sent_m_per_s) = (speed(asked.drive), speed(sent.drive));
+        let is_limited = sent_m_per_s < LIMITED_SHARE * asked_m_per_s;
+        if self.governor.limited.update(is_limited, self.config.tick_s) {
+            let needs_m = Braking::of(&self.here().limits).distance_m(asked_m_per_s);
+            self.happened.push(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m });
+        }
+    }
+
+    /// Keeps account of what the robot does.
+    pub(super) fn follow_drive(&mut self, drive: Drive) {
+        let here = self.here();
+        self.governor.momentum = self.governor.momentum.after(drive, &here);
+    }
+
+    /// Walks or swims as the floor under the robot demands.
+    pub(super) fn update_mode(&mut self) {
+        if let Some(amphibious) = self.config.limits.amphibious {
+            let medium = Medium::at(&self.chart.world().zones, self.locator.position());
+            self.governor.mode = self.governor.mode.toward(medium, amphibious.transition_steps);
+        }
+    }
+
+    fn here(&self) -> Here {
+        let limits = match self.config.limits.amphibious {
+            Some(amphibious) => {
+                let pace = amphibious.pace(self.governor.mode.weight());
+                let (v_max_m_per_s, w_max_rad_per_s) = (pace.v_max_m_per_s, pace.w_max_rad_per_s);
+                Limits { v_max_m_per_s, w_max_rad_per_s, ..self.config.limits }
+            }
+            None => self.config.limits,
+        };
+        Here { pose: self.locator.pose(), error_m: self.locator.error_95_m(), limits }
+    }
+}
+
+fn speed(drive: Drive) -> f64 {
+    match drive {
+        Drive::Twist { v_m_per_s, .. } => v_m_per_s.abs(),
+        Drive::Velocity(velocity) => velocity.norm(),
+    }
+}

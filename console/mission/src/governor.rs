@@ -1,0 +1,247 @@
+//! The one rule that limits every command, whoever asks for it: after this tick the robot can still brake to a stand, straight
+//! on, without touching anything on the chart and before the edge of what it sees.
+//!
+//! A robot for which this holds can always brake, so it holds in the next tick, too, if the command of that tick is chosen
+//! so. A command that would end it is driven more slowly, in the last resort not at all: the robot brakes. The way is that of the
+//! robot's own acceleration and turn rate, over the length of a tick and from the speed that it has.
+
+use geometry::{Braking, Drive, Limits, Motion, motion::at_most};
+use world::{Point, Pose, Vector};
+
+/// Room that is left beside what is seen, metres: it is known where it stands, as seen from the robot.
+const SEEN_ROOM_M: f64 = 0.01;
+/// Most room that the position error asks for beside what is only on the chart, metres: a robot that is lost shall still move.
+const CHART_ROOM_MOST_M: f64 = 0.15;
+/// Share of the room there is that the robot may use up where there is less than it should leave: along a wall that bends, it
+/// brakes straight on.
+const ROOM_SHARE: f64 = 0.5;
+/// A hull that touches something may move by this much into it, metres: rounding.
+const TOUCH_M: f64 = 1e-4;
+/// The robot's way is looked at in steps of at least this much, metres.
+const LOOK_M: f64 = 0.01;
+/// An arc is looked at in pieces of at most this turn, radians.
+const ARC_PIECE_RAD: f64 = 0.2;
+/// How often the interval in which the largest speed lies is halved.
+const HALVINGS: u32 = 6;
+
+/// Something that the hull must not touch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Solid<'a> {
+    /// What stands there.
+    pub outline: Outline<'a>,
+    /// Whether it is seen now; else it stands where the chart has it, seen from where the robot believes to be.
+    pub is_seen: bool,
+}
+
+/// An outline on the chart.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Outline<'a> {
+    /// Something solid, or a zone.
+    Shape(&'a world::Shape),
+    /// The wall.
+    Wall(&'a world::Boundary),
+}
+
+impl Outline<'_> {
+    fn distance_m(&self, at: Point) -> f64 {
+        match self {
+            Self::Shape(shape) => shape.distance_m(at),
+            Self::Wall(wall) => wall.wall_distance_m(at),
+        }
+    }
+}
+
+/// What the rule has to know of a tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Here {
+    /// Where the robot believes to be.
+    pub pose: Pose,
+    /// Half width of the 95 % position error, metres.
+    pub error_m: f64,
+    /// What it can do here.
+    pub limits: Limits,
+}
+
+/// How fast the robot is, by the commands that it was sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Momentum {
+    /// Along the heading, metres per second; negative backward. Of a robot without a heading the speed.
+    ahead_m_per_s: f64,
+    /// Of a robot without a heading, metres per second, tank frame.
+    velocity: Vector,
+}
+
+/// What a command does in a tick, and how fast the robot is then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Motions {
+    /// The pose at the end of the tick.
+    end: Pose,
+    /// Turn during the tick, radians.
+    turn_rad: f64,
+    after: Momentum,
+    /// Where the robot goes on to while it brakes, a unit vector.
+    onward: Vector,
+}
+
+impl Momentum {
+    /// At rest.
+    pub(crate) const NONE: Self = Self { ahead_m_per_s: 0.0, velocity: Vector::new(0.0, 0.0) };
+
+    /// The speed, metres per second; negative backward.
+    pub(crate) fn speed_m_per_s(&self) -> f64 {
+        self.ahead_m_per_s
+    }
+
+    /// How fast the robot is after a tick of a drive.
+    pub(crate) fn after(&self, drive: Drive, here: &Here) -> Self {
+        self.motions(drive, here).after
+    }
+
+    fn motions(&self, drive: Drive, here: &Here) -> Motions {
+        let Limits { acceleration_m_per_s2, tick_s, v_max_m_per_s, w_max_rad_per_s, .. } = here.limits;
+        let change = acceleration_m_per_s2 * tick_s;
+        if here.limits.motion == Motion::Point {
+            let wanted = match drive {
+                Drive::Velocity(velocity) => at_most(velocity, v_max_m_per_s),
+                Drive::Twist { v_m_per_s, .. } => here.pose.direction() * v_m_per_s,
+            };
+            let velocity = self.velocity + at_most(wanted - self.velocity, change);
+            let end = Pose { position: here.pose.position + velocity * tick_s, ..here.pose };
+            let after = Self { ahead_m_per_s: velocity.norm(), velocity };
+            let onward = velocity.try_normalize(1e-12).unwrap_or_else(Vector::zeros);
+            return Motions { end, turn_rad: 0.0, after, onward };
+        }
+        let (v, w) = match drive {
+            Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
+            // A robot with a heading is sent twists.
+            Drive::Velocity(_) => (0.0, 0.0),
+        };
+        let wanted = v.clamp(-v_max_m_per_s, v_max_m_per_s);
+        let ahead_m_per_s = self.ahead_m_per_s + (wanted - self.ahead_m_per_s).clamp(-change, change);
+        let turn_rad = w.clamp(-w_max_rad_per_s, w_max_rad_per_s) * tick_s;
+        let end = here.pose.moved(ahead_m_per_s * tick_s, 0.0, turn_rad);
+        let after = Self { ahead_m_per_s, velocity: Vector::zeros() };
+        Motions { end, turn_rad, after, onward: end.direction() * ahead_m_per_s.signum() }
+    }
+
+    /// The drives to fall back on, the one that keeps the most of a command first: slower on the same curve, then straight on as
+    /// the robot brakes.
+    fn slower(&self, drive: Drive, share: f64, here: &Here) -> Drive {
+        match drive {
+            Drive::Velocity(velocity) => Drive::Velocity(velocity * share),
+            Drive::Twist { v_m_per_s, w_rad_per_s } => {
+                let change = here.limits.acceleration_m_per_s2 * here.limits.tick_s;
+                let least = self.ahead_m_per_s - self.ahead_m_per_s.clamp(-change, change);
+                let most = self.ahead_m_per_s + (v_m_per_s - self.ahead_m_per_s).clamp(-change, change);
+                Drive::Twist { v_m_per_s: least + (most - least) * share, w_rad_per_s }
+            }
+        }
+    }
+}
+
+/// What is in the way of a robot, and how near it may come to it.
+pub(crate) struct Surroundings<'a> {
+    solids: Vec<(Outline<'a>, f64)>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// What is in the way of a robot that is here.
+    pub(crate) fn of(solids: &[Solid<'a>], here: &Here) -> Self {
+        let at = here.pose.position;
+        let to = |solid: &Solid<'a>| {
+            let (hull_m, distance_m) = (here.limits.radius_m, solid.outline.distance_m(at));
+            let room_m = distance_m - hull_m;
+            let wanted_m = if solid.is_seen { SEEN_ROOM_M } else { chart_room_m(here.error_m) };
+            let kept_m = if room_m > 0.0 { wanted_m.min(ROOM_SHARE * room_m) } else { room_m - TOUCH_M };
+            (solid.outline, hull_m + kept_m)
+        };
+        Self { solids: solids.iter().map(to).collect() }
+    }
+
+    /// Room to spare for the middle of the hull at a place, metres; negative where it must not be.
+    fn spare_m(&self, at: Point) -> f64 {
+        self.solids
+            .iter()
+            .map(|(outline, keep_m)| outline.distance_m(at) - keep_m)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a straight way is clear.
+    fn is_clear(&self, from: Point, to: Point) -> bool {
+        let (way, length_m) = (to - from, (to - from).norm());
+        let mut gone_m = 0.0;
+        loop {
+            let at = if gone_m < length_m { from + way * (gone_m / length_m) } else { to };
+            let spare_m = self.spare_m(at);
+            if spare_m < 0.0 {
+                return false;
+            }
+            if gone_m >= length_m {
+                return true;
+            }
+            gone_m += spare_m.max(LOOK_M);
+        }
+    }
+
+    /// Whether a robot that does this for a tick, and then brakes, touches nothing.
+    fn allows(&self, motions: &Motions, here: &Here) -> bool {
+        let start = &here.pose;
+        let n = (motions.turn_rad.abs() / ARC_PIECE_RAD).ceil().max(1.0) as u32;
+        let way_m = motions.after.ahead_m_per_s * here.limits.tick_s;
+        let along = |k: u32| {
+            if k == n {
+                return motions.end.position;
+            }
+            let share = f64::from(k) / f64::from(n);
+            start.moved(way_m * share, 0.0, motions.turn_rad * share).position
+        };
+        let braking_m = Braking::of(&here.limits).way_m(motions.after.ahead_m_per_s);
+        let stand = motions.end.position + motions.onward * braking_m;
+        (1..=n).all(|k| self.is_clear(along(k - 1), along(k))) && self.is_clear(motions.end.position, stand)
+    }
+}
+
+/// Room to leave beside what is only on the chart, metres.
+fn chart_room_m(error_m: f64) -> f64 {
+    if error_m.is_finite() { error_m.clamp(SEEN_ROOM_M, CHART_ROOM_MOST_M) } else { CHART_ROOM_MOST_M }
+}
+
+/// How far from the middle of the hull things can matter to a command, metres.
+pub(crate) fn reach_m(momentum: &Momentum, drive: Drive, here: &Here) -> f64 {
+    let after = momentum.after(drive, here).ahead_m_per_s.abs();
+    let fastest = after.max(momentum.ahead_m_per_s.abs());
+    here.limits.radius_m + chart_room_m(here.error_m) + Braking::of(&here.limits).distance_m(fastest)
+}
+
+/// Whether a robot can stop within what it sees after a tick of a command, or does no more than before.
+pub(crate) fn is_within_sight(momentum: &Momentum, drive: Drive, here: &Here) -> bool {
+    let after = momentum.after(drive, here).ahead_m_per_s;
+    Braking::of(&here.limits).distance_m(after) <= here.limits.sensing_range_m
+}
+
+/// The drive that is sent for a command: the command itself, if the robot can stop after it, else as much of it as it can.
+pub(crate) fn governed(momentum: &Momentum, drive: Drive, here: &Here, around: &Surroundings<'_>) -> Drive {
+    let is_safe = |drive: Drive| {
+        is_within_sight(momentum, drive, here) && around.allows(&momentum.motions(drive, here), here)
+    };
+    if is_safe(drive) {
+        return drive;
+    }
+    let stop = momentum.slower(drive, 0.0, here);
+    if !is_safe(stop) {
+        return Drive::STILL;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_safe(momentum.slower(drive, middle, here)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    momentum.slower(drive, low, here)
+}
+
+#[cfg(test)]
+mod tests;

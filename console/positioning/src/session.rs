@@ -1,0 +1,278 @@
+//! What the residuals of a whole session say about the speed of sound and about single stations.
+//!
+//! One fix hides most of such an error in its position; what it leaves in the residuals adds up over fixes. For each error that may be
+//! there (all ranges too long by a share; one station's ranges too long by a length) the score and its information are summed over the
+//! fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for single readings).
+
+use crate::{fix::Fix, quality::inverse_of};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector3};
+use world::{Station, StationId};
+
+/// An error of more standard deviations than this is none of chance: one honest session in 15 000 for each error.
+const SIGNIFICANT: f64 = 4.0;
+/// An error that moves fixes by less than this, squared and in their own standard deviations, does no harm: 93.5 % of truths still lie in
+/// the 95 % ellipse.
+const HARMLESS: f64 = 0.2;
+/// Least information of an error, as a share of what it would have if positions were known: below it cannot be seen.
+const LEAST_SEEN: f64 = 1e-6;
+
+/// The sums over a session.
+#[derive(Debug, Clone)]
+pub struct Session {
+    stations: Vec<Station>,
+    /// Whether the time of each emission is unknown, so that all ranges of a fix are too long by one length.
+    is_emission_free: bool,
+    score: DVector<f64>,
+    information: DMatrix<f64>,
+    /// The information if positions were known.
+    whole: DVector<f64>,
+    /// Sum over fixes of the squared shift that an error of 1 makes, in standard deviations of the fix.
+    shift: DVector<f64>,
+    fixes: u64,
+}
+
+/// An error with its standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wrong {
+    /// By how much ranges are too long: a share, or metres for a station.
+    pub value: f64,
+    /// Standard deviation of that.
+    pub sigma: f64,
+    /// Whether it is more than chance, and more than the stated errors of the fixes allow for.
+    pub is_proven: bool,
+}
+
+/// What a session says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Fixes that it is from.
+    pub fixes: u64,
+    /// By which share all ranges are too long; `None` if that cannot be seen.
+    pub scale: Option<Wrong>,
+    /// By how many metres the ranges of each station are too long; without those for which that cannot be seen.
+    pub stations: Vec<(StationId, Wrong)>,
+}
+
+impl Verdict {
+    /// Whether an error is proven.
+    pub fn is_wrong(&self) -> bool {
+        self.scale.is_some_and(|scale| scale.is_proven) || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
+    }
+}
+
+impl Session {
+    /// A session without fixes.
+    pub fn new(stations: &[Station], is_emission_free: bool) -> Self {
+        let n = stations.len() + 1;
+        Self {
+            stations: stations.to_vec(),
+            is_emission_free,
+            score: DVector::zeros(n),
+            information: DMatrix::zeros(n, n),
+            whole: DVector::zeros(n),
+            shift: DVector::zeros(n),
+            fixes: 0,
+        }
+    }
+
+    /// Takes in a fix, by the residuals that it left.
+    pub fn take(&mut self, fix: &Fix) {
+        let seen: Vec<Seen> = fix.residuals.iter().filter_map(|residual| self.seen(fix, residual)).collect();
+        let Some(free) = Free::of(&seen, self.is_emission_free) else { return };
+        self.fixes += 1;
+        // Error 0 is the scale, and after it one for each station.
+        let mut pulls: Vec<(usize, Vector3<f64>)> = Vec::with_capacity(seen.len() + 1);
+        pulls.push((0, seen.iter().map(|s| s.by * (s.weight * s.distance_m)).sum()));
+        pulls.extend(seen.iter().map(|s| (s.error, s.by * s.weight)));
+        for s in &seen {
+            self.score[0] += s.weight * s.distance_m * s.residual_m;
+            self.score[s.error] += s.weight * s.residual_m;
+            self.information[(0, 0)] += s.weight * s.distance_m * s.distance_m;
+            self.information[(s.error, s.error)] += s.weight;
+            self.information[(0, s.error)] += s.weight * s.distance_m;
+            self.information[(s.error, 0)] += s.weight * s.distance_m;
+            self.whole[0] += s.weight * s.distance_m * s.distance_m;
+            self.whole[s.error] += s.weight;
+        }
+        for (i, pull) in &pulls {
+            let moved = free.inverse * pull;
+            self.shift[*i] += free.squared_shift(&moved);
+            for (j, other) in &pulls {
+                self.information[(*i, *j)] -= moved.dot(other);
+            }
+        }
+    }
+
+    fn seen(&self, fix: &Fix, residual: &crate::fix::Residual) -> Option<Seen> {
+        let index = self.stations.iter().position(|station| station.id == residual.station)?;
+        let away = fix.position - self.stations[index].position;
+        let distance_m = away.norm().max(1e-3);
+        let excess = f64::from(u8::from(self.is_emission_free));
+        Some(Seen {
+            error: index + 1,
+            distance_m,
+            by: Vector3::new(away.x / distance_m, away.y / distance_m, excess),
+            residual_m: residual.residual_m,
+            weight: residual.sigma_m.powi(-2),
+        })
+    }
+
+    /// By which share all ranges are too long, and its standard deviation, if that can be seen.
+    pub fn scale(&self) -> Option<(f64, f64)> {
+        self.alone(0)
+    }
+
+    fn alone(&self, error: usize) -> Option<(f64, f64)> {
+        let information = self.information[(error, error)];
+        let is_seen = information > LEAST_SEEN * self.whole[error] && information > 0.0;
+        is_seen.then(|| (self.score[error] / information, information.sqrt().recip()))
+    }
+
+    /// An error if another one is there, too.
+    fn beside(&self, error: usize, other: usize) -> Option<(f64, f64)> {
+        let by = self.information[(error, other)] / self.information[(other, other)];
+        let information = self.information[(error, error)] - by * self.information[(other, error)];
+        let score = self.score[error] - by * self.score[other];
+        let is_seen = information > LEAST_SEEN * self.whole[error].max(f64::MIN_POSITIVE);
+        is_seen.then(|| (score / information, information.sqrt().recip()))
+    }
+
+    fn is_proven(&self, error: usize, (value, sigma): (f64, f64)) -> bool {
+        let shift = value * value * self.shift[error] / self.fixes.max(1) as f64;
+        value.abs() > SIGNIFICANT * sigma && shift > HARMLESS
+    }
+
+    /// What the session says: the error that explains most, and others only if they are there beside it.
+    pub fn verdict(&self) -> Verdict {
+        let explained = |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));
+        let first = (0..self.score.len()).max_by(|a, b| explained(*a).total_cmp(&explained(*b))).unwrap_or(0);
+        let first = Some(first).filter(|first| self.alone(*first).is_some_and(|found| self.is_proven(*first, found)));
+        let wrong = |error: usize| {
+            let alone = self.alone(error)?;
+            let is_proven = match first {
+                Some(first) if first != error => {
+                    self.beside(error, first).is_some_and(|found| self.is_proven(error, found))
+                }
+                _ => self.is_proven(error, alone),
+            };
+            let (value, sigma) = alone;
+            Some(Wrong { value, sigma, is_proven })
+        };
+        Verdict {
+            fixes: self.fixes,
+            scale: wrong(0),
+            stations: self.stations.iter().zip(1..).filter_map(|(s, error)| Some((s.id, wrong(error)?))).collect(),
+        }
+    }
+}
+
+/// A range of a fix.
+struct Seen {
+    error: usize,
+    distance_m: f64,
+    /// Change of the range with the place, and with the common length.
+    by: Vector3<f64>,
+    residual_m: f64,
+    weight: f64,
+}
+
+/// What a fix chose for itself.
+struct Free {
+    inverse: Matrix3<f64>,
+    position_inverse: Matrix2<f64>,
+}
+
+impl Free {
+    fn of(seen: &[Seen], is_emission_free: bool) -> Option<Self> {
+        let mut information: Matrix3<f64> = seen.iter().map(|s| s.by * s.by.transpose() * s.weight).sum();
+        if !is_emission_free {
+            information[(2, 2)] = 1.0;
+        }
+        let inverse = information.try_inverse().filter(|inverse| inverse.iter().all(|c| c.is_finite()))?;
+        let position_inverse = inverse_of(&inverse.fixed_view::<2, 2>(0, 0).into_owned())?;
+        Some(Self { inverse, position_inverse })
+    }
+
+    fn squared_shift(&self, moved: &Vector3<f64>) -> f64 {
+        let position = moved.xy();
+        position.dot(&(self.position_inverse * position))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use crate::{
+        Differences, Nls, Ranging,
+        draws::{Draws, ring},
+        fix::PositionSolver,
+    };
+
+    /// The verdict on a session of so many fixes, all ranges too long by a share and those of station 3 by a length.
+    fn verdict(fixes: u32, scale: f64, bias_m: f64, is_emission_free: bool, seed: u64) -> Verdict {
+        let stations = ring(8, 10.0);
+        let mut draws = Draws::new(0.0, 1, seed);
+        let mut session = Session::new(&stations, is_emission_free);
+        for _ in 0..fixes {
+            let truth = draws.on_disc() * 0.9;
+            let ranges: Vec<Ranging> = stations
+                .iter()
+                .map(|station| {
+                    let distance_m = (truth - station.position).norm();
+                    let bias_m = if station.id == StationId(3) { bias_m } else { 0.0 };
+                    let excess_m = if is_emission_free { 20.0 } else { 0.0 };
+                    let range_m = distance_m * (1.0 + 0.01 * draws.bell()) * (1.0 + scale) + bias_m + excess_m;
+                    Ranging::single(station.id, range_m, 0.01 * range_m)
+                })
+                .collect();
+            let fix = if is_emission_free {
+                Differences.solve(&ranges, &stations, None)
+            } else {
+                Nls.solve(&ranges, &stations, None)
+            };
+            session.take(&fix.unwrap());
+        }
+        session.verdict()
+    }
+
+    #[test]
+    fn a_wrong_speed_of_sound_is_found_with_its_error_with_and_without_the_time_of_emission() {
+        for (is_free, scale) in [(false, 0.01), (true, 0.01), (true, -0.02), (true, 0.05)] {
+            let verdict = verdict(400, scale, 0.0, is_free, 3);
+            let found = verdict.scale.unwrap();
+            // With ranges that err by a share, stations all round hold a fix in its place.
+            assert!(found.is_proven || !is_free, "{verdict:?}");
+            assert!(found.value.abs() > 10.0 * found.sigma, "{verdict:?}");
+            assert!((found.value - scale).abs() < 4.0 * found.sigma + 0.1 * scale.abs(), "{scale}: {found:?}");
+            assert!(verdict.stations.iter().all(|(_, wrong)| !wrong.is_proven), "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_station_that_is_always_late_is_named() {
+        for is_free in [false, true] {
+            let verdict = verdict(400, 0.0, 0.15, is_free, 4);
+            let proven: Vec<StationId> =
+                verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven).map(|(id, _)| *id).collect();
+            assert_eq!(proven, [StationId(3)], "{verdict:?}");
+            assert!(!verdict.scale.unwrap().is_proven, "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn sound_sessions_are_not_blamed() {
+        let blamed = (0..200).filter(|seed| verdict(40, 0.0, 0.0, seed % 2 == 0, *seed).is_wrong()).count();
+        assert!(blamed <= 1, "{blamed} of 200");
+    }
+
+    #[test]
+    fn four_arrivals_in_one_place_do_not_show_the_scale() {
+        let stations = ring(4, 10.0);
+        let mut session = Session::new(&stations, true);
+        let ranges: Vec<Ranging> =
+            stations.iter().map(|s| Ranging::single(s.id, 30.0, 0.3)).collect();
+        session.take(&Differences.solve(&ranges, &stations, None).unwrap());
+        assert_eq!(session.scale(), None);
+    }
+}

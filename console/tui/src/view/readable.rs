@@ -1,0 +1,30 @@
+//! Nothing on the screen but what can be seen, whoever wrote the text.
+
+use foreign::is_plain;
+use ratatui::buffer::Buffer;
+
+/// Leaves out of every cell what is not plain; a cell with nothing else shows that there was something.
+pub(super) fn make(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        if !cell.symbol().chars().all(is_plain) {
+            let seen: String = cell.symbol().chars().filter(|c| is_plain(*c)).collect();
+            cell.set_symbol(if seen.is_empty() { "�" } else { &seen });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ratatui::layout::Rect;
+
+    #[test]
+    fn no_cell_turns_its_line_around() {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 3, 1));
+        for (cell, symbol) in buffer.content.iter_mut().zip(["a\u{202e}", "\u{9b}", "u\u{308}"]) {
+            cell.set_symbol(symbol);
+        }
+        make(&mut buffer);
+        assert_eq!(buffer.content.iter().map(|cell| cell.symbol()).collect::<String>(), "a�u\u{308}");
+    }
+}
