@@ -20,7 +20,8 @@ impl Draw {
 fn fly(name: &str, planner: &str, seed: u64, set: &[String]) -> Ended {
     let bench = Bench::new();
     let seed = seed.to_string();
-    let mut more = vec!["--no-record", "--planner", planner, "--seed", &seed, "--set", "mission.time_limit_s=100000"];
+    let mut more =
+        vec!["--no-record", "--planner", planner, "--seed", &seed, "--set", "mission.time_limit_s=100000"];
     more.extend(set.iter().flat_map(|setting| ["--set", setting]));
     bench.fly(&scenario(name), &more)
 }

@@ -40,7 +40,9 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
 /// Warns of a scan with so little clearance that the position error may use it up, and of stations on a line.
 pub(crate) fn warn_of_positions(scenario: &Scenario) {
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
-    for warning in [clearance_warning(mission, &drawing), mirror_warning(mission, &drawing)].into_iter().flatten() {
+    for warning in
+        [clearance_warning(mission, &drawing), mirror_warning(mission, &drawing)].into_iter().flatten()
+    {
         warn_line(&format!("warning: {}: {warning}", scenario.shown_name));
     }
 }

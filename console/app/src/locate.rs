@@ -21,7 +21,6 @@ use report::{
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
 use serde::Serialize;
-use world::StationId;
 use std::{
     collections::BTreeMap,
     fs::File,
@@ -29,6 +28,7 @@ use std::{
     path::Path,
     process::ExitCode,
 };
+use world::StationId;
 
 /// The figures as JSON.
 #[derive(Serialize)]
@@ -138,11 +138,7 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(exit_code(result, kept.as_ref())))
 }
 
-fn located(
-    args: &LocateArgs,
-    task: &Task,
-    survey: &Survey,
-) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
+fn located(args: &LocateArgs, task: &Task, survey: &Survey) -> anyhow::Result<(Tally, Doubts, Option<Kept>)> {
     let scenario = task.scenario;
     let mut table = args.output.as_deref().map(|file| table(file, scenario)).transpose()?;
     let mut log = if args.no_record {
@@ -221,7 +217,10 @@ fn session<'a>(scenario: &'a Scenario, survey: &Survey) -> Session<'a> {
     let verdict = &survey.verdict;
     let of = |wrong: &Wrong| TooLong { value: wrong.value, sigma: wrong.sigma, proven: wrong.is_proven };
     let station = |(id, wrong): &(StationId, Wrong)| (name_of(scenario, id.0), of(wrong));
-    Session { scale: verdict.scale.as_ref().map(of), stations_m: verdict.stations.iter().map(station).collect() }
+    Session {
+        scale: verdict.scale.as_ref().map(of),
+        stations_m: verdict.stations.iter().map(station).collect(),
+    }
 }
 
 fn repeated<'a>(scenario: &'a Scenario, survey: &Survey) -> Option<RepeatedReadings<'a>> {

@@ -36,10 +36,7 @@ impl Braking {
     /// assert_eq!(Braking::of(&limits).tick_s, 0.1);
     /// ```
     pub fn of(limits: &Limits) -> Self {
-        Self {
-            acceleration_m_per_s2: limits.acceleration_m_per_s2.max(0.0),
-            tick_s: limits.tick_s.max(0.0),
-        }
+        Self { acceleration_m_per_s2: limits.acceleration_m_per_s2.max(0.0), tick_s: limits.tick_s.max(0.0) }
     }
 
     /// Way from the moment at which a robot of some speed begins to brake until it stands, metres; infinite for one that

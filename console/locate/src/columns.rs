@@ -128,7 +128,9 @@ impl Columns {
         } else if measured > 1 {
             Some("more than one column says what was measured; keep one of range, arrival and tdoa")
         } else if !has_time {
-            Some("no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` do without")
+            Some(
+                "no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` do without",
+            )
         } else if !is_there(RANGE) && sound_speed_m_s.is_none() {
             Some("times need the speed of sound: add --sound-speed with metres per second")
         } else if is_there(TRUE_X) != is_there(TRUE_Y) {
@@ -162,7 +164,11 @@ impl Columns {
     /// Columns that say nothing here.
     pub(crate) fn ignored(&self) -> impl Iterator<Item = &str> {
         let is_used = |index: usize| self.at.iter().flatten().any(|(used, _)| *used == index);
-        self.names.iter().enumerate().filter(move |(index, _)| !is_used(*index)).map(|(_, name)| name.as_str())
+        self.names
+            .iter()
+            .enumerate()
+            .filter(move |(index, _)| !is_used(*index))
+            .map(|(_, name)| name.as_str())
     }
 
     /// Whether the motion between readings was measured.
@@ -266,7 +272,10 @@ impl Columns {
         let number = parsed.ok().filter(|number| number.is_finite() || is_word);
         let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;
         if factor <= DATED {
-            let what = format!("`{text}` has no unit; call the column t_s, t_ms or t_us, or write dates, as {}", clock::EXAMPLE);
+            let what = format!(
+                "`{text}` has no unit; call the column t_s, t_ms or t_us, or write dates, as {}",
+                clock::EXAMPLE
+            );
             return Err(self.problem(line, column, what));
         }
         Ok(Some(number * factor))

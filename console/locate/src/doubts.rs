@@ -38,7 +38,8 @@ impl Doubts {
             Sides::ByWalls => self.sides_by_walls += 1,
             Sides::ByBelief => self.sides_by_track += 1,
             Sides::Open { contradicts, .. } => {
-                self.contradicts_start |= contradicts && self.sides_by_track + self.sides_by_walls + self.sides_open == 0;
+                self.contradicts_start |=
+                    contradicts && self.sides_by_track + self.sides_by_walls + self.sides_open == 0;
                 self.sides_open += 1;
             }
         }

@@ -18,9 +18,9 @@ mod rows;
 mod tally;
 
 pub use columns::Kind;
+pub use doubts::{Doubts, Refused};
 pub use fixes::Fixes;
 pub use found::Found;
-pub use doubts::{Doubts, Refused};
 pub use located::{Survey, Task};
 pub use measured::MeasuredWriter;
 pub use problem::Problem;

@@ -139,8 +139,7 @@ impl Task<'_> {
         if bad > 0 && (is_cut || !self.skips_bad_rows) {
             return Err(bad_input(self.listed(&problems, bad)));
         }
-        let (first, last) =
-            first.zip(last).ok_or_else(|| bad_input(format!("{}: no rows", self.shown)))?;
+        let (first, last) = first.zip(last).ok_or_else(|| bad_input(format!("{}: no rows", self.shown)))?;
         let calibration = self.found(&columns)?;
         let assumed = match calibration {
             None if self.scenario.mission.locating.calibrate_sound_speed => self.found_under_way(&columns)?,
@@ -188,10 +187,8 @@ impl Task<'_> {
         let mut opened = Flight::prepare(self.scenario, false).opened();
         if let EventKind::RunOpened(run) = &mut opened.kind {
             run.mission = config.clone();
-            run.measured = Some(Measured {
-                file: self.shown.to_owned(),
-                sha256: recording::sha256(self.file)?,
-            });
+            run.measured =
+                Some(Measured { file: self.shown.to_owned(), sha256: recording::sha256(self.file)? });
         }
         let drawing = self.scenario.sim.world.as_drawn();
         let mut track = Track {
@@ -208,7 +205,8 @@ impl Task<'_> {
         };
         take(&[opened]);
         let scatter = self.scatter(survey.kind);
-        let doubtful_scale = survey.verdict.scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
+        let doubtful_scale =
+            survey.verdict.scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         for mut moment in moments.flatten() {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {

@@ -68,7 +68,18 @@ struct Back {
 impl Moments {
     pub(crate) fn new(rows: Rows, columns: Columns, possible: Possible) -> Self {
         let cells = StringRecord::new();
-        Self { rows, columns, cells, open: None, possible, last: None, back: None, waiting: None, left_behind: 0, count: 0 }
+        Self {
+            rows,
+            columns,
+            cells,
+            open: None,
+            possible,
+            last: None,
+            back: None,
+            waiting: None,
+            left_behind: 0,
+            count: 0,
+        }
     }
 
     /// The next row, or what is wrong with it.
@@ -128,7 +139,10 @@ impl Moments {
             1 => String::new(),
             _ => format!("; the {rows} rows up to line {last_line} are earlier than that"),
         };
-        let what = format!("time goes back here: {earlier}, after {later} in line {}{until}; sort the rows by time", before.line);
+        let what = format!(
+            "time goes back here: {earlier}, after {later} in line {}{until}; sort the rows by time",
+            before.line
+        );
         self.columns.wrong_time(first.line, what)
     }
 
@@ -170,15 +184,14 @@ fn belongs(row: &Row, first: &Row) -> bool {
 
 impl Moment {
     fn of(first: &Row) -> Self {
-        let mut moment =
-            Self {
-                t_s: first.t_s,
-                ranges: Vec::new(),
-                heard: Vec::new(),
-                odometry: None,
-                truth: None,
-                is_dated: first.is_dated,
-            };
+        let mut moment = Self {
+            t_s: first.t_s,
+            ranges: Vec::new(),
+            heard: Vec::new(),
+            odometry: None,
+            truth: None,
+            is_dated: first.is_dated,
+        };
         moment.add(first);
         moment
     }

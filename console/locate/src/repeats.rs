@@ -69,13 +69,16 @@ impl Once {
     fn of(moment: &Moment, scatter: &Scatter) -> Self {
         let mut once = Self { sum: 0.0, degrees: 0, worst: None };
         for set in &moment.ranges {
-            let rows = || moment.heard.iter().filter(|heard| heard.station == set.station && heard.range_m.is_finite());
+            let rows = || {
+                moment.heard.iter().filter(|heard| heard.station == set.station && heard.range_m.is_finite())
+            };
             let count = u32::try_from(rows().count()).unwrap_or(u32::MAX);
             if count < 2 {
                 continue;
             }
             let weight: f64 = rows().map(|heard| f64::from(heard.repetitions)).sum();
-            let mean_m = rows().map(|heard| heard.range_m * f64::from(heard.repetitions)).sum::<f64>() / weight;
+            let mean_m =
+                rows().map(|heard| heard.range_m * f64::from(heard.repetitions)).sum::<f64>() / weight;
             let variance_m2 = scatter.variance_m2(mean_m);
             let squares = |heard: &crate::columns::Heard| {
                 let off_m = heard.range_m - mean_m;
@@ -85,7 +88,8 @@ impl Once {
             let ends = rows().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heard| {
                 (least.min(heard.range_m), most.max(heard.range_m))
             });
-            let repeated = Repeated { station: set.station, count, apart_m: ends.1 - ends.0, t_s: moment.t_s };
+            let repeated =
+                Repeated { station: set.station, count, apart_m: ends.1 - ends.0, t_s: moment.t_s };
             let excess = sum / f64::from(count - 1);
             if once.worst.is_none_or(|(worst, _)| excess > worst) {
                 once.worst = Some((excess, repeated));

@@ -302,7 +302,10 @@ fn folders_and_pipes_are_refused_and_not_waited_for() {
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
     for file in [dir.path(), &pipe] {
         let (scenario, other) = (scenario(), Readable::new("r.csv", ""));
-        let error = Task { file, shown: file.to_str().unwrap(), ..other.task(&scenario) }.survey().unwrap_err().to_string();
+        let error = Task { file, shown: file.to_str().unwrap(), ..other.task(&scenario) }
+            .survey()
+            .unwrap_err()
+            .to_string();
         assert!(error.ends_with("it is not a regular file"), "{error}");
     }
 }

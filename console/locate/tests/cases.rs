@@ -136,7 +136,8 @@ fn two_emissions_under_one_time_are_asked_about() {
 #[test]
 fn time_that_goes_back_is_one_error_that_names_both_rows() {
     let scenario = scenario(AROUND, [0.0, 0.0]);
-    let text = "t_s,station,range_m\n1,A0,4.5\n3,A0,4.5\n3,A1,3\n0.5,A0,4.5\n1,A1,3\n2.5,A1,3\n3,A2,4.7\n4,A0,4.5\n";
+    let text =
+        "t_s,station,range_m\n1,A0,4.5\n3,A0,4.5\n3,A1,3\n0.5,A0,4.5\n1,A1,3\n2.5,A1,3\n3,A2,4.7\n4,A0,4.5\n";
     let refused = run(&scenario, text.as_bytes(), |_| {}).err().unwrap();
     assert_eq!(
         refused,
@@ -196,7 +197,12 @@ fn motion_that_was_not_measured_is_not_none() {
     let [_, most_m] = tally.error_95_m.unwrap();
     assert!((1.9..2.4).contains(&most_m), "5 s at 0.4 m/s: {most_m}");
     // Rows that are missing altogether.
-    let gap: String = text.lines().enumerate().filter(|(k, _)| !(20..=45).contains(k)).map(|(_, line)| format!("{line}\n")).collect();
+    let gap: String = text
+        .lines()
+        .enumerate()
+        .filter(|(k, _)| !(20..=45).contains(k))
+        .map(|(_, line)| format!("{line}\n"))
+        .collect();
     let most_m = located(&scenario, &gap).tally.error_95_m.unwrap()[1];
     assert!(most_m > 3.0, "{most_m}");
 }

@@ -162,7 +162,8 @@ fn the_error_does_not_depend_on_how_often_rows_come() {
     for seed in 0..6 {
         let errors = |rate_hz: u32| {
             let set = Set::outage(seed, rate_hz);
-            let scenario = Scenario::parse(&set.scenario, "set.toml").map_err(|errors| errors.render()).unwrap();
+            let scenario =
+                Scenario::parse(&set.scenario, "set.toml").map_err(|errors| errors.render()).unwrap();
             let dir = tempfile::tempdir().unwrap();
             let file = dir.path().join("set.csv");
             std::fs::write(&file, &set.readings).unwrap();

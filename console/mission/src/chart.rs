@@ -2,10 +2,10 @@
 
 use crate::{
     ask::{Site, SiteObstacle, SiteZone},
-    governor::{Outline, Solid},
     config::MissionConfig,
     drift::Drift,
     event::EventKind,
+    governor::{Outline, Solid},
 };
 use nalgebra::{Isometry2, Translation2};
 use planner_api as api;

@@ -38,8 +38,8 @@ use crate::{
 };
 pub use driving::Sending;
 use floor::ScannedFloor;
-use governing::Governor;
 pub use fork::Fork;
+use governing::Governor;
 use planner_api::{Drive, Reason};
 use rules::{PlannerSeen, Rules, Seen};
 use shadow::Shadow;

@@ -3,8 +3,8 @@
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
 use positioning::{
-    Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner, PositionerConfig, RangeNoise,
-    Sides,
+    Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner, PositionerConfig,
+    RangeNoise, Sides,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -5,8 +5,8 @@ pub mod adviser;
 use crate::{
     fix::{Ranging, ellipse_95},
     noise::{RangeNoise, Timing},
-    sides::mirrored,
     quality::{NO_GEOMETRY, inverse_of},
+    sides::mirrored,
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};

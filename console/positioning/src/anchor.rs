@@ -85,7 +85,8 @@ impl Anchor {
     /// The range with the same error at another distance.
     pub(crate) fn at_range(&self, range_m: f64) -> Self {
         let sigma_m = if self.timing_sigma_m > 0.0 {
-            share_sigma_m(self.sigma_m, self.timing_sigma_m, range_m / self.range_m).hypot(self.timing_sigma_m)
+            share_sigma_m(self.sigma_m, self.timing_sigma_m, range_m / self.range_m)
+                .hypot(self.timing_sigma_m)
         } else {
             self.sigma_m / self.range_m * range_m
         };

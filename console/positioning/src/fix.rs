@@ -39,7 +39,8 @@ impl Ranging {
     /// The standard deviation that the error has at a distance, metres.
     pub fn sigma_at_m(&self, distance_m: f64) -> f64 {
         if self.timing_sigma_m > 0.0 {
-            share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m).hypot(self.timing_sigma_m)
+            share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m)
+                .hypot(self.timing_sigma_m)
         } else {
             self.sigma_m * distance_m / self.range_m
         }

@@ -187,7 +187,10 @@ mod tests {
                 let share_m = share_sigma_m / f64::from(n).sqrt();
                 let said_m = timing.mean_sigma_m(share_sigma_m, f64::from(n)).hypot(share_m);
                 let found_m = measured_m(timing, share_sigma_m, n);
-                assert!((said_m / found_m - 1.0).abs() < 0.06, "{jitter_m} {share_sigma_m} {n}: {said_m} {found_m}");
+                assert!(
+                    (said_m / found_m - 1.0).abs() < 0.06,
+                    "{jitter_m} {share_sigma_m} {n}: {said_m} {found_m}"
+                );
             }
         }
     }

@@ -89,12 +89,13 @@ impl Possible {
         }
         let first_m = all.iter().map(|(_, range_m)| *range_m).fold(f64::INFINITY, f64::min);
         sorted_out(sets, |set, range_m| {
-            let is_refused = refused.iter().any(|(reach, refused_m)| {
-                reach.id == set.station && refused_m.total_cmp(&range_m).is_eq()
-            });
+            let is_refused = refused
+                .iter()
+                .any(|(reach, refused_m)| reach.id == set.station && refused_m.total_cmp(&range_m).is_eq());
             let first = all.iter().find(|(_, kept_m)| kept_m.total_cmp(&first_m).is_eq());
             let reach = self.stations.iter().find(|reach| reach.id == set.station);
-            let most_m = first.zip(reach).map_or(0.0, |((first, _), reach)| first_m + self.apart_m(first, reach));
+            let most_m =
+                first.zip(reach).map_or(0.0, |((first, _), reach)| first_m + self.apart_m(first, reach));
             is_refused.then_some(most_m)
         })
     }

@@ -56,7 +56,8 @@ pub struct Verdict {
 impl Verdict {
     /// Whether an error is proven.
     pub fn is_wrong(&self) -> bool {
-        self.scale.is_some_and(|scale| scale.is_proven) || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
+        self.scale.is_some_and(|scale| scale.is_proven)
+            || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
     }
 }
 
@@ -144,9 +145,11 @@ impl Session {
 
     /// What the session says: the error that explains most, and others only if they are there beside it.
     pub fn verdict(&self) -> Verdict {
-        let explained = |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));
+        let explained =
+            |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));
         let first = (0..self.score.len()).max_by(|a, b| explained(*a).total_cmp(&explained(*b))).unwrap_or(0);
-        let first = Some(first).filter(|first| self.alone(*first).is_some_and(|found| self.is_proven(*first, found)));
+        let first =
+            Some(first).filter(|first| self.alone(*first).is_some_and(|found| self.is_proven(*first, found)));
         let wrong = |error: usize| {
             let alone = self.alone(error)?;
             let is_proven = match first {
@@ -161,7 +164,12 @@ impl Session {
         Verdict {
             fixes: self.fixes,
             scale: wrong(0),
-            stations: self.stations.iter().zip(1..).filter_map(|(s, error)| Some((s.id, wrong(error)?))).collect(),
+            stations: self
+                .stations
+                .iter()
+                .zip(1..)
+                .filter_map(|(s, error)| Some((s.id, wrong(error)?)))
+                .collect(),
         }
     }
 }
@@ -222,7 +230,8 @@ mod tests {
                     let distance_m = (truth - station.position).norm();
                     let bias_m = if station.id == StationId(3) { bias_m } else { 0.0 };
                     let excess_m = if is_emission_free { 20.0 } else { 0.0 };
-                    let range_m = distance_m * (1.0 + 0.01 * draws.bell()) * (1.0 + scale) + bias_m + excess_m;
+                    let range_m =
+                        distance_m * (1.0 + 0.01 * draws.bell()) * (1.0 + scale) + bias_m + excess_m;
                     Ranging::single(station.id, range_m, 0.01 * range_m)
                 })
                 .collect();
@@ -244,7 +253,10 @@ mod tests {
             // With ranges that err by a share, stations all round hold a fix in its place.
             assert!(found.is_proven || !is_free, "{verdict:?}");
             assert!(found.value.abs() > 10.0 * found.sigma, "{verdict:?}");
-            assert!((found.value - scale).abs() < 4.0 * found.sigma + 0.1 * scale.abs(), "{scale}: {found:?}");
+            assert!(
+                (found.value - scale).abs() < 4.0 * found.sigma + 0.1 * scale.abs(),
+                "{scale}: {found:?}"
+            );
             assert!(verdict.stations.iter().all(|(_, wrong)| !wrong.is_proven), "{verdict:?}");
         }
     }
@@ -270,8 +282,7 @@ mod tests {
     fn four_arrivals_in_one_place_do_not_show_the_scale() {
         let stations = ring(4, 10.0);
         let mut session = Session::new(&stations, true);
-        let ranges: Vec<Ranging> =
-            stations.iter().map(|s| Ranging::single(s.id, 30.0, 0.3)).collect();
+        let ranges: Vec<Ranging> = stations.iter().map(|s| Ranging::single(s.id, 30.0, 0.3)).collect();
         session.take(&Differences.solve(&ranges, &stations, None).unwrap());
         assert_eq!(session.scale(), None);
     }

@@ -14,8 +14,8 @@ mod simulator;
 mod sweep;
 
 pub use config::{
-    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault, TimingErrors,
-    TetherTruth, Track, Truth,
+    AeConfig, BehindColumns, Disturbances, Mover, NoiseModel, RobotConfig, SimConfig, StationFault,
+    TetherTruth, TimingErrors, Track, Truth,
 };
 pub use ranging::Sounder;
 pub use simulator::Simulator;

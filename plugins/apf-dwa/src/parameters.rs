@@ -43,14 +43,26 @@ const LAND_SPEED: ParamSpec = float("land_speed_max_m_per_s", "Speed on land", "
 const LAND_TURN: ParamSpec = float("land_turn_rad_per_s", "Turn rate on land", "rad/s", 0.0, 10.0, 0.0)
     .help("Largest turn rate on dry floor; 0 takes the robot's own. Table 1 of the paper has 0.12.")
     .group(ROBOT);
-const WATER_SPEED: ParamSpec =
-    float("underwater_speed_max_m_per_s", "Speed under water", "m/s", 0.0, 10.0, 0.0)
-        .help("Largest speed in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.23.")
-        .group(ROBOT);
-const WATER_TURN: ParamSpec =
-    float("underwater_turn_rad_per_s", "Turn rate under water", "rad/s", 0.0, 10.0, 0.0)
-        .help("Largest turn rate in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.31.")
-        .group(ROBOT);
+const WATER_SPEED: ParamSpec = float(
+    "underwater_speed_max_m_per_s",
+    "Speed under water",
+    "m/s",
+    0.0,
+    10.0,
+    0.0,
+)
+.help("Largest speed in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.23.")
+.group(ROBOT);
+const WATER_TURN: ParamSpec = float(
+    "underwater_turn_rad_per_s",
+    "Turn rate under water",
+    "rad/s",
+    0.0,
+    10.0,
+    0.0,
+)
+.help("Largest turn rate in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.31.")
+.group(ROBOT);
 const TRANSITION: ParamSpec = int("transition_steps", "Steps of transition", "", -1, 10_000, -1)
     .help("Steps in which the limits of one mode change into those of the other; 0 is at once, -1 the robot's own.")
     .group(ROBOT);
@@ -143,7 +155,8 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
 /// How the robot walks and swims, never faster than the robot itself.
 fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
     let own = Pace { v_max_m_per_s: site.limits.v_max_m_per_s, w_max_rad_per_s: site.limits.w_max_rad_per_s };
-    let own = site.limits.amphibious.unwrap_or(Amphibious { land: own, underwater: own, transition_steps: 0 });
+    let own =
+        site.limits.amphibious.unwrap_or(Amphibious { land: own, underwater: own, transition_steps: 0 });
     let pace = |own: Pace, speed: &str, turn: &str| Pace {
         v_max_m_per_s: or_own(config.float(speed), own.v_max_m_per_s),
         w_max_rad_per_s: or_own(config.float(turn), own.w_max_rad_per_s),

@@ -131,7 +131,8 @@ impl Follow {
         let is_last = sensed.targets_ahead.len() <= 1 && sensed.path_ahead.len() <= 1;
         let tick = Tick { t_s: sensed.t_s, pose: sensed.pose, target, is_last, bodies: &bodies };
         let decision = self.pilot.pursue(&self.flight, &tick, target);
-        let wanted = decision.velocity.cap_magnitude(steer::speed_ahead(at, sensed.path_ahead, self.pilot.limits()));
+        let wanted =
+            decision.velocity.cap_magnitude(steer::speed_ahead(at, sensed.path_ahead, self.pilot.limits()));
         let limits = self.pilot.limits();
         let drive = match limits.motion {
             Motion::Unicycle => steer::twist(wanted, sensed.pose.heading_rad, (target - at).norm(), limits),

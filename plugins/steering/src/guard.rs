@@ -27,13 +27,7 @@ fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
 /// Toward a contact at distance `d` no more than `(d - keep_m) / 0.5 s` is allowed, and no more than what the robot can stop
 /// from within `d - keep_m`, so it slides along what it would run into; nearer than `keep_m` it is driven away. Where that is impossible, as in a gap narrower than both
 /// distances together, it may move along the gap but not across.
-pub fn slide(
-    wanted: Vector,
-    contacts: &[Contact],
-    keep_m: f64,
-    v_max: f64,
-    braking: &Braking,
-) -> Vector {
+pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64, braking: &Braking) -> Vector {
     let planes: Vec<HalfPlane> = contacts
         .iter()
         .map(|c| HalfPlane {

@@ -54,7 +54,10 @@ pub(super) fn human(
     text.lines("sides", sides(scenario, doubts));
     if let Some(off_m) = start_off_m(scenario, tally) {
         let note = "the track is wrong until three fixes in a row agree; correct the start";
-        text.line("start", format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"));
+        text.line(
+            "start",
+            format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"),
+        );
     }
     tally.failed.iter().for_each(|(why, count)| text.line("no fix", format!("{count} times: {why}")));
     for (id, count) in &tally.left_out {
@@ -127,7 +130,8 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
         let (percent, sigma) = (scale.value.abs() * 100.0, scale.sigma * 100.0);
         let long = if scale.value > 0.0 { "too long" } else { "too short" };
         let speed = args.sound_speed.map(|speed| speed / (1.0 + scale.value));
-        let fits = speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
+        let fits =
+            speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
         lines.push(format!(
             "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of sound, or find it with \
              --find sound-speed"
@@ -157,7 +161,9 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
 /// Stations that were read several times in one emission, and scatter too much for repetitions.
 fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let repeats = &survey.repeats;
-    let Some(worst) = repeats.worst.filter(|_| repeats.are_wide() || repeats.wide > 0) else { return Vec::new() };
+    let Some(worst) = repeats.worst.filter(|_| repeats.are_wide() || repeats.wide > 0) else {
+        return Vec::new();
+    };
     let mut lines = vec![format!(
         "{} has {} readings at {:.3} s, {:.0} mm apart: repetitions or another emission?",
         name_of(scenario, worst.station.0),
@@ -189,7 +195,11 @@ fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     lines.extend(doubts.impossible.iter().map(|(id, refused)| {
         let (name, count) = (name_of(scenario, *id), refused.count);
         let times = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
-        let range = if refused.range_m.is_finite() { format!("{:.3} m", refused.range_m) } else { "no number".into() };
+        let range = if refused.range_m.is_finite() {
+            format!("{:.3} m", refused.range_m)
+        } else {
+            "no number".into()
+        };
         format!("station {name}: {range} at {:.3} s{times}; at most {:.2} m", refused.t_s, refused.most_m)
     }));
     lines
@@ -203,7 +213,8 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
         return Vec::new();
     }
     let line = line_of_stations(&scenario.sim.world.stations);
-    let mut lines = vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits as well")];
+    let mut lines =
+        vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits as well")];
     if sides_by_walls > 0 {
         lines.push(format!("{sides_by_walls} decided by the wall: the other place lies behind it"));
     }

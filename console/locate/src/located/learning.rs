@@ -102,7 +102,11 @@ impl Task<'_> {
         if sigma < UNSEEN_SIGMA_RATIO {
             return Ok(Found::of_scale((scale, sigma)));
         }
-        let known = if sigma.is_finite() { format!("only to ± {:.0} %", sigma * 100.0) } else { "not at all".into() };
+        let known = if sigma.is_finite() {
+            format!("only to ± {:.0} %", sigma * 100.0)
+        } else {
+            "not at all".into()
+        };
         Err(bad_input(format!(
             "{}: the speed of sound shows {known} in these differences of arrivals; it takes fixes in many places, each with five \
              stations or more, or the time of emission (emitted_s)",

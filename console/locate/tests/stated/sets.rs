@@ -98,7 +98,10 @@ impl Draw {
             // From exactly on a line to a hundredth of the radius beside it.
             let off = if seed % 2 == 0 { 0.0 } else { 0.01 * radius_m };
             (0..4)
-                .map(|k| along * (radius_m * (f64::from(k) / 1.5 - 1.0) * 0.98) + across * rng.random_range(-1.0..1.0) * off)
+                .map(|k| {
+                    along * (radius_m * (f64::from(k) / 1.5 - 1.0) * 0.98)
+                        + across * rng.random_range(-1.0..1.0) * off
+                })
                 .map(Point::from)
                 .collect()
         } else {
@@ -122,7 +125,9 @@ impl Draw {
         match self.noise {
             "gaussian" => self.ratio * self.normal(),
             "uniform" => self.ratio * self.rng.random_range(-1.0..1.0),
-            _ => self.ratio * f64::midpoint(self.rng.random_range(-1.0..1.0), self.rng.random_range(-1.0..1.0)),
+            _ => {
+                self.ratio * f64::midpoint(self.rng.random_range(-1.0..1.0), self.rng.random_range(-1.0..1.0))
+            }
         }
     }
 
@@ -225,7 +230,9 @@ impl Set {
             if !cycle || (has_gap(k) && (250..350).contains(&k)) {
                 continue;
             }
-            let bad = if matches!(kind, Kind::Sentinels | Kind::SentinelArrivals) && draw.rng.random_range(0.0..1.0) < 0.3 {
+            let bad = if matches!(kind, Kind::Sentinels | Kind::SentinelArrivals)
+                && draw.rng.random_range(0.0..1.0) < 0.3
+            {
                 draw.rng.random_range(0..draw.stations.len())
             } else {
                 usize::MAX
@@ -280,7 +287,8 @@ impl Set {
         for (k, (pose, _)) in (0_u32..).zip(&drive) {
             let (t_s, at) = (f64::from(k) / 10.0, pose.position);
             let is_quiet = (20.0..20.0 + outage_s).contains(&t_s);
-            let errors: Vec<f64> = (0..draw.stations.len() as u32 * draw.repetitions).map(|_| draw.error()).collect();
+            let errors: Vec<f64> =
+                (0..draw.stations.len() as u32 * draw.repetitions).map(|_| draw.error()).collect();
             if k % (10 / rate_hz) == 0 {
                 let _ = writeln!(text, "{t_s},,,{},{}", at.x, at.y);
             }

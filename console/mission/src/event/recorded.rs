@@ -109,9 +109,7 @@ impl EventKind {
             Self::BetterPlanned { path, complete, legs, cuts, .. } => {
                 without_return_path(0, path, *complete, legs, cuts).map(Given::Plan)
             }
-            Self::Commanded { ask: Some(_), command, asked } => {
-                Ok(Given::Command(asked.unwrap_or(*command)))
-            }
+            Self::Commanded { ask: Some(_), command, asked } => Ok(Given::Command(asked.unwrap_or(*command))),
             Self::Snapshotted { bytes, .. } => Ok(Given::State { bytes: *bytes }),
             Self::Discarded { plan: Some(plan), .. } => return plan.recorded_answer(is_plan),
             Self::Discarded { .. } if is_plan => Ok(Given::Plan(Plan::default())),

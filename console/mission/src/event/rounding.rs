@@ -169,7 +169,9 @@ fn round_fix(fix: &mut Fix) {
     for (_, why) in &mut fix.excluded {
         match why {
             Exclusion::Residual { residual_m: one, gate_m: other }
-            | Exclusion::Impossible { range_m: one, most_m: other } => [one, other].into_iter().for_each(round),
+            | Exclusion::Impossible { range_m: one, most_m: other } => {
+                [one, other].into_iter().for_each(round)
+            }
             Exclusion::Silent | Exclusion::ByOrder => {}
         }
     }

@@ -24,10 +24,8 @@ fn here(pose: Pose, limits: Limits) -> Here {
 fn room() -> (Boundary, [Shape; 2]) {
     let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
     let wall = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
-    let bar = Shape::Polyline {
-        points: vec![Point::new(-2.0, -1.5), Point::new(0.5, -1.5)],
-        half_width_m: 0.05,
-    };
+    let bar =
+        Shape::Polyline { points: vec![Point::new(-2.0, -1.5), Point::new(0.5, -1.5)], half_width_m: 0.05 };
     (wall, [Shape::Disc { center: Point::new(1.5, 1.0), radius_m: 0.4 }, bar])
 }
 
@@ -117,8 +115,7 @@ fn a_robot_that_touches_something_may_leave_it_and_not_go_on() {
 
 #[test]
 fn no_robot_is_faster_than_it_can_stop_within_what_it_sees() {
-    let short_sighted =
-        Limits { sensing_range_m: 0.5, ..limits(Motion::Unicycle, 1.5, 1.0, 0.2, 0.1) };
+    let short_sighted = Limits { sensing_range_m: 0.5, ..limits(Motion::Unicycle, 1.5, 1.0, 0.2, 0.1) };
     let open = Surroundings { solids: Vec::new() };
     let mut momentum = Momentum::NONE;
     for _ in 0..200 {

@@ -53,7 +53,10 @@ fn a_column_casts_a_shadow_where_two_stations_are_left() {
     let world = tank(paper_stations(), &[(5.0, 0.0, 0.5)]);
     let accuracy = AccuracyMap::new(&world, &FORECAST);
     let (behind, beside) = (Point::new(2.0, 0.0), Point::new(2.0, 4.0));
-    assert_eq!(accuracy.at(behind).unwrap(), Accuracy { error_95_m: None, gdop: None, heard: 2, mirror: None });
+    assert_eq!(
+        accuracy.at(behind).unwrap(),
+        Accuracy { error_95_m: None, gdop: None, heard: 2, mirror: None }
+    );
     assert_eq!(accuracy.at(beside).unwrap().heard, 3);
     assert_eq!(accuracy.at(Point::new(5.0, 0.0)), None, "a column is no floor");
     let through = AccuracyMap::new(&world, &Forecast { needs_line_of_sight: false, ..FORECAST });

@@ -1,7 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use crate::{RangeNoise, draws::{Draws, paper_stations, ring}};
+use crate::{
+    RangeNoise,
+    draws::{Draws, paper_stations, ring},
+};
 use world::{Boundary, Point};
 
 fn config(stations: Vec<Station>, start: Pose) -> PositionerConfig {

@@ -40,7 +40,9 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
         b"uncounted" => read!(line, Uncounted { runs: Vec<CellRun>; }),
         b"ranged" => read!(line, Ranged { ranges: Vec<Ranging>; }),
         b"fixed" => read!(line, Fixed { fix: Fix; }),
-        b"commanded" => read!(line, Commanded { command: Command; ask: Option<AskId>, asked: Option<Command> }),
+        b"commanded" => {
+            read!(line, Commanded { command: Command; ask: Option<AskId>, asked: Option<Command> })
+        }
         b"tether_truth" => read!(
             line,
             TetherTruth { length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64; }

@@ -62,7 +62,10 @@ fn straight_s(mission: &MissionConfig, map: &ObstacleMap, stretch: &[Point]) -> 
     let squares = squared_speeds(mission, map, &places, &ways);
     let pairs = squares.windows(2).map(|pair| (pair[0].sqrt() + pair[1].sqrt()) / 2.0);
     let slowest = (mission.limits.acceleration_m_per_s2 * STEP_M).sqrt() / 2.0;
-    ways.iter().zip(pairs).map(|(way, speed)| way.norm() / speed.max(slowest.min(mission.limits.v_max_m_per_s))).sum()
+    ways.iter()
+        .zip(pairs)
+        .map(|(way, speed)| way.norm() / speed.max(slowest.min(mission.limits.v_max_m_per_s)))
+        .sum()
 }
 
 /// The squares of the speeds at the places of a stretch: as fast as each place allows, and as the robot gains and loses speed.
@@ -135,14 +138,18 @@ mod tests {
     #[test]
     fn a_robot_that_brakes_slowly_takes_longer() {
         let path = [(-5.0, 0.0), (2.5, 0.0), (2.5, 5.0), (-2.0, 5.0)];
-        let (quick, lazy) = (time_of(&with_acceleration(1.0), &path), time_of(&with_acceleration(0.1), &path));
+        let (quick, lazy) =
+            (time_of(&with_acceleration(1.0), &path), time_of(&with_acceleration(0.1), &path));
         assert!(lazy > quick + 10.0, "{quick} {lazy}");
     }
 
     #[test]
     fn beside_a_wall_it_is_as_fast_as_it_can_stop_straight_on() {
         let ring = |radius_m: f64| -> Vec<(f64, f64)> {
-            (0..=200).map(|k| (f64::from(k) * 0.0314).sin_cos()).map(|(s, c)| (radius_m * c, radius_m * s)).collect()
+            (0..=200)
+                .map(|k| (f64::from(k) * 0.0314).sin_cos())
+                .map(|(s, c)| (radius_m * c, radius_m * s))
+                .collect()
         };
         let mission = with_acceleration(0.05);
         let length_m = |radius_m: f64| 6.28 * radius_m;

@@ -9,8 +9,7 @@ use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Site, Zone, ZoneK
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use world::{
-    Amphibious,
-    Point, Vector,
+    Amphibious, Point, Vector,
     shape::rectangle,
     shortest::{NoWay, Way},
 };

@@ -114,15 +114,12 @@ impl FloorMaker {
         let is_home = |cell: usize| {
             self.connected.is_home(cell) && (self.floor.center(cell) - place).norm() <= reach_m + TIE_M
         };
-        if self.floor.cell_at(place).is_some_and(is_home) {
-            return true;
+        if let Some(is_reached) = self.floor.are_all_reachable_about(place) {
+            return is_reached;
         }
-        // What the tool reaches is nowhere narrower than its reach, so some cell about the place shows it.
-        let about = self.floor.cells_near(place, place, reach_m.max(2.0 * self.floor.cell_m));
-        about.iter().any(|cell| self.floor.is_reachable(*cell))
-            && (about.into_iter().any(is_home)
-                || self.room.places_near(place, reach_m).any(|near| self.leads_to(near))
-                || (self.room.has(place) && self.leads_to(place)))
+        self.room.places_near(place, reach_m).any(|near| self.leads_to(near))
+            || (self.room.has(place) && self.leads_to(place))
+            || self.floor.cells_near(place, place, reach_m).into_iter().any(is_home)
     }
 
     /// The floor as it is now.

@@ -6,7 +6,10 @@
 
 use planner_api::{Drive, Limits};
 use std::collections::VecDeque;
-use world::{Point, Vector, geometry::{Braking, wrap_angle_rad}};
+use world::{
+    Point, Vector,
+    geometry::{Braking, wrap_angle_rad},
+};
 
 /// Angle to the aim beyond which the robot turns on the spot, radians.
 const TURN_FIRST_RAD: f64 = 0.5;

@@ -10,7 +10,10 @@ fn event(kind: EventKind) -> Event {
 fn events() -> Vec<Event> {
     let ask = Some(AskId { worker: WorkerId(1), n: 4 });
     let command = Command::still(Status::Waiting);
-    vec![event(EventKind::Ordered { order: Order::Hold }), event(EventKind::Commanded { ask, command, asked: None })]
+    vec![
+        event(EventKind::Ordered { order: Order::Hold }),
+        event(EventKind::Commanded { ask, command, asked: None }),
+    ]
 }
 
 fn recorded(events: &[Event], is_cut: bool) -> RecordedTick {
