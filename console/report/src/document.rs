@@ -17,6 +17,8 @@ mod marks;
 mod page;
 mod run_part;
 mod sections;
+mod shapes;
+mod task;
 mod words;
 
 pub use dates::Date;
@@ -27,6 +29,7 @@ pub use located::{Located, Readings, located_json};
 pub use maps::Figure;
 pub use page::html;
 pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
+pub use task::TaskPart;
 pub use words::{is_placeholder, says_nothing};
 
 use crate::{
@@ -36,8 +39,10 @@ use crate::{
     record::Record,
     summary::{Coverage, REPORT_VERSION},
 };
+use indications::{Flown, Ground};
 use layers::Layers;
 use serde::Serialize;
+use shapes::Shapes;
 use world::Point;
 
 /// What is known beside the journals.
@@ -149,7 +154,8 @@ pub struct Document {
     pub contradiction: Option<String>,
     /// How much of the floor was scanned by all runs together.
     pub coverage: Coverage,
-    /// The account of the floor over all runs.
+    /// The account of the floor over all runs; left out if they were not there to scan it.
+    #[serde(skip_serializing_if = "Account::is_of_no_scan")]
     pub floor: Account,
     /// The runs, in the order given.
     pub runs: Vec<RunPart>,
@@ -165,6 +171,13 @@ pub struct Document {
     pub size: String,
     /// Whether the runs together were to scan the whole floor.
     pub is_whole_floor: bool,
+    /// Whether the runs were there to scan the floor; without that no floor was missed, and there is no account of it.
+    pub is_to_scan: bool,
+    /// What a run did that was not there to scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub task: Option<TaskPart>,
+    #[serde(skip)]
+    pub(crate) shapes: Shapes,
 }
 
 /// The pictures of a report.
@@ -211,23 +224,30 @@ impl Document {
         let located = Located::of(past);
         let Joined { run, scanned, evidence } = &all;
         let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
-        let mut floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
+        let is_to_scan = past.iter().all(|past| past.fold.has_floor_to_scan());
+        let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
         let tool_is_known = located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
-        if located.is_some() {
-            floor = located::without_task(floor, tool_is_known);
-        }
-        let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
-        let layers = Layers::new(run, scanned, evidence, &places);
-        let records: Vec<(&str, &Record)> =
-            past.iter().map(|past| (past.name.as_str(), &past.record)).collect();
-        let thickness_mm = context.inspection.nominal_thickness_mm;
-        let place = |(name, csv)| {
-            let placed = indications::indications(csv, &records, thickness_mm, |at| layers.plate_at(at));
-            placed.map_err(|error| format!("{name}: {error}"))
+        let floor = match &located {
+            Some(_) => located::without_task(floor, tool_is_known),
+            None if is_to_scan => floor,
+            None => floor.of_no_scan(),
         };
+        let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
+        let layers = Layers::new(run, scanned, evidence, &places).of_scan(is_to_scan);
+        let flown: Vec<Flown<'_>> = past.iter().map(flown).collect();
+        let ground = Ground {
+            thickness_mm: context.inspection.nominal_thickness_mm,
+            nearest_solid: &|at| {
+                let (name, off_m) = evidence.nearest_solid(at);
+                (name.to_owned(), off_m)
+            },
+            plate_at: &|at| layers.plate_at(at),
+        };
+        let place = |file| indications::indications(file, &flown, &ground);
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
         let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection);
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
+        let shapes = Shapes::of(&layers, &floor.missed);
         let mut pictures = Pictures::draw(&layers, &floor, &indications, past);
         if located.is_some() {
             pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
@@ -243,7 +263,7 @@ impl Document {
             located,
             inspection: context.inspection,
             contradiction,
-            coverage: scanned.coverage(true),
+            coverage: scanned.coverage(is_to_scan),
             floor,
             runs,
             indications,
@@ -251,6 +271,9 @@ impl Document {
             pictures,
             scenario: past[0].fold.run.as_deref().unwrap_or(run).scenario.clone(),
             size: gate::size(run),
+            shapes,
+            is_to_scan,
+            task: past.last().and_then(TaskPart::of),
             is_whole_floor: evidence.asks_for_everything(),
         };
         document.gate = gate::gate(&document);
@@ -260,6 +283,17 @@ impl Document {
     /// The items of the gate that are open; a report is signed without any.
     pub fn open_items(&self) -> impl Iterator<Item = &GateItem> {
         self.gate.iter().filter(|item| !item.is_answered)
+    }
+}
+
+/// A run on whose track indications can be placed.
+fn flown(past: &PastRun) -> Flown<'_> {
+    let name = past.files.closed_as.as_deref().unwrap_or(&past.name);
+    Flown {
+        name: &past.name,
+        record: &past.record,
+        began: indications::began(name),
+        reach_m: past.fold.run.as_ref().map_or(f64::INFINITY, |run| run.mission.swath_m / 2.0),
     }
 }
 

@@ -15,7 +15,7 @@ use mission::{
     PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm, ToolTrack},
 };
-use world::{Obstacle, Pose, Zone};
+use world::{Obstacle, Point, Pose, Zone};
 
 /// So many faults are named.
 const MOST_FAULTS: usize = 20;
@@ -256,9 +256,20 @@ impl Fold {
         self.known.path_length_m.is_some() && self.tool.is_none()
     }
 
+    /// Whether the task is to scan the floor; what was located from readings has no task that speaks against it.
+    pub(crate) fn has_floor_to_scan(&self) -> bool {
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
+    }
+
     /// What was found that is not on the drawing.
     pub(crate) fn found(&self) -> impl Iterator<Item = &crate::account::Solid> {
         self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
+    }
+
+    /// Where the robot truly was at the end; `None` outside simulation.
+    pub(crate) fn true_place(&self) -> Option<Point> {
+        self.truth.map(|pose| pose.position)
     }
 
     fn tether(&self) -> Option<Tether> {
@@ -301,7 +312,7 @@ impl Fold {
             self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
             return;
         }
-        if !self.leaves_out_floor && !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+        if !self.leaves_out_floor {
             self.evidence = Some(Evidence::new(run));
         }
         self.tethered = run.mission.tether.as_ref().map(Tethered::new);

@@ -107,7 +107,8 @@ fn warnings(run: &Summary) -> Vec<String> {
             "position error underestimated: true position inside the 95 % ellipse in only {share} of ticks"
         ));
     }
-    if let Some((coverage, truth)) = run.coverage.and_then(|c| Some((c, c.by_truth?)))
+    let to_scan = run.coverage.filter(|coverage| coverage.missed_area_m2.is_some());
+    if let Some((coverage, truth)) = to_scan.and_then(|c| Some((c, c.by_truth?)))
         && coverage.reachable - truth.reachable > 0.02
     {
         let (by_truth, estimated) = (percent(truth.reachable), percent(coverage.reachable));

@@ -1,7 +1,7 @@
 //! Several runs on one floor as if they were one.
 
 use crate::{
-    account::Evidence,
+    account::{Evidence, Solid},
     document::Files,
     fold::Fold,
     identity::require_one_floor,
@@ -11,7 +11,7 @@ use crate::{
 };
 use mission::event::RunOpened;
 use std::{borrow::Cow, collections::BTreeSet};
-use world::{Floor, FloorMaker, Obstacle, ObstacleId};
+use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
 
 /// A past run: its name, its files and what is known of it.
 #[derive(Debug)]
@@ -65,6 +65,9 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
 pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     require_one_kind(runs)?;
     let (last, before) = runs.split_last().ok_or("no run to report")?;
+    if let Some(other) = runs.iter().find(|past| !before.is_empty() && !past.fold.has_floor_to_scan()) {
+        return Err(format!("run {} was not there to scan the floor: report it alone", other.name));
+    }
     let mut all = alone(last)?;
     require_different(runs)?;
     require_one_floor(runs)?;
@@ -84,7 +87,8 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
         // What only the other runs found is no floor either.
         let grid = all.scanned.believed().floor();
-        let changes = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m).kinds();
+        let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
+        let changes = updated.into_floor().kinds();
         all.scanned.to_mut().change(&changes);
     }
     Ok(all)
@@ -150,14 +154,20 @@ fn require_aligned(
     Err(format!("runs {name} and {last_name} have other cells; run both with the same mission.cell_m"))
 }
 
-/// The floor with everything that any of the runs found.
-pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
+/// The floor with everything that any of the runs found, and without what any of them forbade.
+pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> FloorMaker {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
     for (id, solid) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
         let (name, shape) = (solid.name.clone(), solid.shape.clone());
         world.obstacles.push(Obstacle { id, name, shape, known: true });
     }
+    let zone = |Solid { name, shape }: &Solid| Zone {
+        name: name.clone(),
+        kind: ZoneKind::NoGo,
+        shape: shape.clone(),
+    };
+    world.zones = evidence.no_go().map(zone).collect();
     let mission = &run.mission;
-    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()
+    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position)
 }

@@ -47,20 +47,16 @@ pub fn text_of(past: &Past) -> anyhow::Result<String> {
     Ok(human(&summary(past)?) + &recovered.unwrap_or_default())
 }
 
-/// The inspection report of the run in a folder as a page, a draft; `None` for a mission that was not to scan floor. Readings that were
-/// located have one.
+/// The inspection report of the run in a folder as a page, a draft.
 ///
 /// # Errors
 /// Its journal, or the list of signed reports on it, cannot be read.
-pub fn report_page(folder: &Path) -> anyhow::Result<Option<String>> {
+pub fn report_page(folder: &Path) -> anyhow::Result<String> {
     let past = Past::read(folder)?;
-    if past.run.summary.floor.is_none() && past.opened.measured.is_none() {
-        return Ok(None);
-    }
     let (inspection, revisions) = (inspection(&past)?, signed_list(folder)?);
     let version = env!("CARGO_PKG_VERSION");
     let context = Context { inspection, revisions, version, ..Context::default() };
-    Ok(Some(html(&Document::new(&[past.run], context).map_err(bad_input)?)))
+    Ok(html(&Document::new(&[past.run], context).map_err(bad_input)?))
 }
 
 /// What the scenario of a run says that only people know.

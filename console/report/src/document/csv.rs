@@ -3,6 +3,7 @@
 use super::Document;
 use crate::{
     account::{Shares, ZoneArc},
+    geojson::rounded,
     joined::PastRun,
 };
 use csv::Writer;
@@ -35,6 +36,10 @@ pub fn cell(text: &str) -> String {
 }
 
 fn plates(document: &Document) -> String {
+    if let Some(task) = &document.task {
+        let row = |(name, value): (&str, f64)| vec![name.to_owned(), rounded(value).to_string()];
+        return table(&["figure", "value"], task.figures(document).into_iter().map(row));
+    }
     let floor = &document.floor;
     let is_located = document.located.is_some();
     let is_known = document.located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
@@ -129,14 +134,17 @@ fn obstacles(past: &[PastRun]) -> String {
 
 fn indications(document: &Document) -> String {
     let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let fixed = |value: Option<f64>, decimals: usize| {
+        value.map(|value| format!("{value:.decimals$}")).unwrap_or_default()
+    };
     let rows = document.indications.iter().map(|found| {
         vec![
             found.number.to_string(),
-            found.run.clone(),
-            format!("{:.1}", found.t_s),
+            found.run.clone().unwrap_or_default(),
+            fixed(found.t_s, 1),
             format!("{:.3}", found.at.x),
             format!("{:.3}", found.at.y),
-            format!("{:.3}", found.error_m),
+            fixed(found.error_m, 3),
             found.plate.clone().unwrap_or_default(),
             found.kind.clone(),
             optional(found.size_mm),

@@ -51,7 +51,7 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
             answer: facts.partial_scope_accepted.clone(),
         });
     }
-    if !zone.done {
+    if document.is_to_scan && !zone.done {
         let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
         decisions.push(Decision {
             what: format!("Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the whole {width_mm:.0} mm."),

@@ -4,6 +4,7 @@ use super::{
     Document, RunPart, certificate,
     decisions::{MISSED, SCOPE, TANK, decisions, is_complete},
     located,
+    sections::number_of,
     words::says_nothing,
 };
 use crate::{clock, human::text::counted, record::Incident};
@@ -124,7 +125,10 @@ fn scope(document: &Document) -> Answered {
     let lacks = asked(&[("order", &facts.order), ("procedure", &facts.procedure), ("code", &facts.code)]);
     let early = if is_complete(document) { "" } else { ", ended early" };
     let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
-    let answer = format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell");
+    let answer = match &document.task {
+        Some(task) => format!("{}{early}; no scan of the floor", task.words()),
+        None => format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell"),
+    };
     decided(document, SCOPE, (answer, lacks))
 }
 
@@ -157,7 +161,13 @@ fn calibration(document: &Document) -> Answered {
             text.trim()
         )
     }));
-    (if lacks.is_empty() { "stated in section 8".into() } else { String::new() }, lacks)
+    let section = number_of(document.is_to_scan, 8);
+    (if lacks.is_empty() { format!("stated in section {section}") } else { String::new() }, lacks)
+}
+
+/// The answer of a report on a run that was not there to scan, to what is asked of scans.
+fn no_scan() -> Answered {
+    ("the mission was not there to scan the floor".to_owned(), Vec::new())
 }
 
 /// Whether a text gives a number, and says more than it and its unit.
@@ -168,6 +178,9 @@ fn is_determined(text: &str) -> bool {
 }
 
 fn plates(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let plates = &document.floor.plates;
     if plates.is_empty() {
         let waiver = document.inspection.plates_waiver.clone();
@@ -189,6 +202,9 @@ fn plates(document: &Document) -> Answered {
 }
 
 fn missed(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let floor = &document.floor;
     if let Some(located) = &document.located {
         return decided(document, MISSED, located::missed(located));
@@ -208,6 +224,9 @@ fn missed(document: &Document) -> Answered {
 fn unreachable(document: &Document) -> Answered {
     if document.located.is_some() {
         return located::unreachable();
+    }
+    if !document.is_to_scan {
+        return no_scan();
     }
     let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();

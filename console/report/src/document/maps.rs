@@ -1,6 +1,6 @@
 //! The maps of a report.
 
-use super::{Indication, layers::Layers, marks};
+use super::{Indication, layers::Layers, marks, sections::number_of};
 use crate::{
     drawing::{
         badges::{self, Numbered},
@@ -10,9 +10,10 @@ use crate::{
     human::text::counted,
     record::{Lay, Record},
 };
+use mission::MissionConfig;
 use serde::Serialize;
 use std::fmt::Write;
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// Widths of maps on paper, millimetres.
 pub(super) const FULL_MM: f64 = 180.0;
@@ -114,8 +115,11 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         legend(dot(&format!(r#"fill="{solid}""#)), "obstacle on the drawing", String::new()),
         legend(dot(&found), "obstacle found during the run", String::new()),
         legend(swatch(station), "station of the position system", String::new()),
-        legend(swatch(anchor), "start and anchor", String::new()),
+        legend(swatch(anchor), anchor_words(&layers.run.mission), String::new()),
     ];
+    if !layers.is_to_scan {
+        entries.retain(|entry| !["missed", "shell margin", "unreachable"].contains(&entry.text.as_str()));
+    }
     if !layers.run.world.zones.is_empty() {
         let zone = dot(&format!(r#"fill="none" stroke="{solid}" stroke-width=".3" stroke-dasharray="1 .7""#));
         entries.push(legend(zone, "zone", String::new()));
@@ -131,13 +135,31 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     }
     if marks.unnumbered > 0 {
         let unnumbered = counted(marks.unnumbered, "indication");
-        let _ = write!(note, " {unnumbered} have no room for their numbers: their places are in section 7.");
+        let section = number_of(layers.is_to_scan, 7);
+        let _ = write!(
+            note,
+            " {unnumbered} have no room for their numbers: their places are in section {section}."
+        );
     }
-    let overlap = 100.0 * again as f64 / (once + again).max(1) as f64;
+    let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
+    let missed = if layers.is_to_scan {
+        " Missed cells have an outline of 0.25 mm so that they stay visible."
+    } else {
+        ""
+    };
     let caption = format!(
-        "What was scanned, by the estimated position; {overlap:.1} % of the scanned floor more than once. Missed cells have an outline of 0.25 mm so that they stay visible.{note}"
+        "What was scanned, by the estimated position; {overlap} % of the scanned floor more than once.{missed}{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
+}
+
+/// What the mark of the anchor means; without a tether it is that of the start.
+fn anchor_words(mission: &MissionConfig) -> &'static str {
+    match &mission.tether {
+        None => "start",
+        Some(tether) if (tether.anchor - mission.start.position).norm() < 1.0 => "start and anchor",
+        Some(_) => "anchor",
+    }
 }
 
 /// How well the position was known where the floor was scanned.

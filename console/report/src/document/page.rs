@@ -59,7 +59,7 @@ pub(super) struct Verdict {
 
 /// A large figure.
 pub(super) struct Share {
-    pub(super) percent: String,
+    pub(super) value: String,
     /// Unit of the figure.
     pub(super) unit: &'static str,
     pub(super) of: &'static str,
@@ -193,7 +193,7 @@ pub(super) struct Page {
     pub(super) fields: Vec<Field>,
     pub(super) verdict: Verdict,
     pub(super) shares: Vec<Share>,
-    pub(super) bases: Table,
+    pub(super) bases: Option<Table>,
     pub(super) todo: Vec<Todo>,
     pub(super) sections: Vec<Section>,
 }

@@ -5,6 +5,7 @@ pub(super) mod floor;
 mod front;
 mod missed;
 pub(super) mod runs;
+mod task;
 
 use super::{
     Document,
@@ -19,6 +20,9 @@ pub(super) fn sections(document: &Document) -> Page {
     if let Some(located) = &document.located {
         let page = front::page(document, numbered(super::located::sections(document, located)));
         return super::located::as_located(document, located, page);
+    }
+    if let Some(task) = &document.task {
+        return front::page(document, numbered(task::sections(document, task)));
     }
     let sections = [
         section("Scope", front::scope(document)),
@@ -35,6 +39,15 @@ pub(super) fn sections(document: &Document) -> Page {
         section("Provenance", closing::provenance(document)),
     ];
     front::page(document, numbered(sections))
+}
+
+/// The sections of the report on a run that was not there to scan, by their numbers in that on one that was.
+const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
+
+/// The number of a section, from that which it has in the report on a run that was there to scan.
+pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
+    let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
+    if is_to_scan { section } else { place }
 }
 
 fn numbered(sections: impl IntoIterator<Item = Section>) -> Vec<Section> {

@@ -70,13 +70,13 @@ fn verdict(document: &Document, located: &Located) -> Verdict {
 fn shares(document: &Document, located: &Located) -> Vec<Share> {
     let fixes: u64 = document.runs.iter().filter_map(|run| run.accuracy).map(|a| a.fixes).sum();
     let error = Share {
-        percent: p95_cm(document).map_or_else(|| "\u{2013}".into(), |cm| format!("{cm:.1}")),
+        value: p95_cm(document).map_or_else(|| "\u{2013}".into(), |cm| format!("{cm:.1}")),
         unit: "cm",
         of: "95 % position error",
         about: "not exceeded in 95 % of the moments, by the covariance".into(),
     };
     let count = Share {
-        percent: fixes.to_string(),
+        value: fixes.to_string(),
         unit: "",
         of: "positions from ranges",
         about: format!("in {}; {} estimates of the track", clock(located.time_s), located.positions),
@@ -84,7 +84,7 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
     let whole = &document.floor.whole;
     let scanned = match located.tool_on_s {
         Some(_) => Share {
-            percent: format!("{:.1}", whole.percent.scanned),
+            value: format!("{:.1}", whole.percent.scanned),
             unit: "%",
             of: "of the whole floor scanned",
             about: format!(
@@ -94,7 +94,7 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
             ),
         },
         None => Share {
-            percent: "\u{2013}".into(),
+            value: "\u{2013}".into(),
             unit: "",
             of: "coverage not stated",
             about: "the readings do not say when the tool was on".into(),

@@ -68,7 +68,7 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
                 .to_owned(),
         );
     }
-    items.extend([
+    let of_scans = [
         "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does not say that a defect would have \
          been detected; that rests on the instrument, its calibration and the surface."
             .to_owned(),
@@ -80,9 +80,13 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
         "\u{201c}Guaranteed\u{201d} holds for the position error by the covariance: errors of the heading, of the survey of the stations and \
          of the speed of sound, and the offset of the tool on the robot are not in it."
             .to_owned(),
-        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
         "The critical zone is evaluated in 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
-        "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
+    ];
+    items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
+    items.extend([
+        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the code that applies."
+            .to_owned(),
     ]);
     let code = Value::fact(document.inspection.code.as_ref(), "code");
     vec![Block::List(items), Block::Facts(vec![("Code and edition", code)])]

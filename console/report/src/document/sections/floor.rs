@@ -8,6 +8,7 @@ use super::{
     },
     Document, cm, number, picture,
 };
+use world::coverage::percent_text;
 
 /// Arcs of the critical zone that are listed.
 const MOST_ARCS: usize = 8;
@@ -18,9 +19,9 @@ const MOST_NUMBERS: usize = 3;
 pub(super) fn map(document: &Document) -> Vec<Block> {
     let exact = document.floor.exact.map(|share| {
         Block::Text(format!(
-            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {:.2} %.",
+            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {} %.",
             per_cent(document.floor.reachable.scanned),
-            100.0 * share
+            percent_text(share, 2)
         ))
     });
     std::iter::once(Block::Wide(picture(&document.pictures.coverage))).chain(exact).collect()
@@ -164,6 +165,10 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             per_cent(sure)
         ))
     });
+    if !document.is_to_scan {
+        let what = "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations).";
+        return vec![Block::Text(what.into()), Block::Table(table)];
+    }
     let mut blocks = vec![
         Block::Text(
             "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations). A cell is \

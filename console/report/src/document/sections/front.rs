@@ -6,7 +6,7 @@ use super::{
         decisions::{Decision, decisions, is_complete},
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
     },
-    Document, counted, escaped, number,
+    Document, counted, escaped, number, number_of, task,
 };
 use crate::account::Shares;
 use mission::Outcome;
@@ -44,9 +44,12 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
         answered,
         items: document.gate.len(),
         fields: fields(document),
-        verdict: verdict(document),
-        shares: shares(document),
-        bases: bases(document),
+        verdict: document
+            .task
+            .as_ref()
+            .map_or_else(|| verdict(document), |task| task::verdict(document, task)),
+        shares: document.task.as_ref().map_or_else(|| shares(document), |task| task::shares(document, task)),
+        bases: document.is_to_scan.then(|| bases(document)),
         todo: todo(document),
         sections,
     }
@@ -148,7 +151,7 @@ fn shares(document: &Document) -> Vec<Share> {
     let sure = reachable.guaranteed.unwrap_or(0.0);
     vec![
         Share {
-            percent: format!("{:.1}", whole.percent.scanned),
+            value: format!("{:.1}", whole.percent.scanned),
             unit: "%",
             of: "of the whole floor",
             about: format!(
@@ -158,7 +161,7 @@ fn shares(document: &Document) -> Vec<Share> {
             ),
         },
         Share {
-            percent: format!("{:.1}", reachable.percent.scanned),
+            value: format!("{:.1}", reachable.percent.scanned),
             unit: "%",
             of: "of the reachable floor",
             about: format!(
@@ -168,7 +171,7 @@ fn shares(document: &Document) -> Vec<Share> {
             ),
         },
         Share {
-            percent: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
+            value: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
             unit: "%",
             of: "of the reachable floor, guaranteed",
             about: format!(
@@ -216,13 +219,13 @@ fn bases(document: &Document) -> Table {
 fn todo(document: &Document) -> Vec<Todo> {
     let decision = |decision: Decision| {
         let value = Value::fact(decision.answer.as_ref(), decision.key);
-        Todo { text: decision.what, value, section: decision.section }
+        Todo { text: decision.what, value, section: number_of(document.is_to_scan, decision.section) }
     };
     let mut todo: Vec<Todo> = decisions(document).into_iter().map(decision).collect();
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     if !open.is_empty() {
         let text = format!("Open items of the gate: {}.", open.join(", "));
-        todo.push(Todo { text, value: Value::default(), section: 10 });
+        todo.push(Todo { text, value: Value::default(), section: number_of(document.is_to_scan, 10) });
     }
     todo
 }
