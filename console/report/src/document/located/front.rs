@@ -38,7 +38,7 @@ pub(in crate::document) fn as_located(document: &Document, located: &Located, mu
         is_simulation: false,
         verdict: verdict(document, located),
         shares: shares(document, located),
-        bases: bases(document, located),
+        bases: Some(bases(document, located)),
         ..page
     }
 }

@@ -167,7 +167,7 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     });
     if !document.is_to_scan {
         let what = "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations).";
-        return vec![Block::Text(what.into()), Block::Table(table)];
+        return vec![Block::Text(what.into()), Block::Table(accuracy_statement(document))];
     }
     let mut blocks = vec![
         Block::Text(
