@@ -56,6 +56,8 @@ mod rescan;
 mod reviewing;
 #[path = "acceptance/scenarios.rs"]
 mod scenarios;
+#[path = "acceptance/schemas.rs"]
+mod schemas;
 #[path = "acceptance/script.rs"]
 mod script;
 #[cfg(unix)]

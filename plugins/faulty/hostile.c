@@ -1,6 +1,7 @@
 /* A planner that attacks, for tests. ATTACK is what it does, in C; one of these says when: IN_CONSTRUCTOR, IN_STEP (the
- * fourth), IN_THREAD (one that its constructor starts, while steps are made), IN_LEFTOVER (a thread that its fourth step
- * leaves behind, at some time in the next 40 ms), IN_DESTRUCTOR, IN_DESTROY. */
+ * fourth), IN_CREATE, IN_THREAD (one that its constructor starts, while steps are made), IN_LEFTOVER (a thread that its fourth step
+ * leaves behind, at some time in the next 40 ms), IN_DESTRUCTOR, IN_DESTROY; IN_ANSWER and IN_ANSWER_ALWAYS: it is done to
+ * the answer `out` of the fourth step, or of each. */
 #define _GNU_SOURCE
 #include "tankops_planner.h"
 #include <fcntl.h>
@@ -26,6 +27,9 @@
 #ifndef ATTACK
 #define ATTACK
 #endif
+#ifndef CAPS
+#define CAPS TP_CAP_LOCAL
+#endif
 
 /* A file of the console's process. */
 static const char *of_parent(const char *what) {
@@ -39,7 +43,11 @@ static void rest(long milliseconds) {
   nanosleep(&time, NULL);
 }
 
+#if defined IN_ANSWER || defined IN_ANSWER_ALWAYS
+static void attack(void) {}
+#else
 static void attack(void) { ATTACK; }
+#endif
 
 static void *some_time_later(void *nothing) {
   unsigned char random;
@@ -72,6 +80,9 @@ static int n_steps;
 static int32_t describe(const tp_host *h) { (void)h; return TP_OK; }
 static int32_t create(const tp_host *h, const tp_site *s, const tp_value *v, uint32_t n, void **out) {
   (void)h; (void)s; (void)v; (void)n;
+#ifdef IN_CREATE
+  attack();
+#endif
   *out = &n_steps;
   return TP_OK;
 }
@@ -100,10 +111,15 @@ static int32_t step(void *p, const tp_host *h, const tp_step_in *in, tp_step_out
 #endif
   n_steps++;
   out->drive = TP_TWIST; out->status = TP_MOVING; out->a = 0.1; out->b = 0.0;
+#ifdef IN_ANSWER
+  if (n_steps == 4) { ATTACK; }
+#elif defined IN_ANSWER_ALWAYS
+  ATTACK;
+#endif
   return TP_OK;
 }
 static const tp_planner planner = {
-  sizeof(tp_planner), TP_CAP_LOCAL, 1, 0, TP_STR("hostile"), TP_STR("Attacker"), TP_STR("1"),
+  sizeof(tp_planner), CAPS, 1, 0, TP_STR("hostile"), TP_STR("Attacker"), TP_STR("1"),
   TP_STR(""), describe, create, destroy, plan, step, 0, 0, 0, 0, 0};
 static const tp_planner *const list[] = {&planner};
 TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, "C");

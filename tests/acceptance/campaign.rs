@@ -238,3 +238,60 @@ fn a_worker_that_is_asked_to_stop_leaves_no_part_of_the_block_that_it_was_in() {
     works(&bench, "--pull", "out");
     assert!(table(&bench, "out") == table(&bench, "quiet"), "stopped and flown again");
 }
+
+#[test]
+fn a_part_that_was_damaged_or_is_empty_is_not_done_and_never_merges() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "block = 4", 2);
+    assert_eq!(campaign(&bench, "run --out out", &[&plan]).code, Some(0));
+    let expected = table(&bench, "out");
+    let folder = bench.path().join("out/parts");
+    let whole = std::fs::read(folder.join("part-00002.parquet")).unwrap();
+    let mut flipped = whole.clone();
+    flipped[whole.len() / 3] ^= 4;
+    let other = std::fs::read(folder.join("part-00001.parquet")).unwrap();
+    for bytes in [&[][..], &flipped, &whole[..whole.len() / 2], &other] {
+        std::fs::write(folder.join("part-00002.parquet"), bytes).unwrap();
+        let status = campaign(&bench, "status", &[Path::new("out")]);
+        assert!(status.code == Some(1) && status.out.contains("missing: 2"), "{status:?}");
+        assert!(
+            status.err.contains("part-00002.parquet is ") || status.err.contains("comes from"),
+            "{status:?}"
+        );
+        let merged = campaign(&bench, "merge", &[Path::new("out")]);
+        assert!(merged.code == Some(2) && merged.err.contains("blocks are missing: 2"), "{merged:?}");
+        works(&bench, "--pull --threads 1", "out");
+        assert!(table(&bench, "out") == expected, "{} bytes", bytes.len());
+    }
+}
+
+#[test]
+fn damage_to_a_table_is_named_by_whoever_compares_it() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "", 1);
+    assert_eq!(campaign(&bench, "run --out out", &[&plan]).code, Some(0));
+    let mut bytes = std::fs::read(bench.path().join("out/results.parquet")).unwrap();
+    let at = bytes.len() / 2;
+    bytes[at] ^= 1;
+    let damaged = bench.file("damaged.parquet", bytes);
+    let compare =
+        |file: &Path| campaign(&bench, "compare --metric mission_time_s", &[Path::new("out"), file]);
+    let refused = compare(&damaged);
+    assert!(refused.code == Some(2) && refused.err.contains("damaged.parquet is damaged"), "{refused:?}");
+    let sound = compare(Path::new("out"));
+    assert!(sound.code == Some(0) && sound.err.is_empty(), "{sound:?}");
+}
+
+#[test]
+fn a_campaign_of_which_a_value_was_changed_is_refused() {
+    let bench = Bench::new();
+    let plan = plan(&bench, "plan.toml", "", 1);
+    assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
+    let file = bench.path().join("out/campaign.json");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let changed = text.replace("0.25", "0.24");
+    assert_ne!(changed, text);
+    std::fs::write(&file, changed).unwrap();
+    let refused = campaign(&bench, "status", &[Path::new("out")]);
+    assert!(refused.code == Some(2) && refused.err.contains("its SHA-256 is another one"), "{refused:?}");
+}

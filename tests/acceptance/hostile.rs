@@ -104,7 +104,8 @@ fn checked(change: (&str, &str), head: &str) -> Ended {
 #[test]
 fn a_check_finds_what_crashes_when_it_is_destroyed_and_threads_that_stay() {
     let crashes = checked(("free(instance);", "free(instance); abort();"), "");
-    let line = "FAIL  ends when it is not wanted any more: planner direct-c was killed by SIGABRT";
+    let line =
+        "FAIL  ends when it is not wanted any more: tank of seed 0: planner direct-c was killed by SIGABRT";
     assert!(crashes.code == Some(1) && crashes.out.contains(line), "{crashes:?}");
     let stays = "#define _GNU_SOURCE\n#include <pthread.h>\n#include <time.h>\nstatic void *stay(void *p) { for (;;) { struct timespec s = {9, 0}; nanosleep(&s, 0); } \
                  return p; }";
@@ -133,8 +134,163 @@ fn a_replay_says_which_step_did_not_answer_and_after_how_long() {
     fly(&bench, &hostile(&bench, "IN_STEP", "for (;;) rest(1000)"));
     let bundle = bench.runs()[0].join("crash-1");
     let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
-    let sentence = "(step 3): did not answer within 2.0 s; its process was stopped";
+    let sentence = "(step 3): planner hostile did not answer step 3 in time and ignored the request to stop; its process was killed (it has 2.0 s for it)";
     assert!(replayed.code == Some(1) && replayed.out.contains(sentence), "{replayed:?}");
+}
+
+/// A bundle of a planner that is asked for this answer in its fourth step.
+fn bundle(bench: &Bench, attack: &str) -> PathBuf {
+    let plugins = hostile(bench, "IN_ANSWER", attack);
+    fly(bench, &plugins);
+    bench.runs().pop().unwrap().join("crash-1")
+}
+
+#[test]
+fn a_replay_judges_answers_as_the_console_does() {
+    for (answer, why) in [
+        ("out->a = 0.0 / 0.0", "gave a speed that is not a number"),
+        ("out->a = 1.0 / 0.0", "gave a speed of inf m/s"),
+        ("out->b = 1e308", "gave a turn rate of 1e308 rad/s"),
+        ("out->status = 99", "status"),
+        ("out->drive = 99", "drive"),
+    ] {
+        let bench = Bench::new();
+        let bundle = bundle(&bench, answer);
+        let about = std::fs::read_to_string(bundle.join("crash.txt")).unwrap();
+        let fault = about.lines().next().unwrap();
+        assert!(fault.contains(why), "{answer}: {about}");
+        let plugin = bench.path().canonicalize().unwrap().join("hostile/libplanner_hostile.so");
+        assert!(about.contains(&format!("plugin: {}\n", plugin.display())), "{about}");
+        let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+        let again = format!(" (step 3): {fault}\n");
+        assert!(
+            replayed.code == Some(1)
+                && replayed.out.contains("failed again at request ")
+                && replayed.out.ends_with(&again),
+            "{answer}: {replayed:?}"
+        );
+    }
+}
+
+#[test]
+fn a_replay_refuses_a_bundle_that_is_not_whole() {
+    let bench = Bench::new();
+    let bundle = bundle(&bench, "out->a = 1e308");
+    let frames = std::fs::read(bundle.join("frames.bin")).unwrap();
+    let about = std::fs::read(bundle.join("crash.txt")).unwrap();
+    let replay = |changed: &[u8]| {
+        std::fs::write(bundle.join("frames.bin"), changed).unwrap();
+        bench.tankops(&["replay-worker", bundle.to_str().unwrap()])
+    };
+    let mut flipped = frames.clone();
+    flipped[frames.len() / 2] ^= 1;
+    for changed in [&[][..], &frames[..frames.len() - 1], &frames[..frames.len() / 2], &flipped] {
+        let refused = replay(changed);
+        let says = refused.err.contains("frames.bin was cut or changed");
+        assert!(refused.code == Some(2) && says, "{} bytes: {refused:?}", changed.len());
+    }
+    for missing in ["crash.txt", "frames.bin"] {
+        std::fs::remove_file(bundle.join(missing)).unwrap();
+        let refused = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
+        assert!(refused.code == Some(2) && refused.err.contains(missing), "{refused:?}");
+        std::fs::write(bundle.join("crash.txt"), &about).unwrap();
+    }
+    std::fs::write(bundle.join("frames.bin"), &frames).unwrap();
+    assert_eq!(bench.tankops(&["replay-worker", bundle.to_str().unwrap()]).code, Some(1));
+}
+
+#[test]
+fn a_planner_that_gives_up_in_every_tank_fails_and_the_tanks_are_kept() {
+    let bench = Bench::new();
+    let plugins = hostile(&bench, "IN_ANSWER_ALWAYS", "return TP_E_INTERNAL");
+    let plugin = plugins.join("libplanner_hostile.so");
+    let tried = |more: &[&str]| {
+        bench.tankops(&[&["check", plugin.to_str().unwrap(), "--fly", "2", "--seed", "7"], more].concat())
+    };
+    let checked = tried(&["--keep", "lost"]);
+    let line = "FAIL  does not give up everywhere: tank of seed 7: planner hostile gave up at step 0";
+    assert!(checked.code == Some(1) && checked.out.contains(line), "{checked:?}");
+    assert!(checked.out.contains("not completed: tank of seed 8, "), "{checked:?}");
+    assert!(!checked.out.contains("goes on from its saved state"), "it saves none: {checked:?}");
+    for seed in [7, 8] {
+        let kept = bench.path().join(format!("lost/hostile-goto-{seed}.toml"));
+        let flown = bench.fly(&kept, &["--plugin-dir", plugins.to_str().unwrap()]);
+        assert!(flown.json()["planner"] == "hostile" && flown.json()["seed"] == seed, "{flown:?}");
+    }
+    let json = tried(&["--json"]).json();
+    let by_tank = json[0]["rows"][0]["by_tank"].as_array().unwrap();
+    assert_eq!(by_tank.iter().map(|tank| tank["seed"].as_u64().unwrap()).collect::<Vec<_>>(), [7, 8]);
+    assert!(by_tank[0]["failure"].as_str().is_some_and(|why| why.contains("gave up at step 0")), "{json}");
+}
+
+#[test]
+fn a_check_blames_no_planner_for_the_crash_of_its_neighbour() {
+    let bench = Bench::new();
+    let folder = hostile(&bench, "IN_STEP", "abort()");
+    let own = folder.join("libplanner_own.so");
+    crate::faults::compile_file(&workspace().join("plugins/examples/direct-c/direct.c"), &own);
+    // The first that is found.
+    std::fs::rename(folder.join("libplanner_hostile.so"), folder.join("libplanner_a.so")).unwrap();
+    let checked = bench.tankops(&["check", own.to_str().unwrap(), "--fly", "1"]);
+    assert!(
+        !checked.out.contains("FAIL") && checked.out.contains("ok    takes over under way"),
+        "{checked:?}"
+    );
+}
+
+#[test]
+fn a_planner_that_shadows_another_one_is_named() {
+    let bench = Bench::new();
+    let source = std::fs::read_to_string(workspace().join("plugins/faulty/hostile.c")).unwrap();
+    let source = bench.file("apf.c", source.replace("\"hostile\"", "\"apf\""));
+    let folder = bench.path().join("own");
+    std::fs::create_dir(&folder).unwrap();
+    crate::faults::compile_file(&source, &folder.join("libplanner_mine.so"));
+    let folder = folder.to_str().unwrap();
+    let more = ["--no-record", "--set", "mission.time_limit_s=1", "--planner", "apf"];
+    let plain = bench.fly(&scenario("goto-single-obstacle.toml"), &more);
+    assert!(!plain.err.contains("shadows"), "{plain:?}");
+    let program = Path::new(env!("CARGO_BIN_EXE_tankops")).with_file_name("deps");
+    let mut first = std::process::Command::new(env!("CARGO_BIN_EXE_tankops"));
+    first.current_dir(bench.path()).args(["--plugin-dir", folder, "--plugin-dir"]).arg(program);
+    first
+        .arg("run")
+        .arg(scenario("goto-single-obstacle.toml"))
+        .args(more)
+        .env("XDG_CACHE_HOME", bench.path());
+    let flown = Ended::from(first.output().unwrap());
+    let sentence = format!("planner apf is the one of {folder}/libplanner_mine.so; it shadows that of ");
+    assert!(flown.err.contains(&sentence), "{flown:?}");
+}
+
+#[test]
+fn limits_of_the_machine_are_not_blamed_on_plugins() {
+    let bench = Bench::new();
+    let plugin = hostile(&bench, "IN_STEP", "").join("libplanner_hostile.so");
+    let program = env!("CARGO_BIN_EXE_tankops");
+    let limited = |limit: &str, words: &str| {
+        let script = format!("ulimit {limit}; exec {program} {words}");
+        let mut shell = std::process::Command::new("sh");
+        shell
+            .arg("-c")
+            .arg(script)
+            .current_dir(bench.path())
+            .env("XDG_CACHE_HOME", bench.path().join("cache"));
+        Ended::from(shell.output().unwrap())
+    };
+    let run = format!(
+        "run {} --no-record --planner hostile --plugin-dir hostile",
+        scenario("goto-single-obstacle.toml").display()
+    );
+    // What is known of a plugin must not hide it.
+    limited("-n 1024", &run);
+    let words = [format!("check {}", plugin.display()), run];
+    for words in &words {
+        for (limit, says) in [("-n 201", "`ulimit -n 256`"), ("-f 1", "`ulimit -f ")] {
+            let refused = limited(limit, words);
+            assert!(refused.code == Some(3) && refused.err.contains(says), "{limit} {words}: {refused:?}");
+        }
+    }
 }
 
 /// Whether the console's group is the terminal's foreground group.

@@ -97,3 +97,123 @@ fn a_map_is_shown_with_what_became_of_it() {
         .unwrap();
     assert!(pieces > 0 && svg.matches("<polygon").count() >= pieces, "{pieces}");
 }
+
+#[test]
+fn the_drawing_of_a_report_is_read_back_with_its_plates_and_obstacles() {
+    let bench = Bench::new();
+    bench.fly(&scenario("cover-circle.toml"), &[]);
+    let run = bench.runs().pop().unwrap().to_str().unwrap().to_owned();
+    for file in ["r.dxf", "r.json"] {
+        assert_eq!(bench.tankops(&["report", &run, "-o", file]).code, Some(0));
+    }
+    let imported = bench.tankops(&["import", "r.dxf", "-o", "back.toml"]);
+    assert_eq!(imported.code, Some(0), "{imported:?}");
+    let read = |name: &str| std::fs::read_to_string(bench.path().join(name)).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&read("r.json")).unwrap();
+    let name = |plate: &serde_json::Value| plate["name"].as_str().unwrap().to_owned();
+    let mut drawn: Vec<String> = report["floor"]["plates"].as_array().unwrap().iter().map(name).collect();
+    drawn.sort();
+    let back: toml::Table = read("back.toml").parse().unwrap();
+    let outlines = back["plates"]["outlines"].as_array().unwrap();
+    let mut names: Vec<&str> = outlines.iter().map(|plate| plate["name"].as_str().unwrap()).collect();
+    names.sort_unstable();
+    assert_eq!(names, drawn);
+    let first: toml::Table = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap().parse().unwrap();
+    let count = |text: &toml::Table| text["obstacles"].as_array().unwrap().len();
+    assert_eq!(count(&back), count(&first));
+    assert_eq!(back["planner"]["id"].as_str(), Some("tether-safe"));
+}
+
+#[test]
+fn the_standard_input_is_a_scenario_a_drawing_or_a_list() {
+    let bench = Bench::new();
+    let piped = |arguments: &[&str], text: &[u8]| {
+        use std::{io::Write, process::Stdio};
+        let mut child = bench
+            .command()
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child.stdin.take().unwrap().write_all(text).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let told =
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        (output.status.code(), told)
+    };
+    let goto = std::fs::read(scenario("goto-single-obstacle.toml")).unwrap();
+    assert_eq!(piped(&["check", "-"], &goto).0, Some(0));
+    assert_eq!(piped(&["run", "-", "--no-record"], &goto).0, Some(0));
+    assert_eq!(piped(&["plan", "-"], &goto).0, Some(0));
+    let (code, told) = piped(&["check", "-"], b"nonsense");
+    assert!(code == Some(2) && told.contains("error: standard input:1:"), "{told}");
+    let (code, told) = piped(&["import", "-", "-o", "d.toml"], plated().as_bytes());
+    assert!(code == Some(0) && told.contains(", 8 plates"), "{told}");
+    let list = b"x_m;y_m;radius_m\n1;2;0,3\n";
+    let (code, told) = piped(&["import", "-", "-o", "l.toml", "--tank-radius", "6"], list);
+    assert!(code == Some(0) && told.contains("1 obstacles"), "{told}");
+    let (code, told) = piped(&["import", "-", "-o", "none.toml", "--tank-radius", "6"], b"");
+    assert!(code == Some(2) && told.contains("standard input: is empty"), "{told}");
+}
+
+#[test]
+fn a_scenario_in_another_encoding_is_named_with_line_and_remedy() {
+    let bench = Bench::new();
+    let text = "# A tank\nname = \"Öl\"\n";
+    bench.file("latin.toml", text.chars().map(|letter| letter as u8).collect::<Vec<u8>>());
+    let wide: Vec<u8> =
+        [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    bench.file("wide.toml", &wide);
+    bench.file("bare.toml", &wide[2..]);
+    for (file, told) in [
+        (
+            "latin.toml",
+            "not UTF-8 but ISO-8859-1, by line 2\nhelp: save it as UTF-8: `iconv -f ISO-8859-1 -t UTF-8 FILE > NEW`",
+        ),
+        ("wide.toml", "not UTF-8 but UTF-16, by its first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t"),
+        ("bare.toml", "not UTF-8 but UTF-16LE, by its first line\nhelp:"),
+    ] {
+        let checked = bench.tankops(&["check", file]);
+        assert!(checked.code == Some(2) && checked.err.contains(told), "{checked:?}");
+    }
+}
+
+#[test]
+fn a_planner_that_proves_that_no_way_exists_has_not_failed() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(scenario("goto-single-obstacle.toml")).unwrap();
+    // A ring of straight walls around the goal.
+    let mut table: toml::Table = text.parse().unwrap();
+    let goal = table["mission"]["goal_m"].clone();
+    let [x, y] = [0, 1].map(|k| goal[k].as_float().or(goal[k].as_integer().map(|v| v as f64)).unwrap());
+    let ring = format!(
+        "name = \"ring\"\nkind = \"polyline\"\nwidth_m = 0.1\npoints_m = [[{}, {}], [{}, {}], [{}, {}], [{}, {}], [{}, {}]]",
+        x - 0.8,
+        y - 0.8,
+        x + 0.8,
+        y - 0.8,
+        x + 0.8,
+        y + 0.8,
+        x - 0.8,
+        y + 0.8,
+        x - 0.8,
+        y - 0.8
+    );
+    let ring: toml::Table = ring.parse().unwrap();
+    let obstacles = table.entry("obstacles").or_insert_with(|| toml::Value::Array(Vec::new()));
+    obstacles.as_array_mut().unwrap().push(ring.into());
+    table.remove("expect");
+    bench.file("shut.toml", table.to_string());
+    for planner in ["navfn", "shortest"] {
+        let flown = bench.tankops(&["run", "shut.toml", "--no-record", "--json", "--planner", planner]);
+        let report = flown.json();
+        assert_eq!(
+            (&report["outcome"], &report["planner_faults"]),
+            (&"stuck".into(), &0.into()),
+            "{flown:?}"
+        );
+        assert!(flown.code == Some(1) && report["reason"].as_str().unwrap().contains("proved"), "{flown:?}");
+    }
+}

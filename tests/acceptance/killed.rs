@@ -14,21 +14,7 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
         let bench = Bench::new();
         // A long mission: nobody kills in time what ends in a second.
         let slow = slow_scenario(&bench);
-        let mut child = bench
-            .command()
-            .arg("run")
-            .arg(&slow)
-            .args(["--seed", &seed.to_string()])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        wait_for_journal(&bench);
-        std::thread::sleep(Duration::from_millis(wait_ms));
-        assert!(child.try_wait().unwrap().is_none(), "the mission ended before it could be killed");
-        let killed_at = SystemTime::now();
-        child.kill().unwrap();
-        child.wait().unwrap();
+        let killed_at = begin_and_kill(&bench, &slow, seed, Duration::from_millis(wait_ms));
 
         let run = bench.runs().remove(0);
         let listed = bench.tankops(&["runs", "--json"]).json();
@@ -60,16 +46,38 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     }
 }
 
-fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
+/// Begins a run and kills it; when that was.
+pub(crate) fn begin_and_kill(bench: &Bench, scenario: &Path, seed: u64, wait: Duration) -> SystemTime {
+    let n = bench.runs().len();
+    let mut child = bench
+        .command()
+        .arg("run")
+        .arg(scenario)
+        .args(["--seed", &seed.to_string()])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait_for_journal(bench, n);
+    std::thread::sleep(wait);
+    assert!(child.try_wait().unwrap().is_none(), "the mission ended before it could be killed");
+    let killed_at = SystemTime::now();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    killed_at
+}
+
+pub(crate) fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
     let text = std::fs::read_to_string(scenario("spiral-paper.toml")).unwrap();
     // Ten times the ticks, so that it takes seconds.
     bench.file("slow.toml", text.replace("tick_s = 0.1", "tick_s = 0.01"))
 }
 
-fn wait_for_journal(bench: &Bench) {
+/// Waits until a run beside those that were there has begun.
+fn wait_for_journal(bench: &Bench, n_before: usize) {
     let until = Instant::now() + Duration::from_secs(20);
     let begun = |run: &Path| run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100);
-    while !bench.runs().iter().any(|run| begun(run)) {
+    while bench.runs().iter().filter(|run| begun(run)).count() <= n_before {
         assert!(Instant::now() < until, "the run never began");
         std::thread::sleep(Duration::from_millis(10));
     }

@@ -6,15 +6,25 @@ use crate::{
 };
 use serde_json::Value;
 
-/// The console with a mission that has been started and whose planner misbehaves.
-fn started(fault: &str) -> Session {
+fn faulty(fault: &str) -> Session {
     let goto = scenario("goto-single-obstacle.toml");
     let arguments = format!("console {} --planner faulty --set fault={fault}", goto.display());
-    let mut session = Session::open(&arguments, 120, 36);
-    session.see("IDLE");
+    Session::open(&arguments, 120, 36)
+}
+
+/// The console with a mission under way whose planner has to plan once more and misbehaves.
+fn replanning(fault: &str) -> Session {
+    let mut session = faulty(fault);
     session.start();
+    session.see("▶ RUN");
+    session.press(":no-go 2,2 3,3\r");
     session.see("Planning (faulty)");
     session
+}
+
+/// The events from the zone on that made another plan necessary.
+fn since_zone(events: &[Value]) -> &[Value] {
+    &events[first_of(events, "zone_drawn").expect("a zone")..]
 }
 
 /// Leaves a console whose mission is held or under way, and gives what was written down.
@@ -34,6 +44,7 @@ fn aborted(mut session: Session) -> (Session, Vec<Value>) {
 
 /// The hold by the operator came before the plan, and before the time of the plan was over.
 fn assert_held_first(events: &[Value]) {
+    let events = since_zone(events);
     let held = first_of(events, "held").expect("held");
     assert_eq!(events[held]["by"], "operator", "{}", events[held]);
     for kind in ["planned", "planner_failed"] {
@@ -45,35 +56,38 @@ fn assert_held_first(events: &[Value]) {
 fn every_key_that_stops_holds_while_a_plan_is_being_made_and_the_console_leaves_in_good_order() {
     for key in [" ", "\x03", "1q"] {
         println!("key {key:?}");
-        let mut session = started("plan_hang");
+        let mut session = replanning("replan_hang");
         session.press(key);
         session.see("‖ HOLD");
         // `q` on the first screen has asked already whether to leave.
         let (_, events) = if key == "1q" { aborted(session) } else { leave(session) };
         assert_held_first(&events);
-        assert!(first_of(&events, "planned").is_none());
+        assert!(first_of(since_zone(&events), "planned").is_none());
     }
 }
 
 #[test]
 fn a_plan_that_was_made_while_the_mission_was_held_is_flown_afterwards() {
-    let mut session = started("plan_long");
+    let mut session = replanning("replan_long");
     session.hold();
-    session.until("the plan", |session| first_of(&journal(&session.run()), "planned").is_some());
+    session.until("the plan", |session| first_of(since_zone(&journal(&session.run())), "planned").is_some());
     assert!(session.text().contains("‖ HOLD"), "{}", session.text());
     session.resume();
-    session.until("a command", |session| first_of(&journal(&session.run()), "commanded").is_some());
+    session.until("a command", |session| {
+        let events = journal(&session.run());
+        let resumed = first_of(&events, "resumed").map(|at| &events[at..]);
+        resumed.is_some_and(|events| first_of(events, "commanded").is_some())
+    });
     let (_, events) = leave(session);
     assert_held_first(&events);
-    assert_eq!(of_kind(&events, "planned").len(), 1);
-    let [planned, resumed, commanded] =
-        ["planned", "resumed", "commanded"].map(|kind| first_of(&events, kind).unwrap());
-    assert!(planned < resumed && resumed < commanded);
+    let events = since_zone(&events);
+    assert_eq!(of_kind(events, "planned").len(), 1);
+    assert!(first_of(events, "planned").unwrap() < first_of(events, "resumed").unwrap());
 }
 
 #[test]
 fn a_planner_that_fails_while_the_mission_is_held_does_not_let_it_go() {
-    let mut session = started("plan_hang");
+    let mut session = replanning("replan_hang");
     session.hold();
     session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
     session.see("‖ HOLD");
@@ -86,7 +100,7 @@ fn a_planner_that_fails_while_the_mission_is_held_does_not_let_it_go() {
 fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     let goto = scenario("goto-single-obstacle.toml");
     let mut session = Session::open(&format!("console {} --planner apf", goto.display()), 120, 36);
-    session.see("IDLE");
+    session.see("Press S to start");
     session.change_planner("rpf");
     session.until("the planner", |session| !session.text().contains("Change planner to"));
     session.see("rpf ");
@@ -101,7 +115,8 @@ fn another_planner_chosen_before_the_start_is_written_down_and_proven() {
     let orders: Vec<String> =
         of_kind(&events, "ordered").iter().map(|event| event["order"].to_string()).collect();
     let [planned, chosen, again, checked, started] = &orders[..] else { panic!("{orders:?}") };
-    assert_eq!([planned, again, started], ["\"plan\"", "\"plan\"", "\"start\""]);
+    assert_eq!([planned, again], ["\"plan\"", "\"plan\""]);
+    assert!(started.starts_with("{\"start_plan\":"), "{started}");
     assert!(
         chosen.contains("rpf") && checked.contains("note_checks") && checked.contains("passed"),
         "{orders:?}"
@@ -129,7 +144,7 @@ fn what_makes_no_run_possible_is_said_before_the_screen_is_taken() {
 fn a_run_that_is_deleted_in_flight_is_reported_at_once_and_at_the_end() {
     let goto = scenario("goto-single-obstacle.toml");
     let mut session = Session::open(&format!("console {}", goto.display()), 120, 36);
-    session.see("IDLE");
+    session.see("Press S to start");
     session.press("<<<<");
     session.start();
     session.see("REC●");
@@ -142,7 +157,7 @@ fn a_run_that_is_deleted_in_flight_is_reported_at_once_and_at_the_end() {
 
 #[test]
 fn a_terminated_console_does_not_wait_for_the_plan() {
-    let mut session = started("plan_hang");
+    let mut session = replanning("replan_hang");
     session.signal_console(rustix::process::Signal::TERM);
     assert_eq!(session.back_in_the_shell(), "code=143");
     let events = journal(&session.run());
@@ -152,24 +167,40 @@ fn a_terminated_console_does_not_wait_for_the_plan() {
 }
 
 #[test]
-fn a_hold_takes_effect_while_a_planner_is_being_opened() {
-    let goto = scenario("goto-single-obstacle.toml");
-    let arguments = format!("console {} --planner faulty --set fault=configure_hang", goto.display());
-    let mut session = Session::open(&arguments, 120, 36);
-    session.see("IDLE");
-    // Right after the console: the planner is being opened for a second. On a busy machine the second is over.
+fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
+    let mut session = faulty("plan_long");
+    session.see("Planning (faulty)");
     session.press("S\r");
-    session.until("start or refusal", |session| {
-        ["▶ RUN", "‖ HOLD", "tart blocked"].iter().any(|word| session.text().contains(word))
+    session.see("start when the plan is ready");
+    session.start();
+    session.see("▶ RUN");
+    session.finish();
+    let run = session.run();
+    let events = journal(&run);
+    let orders: Vec<&Value> = of_kind(&events, "ordered").iter().map(|event| &event["order"]).collect();
+    let named = orders.iter().filter_map(|order| order["start_plan"].as_str()).collect::<Vec<_>>();
+    assert!(matches!(named[..], [plan] if plan.len() == 64), "{orders:?}");
+    let start = events.iter().position(|event| event["order"]["start_plan"].is_string()).unwrap();
+    assert!(first_of(&events, "planned").unwrap() < start, "the plan was there before");
+    session.bench.prove(&run);
+}
+
+#[test]
+fn a_start_is_refused_while_a_planner_is_being_opened_and_leaves_no_run() {
+    let mut session = faulty("configure_hang");
+    // On a busy machine the second for which it is being opened is over.
+    session.press("S\r");
+    session.until("a refusal", |session| {
+        ["start when the plan is ready", "tart blocked", "make one first"]
+            .iter()
+            .any(|word| session.text().contains(word))
     });
-    if session.text().contains("tart blocked") {
-        return assert!(session.text().contains("FAIL"), "{}", session.text());
-    }
-    session.press(" ");
-    session.see("‖ HOLD");
-    session.until("the fault", |session| first_of(&journal(&session.run()), "planner_failed").is_some());
-    let (_, events) = leave(session);
-    assert!(first_of(&events, "held").is_some() && first_of(&events, "planner_chosen").is_none());
+    session.press("S\r");
+    session.see("FAILED");
+    assert!(!session.text().contains("▶ RUN"), "{}", session.text());
+    session.press("1q");
+    assert_eq!(session.back_in_the_shell(), "code=0");
+    assert!(session.bench.runs().is_empty());
 }
 
 #[test]
@@ -178,14 +209,15 @@ fn a_planner_that_cannot_be_opened_blocks_the_start_and_another_one_flies() {
     let arguments = format!("console {} --planner faulty --set fault=configure_panic", goto.display());
     let mut session = Session::open(&arguments, 120, 36);
     session.see("FAILED: planner faulty");
-    session.press("S\r");
+    session.press("S");
     session.see("tart blocked");
+    session.press("A");
     session.see("[FAIL] planner");
     session.press("\x1b");
     // A key right behind Esc would be Alt and that key.
     session.until("the closed list", |session| !session.text().contains("[FAIL] planner"));
     session.change_planner("rpf");
-    session.see("plan ready");
+    session.see("Press S to start");
     assert!(session.bench.runs().is_empty());
     session.start();
     session.see("▶ RUN");

@@ -1,7 +1,10 @@
 //! The queries of `rerun.md`, run as they stand there on a recording of a run.
 
-use crate::bench::{Bench, Ended, scenario, workspace};
-use std::process::Command;
+use crate::{
+    bench::{Bench, Ended, scenario, workspace},
+    killed::{begin_and_kill, slow_scenario},
+};
+use std::{process::Command, time::Duration};
 
 /// The Python programs of a document.
 fn programs(document: &str) -> Vec<&str> {
@@ -22,12 +25,26 @@ fn the_queries_of_the_document_run_on_a_recording() {
         return;
     }
     let flown = bench.fly(&scenario("cover-circle.toml"), &[]).json();
+    for other in ["goto-single-obstacle.toml", "spiral-paper.toml"] {
+        bench.fly(&scenario(other), &[]);
+    }
+    begin_and_kill(&bench, &slow_scenario(&bench), 11, Duration::from_millis(200));
     let document = std::fs::read_to_string(workspace().join("console/docs/rerun.md")).unwrap();
     let ended: Vec<Ended> =
         programs(&document).iter().filter_map(|program| python(&bench, program)).collect();
     assert!(ended.len() == 3 && ended.iter().all(|ended| ended.code == Some(0)), "{ended:#?}");
-    let scanned = &flown["floor"]["reachable"]["percent"]["scanned"];
-    assert!(ended[0].out.contains(&format!("reachable_scanned_percent {scanned}\n")), "{ended:#?}");
-    assert!(ended[1].out.starts_with("worst "), "{ended:#?}");
-    assert_eq!(ended[2].out.lines().filter(|line| line.starts_with("station ")).count(), 5, "{ended:#?}");
+    let names: Vec<String> =
+        bench.runs().iter().map(|run| run.file_name().unwrap().to_string_lossy().into_owned()).collect();
+    assert_eq!(names.len(), 4);
+    let begins = |line: &&str| names.iter().any(|name| line.starts_with(name.as_str()));
+    assert_eq!(ended[0].out.lines().filter(begins).count(), 4, "{ended:#?}");
+    assert_eq!(ended[0].out.matches("no end: its writer was killed").count(), 1, "{ended:#?}");
+    assert_eq!(ended[0].out.matches("missed_m2").count(), 1, "only one mission was to scan: {ended:#?}");
+    let scanned = 100.0 * flown["coverage"]["reachable"].as_f64().unwrap();
+    let printed = ended[0].out.split("reachable_scanned_percent ").nth(1).unwrap().lines().next().unwrap();
+    assert!((printed.parse::<f64>().unwrap() - scanned).abs() < 1e-3, "{printed} {scanned}");
+    assert!(ended[1].out.lines().filter(begins).count() >= 3, "{ended:#?}");
+    assert!(ended[1].out.lines().all(|line| begins(&line) && line.contains(" worst ")), "{ended:#?}");
+    assert!(ended[2].out.lines().filter(begins).count() >= 3, "{ended:#?}");
+    assert!(ended[2].out.lines().filter(|line| line.starts_with("  station ")).count() >= 15, "{ended:#?}");
 }

@@ -33,7 +33,9 @@ fn the_first_line_that_fails_is_named() {
             1,
             "mission.txt:2: not so: phase running; the phase is waiting",
         ),
-        ("speed 900\n", 1, "mission.txt:1: must be 0.25 to 64, or max"),
+        ("theme dark\nspeed 900\n", 2, "mission.txt:2: must be 0.25 to 64, or max"),
+        ("theme dark\nbogus command\n", 2, "mission.txt:2: no command `bogus`"),
+        ("exclude S9\n", 1, "mission.txt:1: no station `S9`"),
         ("resume\n", 1, "mission.txt:1: "),
         ("start\nresume\n", 1, "mission.txt:2: a question is open; answer it first"),
         ("wait until text nonsense within 0.1s\n", 1, "mission.txt:1: not within 0.1 s: text \"nonsense\""),
@@ -43,6 +45,59 @@ fn the_first_line_that_fails_is_named() {
     for (script, code, line) in cases {
         let ended = scripted(&Bench::new(), script);
         assert!(ended.code == Some(code) && ended.err.contains(line), "{script}: {ended:?}");
+    }
+}
+
+#[test]
+fn nothing_is_run_of_a_script_with_a_line_that_cannot_be_read() {
+    let bench = Bench::new();
+    let ended =
+        scripted(&bench, "speed max\nstart\nkey enter\nwait until phase ended\nbogus command\nspeed\n");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    for line in ["mission.txt:5: no command `bogus`", "mission.txt:6: usage: speed"] {
+        assert!(ended.err.contains(line), "{line}: {ended:?}");
+    }
+    assert!(bench.runs().is_empty());
+}
+
+#[test]
+fn a_mission_that_is_held_is_ended() {
+    for end in ["end", "key X"] {
+        let bench = Bench::new();
+        let script = format!(
+            "start\nkey enter\nwait until phase running\nhold\nwait until phase held\n{end}\nkey enter\n\
+             wait until phase aborted\n"
+        );
+        let ended = scripted(&bench, &script);
+        assert_eq!(ended.code, Some(0), "{end}: {ended:?}");
+        bench.prove(&bench.runs()[0]);
+    }
+}
+
+#[test]
+fn what_is_done_about_alarms_stations_and_presets_is_in_journal_and_report() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path().join("tankops")).unwrap();
+    bench.file("tankops/config.toml", "operator = \"lk\"\n");
+    let ended = scripted(
+        &bench,
+        "start\nkey enter\nwait until phase running\ninject C offset=3 60s\nwait until alarm rejected within 2m\n\
+         key a\nshelve 15m alarm=\"station C rejected\" reason=pump\nexclude D\ninclude D\nhold\nwait until phase held\n\
+         end\nkey enter\nwait until phase aborted\n",
+    );
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let run = &bench.runs()[0];
+    bench.prove(run);
+    let (run, events) = (run.to_str().unwrap(), bench.tankops(&["events", run.to_str().unwrap()]));
+    let page = bench.path().join("report.html");
+    let written = bench.tankops(&["report", run, "--draft", "-o", page.to_str().unwrap()]);
+    assert_eq!(written.code, Some(0), "{written:?}");
+    let page = std::fs::read_to_string(page).unwrap();
+    for line in
+        ["alarm acknowledged by lk: ", "alarm shelved by lk for 15 min (pump): ", "exclude station D by lk"]
+    {
+        assert!(events.out.contains(line), "{line}: {events:?}");
+        assert!(page.contains(line), "{line} on the page");
     }
 }
 

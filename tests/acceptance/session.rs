@@ -131,8 +131,9 @@ impl Session {
         self.press("\r");
     }
 
-    /// Starts the mission and agrees to it.
+    /// Starts the mission and agrees to it, once its plan is ready.
     pub(crate) fn start(&mut self) {
+        self.see("Press S to start");
         self.press("S");
         self.see("Enter: start, Esc: cancel.");
         self.press("\r");

@@ -1,6 +1,6 @@
 //! The console in a pseudo terminal: what the operator sees, and that the terminal comes back as it was.
 
-use crate::bench::{journal, scenario};
+use crate::bench::{journal, of_kind, scenario};
 use crate::session::Session;
 use std::path::Path;
 
@@ -34,8 +34,7 @@ fn a_mission_is_flown_held_swapped_and_finished_by_hand() {
 #[test]
 fn a_terminated_console_holds_closes_the_run_and_gives_the_terminal_back() {
     let mut session = Session::open(&goto(), 80, 24);
-    session.see("IDLE");
-    session.press("S\r");
+    session.start();
     session.see("RUN");
     session.signal_console(rustix::process::Signal::TERM);
     assert_eq!(session.back_in_the_shell(), "code=143");
@@ -43,10 +42,51 @@ fn a_terminated_console_holds_closes_the_run_and_gives_the_terminal_back() {
 }
 
 #[test]
+fn whatever_signal_ends_the_console_holds_closes_the_run_and_gives_the_terminal_back() {
+    use rustix::process::Signal;
+    for signal in [Signal::QUIT, Signal::USR1, Signal::USR2, Signal::ALARM, Signal::XCPU, Signal::POWER] {
+        let mut session = Session::open(&goto(), 80, 24);
+        session.start();
+        session.see("RUN");
+        session.signal_console(signal);
+        assert_eq!(session.back_in_the_shell(), format!("code={}", 128 + signal.as_raw()), "{signal:?}");
+        assert_eq!(kinds(&session.run()).last().map(String::as_str), Some("ended"), "{signal:?}");
+        session.bench.prove(&session.run());
+    }
+}
+
+#[test]
+fn a_held_key_moves_nothing() {
+    let mut session = Session::open(&goto(), 120, 36);
+    session.start();
+    session.see("RUN");
+    session.hold();
+    session.press(".");
+    session.see("Step?");
+    // As a keyboard repeats: after half a second, then many times a second.
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    for _ in 0..40 {
+        session.press(".");
+        std::thread::sleep(std::time::Duration::from_millis(33));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    let steps = |session: &Session| {
+        let events = journal(&session.run());
+        of_kind(&events, "ordered").iter().filter(|event| event["order"] == "step").count()
+    };
+    assert_eq!(steps(&session), 0);
+    session.press("\r");
+    session.until("the step", |session| steps(session) == 1);
+    session.press("\x1b");
+    session.until("the closed line", |session| !session.text().contains("Step?"));
+    session.press("1q");
+    assert_eq!(session.agree_to_leave(), "code=1");
+}
+
+#[test]
 fn a_panic_of_the_screen_gives_the_terminal_back_and_closes_the_run() {
     let mut session = Session::open(&format!("{} --drill panic-screen", goto()), 80, 24);
-    session.see("IDLE");
-    session.press("S\r");
+    session.start();
     assert_eq!(session.back_in_the_shell(), "code=3");
     assert!(session.text().contains("the run was closed"), "{}", session.text());
     assert_eq!(kinds(&session.run()).last().map(String::as_str), Some("ended"));
@@ -58,8 +98,7 @@ fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard(
     let thief = "set -m; (until [ -e steal ]; do sleep 0.1; done; trap '' TTOU; $TANKOPS take-terminal && touch stolen; \
                  sleep 100) & set +m;";
     let mut session = Session::open_after(thief, &goto(), 80, 24);
-    session.see("IDLE");
-    session.press("S\r");
+    session.start();
     session.see("RUN");
     session.bench.file("steal", "");
     session.until("the terminal to be stolen", |session| session.bench.path().join("stolen").exists());
@@ -73,8 +112,7 @@ fn a_terminal_that_another_process_has_taken_is_taken_back_and_the_key_is_heard(
 #[test]
 fn a_closed_terminal_ends_the_console_and_closes_the_run() {
     let mut session = Session::open(&goto(), 80, 24);
-    session.see("IDLE");
-    session.press("S\r");
+    session.start();
     session.see("RUN");
     let console = session.console_pid();
     session.hang_up();
@@ -91,8 +129,7 @@ fn is_zombie(pid: i32) -> bool {
 #[test]
 fn a_small_terminal_keeps_the_controls() {
     let mut session = Session::open(&goto(), 44, 10);
-    session.see("IDLE");
-    session.press("S\r");
+    session.start();
     session.see("RUN");
     session.press(" ");
     session.see("HOLD");

@@ -159,7 +159,9 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         (None, Some((at, of))) => (at..=last).step_by(of as usize).collect(),
         (None, None) => (0..=last).collect(),
     };
-    let blocks: Vec<u64> = blocks.into_iter().filter(|block| !folder.has_part(*block)).collect();
+    let (missing, damaged) = folder.missing(&campaign);
+    damaged.iter().for_each(|why| warn_line(why));
+    let blocks: Vec<u64> = blocks.into_iter().filter(|block| missing.contains(block)).collect();
     if blocks.is_empty() {
         return Ok(ExitCode::from(COMPLETE));
     }
@@ -168,7 +170,7 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let share =
         Share { blocks: blocks.clone(), threads: threads(args.threads), pulls: args.pull, budget_s: None };
     fly(&folder, &campaign, plugins, &here, &stop, share)?;
-    let left: Vec<u64> = blocks.into_iter().filter(|block| !folder.has_part(*block)).collect();
+    let left: Vec<u64> = blocks.into_iter().filter(|block| !folder.has_part(&campaign, *block)).collect();
     match (left.is_empty(), stop.requested()) {
         (true, _) => Ok(ExitCode::from(COMPLETE)),
         (false, true) => Ok(incomplete(&left, "stopped")),
@@ -180,7 +182,7 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
 fn status(folder: &Folder) -> anyhow::Result<ExitCode> {
     let campaign = folder.campaign()?;
     let missing = results::missing(folder, &campaign)?;
-    let (blocks, there) = (campaign.blocks(), campaign.blocks() - folder.missing(&campaign).len() as u64);
+    let (blocks, there) = (campaign.blocks(), campaign.blocks() - folder.missing(&campaign).0.len() as u64);
     let hours = folder.core_seconds() / 3600.0;
     say_line(&format!(
         "{there} of {blocks} blocks, {} missions in all; {hours:.3} core hours so far",

@@ -84,6 +84,9 @@ pub(crate) enum Command {
         /// Print what came of the flights as JSON, and nothing else on stdout.
         #[arg(long, requires = "fly")]
         json: bool,
+        /// Write the tanks in which a planner did not complete its mission into this folder, as scenarios to be flown again.
+        #[arg(long, value_name = "DIR", requires = "fly")]
+        keep: Option<PathBuf>,
     },
     /// Reproduce a table or figure of a paper, with the printed values beside ours.
     Reproduce(ReproduceArgs),

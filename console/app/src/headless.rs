@@ -4,6 +4,7 @@ use crate::{
     accuracy::warn_of_positions,
     cli::{LogsArg, RunArgs},
     output::pretty_json,
+    planners::warn_of_shadowed,
     progress,
     shadowing::Shadowing,
     stop_signal::{self, StopSignal},
@@ -66,6 +67,7 @@ fn fly_beside(
 ) -> anyhow::Result<ExitCode> {
     let stop = stop_signal::listen();
     planners::check_installed(scenario, plugins)?;
+    warn_of_shadowed(scenario, plugins);
     warn_of_positions(scenario);
     let flight = Flight::prepare(scenario, false);
     let mut log = if options.record {

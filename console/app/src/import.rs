@@ -4,10 +4,14 @@ use crate::{
     cli::ImportArgs,
     output::{check_free, write_file},
 };
-use ::import::{FloorPlan, ImportError, columns, drawing};
-use flight::failure::{COMPLETE, bad_input};
+use ::import::{FloorPlan, ImportError, Input, InputKind, columns, drawing};
+use flight::{
+    failure::{COMPLETE, bad_input},
+    planners::{self, COVERAGE_PLANNER},
+};
+use planner_host::PluginDirs;
 use report::print::{say, say_line};
-use scenario::Scenario;
+use scenario::{Scenario, ScenarioErrors, is_stdin};
 use std::process::ExitCode;
 use world::Boundary;
 
@@ -15,17 +19,22 @@ use world::Boundary;
 const LISTED: usize = 10;
 
 /// `tankops import FILE -o SCENARIO`.
-pub(crate) fn import(args: &ImportArgs) -> anyhow::Result<ExitCode> {
+pub(crate) fn import(args: &ImportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
     for file in [Some(output), args.svg.as_ref()].into_iter().flatten() {
         check_free(file, Some(args.force))?;
     }
-    let plan = read(args)?;
+    let input = Input::read(&args.file).map_err(|error| bad_input(error.to_string()))?;
+    let plan = read(args, &input)?;
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let name = stem.replace(|c: char| !c.is_alphanumeric() && c != '_', "-");
     let source = args.file.file_name().unwrap_or_default().to_string_lossy();
-    let text = plan.scenario(&stem.replace(|c: char| !c.is_alphanumeric() && c != '_', "-"), &source);
+    let source = if is_stdin(&args.file) { "the standard input".into() } else { source };
+    let found = planners::found(plugins);
+    let planner = planners::suited_to_coverage(&found).map_or(COVERAGE_PLANNER, |info| &info.id);
+    let text = plan.scenario(&name, &source, planner);
     // A scenario that its reader refuses helps nobody.
-    Scenario::parse(&text, &output.display().to_string()).map_err(|errors| bad_input(errors.render()))?;
+    Scenario::parse(&text, &input.name).map_err(|errors| bad_input(no_scenario(&errors)))?;
     write_file("the scenario", output, &text)?;
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &report::drawing::floor(&plan.world(), &plan.plates))?;
@@ -33,30 +42,34 @@ pub(crate) fn import(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     for note in &plan.notes {
         say_line(&format!("note: {note}"))?;
     }
-    say(&format!("{}: {}\n", output.display(), human(&plan)))?;
+    say(&format!("{}: {}, planner {planner}\n", output.display(), human(&plan)))?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-fn read(args: &ImportArgs) -> anyhow::Result<FloorPlan> {
-    let suffix = args.file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let read = |plan: Result<FloorPlan, ImportError>| plan.map_err(|error| bad_input(error.to_string()));
-    match suffix.as_str() {
-        "csv" => {
+fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
+    match input.kind() {
+        InputKind::List => {
             let radius_m = args.tank_radius.ok_or_else(|| {
                 bad_input("a list of columns does not state the tank: add --tank-radius with its inner radius in metres")
             })?;
-            columns::read(&args.file, radius_m).map_err(|errors| bad_input(listed(&errors)))
+            columns::read(input, radius_m).map_err(|errors| bad_input(listed(&errors)))
         }
-        "dxf" => {
+        InputKind::Drawing => {
             let unit_m = args.units.map(Into::into);
             let layers = drawing::Layers::new(args.layer.clone());
-            read(drawing::read(
-                &args.file,
-                &drawing::Assumed { unit_m, pipe_width_m: args.pipe_width, layers },
-            ))
+            let assumed = drawing::Assumed { unit_m, pipe_width_m: args.pipe_width, layers };
+            drawing::read(input, &assumed).map_err(|error| bad_input(error.to_string()))
         }
-        _ => Err(bad_input(format!("{}: import reads .dxf and .csv files", args.file.display()))),
     }
+}
+
+/// Why no scenario can be made of a floor: without lines, for the text that has them was not written.
+fn no_scenario(errors: &ScenarioErrors) -> String {
+    let told = errors.problems.iter().take(LISTED).map(|problem| {
+        let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();
+        format!("{}: makes no scenario, and nothing was written: {problem}{help}", errors.shown_name)
+    });
+    told.collect::<Vec<_>>().join("\n")
 }
 
 /// What is wrong with a file, line by line.

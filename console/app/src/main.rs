@@ -119,11 +119,11 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Plan(args)) => plan::plan(&args, &plugins),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Map(args)) => map::map(&args),
-        Some(Command::Import(args)) => import::import(&args),
+        Some(Command::Import(args)) => import::import(&args, &plugins),
         Some(Command::NewPlanner(args)) => new_planner::create(&args),
         Some(Command::Planners { json }) => planners::list(&plugins, json),
-        Some(Command::Check { files, fly: Some(n), seed, json }) => {
-            trial::fly(&files, &plugins, (n, seed), json)
+        Some(Command::Check { files, fly: Some(n), seed, json, keep }) => {
+            trial::fly(&files, &plugins, (n, seed), json, keep.as_deref())
         }
         Some(Command::Check { files, .. }) => planners::check(&files, &plugins),
         Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),

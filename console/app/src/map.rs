@@ -23,8 +23,10 @@ pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
             args.map.display()
         )));
     }
-    let floor = MapFloor::new(&map, start, args.simplify)
-        .ok_or_else(|| bad_input(format!("{}: shows no free floor", args.map.display())))?;
+    let floor = MapFloor::new(&map, start, args.simplify).ok_or_else(|| {
+        let why = map.unseen.map(|unseen| format!("; {unseen}")).unwrap_or_default();
+        bad_input(format!("{}: shows no free floor{why}", args.map.display()))
+    })?;
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &drawing::floor(&world_of(&floor), &[]))?;
     }
@@ -71,5 +73,8 @@ fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
         floor.error_m,
         floor.error_m / cell_m,
     );
+    if let Some(unseen) = map.unseen {
+        let _ = writeln!(text, "not floor            {unseen}");
+    }
     text
 }

@@ -74,8 +74,9 @@ fn files(id: &str, lang: Lang, api: &str) -> Vec<(String, String)> {
                 .replace("\"straight\"", &format!("\"{id}\""))
                 .replace("planner_straight", &format!("planner_{library}"))
                 .replace("{ path = \"../../planner-api\" }", api);
-            // A workspace of its own, wherever it lies.
-            let cargo = format!("{cargo}\n[workspace]\n");
+            // A workspace of its own, wherever it lies, whose crashes show their lines in a debugger.
+            let profile = "[profile.release]\n# `tankops replay-worker --gdb` shows the lines of a crash.\ndebug = \"line-tables-only\"\n";
+            let cargo = format!("{cargo}\n{profile}\n[workspace]\n");
             vec![
                 ("Cargo.toml".into(), cargo),
                 ("src/lib.rs".into(), RUST.into()),

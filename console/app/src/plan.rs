@@ -7,9 +7,9 @@ use crate::{
 };
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
-    hosts, scenarios,
+    hosts, planners, scenarios,
 };
-use mission::{Cause, Fault, preview};
+use mission::{Cause, Fault, Parameters, PlannerChoice, TaskConfig, check_extent, preview};
 use planner_api::{Code, LogLevel, Plan};
 use planner_host::{BlockingHost, PluginDirs, Reply};
 use report::{
@@ -17,6 +17,7 @@ use report::{
     print::say,
 };
 use scenario::Scenario;
+use serde::Serialize;
 use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 
 /// `tankops plan`.
@@ -28,10 +29,14 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     }
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);
+    let better = better(&scenario, &planned, plugins);
     if args.json {
-        say_json("the plan", &planned)?;
+        say_json("the plan", &WithAdvice { planned: &planned, better: better.as_ref() })?;
     } else {
         say(&planned.human())?;
+        if let Some(better) = &better {
+            say(&better.human(&planned))?;
+        }
     }
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &planned.svg(mission, &drawing))?;
@@ -45,6 +50,55 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
         write_file("the plan", file, &text)?;
     }
     Ok(ExitCode::from(if planned.flies(mission) { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// A plan, and a far better one by another planner.
+#[derive(Serialize)]
+struct WithAdvice<'a> {
+    #[serde(flatten)]
+    planned: &'a Planned,
+    better: Option<&'a Better>,
+}
+
+/// What another planner would take for the same task.
+#[derive(Serialize)]
+struct Better {
+    /// Its id.
+    planner: String,
+    /// Mission time of its plan, seconds.
+    mission_time_s: f64,
+    /// Way of its plan, metres.
+    path_length_m: f64,
+}
+
+impl Better {
+    fn human(&self, planned: &Planned) -> String {
+        let Self { planner, mission_time_s, path_length_m } = self;
+        let (own_m, own_s) = planned.effort();
+        format!(
+            "advice    {planner} is far better: {mission_time_s:.0} s instead of {own_s:.0} s, {path_length_m:.0} m instead of \
+             {own_m:.0} m; choose it with --planner {planner}\n"
+        )
+    }
+}
+
+/// The planner that suits coverage best, where its plan takes far less time or this one is not complete.
+fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Option<Better> {
+    /// Far less: at most this share of the time.
+    const FAR: f64 = 0.7;
+    if !matches!(scenario.mission.task, TaskConfig::Cover { .. }) {
+        return None;
+    }
+    let found = planners::found(plugins);
+    let suited =
+        planners::suited_to_coverage(&found).filter(|info| info.id != scenario.mission.planner.id)?;
+    let mut other = scenario.clone();
+    other.mission.planner = PlannerChoice { id: suited.id.clone(), parameters: Parameters::default() };
+    let plan = Planned::new(&other.mission, &scenario.sim.world.as_drawn(), make_plan(&other, plugins).ok()?);
+    let ((_, own_s), (path_length_m, mission_time_s)) = (planned.effort(), plan.effort());
+    let is_far = !planned.flies(&scenario.mission) || mission_time_s <= FAR * own_s;
+    let planner = suited.id.clone();
+    (is_far && plan.flies(&other.mission)).then_some(Better { planner, mission_time_s, path_length_m })
 }
 
 /// How a plan is written.
@@ -75,6 +129,11 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> 
     let began = Instant::now();
     let answer = ask_for_plan(scenario, &mut host);
     spinner.finish_and_clear();
+    if let Ok(reply) = &answer {
+        let (mission, boundary) = (&scenario.mission, &scenario.sim.world.boundary);
+        check_extent(&reply.value, boundary, mission.lane_m())
+            .map_err(|what| bad_input(format!("planner {} {what}", mission.planner.id)))?;
+    }
     let plan_time_ms = host.stats().plan.p50_us.unwrap_or(began.elapsed().as_secs_f64() * 1e6) / 1e3;
     let mut warnings = Vec::new();
     let (plan, reason) = match answer {

@@ -2,8 +2,8 @@
 
 use crate::{accuracy::warn_of_positions, output::pretty_json};
 use flight::{
-    failure::{BAD_INPUT, COMPLETE},
-    planners::check_installed,
+    failure::{BAD_INPUT, COMPLETE, is_input},
+    planners::{self, check_installed},
 };
 use interactive::config;
 use mission::{ParamInfo, ParamKind, PlannerInfo};
@@ -62,11 +62,16 @@ fn parameter_listing(info: &ParamInfo) -> String {
     format!("      {:<18} {values}{unit}{live}\n", info.key)
 }
 
+/// Warns of planners of a scenario that more than one plugin has.
+pub(crate) fn warn_of_shadowed(scenario: &Scenario, plugins: &PluginDirs) {
+    planners::shadowed(scenario, plugins).iter().for_each(|sentence| warn_line(sentence));
+}
+
 /// `tankops check`.
 pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let mut sound = true;
     for file in files {
-        match check_file(file, plugins) {
+        match check_file(file, plugins)? {
             Ok(what) => say_line(&format!("ok: {}: {what}", file.display()))?,
             Err(why) => {
                 sound = false;
@@ -77,27 +82,40 @@ pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<E
     Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
 }
 
-fn check_file(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
+/// What a file is, or what is wrong with it.
+///
+/// # Errors
+/// The machine lets no planner run.
+fn check_file(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String, String>> {
     if let Some(checked) = config::check(file) {
-        return checked;
+        return Ok(checked);
     }
     let is_plugin =
         file.extension().is_some_and(|end| ["so", "dylib", "dll"].iter().any(|known| end == *known));
     if is_plugin {
         return check_plugin(file, plugins);
     }
-    let scenario = Scenario::read_with(file, &Settings::default()).map_err(|errors| errors.render())?;
-    check_installed(&scenario, plugins).map_err(|error| error.to_string())?;
+    let scenario = match Scenario::read_with(file, &Settings::default()) {
+        Ok(scenario) => scenario,
+        Err(errors) => return Ok(Err(errors.render())),
+    };
+    match check_installed(&scenario, plugins) {
+        Ok(()) => {}
+        Err(error) if is_input(&error) => return Ok(Err(error.to_string())),
+        Err(error) => return Err(error),
+    }
     warn_of_positions(&scenario);
-    Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id))
+    warn_of_shadowed(&scenario, plugins);
+    Ok(Ok(format!("scenario {}, planner {}", scenario.name, scenario.mission.planner.id)))
 }
 
-fn check_plugin(file: &Path, plugins: &PluginDirs) -> Result<String, String> {
-    let error = |why: String| format!("error: {}: {why}", file.display());
+fn check_plugin(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String, String>> {
+    let error = |why: String| Err(format!("error: {}: {why}", file.display()));
     let checked = planner_host::check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox);
+    let checked = checked.map_err(anyhow::Error::msg)?;
     if let Some(reason) = checked.refused {
-        return Err(error(reason));
+        return Ok(error(reason));
     }
     let ids: Vec<&str> = checked.planners.iter().map(|info| info.id.as_str()).collect();
-    Ok(format!("plugin with {}", ids.join(", ")))
+    Ok(Ok(format!("plugin with {}", ids.join(", "))))
 }

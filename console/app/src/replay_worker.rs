@@ -1,8 +1,10 @@
 //! `tankops replay-worker`: a plugin alone, asked once more what it was asked before it failed.
 
 use crate::cli::ReplayWorkerArgs;
+use anyhow::anyhow;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
-use planner_host::{Replayed, WorkerCommand, plugin_of};
+use flight::remains::{CRASH_FILE, FRAMES_FILE, check_frames};
+use planner_host::{NotReplayed, Replayed, WorkerCommand, plugin_of};
 use report::print::{say, say_line};
 use std::{
     env, fs, io,
@@ -19,12 +21,17 @@ const TRACE: &str = "backtrace.txt";
 /// `tankops replay-worker BUNDLE`.
 pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
     let bundle = &args.bundle;
-    let file = bundle.join("frames.bin");
-    let frames = fs::read(&file)
-        .map_err(|error| bad_input(format!("{}: {error}; name a folder crash-N of a run", file.display())))?;
-    if let Ok(about) = fs::read_to_string(bundle.join("crash.txt")) {
-        say(&about)?;
-    }
+    let kept = |name: &str| {
+        let file = bundle.join(name);
+        let read = fs::read(&file).map_err(|error| {
+            bad_input(format!("{}: {error}; name a whole folder crash-N of a run", file.display()))
+        });
+        read.map(|bytes| (file, bytes))
+    };
+    let ((file, frames), (_, about)) = (kept(FRAMES_FILE)?, kept(CRASH_FILE)?);
+    let about = String::from_utf8_lossy(&about);
+    check_frames(&about, &frames).map_err(|why| bad_input(format!("{} {why}", file.display())))?;
+    say(&about)?;
     let gdb = (args.gdb || args.core).then(|| Gdb::for_plugin(plugin_of(&frames).as_deref())).transpose()?;
     let worker = match &gdb {
         Some(gdb) if args.core => gdb.leaving_core(bundle)?,
@@ -35,8 +42,15 @@ pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
         let _ = say_line(line);
     };
     let replayed = planner_host::replay(&frames, &worker, gdb.is_some(), &mut say_each);
-    let (code, end) = match replayed.map_err(|why| bad_input(format!("{}: {why}", file.display())))? {
-        Replayed::ToTheEnd => (COMPLETE, "every request was answered: it does not fail again".to_owned()),
+    let replayed = replayed.map_err(|why| match why {
+        NotReplayed::Damaged(why) => bad_input(format!("{} {why}", file.display())),
+        NotReplayed::Machine(why) => anyhow!(why),
+    });
+    let (code, end) = match replayed? {
+        Replayed::ToTheEnd { requests } => (
+            COMPLETE,
+            format!("the console accepts the answers to all {requests} requests: it does not fail again"),
+        ),
         Replayed::Failed(how) => (ENDED_OTHERWISE, format!("failed again at {how}")),
     };
     say_line(&end)?;

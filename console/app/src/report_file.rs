@@ -8,8 +8,10 @@ use crate::{
         signature,
     },
 };
-use flight::failure::{COMPLETE, bad_input};
-use foreign::MOST_TEXT_BYTES;
+use flight::{
+    failure::{COMPLETE, bad_input},
+    texts,
+};
 use planner_host::PluginDirs;
 use report::{
     Document, Inspection, PastRun,
@@ -19,7 +21,6 @@ use report::{
 use runs::{Past, find};
 use std::{
     fs,
-    io::Read,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -41,7 +42,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     }
     let read = review::read_all(&args.runs, &args.logs.folder())?;
     let inspection = inspection(args, read.last())?;
-    let indications = args.indications.as_deref().map(read_text).transpose()?;
+    let indications = args.indications.as_deref().map(texts::read).transpose()?;
     let name = args.indications.as_ref().map(|file| file.display().to_string());
     if let Some(by) = &args.sign {
         refuse_other_signer(by, inspection.inspector.as_deref())?;
@@ -123,20 +124,8 @@ fn may_write(
 fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspection> {
     let known = last.map(review::inspection).transpose()?.unwrap_or_default();
     let Some(file) = &args.inspection else { return Ok(known) };
-    let later = scenario::inspection(&read_text(file)?, &file.display().to_string());
+    let later = scenario::inspection(&texts::read(file)?, &file.display().to_string());
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))
-}
-
-fn read_text(file: &Path) -> anyhow::Result<String> {
-    let refused = |why: String| bad_input(format!("{} cannot be read: {why}", file.display()));
-    // It may be a pipe.
-    let mut bytes = Vec::new();
-    let read = fs::File::open(file).and_then(|file| file.take(MOST_TEXT_BYTES + 1).read_to_end(&mut bytes));
-    read.map_err(|error| refused(error.to_string()))?;
-    if bytes.len() as u64 > MOST_TEXT_BYTES {
-        return Err(refused(format!("it is longer than {} MB", MOST_TEXT_BYTES >> 20)));
-    }
-    String::from_utf8(bytes).map_err(|error| refused(error.to_string()))
 }
 
 /// The files of a format with their texts.

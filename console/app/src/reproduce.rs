@@ -1,7 +1,7 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
 use crate::{cli::ReproduceArgs, output::say_json, study_folder::StudyFolder};
-use ::reproduce::{Gallery, Options, Parts, Runner, gallery, studies, study, table};
+use ::reproduce::{Gallery, Options, Parts, Runner, csv, gallery, studies, study, table};
 use flight::failure::{COMPLETE, bad_input};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
@@ -51,6 +51,8 @@ pub(crate) fn reproduce(args: &ReproduceArgs, plugins: &PluginDirs) -> anyhow::R
     folder.map_or(Ok(()), |folder| folder.finish(&serde_json::to_value(&rows)?))?;
     if args.json {
         say_json("the rows", &rows)?;
+    } else if args.csv {
+        say(&csv(&rows))?;
     } else {
         say(&table(&rows))?;
     }

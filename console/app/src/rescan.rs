@@ -8,12 +8,11 @@ use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     planners,
 };
-use mission::PlannerInfo;
 use planner_host::PluginDirs;
 use report::print::{say, say_line};
 use review::{MissedScan, NextScan, doubt, missed_scan};
-use scenario::Scenario;
-use std::process::ExitCode;
+use scenario::{Scenario, Settings};
+use std::{path::Path, process::ExitCode};
 
 /// `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
@@ -35,35 +34,46 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
         }
     };
     let MissedScan { missed, text, scenario } = scan;
+    let (text, changed) = flyable(text, &scenario, output, plugins)?;
     write_file("the scenario", output, &text)?;
     say(&format!("{}: {}", output.display(), missed.human(min_area_m2)))?;
-    print_advice(args, &names, &planners_instead(&scenario, plugins))?;
+    if let Some(note) = changed {
+        say_line(&note)?;
+    }
+    print_advice(args, &names)?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// The planners that can fly the re-scan, if the one that flew the scan cannot.
-fn planners_instead(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
-    let found = planners::found(plugins).planners;
-    let cannot = |info: &PlannerInfo| info.id == scenario.mission.planner.id && !info.covers;
-    if !found.iter().any(cannot) {
-        return Vec::new();
-    }
-    found.into_iter().filter(|info| info.covers).map(|info| info.id).collect()
+/// The text with planners that can fly it, and what was changed for that, as a note.
+fn flyable(
+    text: String,
+    scenario: &Scenario,
+    output: &Path,
+    plugins: &PluginDirs,
+) -> anyhow::Result<(String, Option<String>)> {
+    let found = planners::found(plugins);
+    let mission = &scenario.mission;
+    let why = |id: &str| {
+        let info = found.planners.iter().find(|info| info.id == id)?;
+        planners::why_unsuited(info, &mission.task)
+    };
+    let Some((why, suited)) = why(&mission.planner.id).zip(planners::suited_to_coverage(&found)) else {
+        return Ok((text, None));
+    };
+    let settings = Settings { planner: Some(suited.id.clone()), ..Settings::default() };
+    let shown = output.display().to_string();
+    let text = settings.put_into(&text).map_err(|what| bad_input(format!("{shown}: {what}")))?;
+    Scenario::parse(&text, &shown).map_err(|errors| bad_input(errors.render()))?;
+    let note = format!("planner {}: that of the run, {}, {why}", suited.id, mission.planner.id);
+    Ok((text, Some(note)))
 }
 
 /// How the re-scan is flown.
-fn print_advice(args: &RescanArgs, names: &[String], instead: &[String]) -> anyhow::Result<()> {
+fn print_advice(args: &RescanArgs, names: &[String]) -> anyhow::Result<()> {
     let (logs, output) = (args.logs.folder(), args.output.display());
     let logs = logs.display();
-    let option = if instead.is_empty() { "" } else { " --planner PLANNER" };
-    if !instead.is_empty() {
-        say_line(&format!(
-            "the planner of the run does not support coverage missions; PLANNER is one of {}",
-            instead.join(", ")
-        ))?;
-    }
     Ok(say_line(&format!(
-        "run it with `tankops run --logs {logs} {output}{option}`; then `tankops report --logs {logs} {} RUN` shows them \
+        "run it with `tankops run --logs {logs} {output}`; then `tankops report --logs {logs} {} RUN` shows them \
          together",
         names.join(" "),
     ))?)

@@ -7,6 +7,7 @@ use planner_host::PluginDirs;
 use report::print::warn_line;
 use reproduce::Parts;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use std::{
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -18,9 +19,14 @@ const PARTS: &str = "parts";
 /// Results, when everything is there.
 const RESULT: &str = "result.json";
 
+/// A part is its answers, and behind them this many bytes: SHA-256 of what was asked for, the part's name and its answers.
+const DIGEST: usize = 32;
+
 /// A folder of answers.
 pub(crate) struct StudyFolder {
     folder: SharedFolder,
+    /// What was asked for.
+    asked: String,
     /// Whether it was said that others are waited for.
     has_waited: AtomicBool,
 }
@@ -41,7 +47,23 @@ impl StudyFolder {
                 })?,
             },
         }
-        Ok(Self { folder, has_waited: AtomicBool::new(false) })
+        Ok(Self { folder, asked: asked.to_string(), has_waited: AtomicBool::new(false) })
+    }
+
+    fn digest(&self, name: &str, answers: &[u8]) -> [u8; DIGEST] {
+        let mut hash = Sha256::new();
+        for part in [self.asked.as_bytes(), name.as_bytes()] {
+            hash.update((part.len() as u64).to_le_bytes());
+            hash.update(part);
+        }
+        hash.update(answers);
+        hash.finalize().into()
+    }
+
+    /// The answers of a part that is as it was written.
+    fn whole<'b>(&self, name: &str, bytes: &'b [u8]) -> Option<&'b [u8]> {
+        let (answers, digest) = bytes.split_last_chunk::<DIGEST>()?;
+        (*digest == self.digest(name, answers)).then_some(answers)
     }
 
     /// Keeps the results, and removes what killed processes have left.
@@ -73,7 +95,14 @@ impl Parts for StudyFolder {
     }
 
     fn read(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        self.folder.read(&Path::new(PARTS).join(name)).map_err(|error| error.to_string())
+        let bytes = self.folder.read(&Path::new(PARTS).join(name)).map_err(|error| error.to_string())?;
+        let Some(bytes) = bytes else { return Ok(None) };
+        let answers = self.whole(name, &bytes).map(<[u8]>::to_vec);
+        if answers.is_none() {
+            let why = "is damaged: its bytes are not those that were written; it is computed again";
+            warn_line(&format!("{} {why}", self.place(name)));
+        }
+        Ok(answers)
     }
 
     fn claim(&self, name: &str) -> bool {
@@ -97,8 +126,44 @@ impl Parts for StudyFolder {
     }
 
     fn publish(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
+        let whole = [bytes, &self.digest(name, bytes)].concat();
         self.folder
-            .publish(&Path::new(PARTS).join(name), bytes)
+            .publish(&Path::new(PARTS).join(name), &whole)
             .map_err(|error| error.root_cause().to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(path: &Path, asked: &str) -> StudyFolder {
+        let folder = SharedFolder::new(path);
+        folder.make(&[PARTS]).expect("a folder");
+        StudyFolder { folder, asked: asked.to_owned(), has_waited: AtomicBool::new(false) }
+    }
+
+    #[test]
+    fn a_part_that_was_changed_cut_or_moved_is_not_there() {
+        let here = tempfile::tempdir().expect("a folder");
+        let study = folder(here.path(), "this");
+        let name = "part-00000-00001.cbor";
+        study.publish(name, b"answers").expect("written");
+        assert_eq!(study.read(name), Ok(Some(b"answers".to_vec())));
+        let file = study.part(name);
+        let whole = std::fs::read(&file).expect("read");
+        let with = |bytes: &[u8]| {
+            std::fs::write(&file, bytes).expect("written");
+            study.read(name)
+        };
+        for at in 0..whole.len() {
+            let mut changed = whole.clone();
+            changed[at] ^= 1 << (at % 8);
+            assert_eq!((with(&changed), with(&whole[..at])), (Ok(None), Ok(None)), "{at}");
+        }
+        assert_eq!(with(&whole), Ok(Some(b"answers".to_vec())));
+        assert_eq!(folder(here.path(), "that").read(name), Ok(None), "of another study");
+        std::fs::copy(&file, study.part("part-00000-00002.cbor")).expect("copied");
+        assert_eq!(study.read("part-00000-00002.cbor"), Ok(None), "of other cases");
     }
 }

@@ -1,38 +1,62 @@
 //! `tankops check PLUGIN --fly N`: what a planner must do, and how it flies beside the others.
 
-use crate::output::pretty_json;
-use conformance::Trial;
+use crate::output::{pretty_json, write_file};
+use conformance::{Lost, Others, Trial};
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     planners,
 };
 use mission::PlannerInfo;
 use planner_host::{PluginDirs, SurveyedPlugin, WorkerCommand, check_plugin};
-use report::print::say;
+use report::print::{say, warn_line};
 use std::{
+    fs, io,
     path::{Path, PathBuf},
     process::ExitCode,
 };
 
-/// Tries every planner of some plugins in `n` random tanks from a seed on.
+/// Tries every planner of some plugins in `n` random tanks from a seed on; `keep` is a folder for the tanks that were lost.
 pub(crate) fn fly(
     files: &[PathBuf],
     plugins: &PluginDirs,
     tanks: (u64, u64),
     json: bool,
+    keep: Option<&Path>,
 ) -> anyhow::Result<ExitCode> {
     let mut trials = Vec::new();
+    let shipped: Vec<String> =
+        planners::found(&PluginDirs::standard(&[])).planners.into_iter().map(|info| info.id).collect();
     for file in files {
         let plugins = with_folder_of(file, plugins);
         let found = planners::found(&plugins).planners;
         for planner in planners_of(file, &plugins, &found)? {
-            trials.push(Trial::of(&planner, &found, &plugins, tanks));
+            let others = Others { found: &found, shipped: &shipped };
+            trials.extend(Trial::all_of(&planner, others, &plugins, tanks));
         }
     }
     let texts: Vec<String> = trials.iter().map(Trial::human).collect();
     say(&if json { pretty_json("what came of the flights", &trials)? } else { texts.join("\n") })?;
+    if let Some(folder) = keep {
+        let lost: Vec<Lost> = trials.iter().flat_map(Trial::lost).collect();
+        keep_lost(folder, &lost)?;
+    }
     let is_passed = trials.iter().all(Trial::is_passed);
     Ok(ExitCode::from(if is_passed { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// Writes the tanks that were lost as scenarios, and says how one is flown.
+fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
+    let failed = |error: io::Error| bad_input(format!("--keep {}: {error}", folder.display()));
+    fs::create_dir_all(folder).map_err(failed)?;
+    for Lost { name, scenario } in lost {
+        let file = folder.join(format!("{name}.toml"));
+        write_file("--keep", &file, scenario)?;
+        warn_line(&format!("kept {}", file.display()));
+    }
+    if lost.is_empty() {
+        warn_line("no tank was lost: nothing is kept");
+    }
+    Ok(())
 }
 
 /// The folders of plugins, that of this file first.
@@ -47,7 +71,8 @@ fn with_folder_of(file: &Path, plugins: &PluginDirs) -> PluginDirs {
 fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyhow::Result<Vec<PlannerInfo>> {
     let refused = |why: String| bad_input(format!("{}: {why}", file.display()));
     let SurveyedPlugin { sha256, planners, refused: reason, .. } =
-        check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox);
+        check_plugin(file, &WorkerCommand::default(), plugins.requires_sandbox)
+            .map_err(anyhow::Error::msg)?;
     if let Some(reason) = reason {
         return Err(refused(reason));
     }

@@ -1,6 +1,7 @@
 //! Two tables side by side, mission by mission; or the planners of one.
 
 use crate::{
+    findings::COMPLETE,
     statistics::{Mean, mean},
     table::{Table, more_is_better},
     text,
@@ -15,7 +16,7 @@ pub struct Comparison {
     pub metric: String,
     /// One for each group.
     pub groups: Vec<Group>,
-    /// Missions that only one of the tables has.
+    /// Missions that are flown, and unless it is about success complete, in one of the tables only.
     pub unpaired: u64,
 }
 
@@ -73,7 +74,7 @@ impl Verdict {
     }
 }
 
-/// Compares a metric of two tables over the missions that both have flown; `by` is a column that makes groups.
+/// Compares a metric of two tables over the missions that both have completed, success over those that both have flown; `by` is a column that makes groups.
 ///
 /// # Errors
 /// There is no such column.
@@ -115,8 +116,14 @@ fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<Strin
     } else {
         table.numbers(metric)
     };
-    let flown = (0..table.len()).filter(|row| status[*row].as_deref() == Some("flown"));
-    flown
+    let outcome = table.words("outcome");
+    // What a mission costs that gave up is no measure of the task.
+    let counts = |row: &usize| match metric {
+        "success" => status[*row].as_deref() == Some("flown"),
+        _ => outcome.get(*row).is_some_and(|word| word.as_deref() == Some(COMPLETE)),
+    };
+    (0..table.len())
+        .filter(counts)
         .filter_map(|row| {
             let word = |column: &Vec<Option<String>>| column[row].clone().unwrap_or_default();
             let group = groups.as_ref().map_or_else(|| "all".to_owned(), word);
@@ -143,7 +150,8 @@ impl fmt::Display for Comparison {
             &std::iter::once(head).chain(self.groups.iter().map(row)).collect::<Vec<_>>(),
         ))?;
         if self.unpaired > 0 {
-            writeln!(f, "  {} missions were flown in one of them only", self.unpaired)?;
+            let what = if self.metric == "success" { "flown" } else { "complete" };
+            writeln!(f, "  {} missions are {what} in one of them only", self.unpaired)?;
         }
         Ok(())
     }
@@ -154,17 +162,15 @@ mod tests {
     use super::*;
     use crate::{
         frozen::tests::campaign,
+        part,
         row::Row,
-        table::{
-            part, read_part,
-            tests::{PLAN, file, row},
-        },
+        table::tests::{PLAN, file, row},
     };
 
     fn table(plan: &str) -> Table {
-        let campaign = campaign(plan);
+        let campaign = campaign(&format!("block = 160\n{plan}"));
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read")
+        part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written"))).expect("read")
     }
 
     #[test]

@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 
 /// Missions named as the worst.
 const WORST: usize = 10;
+/// The outcome of a mission that is complete, as the table has it.
+pub(crate) const COMPLETE: &str = "complete";
 
 /// What a table says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,6 +28,8 @@ pub struct Findings {
     pub failed: u64,
     /// Of these, flown with faults of planners.
     pub with_faults: u64,
+    /// Whose faults those are.
+    pub faults: Vec<Faults>,
     /// Columns that the findings are about.
     pub metrics: Vec<String>,
     /// What is compared, in the order of the plan.
@@ -41,14 +45,40 @@ pub struct Arm {
     pub name: String,
     /// How often a mission is complete and keeps every bound.
     pub success: Share,
-    /// The metrics over the missions that were flown; absent where none has the figure.
+    /// How often a mission that was flown is complete, whatever bounds it kept.
+    pub complete: Share,
+    /// The metrics over the complete missions; absent where none has the figure. What a mission costs that gave up says nothing
+    /// about what the task costs.
     pub means: Vec<Option<Mean>>,
-    /// Success and the metrics less those of the first arm, over missions of equal scenario and seed; absent for the first.
+    /// The metrics over the missions that were flown and are not complete.
+    pub means_of_incomplete: Vec<Option<Mean>>,
+    /// Success less that of the first arm, over missions of equal scenario and seed that both flew; then the metrics, over those
+    /// that both completed. Absent for the first.
     pub differences: Vec<Option<Mean>>,
     /// Success for each scenario, where there are several.
     pub scenarios: Vec<(String, Share)>,
-    /// Quantiles of the first metric: at 0, 1/40, ... 1.
+    /// Quantiles of the first metric over the complete missions: at 0, 1/40, ... 1.
     pub quantiles: Vec<f64>,
+}
+
+impl Arm {
+    /// Whether it completes clearly fewer missions than another: its interval ends below that one.
+    fn is_clearly_below(&self, other: &Self) -> bool {
+        other.complete.share().is_some_and(|share| self.complete.high < share)
+    }
+}
+
+/// The faults of a planner at a point of the grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Faults {
+    /// Planner and values.
+    pub arm: String,
+    /// Missions with faults.
+    pub missions: u64,
+    /// Faults in them.
+    pub faults: u64,
+    /// The command that flies the first of these missions again.
+    pub command: String,
 }
 
 /// A mission to be looked at.
@@ -65,7 +95,19 @@ struct Columns {
     cases: Vec<u64>,
     status: Vec<Option<String>>,
     success: Vec<bool>,
+    is_complete: Vec<bool>,
+    faults: Vec<Option<f64>>,
     metrics: Vec<Vec<Option<f64>>>,
+}
+
+impl Findings {
+    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another. A planner that
+    /// gives up at once is quick in what it does complete.
+    pub fn ranked(&self) -> Vec<bool> {
+        let is_ranked =
+            |arm: &Arm| arm.complete.hits > 0 && !self.arms.iter().any(|other| arm.is_clearly_below(other));
+        self.arms.iter().map(is_ranked).collect()
+    }
 }
 
 impl Columns {
@@ -74,8 +116,18 @@ impl Columns {
             cases: table.numbers("case").iter().map(|case| case.unwrap_or(0.0) as u64).collect(),
             status: table.words("status"),
             success: table.flags("success"),
+            is_complete: table
+                .words("outcome")
+                .iter()
+                .map(|word| word.as_deref() == Some(COMPLETE))
+                .collect(),
+            faults: table.numbers("planner_faults"),
             metrics: metrics.iter().map(|metric| table.numbers(metric)).collect(),
         }
+    }
+
+    fn faults(&self, row: usize) -> u64 {
+        self.faults.get(row).copied().flatten().unwrap_or(0.0) as u64
     }
 
     fn is_flown(&self, row: usize) -> bool {
@@ -106,12 +158,28 @@ pub fn findings(campaign: &Campaign, table: &Table) -> Findings {
         rows: table.len() as u64,
         refused: count("refused"),
         failed: count("failed"),
-        with_faults: table.numbers("planner_faults").iter().filter(|n| n.is_some_and(|n| n > 0.0)).count()
-            as u64,
+        with_faults: (0..table.len()).filter(|row| columns.faults(*row) > 0).count() as u64,
+        faults: faults(campaign, &columns, &of_arm),
         metrics: campaign.design.metrics.clone(),
         arms: (0..campaign.arms()).map(arm).collect(),
         worst: worst(campaign, table, &columns),
     }
+}
+
+/// The arms whose planners had faults, those with the most missions first.
+fn faults(campaign: &Campaign, columns: &Columns, of_arm: &[Vec<usize>]) -> Vec<Faults> {
+    let of = |(at, rows): (usize, &Vec<usize>)| {
+        let faulty: Vec<usize> = rows.iter().copied().filter(|row| columns.faults(*row) > 0).collect();
+        Some(Faults {
+            arm: campaign.arm_name(at),
+            missions: faulty.len() as u64,
+            faults: faulty.iter().map(|row| columns.faults(*row)).sum(),
+            command: campaign.command(&campaign.case(columns.cases[*faulty.first()?])),
+        })
+    };
+    let mut all: Vec<Faults> = of_arm.iter().enumerate().filter_map(of).collect();
+    all.sort_by_key(|faults| std::cmp::Reverse(faults.missions));
+    all
 }
 
 /// The rows of an arm by scenario and seed.
@@ -131,20 +199,28 @@ fn arm(
     let difference = |metric: usize| {
         let off = own.iter().filter_map(|(pair, row)| {
             let other = *first.get(pair)?;
-            let both = columns.is_flown(*row) && columns.is_flown(other);
+            let counts =
+                |row: usize| if metric == 0 { columns.is_flown(row) } else { columns.is_complete[row] };
+            let both = counts(*row) && counts(other);
             both.then(|| Some(columns.value(metric, *row)? - columns.value(metric, other)?)).flatten()
         });
         mean(off)
     };
     let metrics = 1..=campaign.design.metrics.len();
-    let mut sorted: Vec<f64> = flown.iter().filter_map(|row| columns.value(1, *row)).collect();
+    let (complete, incomplete): (Vec<usize>, Vec<usize>) =
+        flown.iter().copied().partition(|row| columns.is_complete[*row]);
+    let means = |rows: &[usize]| {
+        let of = |metric| mean(rows.iter().filter_map(|row| columns.value(metric, *row)));
+        metrics.clone().map(of).collect()
+    };
+    let mut sorted: Vec<f64> = complete.iter().filter_map(|row| columns.value(1, *row)).collect();
     sorted.sort_by(f64::total_cmp);
     Arm {
         name: campaign.arm_name(at),
         success: share(columns, &flown),
-        means: metrics
-            .map(|metric| mean(flown.iter().filter_map(|row| columns.value(metric, *row))))
-            .collect(),
+        complete: Share::of(complete.len() as u64, flown.len() as u64),
+        means: means(&complete),
+        means_of_incomplete: means(&incomplete),
         differences: if at == 0 {
             Vec::new()
         } else {
@@ -170,43 +246,73 @@ fn by_scenario(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> Vec<(S
     campaign.scenarios.iter().map(|s| (s.name.clone(), share(columns, &of(&s.name)))).collect()
 }
 
-/// Missions that failed first, then those that did not succeed, each by the first metric.
+/// What is wrong: missions that failed, then those that did not succeed, those that were refused, and those that succeeded with
+/// faults of planners, each by the first metric. Of missions of one arm that ended alike one is named.
 fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     let Some(metric) = campaign.design.metrics.first() else { return Vec::new() };
     let sign = if more_is_better(metric) { 1.0 } else { -1.0 };
     let rank = |row: usize| match columns.status[row].as_deref() {
-        Some("failed") => 0,
-        Some("flown") if !columns.success[row] => 1,
-        Some("refused") => 2,
-        _ => 3,
+        Some("failed") => Some(0),
+        Some("flown") if !columns.success[row] => Some(1),
+        Some("refused") => Some(2),
+        _ => (columns.faults(row) > 0).then_some(3),
     };
-    let mut rows: Vec<usize> = (0..table.len()).collect();
-    let key = |row: usize| (rank(row), columns.value(1, row).map_or(f64::INFINITY, |value| sign * value));
-    rows.sort_by(|a, b| {
-        let (a, b) = (key(*a), key(*b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    });
-    rows.truncate(WORST);
-    let texts = ["error", "reason", "violations", "outcome"].map(|name| table.words(name));
-    let what = |row: usize| {
-        let [error, reason, violations, outcome] =
-            [0, 1, 2, 3].map(|at| texts[at][row].clone().unwrap_or_default());
-        let kept = violations.is_empty();
-        let why = if !error.is_empty() {
-            error
-        } else if kept {
-            reason
-        } else {
-            violations
-        };
+    let figure = |row: usize| columns.value(1, row).map_or(f64::INFINITY, |value| sign * value);
+    let mut rows: Vec<(i32, usize)> = (0..table.len()).filter_map(|row| Some((rank(row)?, row))).collect();
+    rows.sort_by(|a, b| a.0.cmp(&b.0).then(figure(a.1).total_cmp(&figure(b.1))));
+    let texts = Texts::of(table);
+    let mut alike: Vec<(usize, String, usize, u64)> = Vec::new();
+    for (_, row) in rows {
+        let (arm, (head, why)) = (campaign.arm(columns.cases[row]), texts.of_row(row, columns));
+        let how = format!("{head}: {}", kind(&why));
+        match alike.iter_mut().find(|(other, known, ..)| *other == arm && *known == how) {
+            Some((.., n)) => *n += 1,
+            None => alike.push((arm, how, row, 1)),
+        }
+    }
+    let named = |(_, _, row, n): (usize, String, usize, u64)| {
+        let (head, why) = texts.of_row(row, columns);
         let figure = columns.value(1, row).map(|value| format!(", {metric} {value:.2}")).unwrap_or_default();
-        let head = if outcome.is_empty() { columns.status[row].clone().unwrap_or_default() } else { outcome };
         let why = if why.is_empty() { why } else { format!(": {why}") };
-        format!("{head}{figure}{why}")
+        let more = if n > 1 { format!(" ({} more like it)", n - 1) } else { String::new() };
+        Worst {
+            what: format!("{head}{figure}{why}{more}"),
+            command: campaign.command(&campaign.case(columns.cases[row])),
+        }
     };
-    let named =
-        |row: usize| Worst { what: what(row), command: campaign.command(&campaign.case(columns.cases[row])) };
-    rows.into_iter().map(named).collect()
+    alike.into_iter().take(WORST).map(named).collect()
+}
+
+/// A reason without its numbers, in which missions that ended alike differ.
+fn kind(why: &str) -> String {
+    why.chars().filter(|letter| !letter.is_ascii_digit() && *letter != '.' && *letter != '-').collect()
+}
+
+/// The columns that say how missions ended.
+struct Texts {
+    error: Vec<Option<String>>,
+    reason: Vec<Option<String>>,
+    violations: Vec<Option<String>>,
+    outcome: Vec<Option<String>>,
+}
+
+impl Texts {
+    fn of(table: &Table) -> Self {
+        let [error, reason, violations, outcome] =
+            ["error", "reason", "violations", "outcome"].map(|name| table.words(name));
+        Self { error, reason, violations, outcome }
+    }
+
+    /// How a mission ended, and why.
+    fn of_row(&self, row: usize, columns: &Columns) -> (String, String) {
+        let text =
+            |column: &[Option<String>]| column.get(row).cloned().flatten().filter(|text| !text.is_empty());
+        let head = text(&self.outcome).or_else(|| columns.status[row].clone()).unwrap_or_default();
+        let faults = columns.faults(row);
+        let faulty = || (columns.success[row] && faults > 0).then(|| format!("{faults} faults of planners"));
+        let why = text(&self.error).or_else(|| text(&self.violations)).or_else(faulty);
+        (head, why.or_else(|| text(&self.reason)).unwrap_or_default())
+    }
 }
 
 #[cfg(test)]
@@ -214,17 +320,18 @@ pub(crate) mod tests {
     use super::*;
     use crate::{
         frozen::tests::campaign,
+        part,
         row::Row,
-        table::{
-            part, read_part,
-            tests::{PLAN, file, row},
-        },
+        table::tests::{PLAN, file, row},
     };
+    use mission::Outcome;
+    use report::Summary;
 
     pub(crate) fn example() -> Findings {
-        let campaign = campaign(PLAN);
+        let campaign = campaign(&format!("block = 160\n{PLAN}"));
         let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
-        let table = read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read");
+        let table = part::read(&campaign, 0, file(&part::write(&campaign, 0, &rows).expect("written")))
+            .expect("read");
         findings(&campaign, &table)
     }
 
@@ -233,16 +340,77 @@ pub(crate) mod tests {
         let findings = example();
         let flown = |n: &u64| n * 7919 % 101 >= 4;
         let of_first: Vec<u64> = (0..160).filter(|n| n % 4 == 0).filter(flown).collect();
+        let complete: Vec<u64> = of_first.iter().copied().filter(|n| n * 7919 % 101 >= 20).collect();
         assert_eq!(findings.arms.len(), 4);
         assert_eq!(findings.arms[0].name, "p k=0.5");
         assert_eq!(findings.arms[0].success.n, of_first.len() as u64);
         let mean =
-            of_first.iter().map(|n| 100.0 + (n * 7919 % 101) as f64).sum::<f64>() / of_first.len() as f64;
+            complete.iter().map(|n| 100.0 + (n * 7919 % 101) as f64).sum::<f64>() / complete.len() as f64;
+        assert_eq!(
+            (findings.arms[0].complete.hits, findings.arms[0].complete.n),
+            (complete.len() as u64, of_first.len() as u64)
+        );
         let ours = findings.arms[0].means[0].expect("a mean").mean;
         assert!((ours - mean).abs() < 1e-9);
         assert_eq!(findings.arms[0].scenarios.len(), 2);
         assert!(findings.arms[0].differences.is_empty() && findings.arms[1].differences.len() == 3);
         assert!(findings.worst[0].what.starts_with("stuck, mission_time_s 1"), "{:?}", findings.worst[0]);
         assert!(findings.worst[0].command.starts_with("tankops run "));
+    }
+
+    /// A campaign in which the second planner gives up at once but for one mission, and the third has faults.
+    fn with_one_that_aborts() -> Findings {
+        let campaign = campaign(
+            "scenarios = [\"a.toml\"]\nplanners = [\"p\", \"q\", \"r\"]\n\
+             metrics = [\"mission_time_s\", \"path_length_m\"]\nseeds = { first = 1, count = 20 }\n",
+        );
+        let row = |case: u64| {
+            let (planner, seed) = (case % 3, case / 3);
+            let is_complete = planner != 1 || seed == 0;
+            let summary = Summary {
+                outcome: Some(if is_complete { Outcome::Complete } else { Outcome::Aborted }),
+                reason: (!is_complete).then(|| format!("no plan after {}.5 s", seed)),
+                mission_time_s: Some(if planner == 1 { 0.1 } else { 100.0 + seed as f64 }),
+                path_length_m: Some(if planner == 1 { 0.0 } else { 30.0 }),
+                planner_faults: u64::from(planner == 2 && seed < 2),
+                ..Summary::default()
+            };
+            Row::flown(case, summary)
+        };
+        let rows: Vec<Row> = (0..campaign.cases()).map(row).collect();
+        let bytes = part::write(&campaign, 0, &rows).expect("written");
+        let table = part::read(&campaign, 0, file(&bytes)).expect("read");
+        findings(&campaign, &table)
+    }
+
+    #[test]
+    fn a_planner_that_gives_up_is_not_the_fastest() {
+        let findings = with_one_that_aborts();
+        let [first, quick, faulty] = &findings.arms[..] else { panic!("{findings:?}") };
+        assert_eq!(findings.ranked(), [true, false, true]);
+        assert_eq!((quick.complete.hits, quick.complete.n), (1, 20));
+        assert_eq!(quick.means[0].expect("one is complete").n, 1);
+        assert_eq!(quick.means_of_incomplete[0].expect("the others").n, 19);
+        assert_eq!(first.means_of_incomplete, [None, None]);
+        assert_eq!(quick.differences[1].expect("one pair").n, 1, "over what both completed");
+        assert!((quick.differences[0].expect("all pairs").mean + 0.95).abs() < 1e-9);
+        assert_eq!(faulty.complete.hits, 20);
+    }
+
+    #[test]
+    fn faults_name_their_planner_and_what_is_right_is_not_looked_at() {
+        let findings = with_one_that_aborts();
+        assert_eq!(findings.with_faults, 2);
+        let [faults] = &findings.faults[..] else { panic!("{:?}", findings.faults) };
+        assert_eq!((&*faults.arm, faults.missions, faults.faults), ("r", 2, 2));
+        assert!(faults.command.contains("--planner r"), "{}", faults.command);
+        let worst: Vec<&str> = findings.worst.iter().map(|worst| worst.what.as_str()).collect();
+        assert_eq!(worst.len(), 2, "{worst:?}");
+        assert!(worst[0].starts_with("aborted, mission_time_s 0.10: no plan after"), "{worst:?}");
+        assert!(worst[0].ends_with(" (18 more like it)"), "{worst:?}");
+        assert!(
+            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 faults"),
+            "{worst:?}"
+        );
     }
 }

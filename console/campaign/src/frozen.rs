@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, ops::Range};
 
 /// Version of the frozen form; another one is refused.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Missions of a block where the plan sets none ...
 const BLOCK: u64 = 64;
 /// ... unless that were more blocks than this.
@@ -86,15 +86,37 @@ impl Campaign {
     /// # Errors
     /// It is none, of another format, or not as it was frozen.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
-        let campaign: Self =
-            serde_json::from_slice(json).map_err(|error| format!("is not a campaign: {error}"))?;
-        if campaign.format != FORMAT {
-            return Err(format!("has format {}; this tankops knows format {FORMAT}", campaign.format));
+        let no_campaign = |error| format!("is not a campaign: {error}");
+        let value: serde_json::Value = serde_json::from_slice(json).map_err(no_campaign)?;
+        // First, because a later format may have other keys.
+        if let Some(format) = value["format"].as_u64().filter(|format| *format != u64::from(FORMAT)) {
+            let remedy = "prepare the campaign again, in another folder";
+            return Err(format!("has format {format}; this tankops knows format {FORMAT}: {remedy}"));
         }
-        match campaign.damage() {
+        let digest = value["sha256"].as_str().unwrap_or_default().to_owned();
+        let campaign: Self = serde_json::from_value(value).map_err(no_campaign)?;
+        let damage = campaign
+            .damage()
+            .or_else(|| (campaign.digest() != digest).then(|| "its SHA-256 is another one".to_owned()));
+        match damage {
             None => Ok(campaign),
             Some(what) => Err(format!("was changed or damaged: {what}; prepare the campaign again")),
         }
+    }
+
+    /// The frozen form, with the digest by which [`Self::thaw`] knows that nothing was changed.
+    ///
+    /// # Errors
+    /// None that a plan can cause.
+    pub fn to_json(&self) -> serde_json::Result<Vec<u8>> {
+        let mut value = serde_json::to_value(self)?;
+        value["sha256"] = self.digest().into();
+        serde_json::to_vec_pretty(&value)
+    }
+
+    /// SHA-256 of what is frozen, hexadecimal.
+    fn digest(&self) -> String {
+        hex(&Sha256::digest(serde_json::to_vec(self).unwrap_or_default()))
     }
 
     /// Why it cannot have been frozen by this program.
@@ -270,7 +292,7 @@ pub(crate) mod tests {
     #[test]
     fn what_is_frozen_thaws_and_the_blocks_are_no_part_of_where_a_table_comes_from() {
         let frozen = campaign(PLAN);
-        let thawed = Campaign::thaw(&serde_json::to_vec(&frozen).expect("written")).expect("read");
+        let thawed = Campaign::thaw(&frozen.to_json().expect("written")).expect("read");
         assert_eq!(thawed, frozen);
         let other = campaign(&PLAN.replace("block = 7", "block = 50"));
         assert!(other.is_same(&frozen) && other.provenance() == frozen.provenance());
@@ -279,7 +301,9 @@ pub(crate) mod tests {
 
     #[test]
     fn what_was_changed_by_hand_is_refused_with_what_is_wrong() {
-        let json = serde_json::to_string(&campaign(PLAN)).expect("written");
+        let json: serde_json::Value =
+            serde_json::from_slice(&campaign(PLAN).to_json().expect("written")).expect("JSON");
+        let json = json.to_string();
         let refused = |from: &str, to: &str| {
             let changed = json.replace(from, to);
             assert_ne!(changed, json, "{from}");
@@ -292,12 +316,14 @@ pub(crate) mod tests {
         assert!(refused("\"first\":10", "\"first\":18446744073709551615").contains("no missions, or more"));
         assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("has not 2 values"));
         assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("scenario a is not the text"));
+        assert!(refused("[\"x\",0.5]", "[\"x\",0.7]").contains("its SHA-256 is another one"));
+        assert!(refused("\"first\":10", "\"first\":11").contains("its SHA-256 is another one"));
     }
 
     proptest! {
         #[test]
         fn damage_is_refused_or_leaves_a_campaign_that_can_be_counted(damage in mutations::mutations()) {
-            let json = serde_json::to_vec(&campaign(PLAN)).expect("written");
+            let json = campaign(PLAN).to_json().expect("written");
             if let Ok(campaign) = Campaign::thaw(&mutations::mutated(&json, &damage)) {
                 let last = campaign.blocks() - 1;
                 let cases = campaign.block(last);

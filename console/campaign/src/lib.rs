@@ -4,12 +4,15 @@
 //! of it, in blocks. What came of a mission is a [`Row`]; rows become a [`table`], and a table becomes a [`Findings`], as text
 //! and as a page. Nothing here knows files, threads, clocks or processes: the table's bytes depend on nothing but the plan.
 
+mod columns;
 mod compare;
 mod design;
+mod digest;
 mod findings;
 mod frozen;
 mod grid;
 mod page;
+pub mod part;
 mod plan;
 mod plots;
 mod reader;

@@ -1,6 +1,6 @@
 //! Findings as one HTML page.
 
-use crate::{findings::Findings, frozen::Campaign, plots, text};
+use crate::{findings::Findings, frozen::Campaign, plots, statistics::Mean, text};
 use askama::Template;
 
 #[derive(Template)]
@@ -12,6 +12,7 @@ struct Page<'a> {
     distribution: Option<String>,
     pareto: Option<String>,
     means: Vec<(&'a str, Vec<String>)>,
+    incomplete: Vec<(&'a str, Vec<String>)>,
     differences: Vec<(&'a str, Vec<String>)>,
     scenarios: Vec<(&'a str, Vec<String>)>,
 }
@@ -22,9 +23,11 @@ struct Page<'a> {
 /// None that a reader can do anything about.
 pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> {
     let arms = findings.arms.iter();
-    let means = arms.clone().map(|arm| {
-        let means = arm.means.iter().map(|mean| text::interval(mean.as_ref()));
-        (arm.name.as_str(), std::iter::once(text::share(&arm.success)).chain(means).collect())
+    let means =
+        arms.clone().map(|arm| (arm.name.as_str(), cells(arm.complete.hits, arm.complete.n, &arm.means)));
+    let incomplete = arms.clone().filter(|arm| arm.complete.hits < arm.complete.n).map(|arm| {
+        let n = arm.complete.n - arm.complete.hits;
+        (arm.name.as_str(), cells(n, arm.complete.n, &arm.means_of_incomplete))
     });
     let differences = arms.clone().skip(1).map(|arm| {
         let others = arm.differences[1..].iter().map(|mean| text::interval(mean.as_ref()));
@@ -41,10 +44,17 @@ pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> 
         distribution: plots::distribution(findings),
         pareto: plots::pareto(findings),
         means: means.collect(),
+        incomplete: incomplete.collect(),
         differences: differences.collect(),
         scenarios: scenarios.collect(),
     };
     page.render().map_err(|error| error.to_string())
+}
+
+/// So many missions of so many, and the means over them.
+fn cells(hits: u64, n: u64, means: &[Option<Mean>]) -> Vec<String> {
+    let means = means.iter().map(|mean| text::interval(mean.as_ref()));
+    std::iter::once(format!("{hits} of {n}")).chain(means).collect()
 }
 
 #[cfg(test)]

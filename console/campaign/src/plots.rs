@@ -53,6 +53,10 @@ impl Plot {
         self.draw(format_args!(r#"<circle cx="{x:.1}" cy="{y:.1}" r="3.5" fill="{colour}"/>"#));
     }
 
+    fn ring(&mut self, x: f64, y: f64, colour: &str) {
+        self.draw(format_args!(r#"<circle cx="{x:.1}" cy="{y:.1}" r="3.5" fill="none" stroke="{colour}"/>"#));
+    }
+
     fn draw(&mut self, svg: std::fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.body.write_fmt(svg);
@@ -139,7 +143,8 @@ pub(crate) fn success(findings: &Findings) -> String {
     plot.svg("Success with 95 % intervals")
 }
 
-/// Share of missions with at most a value of the first metric, for the first arms.
+/// Share of the missions flown that are complete with at most a value of the first metric, for the first arms: a curve ends at
+/// the share of complete ones.
 pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     let metric = findings.metrics.first()?;
     let curves =
@@ -149,11 +154,12 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
         Axis::over(curves().flat_map(|(_, arm)| arm.quantiles.iter().copied()), (60.0, WIDTH - 20.0));
     let up = Axis { values: (0.0, 1.0), places: (HEIGHT - 40.0, 30.0) };
     let mut plot = Plot::new(HEIGHT + LINE * curves().count() as f64);
-    axes(&mut plot, (&across, metric), (&up, "share of missions"));
+    axes(&mut plot, (&across, metric), (&up, "share of missions flown, complete"));
     for (line, (at, arm)) in curves().enumerate() {
-        let last = (arm.quantiles.len() - 1) as f64;
-        let point =
-            |(k, value): (usize, &f64)| format!("{:.1},{:.1} ", across.at(*value), up.at(k as f64 / last));
+        let (last, most) = ((arm.quantiles.len() - 1) as f64, arm.complete.share().unwrap_or(0.0));
+        let point = |(k, value): (usize, &f64)| {
+            format!("{:.1},{:.1} ", across.at(*value), up.at(most * k as f64 / last))
+        };
         let points: String = arm.quantiles.iter().enumerate().map(point).collect();
         let (ink, y) = (colour(at), HEIGHT + 4.0 + LINE * line as f64);
         plot.draw(format_args!(
@@ -165,7 +171,8 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     Some(plot.svg("Distribution of the first metric"))
 }
 
-/// The means of the first two metrics; what no other arm surpasses in both is joined and named.
+/// The means of the first two metrics over complete missions; what no other arm surpasses in both is joined and named. Arms that
+/// complete clearly fewer missions than another are hollow and not ranked.
 pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     let [one, two, ..] = &findings.metrics[..] else { return None };
     let value = |mean: &Option<crate::statistics::Mean>| mean.as_ref().map(|mean| mean.mean);
@@ -179,6 +186,8 @@ pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     let up = Axis::over(points.iter().map(|point| point.2), (HEIGHT - 40.0, 30.0));
     let mut plot = Plot::new(HEIGHT);
     axes(&mut plot, (&across, one), (&up, two));
+    let ranked = findings.ranked();
+    let (points, unranked): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| ranked[point.0]);
     let front = front(&points, [more_is_better(one), more_is_better(two)]);
     let place = |(_, x, y): &(usize, f64, f64)| format!("{:.1},{:.1} ", across.at(*x), up.at(*y));
     let line: String = front.iter().map(place).collect();
@@ -188,9 +197,17 @@ pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     for (at, x, y) in &points {
         plot.dot(across.at(*x), up.at(*y), colour(*at));
     }
-    for (at, x, y) in front.iter().take(12) {
+    for (at, x, y) in &unranked {
+        plot.ring(across.at(*x), up.at(*y), colour(*at));
+    }
+    for (at, x, y) in front.iter().chain(&unranked).take(12) {
         let (place, anchor) = if across.at(*x) > WIDTH / 2.0 { (-8.0, "end") } else { (8.0, "start") };
-        plot.text(across.at(*x) + place, up.at(*y) - 6.0, anchor, &findings.arms[*at].name);
+        let arm = &findings.arms[*at];
+        let name = match ranked[*at] {
+            true => arm.name.clone(),
+            false => format!("{}, completes {} of {}", arm.name, arm.complete.hits, arm.complete.n),
+        };
+        plot.text(across.at(*x) + place, up.at(*y) - 6.0, anchor, &name);
     }
     Some(plot.svg("Pareto front of two metrics"))
 }

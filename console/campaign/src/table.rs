@@ -1,6 +1,8 @@
 //! The table of a campaign: one row for each mission, as Parquet.
 
 use crate::{
+    columns::explained,
+    digest::{self, Seal},
     frozen::Campaign,
     row::{Row, Status},
     value::Value,
@@ -13,18 +15,22 @@ use arrow::{
     error::ArrowError,
 };
 use parquet::{
-    arrow::{ArrowWriter, arrow_reader::ParquetRecordBatchReaderBuilder},
+    arrow::{
+        ArrowWriter,
+        arrow_reader::{ArrowReaderOptions, ParquetRecordBatchReaderBuilder},
+    },
     basic::{Compression, ZstdLevel},
     errors::ParquetError,
     file::{metadata::KeyValue, properties::WriterProperties, reader::ChunkReader},
 };
-use sha2::{Digest, Sha256};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use thiserror::Error;
 
 /// Rows that are written at once, whatever blocks they come from: pages end where rows end, and nowhere else.
 const ROWS_AT_ONCE: usize = 8192;
-/// What a file says of where it comes from: in a part its hash, in the table of results all of it.
+/// What a file says of where it comes from: in a part its hash and the missions of the block, in the table of results all
+/// of it.
 const SOURCE: &str = "tankops.campaign";
 
 /// Type of a figure.
@@ -33,9 +39,10 @@ enum Kind {
     Count,
     Number,
     Text,
+    Flag,
 }
 
-use Kind::{Count, Number, Text};
+use Kind::{Count, Flag, Number, Text};
 
 /// Columns that are figures of the report, by their place in it.
 const FIGURES: [(&str, Kind); 48] = [
@@ -84,9 +91,9 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.wrap_total_max_rad", Number),
     ("tether.loops", Count),
     ("tether.end_length_m", Number),
-    ("tether.entangled", Text),
+    ("tether.entangled", Flag),
     ("tether.snags", Count),
-    ("tether.snagged", Text),
+    ("tether.snagged", Flag),
 ];
 
 /// Figures of which more is better; of the others, less is.
@@ -107,7 +114,7 @@ const MORE_IS_BETTER: [&str; 12] = [
 
 /// Names of the columns that are numbers of the report.
 pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
-    FIGURES.iter().filter(|(_, kind)| *kind != Text).map(|(name, _)| *name)
+    FIGURES.iter().filter(|(_, kind)| matches!(kind, Count | Number)).map(|(name, _)| *name)
 }
 
 /// Whether a table has such a column.
@@ -124,13 +131,22 @@ pub(crate) fn more_is_better(metric: &str) -> bool {
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The columns do not fit.
-    #[error("the columns do not fit: {0}")]
+    #[error("has columns that do not fit: {0}")]
     Arrow(#[from] ArrowError),
     /// No Parquet, or damaged.
-    #[error("no whole Parquet file: {0}")]
+    #[error("is no whole Parquet file: {0}")]
     Parquet(#[from] ParquetError),
+    /// Its digest is another one.
+    #[error("is damaged: its bytes are not those that were written")]
+    Damaged,
+    /// A part without a digest.
+    #[error("is no whole part: it carries no digest")]
+    NoDigest,
+    /// What is read makes no sense to the reader.
+    #[error("is damaged, or no Parquet file that can be read here")]
+    Unreadable,
     /// A part of something else.
-    #[error("comes from another campaign, or from another version of this one")]
+    #[error("comes from another campaign or block, or from another version of this campaign")]
     Foreign,
     /// A table of something else.
     #[error("was not written by `tankops campaign`: it has no column `{0}`")]
@@ -138,7 +154,7 @@ pub enum TableError {
 }
 
 fn schema(campaign: &Campaign) -> SchemaRef {
-    let field = |name: &str, kind: DataType, nullable| Field::new(name, kind, nullable);
+    let field = |name: &str, kind: DataType, nullable| explained(Field::new(name, kind, nullable));
     let mut fields = vec![
         field("case", DataType::UInt64, false),
         field("scenario", DataType::Utf8, false),
@@ -159,6 +175,7 @@ fn schema(campaign: &Campaign) -> SchemaRef {
             Count => DataType::UInt64,
             Number => DataType::Float64,
             Text => DataType::Utf8,
+            Flag => DataType::Boolean,
         };
         field(name, kind, true)
     }));
@@ -204,6 +221,7 @@ fn figure_column(name: &str, kind: Kind, rows: &[Row]) -> ArrayRef {
         Count => Arc::new(values.map(serde_json::Value::as_u64).collect::<UInt64Array>()),
         Number => Arc::new(values.map(serde_json::Value::as_f64).collect::<Float64Array>()),
         Text => Arc::new(values.map(text).collect::<StringArray>()),
+        Flag => Arc::new(values.map(serde_json::Value::as_bool).collect::<BooleanArray>()),
     }
 }
 
@@ -216,7 +234,7 @@ fn text(value: &serde_json::Value) -> Option<String> {
     }
 }
 
-fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
+pub(crate) fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
     let words = |of: &dyn Fn(&Row) -> Option<String>| -> ArrayRef {
         Arc::new(rows.iter().map(of).collect::<StringArray>())
     };
@@ -239,18 +257,14 @@ fn batch(campaign: &Campaign, rows: &[Row]) -> Result<RecordBatch, TableError> {
     Ok(RecordBatch::try_new(schema(campaign), columns)?)
 }
 
-fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<Vec<u8>>, TableError> {
+pub(crate) fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<Vec<u8>>, TableError> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
         .set_max_row_group_row_count(Some(8 * ROWS_AT_ONCE))
-        .set_created_by("tankops campaign".to_owned())
-        .set_key_value_metadata(Some(vec![KeyValue::new(SOURCE.to_owned(), source)]))
+        .set_created_by(digest::CREATED_BY.to_owned())
+        .set_key_value_metadata(Some(vec![KeyValue::new(SOURCE.to_owned(), source), digest::place_holder()]))
         .build();
     Ok(ArrowWriter::try_new(Vec::new(), schema(campaign), Some(properties))?)
-}
-
-fn hash(campaign: &Campaign) -> String {
-    hex(&Sha256::digest(campaign.provenance()))
 }
 
 /// Bytes as hexadecimal digits.
@@ -258,26 +272,20 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
-/// The rows of a block, in the order of their missions, as a file.
-///
-/// # Errors
-/// They do not fit the columns.
-pub fn part(campaign: &Campaign, rows: &[Row]) -> Result<Vec<u8>, TableError> {
-    let mut writer = writer(campaign, hash(campaign))?;
-    writer.write(&batch(campaign, rows)?)?;
-    Ok(writer.into_inner()?)
+/// The bytes of a table that is written, with their digest.
+pub(crate) fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableError> {
+    let mut bytes = writer.into_inner()?;
+    digest::seal(&mut bytes);
+    Ok(bytes)
 }
 
-/// Reads a part of this campaign.
-///
-/// # Errors
-/// It is damaged or of another campaign.
-pub fn read_part(campaign: &Campaign, file: impl ChunkReader + 'static) -> Result<Table, TableError> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file)?;
-    if source(&builder) != Some(hash(campaign).as_str()) {
-        return Err(TableError::Foreign);
-    }
-    Table::from_reader(builder)
+/// A reader that believes the columns, and not what is said about them in the words of Arrow, of which damage may make
+/// anything.
+pub(crate) fn opened<T: ChunkReader + 'static>(
+    file: T,
+) -> Result<ParquetRecordBatchReaderBuilder<T>, TableError> {
+    let options = ArrowReaderOptions::new().with_skip_arrow_metadata(true);
+    Ok(ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)?)
 }
 
 /// Puts parts together, in order: the bytes of the table of results.
@@ -297,12 +305,17 @@ pub fn merged(campaign: &Campaign, parts: &[Table]) -> Result<Vec<u8>, TableErro
     while let Some(batch) = rows.next_completed_batch() {
         writer.write(&batch)?;
     }
-    Ok(writer.into_inner()?)
+    finished(writer)
 }
 
-fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuilder<T>) -> Option<&str> {
+pub(crate) fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuilder<T>) -> Option<&str> {
     let entries = builder.metadata().file_metadata().key_value_metadata()?;
     entries.iter().find(|entry| entry.key == SOURCE)?.value.as_deref()
+}
+
+/// What comes of a reader of strangers' bytes that may give up in the middle of a sentence.
+fn unharmed<T>(read: impl FnOnce() -> Result<T, TableError>) -> Result<T, TableError> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or(Err(TableError::Unreadable))
 }
 
 /// Rows of a table.
@@ -312,22 +325,27 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a table of results.
+    /// Reads a table of results, and whether its bytes are known to be those that were written: a table of an earlier
+    /// version, or one that another program wrote, carries no digest.
     ///
     /// # Errors
     /// It is damaged or something else.
-    pub fn read(file: impl ChunkReader + 'static) -> Result<Self, TableError> {
-        let table = Self::from_reader(ParquetRecordBatchReaderBuilder::try_new(file)?)?;
+    pub fn read(file: impl ChunkReader + 'static) -> Result<(Self, bool), TableError> {
+        let seal = digest::check(&file)?;
+        if seal == Seal::Damaged {
+            return Err(TableError::Damaged);
+        }
+        let table = unharmed(|| Self::from_reader(opened(file)?))?;
         match ["case", "scenario", "planner", "seed", "status", "success"]
             .iter()
             .find(|name| !table.has(name))
         {
             Some(missing) => Err(TableError::NoColumn(missing)),
-            None => Ok(table),
+            None => Ok((table, seal == Seal::Whole)),
         }
     }
 
-    fn from_reader<T: ChunkReader + 'static>(
+    pub(crate) fn from_reader<T: ChunkReader + 'static>(
         builder: ParquetRecordBatchReaderBuilder<T>,
     ) -> Result<Self, TableError> {
         let schema = Arc::new(Schema::new(builder.schema().fields().clone()));
@@ -408,7 +426,7 @@ impl Table {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::frozen::tests::campaign;
+    use crate::{frozen::tests::campaign, part};
     use mission::Outcome;
     use proptest::prelude::*;
     use report::Summary;
@@ -443,7 +461,8 @@ pub(crate) mod tests {
         let campaign = campaign(plan);
         let part = |block| {
             let rows: Vec<Row> = campaign.block(block).map(row).collect();
-            read_part(&campaign, file(&part(&campaign, &rows).expect("written"))).expect("read")
+            part::read(&campaign, block, file(&part::write(&campaign, block, &rows).expect("written")))
+                .expect("read")
         };
         let parts: Vec<Table> = (0..campaign.blocks()).map(part).collect();
         merged(&campaign, &parts).expect("merged")
@@ -451,7 +470,8 @@ pub(crate) mod tests {
 
     #[test]
     fn a_table_reads_back_with_its_types() {
-        let table = Table::read(file(&table(PLAN))).expect("read");
+        let (table, is_proven) = Table::read(file(&table(PLAN))).expect("read");
+        assert!(is_proven);
         assert_eq!(table.len(), 160);
         assert_eq!(table.count(Status::Refused), (0..160).filter(|n| n * 7919 % 101 < 4).count() as u64);
         assert_eq!(table.keys(), ["set.k"]);
@@ -461,11 +481,56 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_part_of_another_campaign_is_refused() {
-        let (one, other) = (campaign(PLAN), campaign(&PLAN.replace("2.0", "3.0")));
-        let bytes = part(&one, &[row(0)]).expect("written");
-        assert!(matches!(read_part(&other, file(&bytes)), Err(TableError::Foreign)));
-        assert!(matches!(read_part(&one, file(&bytes[..100])), Err(TableError::Parquet(_))));
+    fn every_flipped_bit_is_found() {
+        let one = campaign(&format!("block = 4\n{PLAN}"));
+        let whole = part::write(&one, 0, &one.block(0).map(row).collect::<Vec<_>>()).expect("written");
+        let of_part = |file| part::read(&one, 0, file).is_ok();
+        assert_eq!(found_whole(&whole, of_part), [] as [usize; 0]);
+        assert_eq!(found_whole(&table(PLAN), |file| Table::read(file).is_ok()), [] as [usize; 0]);
+    }
+
+    /// The bytes in which a flipped bit is not found.
+    fn found_whole(bytes: &[u8], is_whole: impl Fn(std::fs::File) -> bool) -> Vec<usize> {
+        use std::os::unix::fs::FileExt;
+        let shared = file(bytes);
+        let again = || shared.try_clone().expect("the same file");
+        assert!(is_whole(again()));
+        let flipped = |at: &usize| {
+            shared.write_all_at(&[bytes[*at] ^ 1 << (at % 8)], *at as u64).expect("written");
+            let is_whole = is_whole(again());
+            shared.write_all_at(&bytes[*at..=*at], *at as u64).expect("written");
+            is_whole
+        };
+        (0..bytes.len()).filter(flipped).collect()
+    }
+
+    /// A table as an earlier version wrote it, without a digest.
+    fn without_digest() -> Vec<u8> {
+        let one = campaign(PLAN);
+        let rows: Vec<Row> = one.block(0).map(row).collect();
+        let mut writer = ArrowWriter::try_new(Vec::new(), schema(&one), None).expect("a writer");
+        writer.write(&batch(&one, &rows).expect("rows")).expect("written");
+        writer.into_inner().expect("finished")
+    }
+
+    #[test]
+    fn a_table_without_a_digest_is_read_and_not_vouched_for() {
+        let (table, is_proven) = Table::read(file(&without_digest())).expect("read");
+        assert!(!table.is_empty() && !is_proven);
+    }
+
+    #[test]
+    fn every_column_says_its_unit_and_meaning() {
+        let read = ParquetRecordBatchReaderBuilder::try_new(file(&table(PLAN))).expect("read");
+        for field in read.schema().fields() {
+            let (unit, meaning) = (&field.metadata()["unit"], &field.metadata()["meaning"]);
+            assert!(!meaning.is_empty(), "{field}");
+            assert_eq!(unit.is_empty(), !field.data_type().is_numeric(), "{field}");
+        }
+        assert_eq!(
+            read.schema().field_with_name("tether.entangled").expect("a column").data_type(),
+            &DataType::Boolean
+        );
     }
 
     proptest! {
@@ -475,6 +540,14 @@ pub(crate) mod tests {
             let blocks = format!("block = {block}\n{PLAN}");
             let whole = format!("block = 160\n{PLAN}");
             prop_assert!(table(&blocks) == table(&whole));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn damage_that_no_digest_shows_is_refused_or_read_and_never_a_panic(damage in mutations::mutations()) {
+            let bytes = mutations::mutated(&without_digest(), &damage);
+            let _ = opened(file(&bytes)).and_then(Table::from_reader);
         }
     }
 }

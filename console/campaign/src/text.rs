@@ -91,15 +91,46 @@ impl fmt::Display for Findings {
                 writeln!(f, "  {n} {what}")?;
             }
         }
+        for faults in self.faults.iter().take(MOST_ARMS) {
+            writeln!(
+                f,
+                "    {}: {} faults in {} missions",
+                short(&faults.arm),
+                faults.faults,
+                faults.missions
+            )?;
+        }
         writeln!(f, "\nSuccess (complete, every bound kept; 95 % interval)")?;
         let cells =
             |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
         f.write_str(&table(&[], &cells, shown))?;
-        writeln!(f, "\nMeans over the missions flown (± 95 %)")?;
-        let means = |arm: &Arm| arm.means.iter().map(|mean| interval(mean.as_ref())).collect();
-        f.write_str(&table(&self.metrics, &means, shown))?;
+        writeln!(f, "\nMeans over the complete missions (± 95 %)")?;
+        let intervals =
+            |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
+        let cells = |of: Share, means: &[Option<Mean>]| {
+            std::iter::once(format!("{} of {}", of.hits, of.n)).chain(intervals(means)).collect::<Vec<String>>()
+        };
+        let head =
+            |first: &str| std::iter::once(first.to_owned()).chain(self.metrics.clone()).collect::<Vec<_>>();
+        let means = |arm: &Arm| cells(arm.complete, &arm.means);
+        f.write_str(&table(&head("complete"), &means, shown))?;
+        let gave_up: Vec<Arm> =
+            shown.iter().filter(|arm| arm.complete.hits < arm.complete.n).cloned().collect();
+        if !gave_up.is_empty() {
+            writeln!(f, "\nMeans over the missions flown that are not complete: no measure of the task")?;
+            let means = |arm: &Arm| {
+                let Share { hits, n, .. } = arm.complete;
+                cells(Share::of(n - hits, n), &arm.means_of_incomplete)
+            };
+            f.write_str(&table(&head("not complete"), &means, &gave_up))?;
+        }
         if self.arms.len() > 1 {
-            writeln!(f, "\nDifferences to {}, same scenario and seed (± 95 %)", short(&self.arms[0].name))?;
+            writeln!(
+                f,
+                "\nDifferences to {}, same scenario and seed; of success over what both flew, of the others over what both \
+                 completed (± 95 %)",
+                short(&self.arms[0].name)
+            )?;
             let differences = |arm: &Arm| {
                 let others = arm.differences[1..].iter().map(|mean| interval(mean.as_ref()));
                 std::iter::once(points(arm.differences[0].as_ref())).chain(others).collect()
@@ -112,6 +143,9 @@ impl fmt::Display for Findings {
             writeln!(f, "  ({} more in summary.html and summary.json)", self.arms.len() - MOST_ARMS)?;
         }
         writeln!(f, "\nTo be looked at first")?;
+        if self.worst.is_empty() {
+            writeln!(f, "  nothing: every mission succeeded, without a fault of a planner")?;
+        }
         for worst in self.worst.iter().take(5) {
             writeln!(f, "  {}\n    {}", worst.what, worst.command)?;
         }

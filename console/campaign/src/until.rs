@@ -1,6 +1,7 @@
 //! When a campaign may end before its last seed.
 
 use crate::{
+    findings::COMPLETE,
     frozen::Campaign,
     statistics::{Share, Sums},
     table::Table,
@@ -47,6 +48,7 @@ impl<'a> Watch<'a> {
     pub fn take(&mut self, rows: &Table) -> Option<u64> {
         let success = rows.flags("success");
         let values = rows.numbers(&self.until.metric);
+        let outcome = rows.words("outcome");
         for (row, success) in success.into_iter().enumerate() {
             if self.enough.is_some() {
                 break;
@@ -54,7 +56,8 @@ impl<'a> Watch<'a> {
             let (hits, n, sums) = &mut self.arms[self.campaign.arm(self.taken)];
             *n += 1;
             *hits += u64::from(success);
-            if let Some(value) = values.get(row).copied().flatten() {
+            let is_complete = outcome.get(row).is_some_and(|word| word.as_deref() == Some(COMPLETE));
+            if let Some(value) = values.get(row).copied().flatten().filter(|_| is_complete) {
                 sums.take(value);
             }
             self.taken += 1;

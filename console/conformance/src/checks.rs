@@ -36,6 +36,11 @@ pub struct Check {
 }
 
 impl Check {
+    /// Something that could not be checked.
+    pub(crate) fn not_made(what: &'static str, why: &str) -> Self {
+        Self { what, failure: None, warning: Some(why.to_owned()) }
+    }
+
     pub(crate) fn line(&self) -> String {
         match (&self.failure, &self.warning) {
             (None, None) => format!("ok    {}\n", self.what),
@@ -51,25 +56,60 @@ pub(crate) struct Subject<'a> {
     pub(crate) plugins: &'a PluginDirs,
     /// A tank to fly in.
     pub(crate) tank: &'a Scenario,
-    /// Another planner that flies such missions.
-    pub(crate) beside: Option<&'a str>,
+    /// Other planners that fly such missions soundly, the one to take over from first.
+    pub(crate) beside: Vec<&'a str>,
 }
 
-/// Every check, with the flights that were flown already.
-pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown]) -> Vec<Check> {
+/// The planner that was to be taken over from failed.
+struct FailedBeside;
+
+/// Every check, with the flights that were flown already, and the seed of the first tank.
+pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Vec<Check> {
     let check = |what, failure| Check { what, failure, warning: None };
-    vec![
-        check("answers soundly in every tank", flown.iter().find_map(|flown| flown.misbehaved.clone())),
+    let mut checks = vec![
+        check("answers soundly in every tank", named(flown, first_seed, |flown| flown.misbehaved.as_deref())),
+        Check {
+            what: "does not give up everywhere",
+            failure: gives_up(flown, first_seed),
+            warning: completes_none(flown),
+        },
         check("answers steps in time", in_time(flown)),
         check("flies the same flight twice", subject.twice()),
         check("takes the least and the greatest parameters", subject.extremes()),
         check("stops planning when it is asked to", subject.stops()),
         check("takes over under way", subject.takes_over()),
-        check("goes on from its saved state", subject.restores()),
+    ];
+    if subject.planner.snapshots {
+        checks.push(check("goes on from its saved state", subject.restores()));
+    }
+    checks.extend([
         check("keeps no memory for ever", subject.hoards()),
-        check("ends when it is not wanted any more", flown.iter().find_map(|flown| flown.bad_end.clone())),
+        check(
+            "ends when it is not wanted any more",
+            named(flown, first_seed, |flown| flown.bad_end.as_deref()),
+        ),
         Check { what: "leaves no thread behind", failure: None, warning: threads_left(flown) },
-    ]
+    ]);
+    checks
+}
+
+/// The first sentence about a tank, with the tank.
+fn named(flown: &[Flown], first_seed: u64, about: impl Fn(&Flown) -> Option<&str>) -> Option<String> {
+    let mut tanks = (0..).zip(flown);
+    tanks.find_map(|(n, flown)| {
+        Some(format!("tank of seed {}: {}", first_seed.wrapping_add(n), about(flown)?))
+    })
+}
+
+fn gives_up(flown: &[Flown], first_seed: u64) -> Option<String> {
+    let has = |flown: &Flown| flown.gave_up.is_some() && !flown.is_complete() && !flown.unsupported;
+    let everywhere = !flown.is_empty() && flown.iter().all(has);
+    everywhere.then(|| named(flown, first_seed, |flown| flown.gave_up.as_deref()))?
+}
+
+fn completes_none(flown: &[Flown]) -> Option<String> {
+    let none = !flown.iter().any(Flown::is_complete);
+    (none && gives_up(flown, 0).is_none()).then(|| format!("it completed none of {} missions", flown.len()))
 }
 
 fn in_time(flown: &[Flown]) -> Option<String> {
@@ -87,7 +127,7 @@ fn threads_left(flown: &[Flown]) -> Option<String> {
 
 impl Subject<'_> {
     fn pilot(&self, id: &str, parameters: Parameters, attended: bool) -> Pilot {
-        Pilot::new(&with_planner(self.tank, id, parameters), self.plugins, attended)
+        Pilot::new(&self.planner.id, &with_planner(self.tank, id, parameters), self.plugins, attended)
     }
 
     fn twice(&self) -> Option<String> {
@@ -159,39 +199,53 @@ impl Subject<'_> {
     }
 
     fn takes_over(&self) -> Option<String> {
-        let from = self.beside.unwrap_or(&self.planner.id);
-        SWAPS_AT.into_iter().find_map(|at| {
-            let mut pilot = self.pilot(from, Parameters::new(), true);
-            let choice = PlannerChoice { id: self.planner.id.clone(), parameters: Parameters::new() };
-            let mut has_taken_over = false;
-            for tick in 0..at + LOOK_FOR {
-                let orders = match tick.checked_sub(at) {
-                    Some(0) => vec![Order::Hold],
-                    Some(1) => vec![Order::ChoosePlanner(choice.clone())],
-                    Some(3) => vec![Order::Resume],
-                    _ => Vec::new(),
-                };
-                let Some(events) = pilot.tick(&orders) else { break };
-                has_taken_over |= events.iter().any(|event| {
-                    matches!(&event.kind, EventKind::PlannerChosen { choice, .. } if tick > at && choice.id == self.planner.id)
-                });
-                // What the other one does before is not on trial.
-                let blamed = pilot.misbehaved().filter(|_| tick > at || from == self.planner.id);
-                if let Some(why) = blamed {
-                    return Some(format!("from {from} at tick {at}: {why}"));
-                }
-                if tick + 1 == at + LOOK_FOR && !has_taken_over {
-                    return Some(format!("from {from} at tick {at}: it gave no plan to go on with"));
-                }
+        let own = std::iter::once(self.planner.id.as_str());
+        // One that fails itself is nothing to take over from.
+        let mut tried = self.beside.iter().copied().chain(own).map(|from| self.takes_over_from(from));
+        tried.find_map(Result::ok).flatten()
+    }
+
+    /// Why it does not take over from a planner, if it does not.
+    ///
+    /// # Errors
+    /// That planner failed.
+    fn takes_over_from(&self, from: &str) -> Result<Option<String>, FailedBeside> {
+        for at in SWAPS_AT {
+            let failure = self.takes_over_at(from, at)?;
+            if let Some(why) = failure {
+                return Ok(Some(format!("from {from} at tick {at}: {why}")));
             }
-            None
-        })
+        }
+        Ok(None)
+    }
+
+    fn takes_over_at(&self, from: &str, at: u64) -> Result<Option<String>, FailedBeside> {
+        let mut pilot = self.pilot(from, Parameters::new(), true);
+        let choice = PlannerChoice { id: self.planner.id.clone(), parameters: Parameters::new() };
+        let mut has_taken_over = false;
+        for tick in 0..at + LOOK_FOR {
+            let orders = match tick.checked_sub(at) {
+                Some(0) => vec![Order::Hold],
+                Some(1) => vec![Order::ChoosePlanner(choice.clone())],
+                Some(3) => vec![Order::Resume],
+                _ => Vec::new(),
+            };
+            // The mission may end before.
+            let Some(events) = pilot.tick(&orders) else { return Ok(None) };
+            has_taken_over |= events.iter().any(|event| {
+                matches!(&event.kind, EventKind::PlannerChosen { choice, .. } if tick > at && choice.id == self.planner.id)
+            });
+            if let Some(why) = pilot.misbehaved() {
+                return Ok(Some(why.to_owned()));
+            }
+            if pilot.failed_beside() {
+                return Err(FailedBeside);
+            }
+        }
+        Ok((!has_taken_over).then(|| "it gave no plan to go on with".to_owned()))
     }
 
     fn restores(&self) -> Option<String> {
-        if !self.planner.snapshots {
-            return None;
-        }
         let mut player = self.player(hosts::config(&self.tank.mission));
         let tape = self.tape();
         let half = tape.len() / 2;

@@ -2,7 +2,7 @@
 
 use crate::tape::Taping;
 use flight::{Flight, hosts};
-use mission::{Cause, Event, EventKind, Order, Parameters, Phase, PlannerChoice};
+use mission::{Cause, Event, EventKind, Fault, Order, Outcome, Parameters, Phase, PlannerChoice};
 use planner_api::Code;
 use planner_host::{Host, PluginDirs};
 use report::{Fold, Summary};
@@ -24,8 +24,16 @@ pub(crate) struct Flown {
     pub(crate) bad_end: Option<String>,
     /// First fault that no good planner has.
     pub(crate) misbehaved: Option<String>,
+    /// First time that it said no.
+    pub(crate) gave_up: Option<String>,
     /// It said that it does not fly such missions.
     pub(crate) unsupported: bool,
+}
+
+impl Flown {
+    pub(crate) fn is_complete(&self) -> bool {
+        self.summary.outcome == Some(Outcome::Complete)
+    }
 }
 
 /// The memory of planners is looked at every so many ticks.
@@ -38,6 +46,8 @@ const OWN_THREADS: u32 = 2;
 
 /// A flight that goes on until its mission ends, or somebody stops looking.
 pub(crate) struct Pilot {
+    /// Whose faults are looked for.
+    planner: String,
     flight: Flight,
     answers: Taping,
     fold: Fold,
@@ -45,6 +55,9 @@ pub(crate) struct Pilot {
     /// Threads that its process had at the last looks, newest first.
     threads: [u32; LOOKS],
     misbehaved: Option<String>,
+    gave_up: Option<String>,
+    /// First failure of another planner than that one.
+    failed_beside: bool,
     unsupported: bool,
     tick: u64,
 }
@@ -58,25 +71,28 @@ pub(crate) fn with_planner(tank: &Scenario, id: &str, parameters: Parameters) ->
 
 /// Flies a tank with a planner to the end.
 pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
-    let mut pilot = Pilot::new(&with_planner(tank, id, Parameters::new()), plugins, false);
+    let mut pilot = Pilot::new(id, &with_planner(tank, id, Parameters::new()), plugins, false);
     while pilot.tick(&[]).is_some() {}
     pilot.land()
 }
 
 impl Pilot {
-    /// Ready to start; with an operator a hold does not end the mission.
-    pub(crate) fn new(scenario: &Scenario, plugins: &PluginDirs, attended: bool) -> Self {
+    /// Ready to start, and to look for faults of this planner; with an operator a hold does not end the mission.
+    pub(crate) fn new(planner: &str, scenario: &Scenario, plugins: &PluginDirs, attended: bool) -> Self {
         let flight = Flight::prepare(scenario, attended);
         let host = Host::new(plugins, hosts::config(&scenario.mission));
         let mut fold = Fold::new();
         fold.apply(&flight.opened());
         Self {
+            planner: planner.to_owned(),
             flight,
             answers: Taping::new(host),
             fold,
             memory_bytes: None,
             threads: [0; LOOKS],
             misbehaved: None,
+            gave_up: None,
+            failed_beside: false,
             unsupported: false,
             tick: 0,
         }
@@ -96,13 +112,24 @@ impl Pilot {
         for event in &events {
             self.fold.apply(event);
             if let EventKind::PlannerFailed { fault, .. } = &event.kind {
-                self.unsupported |= fault.cause == Cause::Planner(Code::Unsupported);
-                if !matches!(fault.cause, Cause::Planner(_) | Cause::Quarantined) {
-                    self.misbehaved.get_or_insert_with(|| fault.message.clone());
-                }
+                self.note(fault);
             }
         }
         Some(events)
+    }
+
+    fn note(&mut self, fault: &Fault) {
+        if fault.planner != self.planner {
+            self.failed_beside = true;
+            return;
+        }
+        self.unsupported |= fault.cause == Cause::Planner(Code::Unsupported);
+        let first = match fault.cause {
+            Cause::Planner(_) => &mut self.gave_up,
+            Cause::Quarantined => return,
+            _ => &mut self.misbehaved,
+        };
+        first.get_or_insert_with(|| fault.message.clone());
     }
 
     fn look_at_process(&mut self) {
@@ -110,6 +137,11 @@ impl Pilot {
         self.memory_bytes = memory.map(|memory| memory.most_bytes).max(self.memory_bytes);
         self.threads.rotate_right(1);
         self.threads[0] = memory.map_or(0, |memory| memory.threads);
+    }
+
+    /// Whether another planner failed.
+    pub(crate) fn failed_beside(&self) -> bool {
+        self.failed_beside
     }
 
     /// First fault that no good planner has.
@@ -136,6 +168,7 @@ impl Pilot {
             threads_left: threads.checked_sub(OWN_THREADS).filter(|left| *left > 0),
             bad_end: bad_end.map(|end| end.to_string()),
             misbehaved: self.misbehaved,
+            gave_up: self.gave_up,
             unsupported: self.unsupported,
         }
     }

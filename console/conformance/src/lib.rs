@@ -10,7 +10,8 @@ mod tank;
 mod tape;
 
 pub use checks::Check;
-pub use row::Row;
+pub use row::{InTank, Row};
+pub use tank::Task;
 
 use checks::Subject;
 use flown::{Flown, fly};
@@ -19,13 +20,14 @@ use planner_host::PluginDirs;
 use rayon::prelude::*;
 use scenario::Scenario;
 use serde::Serialize;
-use tank::Task;
 
 /// How a planner was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
     /// Its id.
     pub planner: String,
+    /// What was to be done in the tanks.
+    pub task: Task,
     /// Seed of the first tank; the others follow.
     pub first_seed: u64,
     /// What it must do.
@@ -34,34 +36,65 @@ pub struct Trial {
     pub rows: Vec<Row>,
 }
 
+/// A tank in which a planner did not complete its mission.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Lost {
+    /// The name of the scenario.
+    pub name: String,
+    /// The scenario, to be flown by that planner.
+    pub scenario: String,
+}
+
+/// The planners that one is tried beside.
+#[derive(Debug, Clone, Copy)]
+pub struct Others<'a> {
+    /// All that were found.
+    pub found: &'a [PlannerInfo],
+    /// Ids of those that came with tankops: another one that an author is working on may fail at any time.
+    pub shipped: &'a [String],
+}
+
 impl Trial {
-    /// Tries a planner in `n` tanks, beside these others as far as they fly such missions.
-    pub fn of(
+    /// Tries a planner in `n` tanks, beside others as far as they fly such missions: by going somewhere, and one that covers
+    /// floor by that, too.
+    pub fn all_of(
         planner: &PlannerInfo,
-        others: &[PlannerInfo],
+        others: Others<'_>,
+        plugins: &PluginDirs,
+        tanks: (u64, u64),
+    ) -> Vec<Self> {
+        let tasks: &[Task] = if planner.covers { &[Task::Cover, Task::Goto] } else { &[Task::Goto] };
+        tasks.iter().map(|task| Self::of(planner, *task, others, plugins, tanks)).collect()
+    }
+
+    fn of(
+        planner: &PlannerInfo,
+        task: Task,
+        others: Others<'_>,
         plugins: &PluginDirs,
         (n, first_seed): (u64, u64),
     ) -> Self {
-        let task = if planner.covers { Task::Cover } else { Task::Goto };
         let tanks: Vec<Scenario> = (0..n).map(|i| tank::draw(task, first_seed.wrapping_add(i))).collect();
-        let others =
-            others.iter().filter(|other| other.id != planner.id && (task == Task::Goto || other.covers));
-        let ids: Vec<&str> = std::iter::once(planner).chain(others).map(|info| info.id.as_str()).collect();
+        let flies_such =
+            |other: &&PlannerInfo| other.id != planner.id && (task == Task::Goto || other.covers);
+        let beside = others.found.iter().filter(flies_such);
+        let ids: Vec<&str> = std::iter::once(planner).chain(beside).map(|info| info.id.as_str()).collect();
         let flights: Vec<(usize, &Scenario)> =
             (0..ids.len()).flat_map(|id| tanks.iter().map(move |tank| (id, tank))).collect();
         let flown: Vec<Flown> = flights.par_iter().map(|(id, tank)| fly(tank, ids[*id], plugins)).collect();
-        let mut rows: Vec<Row> =
-            ids.iter().zip(flown.chunks(tanks.len().max(1))).map(|(id, flown)| Row::of(id, flown)).collect();
+        let rows = ids.iter().zip(flown.chunks(tanks.len().max(1)));
+        let mut rows: Vec<Row> = rows.map(|(id, flown)| Row::of(id, flown, first_seed)).collect();
         // Who does not fly such missions at all is no comparison.
         rows.retain(|row| row.planner == planner.id || row.unsupported < row.tanks);
-        let subject = Subject {
-            planner,
-            plugins,
-            tank: &tanks[0],
-            beside: rows.get(1).map(|row| row.planner.as_str()),
+        let is_sound = |row: &&Row| row.faults == 0 && others.shipped.contains(&row.planner);
+        let beside = rows[1..].iter().filter(is_sound).map(|row| row.planner.as_str()).take(1).collect();
+        let subject = Subject { planner, plugins, tank: &tanks[0], beside };
+        let checks = if rows[0].unsupported == rows[0].tanks {
+            vec![Check::not_made("flies such missions", "it says that it does not: nothing was checked")]
+        } else {
+            checks::all(&subject, &flown[..tanks.len()], first_seed)
         };
-        let checks = checks::all(&subject, &flown[..tanks.len()]);
-        Self { planner: planner.id.clone(), first_seed, checks, rows }
+        Self { planner: planner.id.clone(), task, first_seed, checks, rows }
     }
 
     /// Whether every check passed.
@@ -69,12 +102,26 @@ impl Trial {
         self.checks.iter().all(|check| check.failure.is_none())
     }
 
+    /// The tanks in which it did not complete its mission.
+    pub fn lost(&self) -> Vec<Lost> {
+        let lost = self.rows.first().into_iter().flat_map(Row::lost);
+        let named = |tank: &row::InTank| Lost {
+            name: format!("{}-{}-{}", self.planner, self.task, tank.seed),
+            scenario: tank::text(self.task, tank.seed, &self.planner),
+        };
+        lost.map(named).collect()
+    }
+
     /// Checks and rows as text.
     pub fn human(&self) -> String {
         let checks = self.checks.iter().map(Check::line);
         let rows = self.rows.iter().map(Row::line);
         let n = self.rows.first().map_or(0, |row| row.tanks);
-        let title = format!("\n{} in {n} random tanks from seed {} on:\n", self.planner, self.first_seed);
-        checks.chain([title, Row::HEADINGS.to_owned()]).chain(rows).collect()
+        let title = format!(
+            "\n{}, {}, in {n} random tanks from seed {} on:\n",
+            self.planner, self.task, self.first_seed
+        );
+        let lost = self.rows.first().into_iter().flat_map(Row::lost).map(row::InTank::line);
+        checks.chain([title, Row::HEADINGS.to_owned()]).chain(rows).chain(lost).collect()
     }
 }

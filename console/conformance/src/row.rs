@@ -32,12 +32,56 @@ pub struct Row {
     /// Memory of the planner's process at most in any of them, libraries among it, megabytes; absent where the system does
     /// not say.
     pub memory_mb: Option<f64>,
+    /// Each tank.
+    pub by_tank: Vec<InTank>,
+}
+
+/// How a planner flew in one tank.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InTank {
+    /// The seed by which the tank was drawn.
+    pub seed: u64,
+    /// How the mission ended.
+    pub outcome: Option<Outcome>,
+    /// How often the planner failed.
+    pub faults: u64,
+    /// Its first failure.
+    pub failure: Option<String>,
+    /// Mission time, seconds.
+    pub time_s: Option<f64>,
+    /// Way, metres.
+    pub way_m: Option<f64>,
+    /// Least distance to anything solid, metres.
+    pub clearance_m: Option<f64>,
+}
+
+impl InTank {
+    fn of(seed: u64, flown: &Flown) -> Self {
+        let summary = &flown.summary;
+        Self {
+            seed,
+            outcome: summary.outcome,
+            faults: summary.planner_faults,
+            failure: flown.misbehaved.as_ref().or(flown.gave_up.as_ref()).cloned(),
+            time_s: summary.mission_time_s,
+            way_m: summary.path_length_m,
+            clearance_m: summary.clearance_min_m,
+        }
+    }
+
+    /// A line about a tank that was not completed.
+    pub(crate) fn line(&self) -> String {
+        let ended = self.outcome.map_or("did not end", Outcome::word).replace('_', " ");
+        let after = self.time_s.map(|s| format!(" after {s:.1} s")).unwrap_or_default();
+        let why = self.failure.as_ref().map(|why| format!(": {why}")).unwrap_or_default();
+        format!("not completed: tank of seed {}, {ended}{after}{why}\n", self.seed)
+    }
 }
 
 impl Row {
     pub(crate) const HEADINGS: &'static str = "planner             complete  collided  stuck  faults  time s   way m  clearance m  step p99 ms  memory MB\n";
 
-    pub(crate) fn of(planner: &str, flown: &[Flown]) -> Self {
+    pub(crate) fn of(planner: &str, flown: &[Flown], first_seed: u64) -> Self {
         let ended = |outcome| flown.iter().filter(move |flown| flown.summary.outcome == Some(outcome));
         let of_complete =
             |figure: fn(&Flown) -> Option<f64>| median(ended(Outcome::Complete).filter_map(figure));
@@ -58,7 +102,16 @@ impl Row {
                 .filter_map(|flown| flown.memory_bytes)
                 .max()
                 .map(|bytes| bytes as f64 / 1e6),
+            by_tank: (0..)
+                .zip(flown)
+                .map(|(n, flown)| InTank::of(first_seed.wrapping_add(n), flown))
+                .collect(),
         }
+    }
+
+    /// The tanks that were not completed.
+    pub(crate) fn lost(&self) -> impl Iterator<Item = &InTank> {
+        self.by_tank.iter().filter(|tank| tank.outcome != Some(Outcome::Complete))
     }
 
     pub(crate) fn line(&self) -> String {

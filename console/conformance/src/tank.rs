@@ -3,16 +3,27 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use scenario::{Scenario, Settings};
+use serde::Serialize;
 use std::f64::consts::TAU;
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// What is to be done in a tank.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Task {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
     /// Drive from one side to the other.
     Goto,
     /// Scan all of it.
     Cover,
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Goto => "goto",
+            Self::Cover => "cover",
+        })
+    }
 }
 
 /// Distance between an obstacle and anything else, metres: the robot passes everywhere.
@@ -23,11 +34,12 @@ const GAP_M: f64 = 0.9;
 /// # Panics
 /// Never: every text that is drawn is a scenario, as the tests show.
 pub(crate) fn draw(task: Task, seed: u64) -> Scenario {
-    Scenario::parse_with(&text(task, seed), &format!("tank {seed}"), &Settings::default())
+    Scenario::parse_with(&text(task, seed, "it"), &format!("tank {seed}"), &Settings::default())
         .unwrap_or_else(|errors| panic!("{}", errors.render()))
 }
 
-fn text(task: Task, seed: u64) -> String {
+/// The text of that tank's scenario, to be flown by this planner.
+pub(crate) fn text(task: Task, seed: u64, planner: &str) -> String {
     let mut random = Pcg64::seed_from_u64(seed);
     let (tank_radius, most) = if task == Task::Goto { (5.0, 9) } else { (3.0, 4) };
     let n = random.random_range(2..=most);
@@ -67,7 +79,7 @@ fn text(task: Task, seed: u64) -> String {
          motion = \"unicycle\"\nradius_m = 0.25\nspeed_max_m_per_s = 0.4\nturn_rate_max_deg_per_s = 90.0\n\
          start_m = [{}, {}]\nstart_heading_deg = {heading:.1}\n\n[ae]\nperiod_s = 1.0\nrepetitions = 20\n\
          noise = {{ model = \"uniform\", ratio = 0.02 }}\nstations = [{}]\n\n[mission]\n{mission}\ntolerance_m = 0.2\n\
-         stuck_s = 20.0\n\n[planner]\nid = \"it\"\n",
+         stuck_s = 20.0\n\n[planner]\nid = \"{planner}\"\n",
         start[0],
         start[1],
         stations(tank_radius),
@@ -91,6 +103,7 @@ mod tests {
         for seed in 0..200 {
             for task in [Task::Goto, Task::Cover] {
                 assert_eq!(draw(task, seed).text, draw(task, seed).text);
+                assert!(text(task, seed, "my-own").contains("id = \"my-own\""));
             }
         }
         assert_ne!(draw(Task::Goto, 1).sim.world, draw(Task::Goto, 2).sim.world);

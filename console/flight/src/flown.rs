@@ -25,7 +25,16 @@ pub struct Flight {
 impl Flight {
     /// A flight that waits for its start; `attended` says whether an operator is there.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
-        let config = MissionConfig { attended, ..scenario.mission.clone() };
+        Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() })
+    }
+
+    /// A flight that waits for the operator of a console, who sees the plan before the start.
+    pub fn for_operator(scenario: &Scenario) -> Self {
+        let mission = scenario.mission.clone();
+        Self::of(scenario, MissionConfig { attended: true, start_names_plan: true, ..mission })
+    }
+
+    fn of(scenario: &Scenario, config: MissionConfig) -> Self {
         let drawing = scenario.sim.world.as_drawn();
         let floor =
             Floor::new(&drawing, config.cell_m, config.room_m(), config.swath_m, config.start.position);

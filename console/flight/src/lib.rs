@@ -11,6 +11,7 @@ pub mod plan_watch;
 pub mod planners;
 pub mod remains;
 pub mod scenarios;
+pub mod texts;
 pub mod unrecorded;
 
 pub use flown::Flight;

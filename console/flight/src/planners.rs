@@ -5,6 +5,7 @@ use anyhow::anyhow;
 use mission::{PlannerChoice, PlannerInfo, RefusedPlugin, TaskConfig};
 use planner_host::{PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, parameter_problems, survey};
 use scenario::Scenario;
+use std::path::PathBuf;
 
 /// What there is to choose from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -46,6 +47,18 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
     })
 }
 
+/// Sentences about planners of a scenario that more than one plugin has: which of them flies.
+pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
+    let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
+    let worker = WorkerCommand::default();
+    let twice = Surveyor::new(plugins, &worker).shadowed(&ids);
+    let sentence = |(id, taken, other): (String, PathBuf, PathBuf)| {
+        let (taken, other) = (taken.display(), other.display());
+        format!("planner {id} is the one of {taken}; it shadows that of {other}")
+    };
+    twice.into_iter().map(sentence).collect()
+}
+
 /// The planners of a scenario, with the sections that name them.
 fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerChoice)> {
     let mission = &scenario.mission;
@@ -59,10 +72,9 @@ fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerCh
 /// # Errors
 /// Every objection, with its place in the scenario.
 pub fn check_choices(scenario: &Scenario, found: &Found) -> anyhow::Result<()> {
-    let must_cover = matches!(scenario.mission.task, TaskConfig::Cover { .. });
-    let objections: Vec<_> = chosen(scenario)
-        .flat_map(|(section, choice)| objections(section, choice, found, must_cover))
-        .collect();
+    let task = &scenario.mission.task;
+    let objections: Vec<_> =
+        chosen(scenario).flat_map(|(section, choice)| objections(section, choice, found, task)).collect();
     if objections.is_empty() { Ok(()) } else { Err(bad_input(scenario.refused(objections).render())) }
 }
 
@@ -70,12 +82,12 @@ fn objections(
     section: &str,
     choice: &PlannerChoice,
     found: &Found,
-    must_cover: bool,
+    task: &TaskConfig,
 ) -> Vec<(String, String)> {
     let at = |key: String| format!("{section}.parameters.{key}");
     match choice_of(&choice.id, found) {
         Err(message) => vec![(format!("{section}.id"), message)],
-        Ok(info) if let Some(why) = info.why_no_coverage().filter(|_| must_cover) => {
+        Ok(info) if let Some(why) = why_unsuited(info, task) => {
             let ids: Vec<&str> =
                 found.planners.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
             let who = if ids.is_empty() {
@@ -90,6 +102,24 @@ fn objections(
             problems.into_iter().map(|(key, message)| (at(key), message)).collect()
         }
     }
+}
+
+/// Planners for coverage, the one with the shortest ways first (`tankops reproduce coverage-suite`).
+const FOR_COVERAGE: [&str; 3] = ["tether-safe", "hull-partition", "boustrophedon"];
+
+/// The planner that a scenario for a coverage mission names unless somebody says otherwise.
+pub const COVERAGE_PLANNER: &str = FOR_COVERAGE[0];
+
+/// Why a planner does not suit a task; none if it does.
+pub fn why_unsuited(info: &PlannerInfo, task: &TaskConfig) -> Option<&'static str> {
+    info.why_no_coverage().filter(|_| matches!(task, TaskConfig::Cover { .. }))
+}
+
+/// The planner for a coverage mission among those that were found: the best known first, then any that covers.
+pub fn suited_to_coverage(found: &Found) -> Option<&PlannerInfo> {
+    let covering = || found.planners.iter().filter(|info| info.covers);
+    let rank = |info: &&PlannerInfo| FOR_COVERAGE.iter().position(|id| *id == info.id).unwrap_or(usize::MAX);
+    covering().min_by_key(rank)
 }
 
 /// The planner of this id.

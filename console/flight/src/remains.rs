@@ -2,9 +2,15 @@
 
 use mission::{Event, EventKind};
 use planner_api::LogLevel;
-use planner_host::{Crash, Host, Printed};
+use planner_host::{Crash, Host, Printed, digest_of, plugin_of};
 use runs::RunLog;
 
+/// How a planner failed.
+pub const CRASH_FILE: &str = "crash.txt";
+/// What it was asked before.
+pub const FRAMES_FILE: &str = "frames.bin";
+/// What is written there about the requests.
+const FRAMES_DIGEST: &str = "frames.bin: sha256 ";
 /// So many lines are shown at once.
 const MOST_SHOWN: usize = 8;
 
@@ -16,7 +22,10 @@ pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f6
         let lines =
             printed.iter().map(|Printed { planner, line }| format!("T+{t_s:.1} s  {planner}: {line}\n"));
         let ends = bad_ends.iter().map(|end| format!("T+{t_s:.1} s  {end}\n"));
-        log.keep_output(&lines.chain(ends).collect::<String>());
+        let faults = crashes
+            .iter()
+            .map(|crash| format!("T+{t_s:.1} s  {}; plugin {}\n", crash.fault.message, plugin_file(crash)));
+        log.keep_output(&lines.chain(ends).chain(faults).collect::<String>());
         for crash in &crashes {
             log.keep_crash(&files(crash));
         }
@@ -32,14 +41,63 @@ pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f6
     shown.chain(ends).map(|kind| Event { tick, t_s, kind }).collect()
 }
 
+/// Where the plugin lies that failed.
+fn plugin_file(crash: &Crash) -> String {
+    plugin_of(&crash.frames).map_or_else(|| "unknown".to_owned(), |file| file.display().to_string())
+}
+
 /// The files of a crash, for `tankops replay-worker`.
 fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
     let Crash { fault, frames, output } = crash;
     let about = format!(
-        "{}\nplugin: sha256 {}\ntankops {}\n",
+        "{}\nplugin: {}\nplugin: sha256 {}\n{FRAMES_DIGEST}{}\ntankops {}\n",
         fault.message,
+        plugin_file(crash),
         fault.plugin_sha256.as_deref().unwrap_or("unknown"),
+        digest_of(frames),
         env!("CARGO_PKG_VERSION"),
     );
-    [("crash.txt", about.into()), ("frames.bin", frames.clone()), ("output.txt", output.clone().into())]
+    [(CRASH_FILE, about.into()), (FRAMES_FILE, frames.clone()), ("output.txt", output.clone().into())]
+}
+
+/// Makes sure that the requests of a crash are those that were kept with it; `about` is what was written about it.
+///
+/// # Errors
+/// They are not; reads on after the name of their file.
+pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
+    let kept = about.lines().find_map(|line| line.strip_prefix(FRAMES_DIGEST));
+    match kept {
+        None => Err(format!(
+            "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; an earlier tankops left it, or it was changed"
+        )),
+        Some(kept) if kept.trim() == digest_of(frames) => Ok(()),
+        Some(_) => Err(format!("was cut or changed: its SHA-256 is not the one in {CRASH_FILE}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::planner::During;
+    use mission::{Cause, Fault};
+
+    #[test]
+    fn frames_that_were_cut_or_changed_are_known_by_what_was_written_about_them() {
+        let fault = Fault {
+            planner: "p".into(),
+            during: During::Step,
+            cause: Cause::Died,
+            message: "planner p died".into(),
+            partial: Vec::new(),
+            plugin_sha256: None,
+        };
+        let crash = Crash { fault, frames: vec![1, 2, 3], output: String::new() };
+        let [(_, about), (_, frames), _] = files(&crash);
+        let about = String::from_utf8(about).expect("text");
+        assert_eq!(check_frames(&about, &frames), Ok(()));
+        assert!(check_frames(&about, &frames[..2]).is_err_and(|why| why.starts_with("was cut or changed")));
+        assert!(
+            check_frames("planner p died\n", &frames).is_err_and(|why| why.starts_with("cannot be checked"))
+        );
+    }
 }

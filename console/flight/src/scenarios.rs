@@ -1,7 +1,7 @@
 //! The scenario that a command line names.
 
 use crate::failure::bad_input;
-use scenario::{Scenario, Settings};
+use scenario::{Scenario, Settings, is_stdin};
 use std::path::{Path, PathBuf};
 
 /// The demo, so that `tankops` shows something wherever it is started.
@@ -15,12 +15,12 @@ pub fn demo(settings: &Settings) -> anyhow::Result<Scenario> {
     Scenario::parse_with(DEMO, "the demo scenario", settings).map_err(|errors| bad_input(errors.render()))
 }
 
-/// Reads a scenario by its path or by the name that the home screen lists: `cover-circle` is `scenarios/cover-circle.toml`.
+/// Reads a scenario by its path, from the standard input (`-`), or by the name that the home screen lists: `cover-circle` is `scenarios/cover-circle.toml`.
 ///
 /// # Errors
 /// Every objection, with its place in the file.
 pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
-    let listed = listed(path).filter(|_| !path.exists());
+    let listed = listed(path).filter(|_| !path.exists() && !is_stdin(path));
     match &listed {
         Some(file) if file.exists() => read_file(file, settings),
         Some(_) if path == Path::new("demo") => demo(settings),

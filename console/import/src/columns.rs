@@ -1,41 +1,49 @@
 //! Lists of columns as CSV.
 
 mod fields;
+mod marks;
 
 use crate::{
-    error::{ImportError, read_file},
+    error::ImportError,
+    input::Input,
     plan::{FloorPlan, Named},
     text::decoded,
 };
 use fields::{Fields, Quantity};
-use std::{collections::HashSet, path::Path};
+use marks::Marks;
+use std::collections::HashSet;
 use world::{Boundary, Point, Shape};
+
+/// Notes after which columns that stand in each other are no longer named one by one.
+const MOST_NOTES: usize = 20;
 
 /// Reads a list of round columns in a round tank of a radius, metres.
 ///
 /// The first line names the fields: x, y, radius or diameter, each with its unit, as `x_m` or `X [mm]`, and perhaps `name`,
 /// in any order, separated by commas, semicolons or tabs; but for commas, numbers may have a decimal comma. The origin is the
-/// tank's centre. Lines that begin with `#` are skipped, and fields of other names listed.
+/// tank's centre. Lines that begin with `#` are skipped, and fields of other names listed. Columns that stand in each other are
+/// named in the notes.
 ///
 /// # Errors
-/// File, line and field of everything that is wrong.
-pub fn read(file: &Path, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportError>> {
+/// Line and field of everything that is wrong.
+pub fn read(input: &Input, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportError>> {
     // Lines are counted by their line feeds.
-    let text = read_file(file).map_err(|error| vec![error])?;
-    let text = decoded(&text, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
+    let text = decoded(&input.bytes, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
     let wrong = |Wrong { line, field, what }: Wrong| ImportError {
-        file: file.display().to_string(),
+        file: input.name.clone(),
         line: Some(line as usize),
         key: Some(field).filter(|field| !field.is_empty()),
         what,
     };
-    let (obstacles, unused) = list(&text, tank_radius_m)
+    let (rows, unused) = list(&text, tank_radius_m)
         .map_err(|problems| problems.into_iter().map(wrong).collect::<Vec<ImportError>>())?;
+    let mut notes: Vec<String> = unused.iter().map(|field| format!("not used: field {field}")).collect();
+    note_coincident(&rows, &mut notes);
+    let obstacles: Vec<Named> = rows.into_iter().map(|(_, named)| named).collect();
     if obstacles.is_empty() {
-        return Err(vec![ImportError::of_file(file, "no columns: below the first line there are no rows")]);
+        return Err(vec![ImportError::of_input(input, "no columns: below the first line there are no rows")]);
     }
     let boundary = Boundary::Circle { radius_m: tank_radius_m };
-    let notes = unused.iter().map(|field| format!("not used: field {field}")).collect();
     Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), plates: Vec::new(), notes })
 }
 
@@ -52,8 +60,11 @@ impl Wrong {
     }
 }
 
+/// A column with its line.
+type Row = (u64, Named);
+
 /// The columns of a list, and the names of fields that are not used.
-fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Named>, Vec<String>), Vec<Wrong>> {
+fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<Wrong>> {
     if let Some(at) = text.find('\0') {
         let line = text[..at].lines().count().max(1) as u64;
         return Err(vec![Wrong::new(line, "", "no text: a byte 0; save the list as CSV")]);
@@ -71,7 +82,7 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Named>, Vec<String>), Vec
     let first_line = line_of(&reader);
     let fields = Fields::new(&header).map_err(|(field, what)| vec![Wrong::new(first_line, field, what)])?;
     let (mut names, mut columns, mut problems) = (HashSet::new(), Vec::new(), Vec::new());
-    let mut record = csv::StringRecord::new();
+    let (mut record, mut marks) = (csv::StringRecord::new(), Marks::default());
     loop {
         let read = reader.read_record(&mut record);
         let line = line_of(&reader);
@@ -85,14 +96,19 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Named>, Vec<String>), Vec
             Ok(true) if record.iter().all(str::is_empty) => continue,
             Ok(true) => {}
         }
-        let disc = disc(&fields, &record, delimiter != b',', tank_radius_m);
+        marks.line = line;
+        let disc = disc(&fields, &record, delimiter != b',', &mut marks, tank_radius_m);
         let shape = disc.map_err(|(field, what)| problems.push(Wrong::new(line, field, what))).ok();
         let given = fields.name(&record).filter(|name| !name.is_empty());
         let name = given.map_or_else(|| format!("column {}", columns.len() + 1), foreign::seen);
         if !names.insert(name.clone()) {
             problems.push(Wrong::new(line, "name", format!("`{name}` is there twice")));
         }
-        columns.extend(shape.map(|shape| Named { name, shape }));
+        columns.extend(shape.map(|shape| (line, Named { name, shape })));
+    }
+    if let Some((line, field, what)) = marks.doubt() {
+        // What the numbers mean comes before what they say.
+        problems.insert(0, Wrong::new(line, field, what));
     }
     if problems.is_empty() { Ok((columns, fields.unused)) } else { Err(problems) }
 }
@@ -102,10 +118,11 @@ fn disc(
     fields: &Fields,
     record: &csv::StringRecord,
     has_commas: bool,
+    marks: &mut Marks,
     tank_radius_m: f64,
 ) -> Result<Shape, (String, String)> {
-    let metres = |quantity| {
-        fields.metres(record, quantity, has_commas).map_err(|(field, what)| (field.to_owned(), what))
+    let mut metres = |quantity| {
+        fields.metres(record, quantity, has_commas, marks).map_err(|(field, what)| (field.to_owned(), what))
     };
     let (center, radius_m) =
         (Point::new(metres(Quantity::X)?, metres(Quantity::Y)?), metres(Quantity::Radius)?);
@@ -121,6 +138,43 @@ fn disc(
         return Err((fields.name_of(Quantity::X).to_owned(), what));
     }
     Ok(Shape::Disc { center, radius_m })
+}
+
+/// Names columns of which one stands on the centre of another: no two do.
+fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
+    let mut discs: Vec<(f64, Point, &Row)> = rows
+        .iter()
+        .filter_map(|row| match &row.1.shape {
+            Shape::Disc { center, radius_m } => Some((*radius_m, *center, row)),
+            _ => None,
+        })
+        .collect();
+    discs.sort_by(|(_, a, _), (_, b, _)| a.x.total_cmp(&b.x));
+    let widest_m = discs.iter().map(|(radius_m, ..)| *radius_m).fold(0.0, f64::max);
+    for (index, (radius_m, at, (line, named))) in discs.iter().enumerate() {
+        let near = discs[index + 1..].iter().take_while(|(_, other, _)| other.x - at.x < widest_m);
+        for (other_m, other, (other_line, other_named)) in near {
+            let apart_m = (other - at).norm();
+            if apart_m >= radius_m.max(*other_m) {
+                continue;
+            }
+            if notes.len() > MOST_NOTES {
+                return notes.push("more columns stand in each other".into());
+            }
+            let (mut first, mut second) = ((line, &named.name), (other_line, &other_named.name));
+            if first.0 > second.0 {
+                std::mem::swap(&mut first, &mut second);
+            }
+            notes.push(format!(
+                "`{}` (line {}) stands in `{}` (line {}): their centres are {:.0} mm apart",
+                second.1,
+                second.0,
+                first.1,
+                first.0,
+                apart_m * 1000.0
+            ));
+        }
+    }
 }
 
 /// Why a line is no row.

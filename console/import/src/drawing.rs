@@ -11,6 +11,7 @@ mod faces;
 mod groups;
 mod hatch;
 mod labels;
+mod near;
 mod plates;
 mod rings;
 mod roles;
@@ -18,15 +19,15 @@ mod sorted;
 
 use crate::{
     error::ImportError,
+    input::Input,
     is_wholly_outside,
-    plan::{FloorPlan, Named},
+    plan::{FloorPlan, MOST_CORNERS, Named},
 };
 use areas::Area;
 use groups::Drawing;
 use nalgebra::Isometry2;
 pub use roles::{Layers, Role};
 use sorted::Sorted;
-use std::path::Path;
 use world::{Boundary, Point, Shape};
 
 /// Width of pipes that are drawn as lines, metres.
@@ -50,9 +51,9 @@ pub struct Assumed {
 /// # Errors
 /// It is no DXF, names no unit and none is stated, has no closed outline for the shell, or a layer that is named holds
 /// nothing.
-pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
-    let of_file = |what: String| ImportError::of_file(file, what);
-    let drawing = Drawing::read(file)?;
+pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
+    let of_file = |what: String| ImportError::of_input(input, what);
+    let drawing = Drawing::read(input)?;
     let mut notes = Vec::new();
     let unit_m = unit(drawing.units, assumed.unit_m, &mut notes).map_err(of_file)?;
     let all = entities::all(&drawing, unit_m).ok_or_else(|| {
@@ -65,8 +66,9 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     if let Some(missing) = assumed.layers.missing(&all) {
         return Err(of_file(format!("nothing lies on a layer `{missing}`; layers: {listed}")));
     }
-    let mut sorted = Sorted::new(all, assumed, &drawing.hidden, &mut notes);
-    let (boundary, moved, rest) = floor(&mut sorted, unit_m, &listed, &mut notes).map_err(of_file)?;
+    let mut sorted = Sorted::new(all, unit_m, assumed, &drawing.hidden, &mut notes);
+    let (boundary, moved, rest) =
+        floor(&mut sorted, unit_m, assumed, &listed, &mut notes).map_err(of_file)?;
     let named = |name: &str, shapes: Vec<Shape>| -> Vec<Named> {
         let named = |(k, shape): (usize, Shape)| Named {
             name: format!("{name} {}", k + 1),
@@ -83,10 +85,7 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
         keep_inside(&boundary, all, &mut notes);
     }
     if obstacles.is_empty() {
-        notes.push(format!(
-            "no columns and no pipes were found; if there are any, say which layer holds them, as in --layer COLUMNS=NAME; \
-             layers: {listed}"
-        ));
+        notes.push(no_obstacles(assumed, &listed));
     }
     Ok(FloorPlan { boundary, obstacles, no_go, plates, notes })
 }
@@ -95,16 +94,20 @@ pub fn read(file: &Path, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
 fn floor(
     sorted: &mut Sorted,
     unit_m: f64,
+    assumed: &Assumed,
     listed: &str,
     notes: &mut Vec<String>,
 ) -> Result<(Boundary, Isometry2<f64>, Vec<Area>), String> {
-    let (shell, rest) = sorted.shell(notes).ok_or_else(|| {
-        format!(
-            "no circle and no closed outline on a layer SHELL; draw the inner side of the shell there, or say which layer \
-             holds it, as in --layer SHELL=0; layers: {listed}"
-        )
-    })?;
+    let (shell, rest) = sorted.shell(notes).map_err(|why| no_shell(&why, assumed, listed))?;
     let (boundary, center) = areas::boundary(&shell, notes);
+    if let Boundary::Polygon { vertices } = &boundary
+        && vertices.len() > MOST_CORNERS
+    {
+        return Err(format!(
+            "the shell has {} corners that count; draw it with at most {MOST_CORNERS}, or as a circle",
+            vertices.len()
+        ));
+    }
     let (low, high) = boundary.bounds();
     let across_m = (high - low).max();
     if !ACROSS_M.contains(&across_m) {
@@ -128,6 +131,34 @@ fn floor(
         }
     };
     Ok((boundary, moved, rest))
+}
+
+/// That nothing stands on the floor, and what to say if something does.
+fn no_obstacles(assumed: &Assumed, listed: &str) -> String {
+    let stated = [Role::Columns, Role::Pipes].map(|role| assumed.layers.stated(role)).concat();
+    let remedy = match stated[..] {
+        [] => "if there are any, say which layer holds them, as in --layer COLUMNS=NAME".to_owned(),
+        _ => format!("the layers that are named for them hold none: {}", stated.join(", ")),
+    };
+    format!("no columns and no pipes were found; {remedy}; layers: {listed}")
+}
+
+/// Why a drawing has no shell; what somebody has said already is not asked for again.
+fn no_shell(why: &str, assumed: &Assumed, listed: &str) -> String {
+    let stated = assumed.layers.stated(Role::Shell);
+    let layer = match stated[..] {
+        [] => "a layer SHELL".to_owned(),
+        _ => format!("the layer {} that is named for SHELL", stated.join(", ")),
+    };
+    if !why.is_empty() {
+        return format!("no shell on {layer}: {why}; layers: {listed}");
+    }
+    let remedy = if stated.is_empty() {
+        "draw the inner side of the shell there, or say which layer holds it, as in --layer SHELL=0"
+    } else {
+        "draw the inner side of the shell there, or name another layer"
+    };
+    format!("no circle and no closed outline on {layer}; {remedy}; layers: {listed}")
 }
 
 /// Leaves out what lies beyond the shell.

@@ -1,9 +1,10 @@
 //! What is wrong with a file.
 
+use crate::input::Input;
 use std::{fs, path::Path};
 
 /// A larger file is not taken, bytes.
-const LARGEST_BYTES: u64 = 100_000_000;
+pub(crate) const LARGEST_BYTES: u64 = 100_000_000;
 
 /// What is wrong with a file, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -21,6 +22,11 @@ pub struct ImportError {
 }
 
 impl ImportError {
+    /// Something that concerns the whole of an input.
+    pub(crate) fn of_input(input: &Input, what: impl Into<String>) -> Self {
+        Self { file: input.name.clone(), line: None, key: None, what: what.into() }
+    }
+
     /// Something that concerns the whole file.
     pub(crate) fn of_file(file: &Path, what: impl Into<String>) -> Self {
         Self { file: file.display().to_string(), line: None, key: None, what: what.into() }

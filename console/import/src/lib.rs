@@ -12,6 +12,7 @@ mod contour;
 pub mod drawing;
 mod error;
 mod floor;
+mod input;
 mod occupancy;
 mod outside;
 mod pieces;
@@ -21,6 +22,8 @@ mod text;
 
 pub use error::ImportError;
 pub use floor::MapFloor;
-pub use occupancy::OccupancyMap;
+pub use input::{Input, InputKind};
+pub use occupancy::{OccupancyMap, Unseen};
 pub use outside::is_wholly_outside;
 pub use plan::{FloorPlan, Named};
+pub use text::Foreign;

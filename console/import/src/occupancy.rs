@@ -1,7 +1,8 @@
 //! Occupancy maps in the form of the ROS map server: a YAML file that names an image and gives its scale.
 //!
 //! Values are interpreted as the ROS 2 `nav2_map_server` does. Cells that are not known to be free count as solid, as the
-//! robots of the papers treat them.
+//! robots of the papers treat them. So do cells of the grey 205, which map savers write for what nobody has seen, whatever the
+//! thresholds make of it.
 
 mod image;
 mod settings;
@@ -13,7 +14,7 @@ use crate::{
 use image::Image;
 use nalgebra::Isometry2;
 use settings::Settings;
-use std::path::Path;
+use std::{fmt, path::Path};
 use world::{Point, Vector};
 
 /// A map: which cells are free, row by row from the lower left.
@@ -27,6 +28,30 @@ pub struct OccupancyMap {
     pub cell_m: f64,
     /// Takes lattice points, in metres, to the tank frame.
     pub tank_from_map: Isometry2<f64>,
+    /// Cells that nobody has seen and that `free_thresh` would make floor; they are not free.
+    pub unseen: Option<Unseen>,
+}
+
+/// Cells of the grey that map savers write for what nobody has seen, where the thresholds of the map take it for floor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unseen {
+    /// How many there are.
+    pub n_cells: usize,
+    /// Their grey.
+    pub grey: u8,
+    /// The threshold that would make them floor.
+    pub free_thresh: f64,
+}
+
+impl fmt::Display for Unseen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n_cells, grey, free_thresh } = self;
+        write!(
+            f,
+            "{n_cells} cells of grey {grey} count as solid: map savers write it for what nobody has seen, although \
+             free_thresh {free_thresh} takes it for floor"
+        )
+    }
 }
 
 impl OccupancyMap {
@@ -51,6 +76,9 @@ impl OccupancyMap {
             });
         }
         let image = Image::read(&file)?;
+        let n_cells = image.pixels.iter().filter(|pixel| settings.is_unseen_but_bright(**pixel)).count();
+        let unseen = settings.unseen_grey().filter(|_| n_cells > 0);
+        let unseen = unseen.map(|grey| Unseen { n_cells, grey, free_thresh: settings.free });
         // Images begin at the upper left.
         let upward = image.pixels.chunks(image.columns).rev().flatten();
         let [x, y, turn_rad] = settings.origin;
@@ -59,6 +87,7 @@ impl OccupancyMap {
             is_free: upward.map(|pixel| settings.is_free(*pixel)).collect(),
             cell_m: settings.resolution_m,
             tank_from_map: Isometry2::new(Vector::new(x, y), turn_rad),
+            unseen,
         })
     }
 

@@ -64,14 +64,15 @@ impl FloorPlan {
         }
     }
 
-    /// The text of a scenario that scans this floor; what the file does not say is a default that a comment names.
-    pub fn scenario(&self, name: &str, source: &str) -> String {
-        let mut text = format!("# The floor is that of {source}.\n");
+    /// The text of a scenario that scans this floor by a planner; what the file does not say is a default that a comment names.
+    pub fn scenario(&self, name: &str, source: &str, planner: &str) -> String {
+        let mut text = format!("# The floor is that of {}.\n", commented(source));
         for note in &self.notes {
-            let _ = writeln!(text, "# - {note}");
+            let _ = writeln!(text, "# - {}", commented(note));
         }
+        let (name, about) = (quoted(name), quoted(&format!("The floor of {source}")));
         // Writing to a String cannot fail.
-        let _ = write!(text, "\nname = \"{name}\"\nabout = \"The floor of {source}\"\nseed = 1\n\n[tank]\n");
+        let _ = write!(text, "\nname = {name}\nabout = {about}\nseed = 1\n\n[tank]\n");
         let _ = match &self.boundary {
             Boundary::Circle { radius_m } => writeln!(text, "radius_m = {}", micrometres(*radius_m)),
             Boundary::Polygon { vertices } => writeln!(text, "vertices_m = {}", points(vertices)),
@@ -97,7 +98,8 @@ impl FloorPlan {
         let _ = write!(
             text,
             "]\n\n[mission]\nkind = \"cover\"\nswath_m = {SWATH_M}\noverlap_m = 0.1\nclearance_m = 0.1\n\
-             cell_m = {cell_m:.2}\ntime_limit_s = {seconds:.1}\n\n[planner]\nid = \"boustrophedon\"\n"
+             cell_m = {cell_m:.2}\ntime_limit_s = {seconds:.1}\n\n[planner]\nid = {}\n",
+            quoted(planner)
         );
         text
     }
@@ -158,8 +160,7 @@ fn entries(text: &mut String, list: &str, kind: &str, all: &[Named]) {
                 )
             }
         };
-        // Names may hold anything that a drawing does.
-        let _ = write!(text, "\n[[{list}]]\nname = {name:?}\n{kind} = {outline}\n");
+        let _ = write!(text, "\n[[{list}]]\nname = {}\n{kind} = {outline}\n", quoted(name));
     }
 }
 
@@ -169,9 +170,19 @@ fn plates(text: &mut String, plates: &[DrawnPlate]) {
     }
     *text += "\n[plates]\noutlines = [\n";
     for DrawnPlate { name, vertices_m } in plates {
-        let _ = writeln!(text, "    {{ name = {name:?}, vertices_m = {} }},", points(vertices_m));
+        let _ = writeln!(text, "    {{ name = {}, vertices_m = {} }},", quoted(name), points(vertices_m));
     }
     *text += "]\n";
+}
+
+/// A text as TOML, whatever is in it: names are those of other programs' files.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// A text on the line of a comment, in which TOML allows no control characters.
+fn commented(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }
 
 fn micrometres(v: f64) -> f64 {

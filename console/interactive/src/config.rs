@@ -8,6 +8,7 @@ mod settings;
 pub use settings::colours;
 
 use fault::{Fault, Place};
+use flight::texts;
 use mission::Severity;
 use planner_host::user_folder;
 use std::path::{Path, PathBuf};
@@ -76,10 +77,10 @@ impl Config {
     }
 
     fn take(&mut self, file: &Path, read: Read) -> Vec<Attention> {
-        let text = match recording::read_regular(file) {
+        let text = match texts::read_regular(file) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Vec::new(),
-            Err(error) => return vec![point(Severity::Warn, format!("{}: {error}", file.display()))],
+            Err(_) if !file.exists() => return Vec::new(),
+            Err(error) => return vec![point(Severity::Warn, error.to_string())],
         };
         let name = name_of(file);
         read(self, &text).iter().map(|fault| attention_to(fault, &name, &text)).collect()
@@ -116,9 +117,9 @@ pub fn check(file: &Path) -> Option<Result<String, String>> {
         KEYS => keys::read,
         _ => return None,
     };
-    let text = match recording::read_regular(file) {
+    let text = match texts::read_regular(file) {
         Ok(text) => text,
-        Err(error) => return Some(Err(format!("error: {}: {error}", file.display()))),
+        Err(error) => return Some(Err(format!("error: {error}"))),
     };
     let name = file.display().to_string();
     let faults = read(&mut Config::default(), &text);

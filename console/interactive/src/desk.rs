@@ -236,7 +236,7 @@ impl Desk {
             scenario.mission.planner = planner;
         }
         check_choices(&scenario, &self.tools.planners.get())?;
-        let flight = Flight::prepare(&scenario, true);
+        let flight = Flight::for_operator(&scenario);
         Ok((scenario, flight))
     }
 

@@ -182,12 +182,13 @@ impl EngineThread {
     }
 
     fn tick(&mut self, mut orders: Vec<Order>) {
-        let starts = self.log.is_none() && self.closed.is_none() && orders.contains(&Order::Start);
-        if starts && let Err(error) = self.open_log() {
+        if let Some(start) = self.start_among(&orders)
+            && let Err(error) = self.open_log()
+        {
             // Nothing moves without being recorded.
             let why = format!("cannot start: {error:#}");
-            self.screen.send_urgent(RunMsg::OrderFailed { order: Order::Start, why });
-            orders.retain(|order| *order != Order::Start);
+            self.screen.send_urgent(RunMsg::OrderFailed { order: start, why });
+            orders.retain(|order| !order.is_start());
         }
         let events = self.fly_tick(&orders, window(self.flight.tick_length(), self.speed));
         let failing = self.drill == Some(Drill::PanicEngine) && events.iter().any(|event| event.tick > 5);
@@ -200,6 +201,14 @@ impl EngineThread {
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             self.close_log(CLOSE_TIMEOUT);
         }
+    }
+
+    /// The order that begins the mission, if nothing is recorded yet and the mission accepts it: one that it refuses leaves no
+    /// run behind.
+    fn start_among(&self, orders: &[Order]) -> Option<Order> {
+        let standing = self.flight.mission().standing();
+        let mut starts = orders.iter().filter(|order| order.is_start() && standing.allows(order).is_ok());
+        starts.next().filter(|_| self.log.is_none() && self.closed.is_none()).cloned()
     }
 
     /// Flies a tick and keeps what happened.

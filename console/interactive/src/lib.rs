@@ -117,14 +117,14 @@ enum Ended {
 /// There is no terminal; the scenario, its planners, the script or the folder of the runs are refused; the system gives no
 /// thread; the run could not be closed.
 pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
+    let config = Arc::new(Config::load());
     let script = match &options.by {
-        By::Script(file) => Some(Script::read(file)?),
+        By::Script(file) => Some(Script::read(file, &config.keys)?),
         By::Keys | By::Lines => None,
     };
     if options.by == By::Keys {
         check_terminal()?;
     }
-    let config = Arc::new(Config::load());
     let Options { settings, logs, drill, .. } = options;
     let speed = options.speed.unwrap_or(config.speed);
     // The plugins are looked at while the scenario is read and its floor laid out.
@@ -214,7 +214,7 @@ impl Opening {
             None => (Source::Demo, scenarios::demo(settings)?),
         };
         check_logs(logs)?;
-        let flight = Flight::prepare(&scenario, true);
+        let flight = Flight::for_operator(&scenario);
         Ok(Self::Mission(source, Box::new((scenario, flight))))
     }
 }

@@ -151,7 +151,24 @@ impl Screen {
                 }
             }
             let now = Instant::now();
-            next = if now < until { self.session.next(Some(now)) } else { None };
+            if now >= until {
+                return Ok(None);
+            }
+            next = self.session.next(Some(now));
+        }
+        self.settle()
+    }
+
+    /// What a key does that was waited for, now that no other press is left to take in.
+    fn settle(&mut self) -> anyhow::Result<Option<Left>> {
+        if !self.session.model.has_settled() {
+            return Ok(None);
+        }
+        self.due = Redraw::Soon;
+        for effect in self.take(Msg::Settled) {
+            if let Some(left) = self.carry_out(&effect)? {
+                return Ok(Some(left));
+            }
         }
         Ok(None)
     }
@@ -268,6 +285,7 @@ fn number(signal: Signal) -> u8 {
         Signal::Interrupt => signal_hook::consts::SIGINT,
         Signal::Terminate => signal_hook::consts::SIGTERM,
         Signal::Hangup => signal_hook::consts::SIGHUP,
+        Signal::End(number) => number,
         Signal::Stop => signal_hook::consts::SIGTSTP,
         Signal::Continue => signal_hook::consts::SIGCONT,
     };

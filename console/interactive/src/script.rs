@@ -24,8 +24,11 @@ use super::{
 use answers::Answers;
 use anyhow::Context;
 use condition::Condition;
-use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
-use mission::Severity;
+use flight::{
+    failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
+    texts,
+};
+use mission::{Order, Readiness, Severity};
 use ratatui::{Terminal, backend::TestBackend};
 use report::print::warn_line;
 use std::{
@@ -33,7 +36,10 @@ use std::{
     process::ExitCode,
     time::{Duration, Instant},
 };
-use tui::{Caps, Colours, Effect, Glyphs, Key, Model, Msg, Signal};
+use tui::{
+    Caps, Colours, Effect, Glyphs, Key, Model, Msg, Signal,
+    actions::{ActionId, context::contexts, find, keymap::Keymap},
+};
 
 /// Columns and rows of the screen at first; `size` changes them.
 const SIZE: (u16, u16) = (120, 36);
@@ -74,10 +80,10 @@ impl Script {
     ///
     /// # Errors
     /// The file cannot be read; a line is none: every such line with its number.
-    pub(super) fn read(file: &Path) -> anyhow::Result<Self> {
+    pub(super) fn read(file: &Path, keys: &Keymap) -> anyhow::Result<Self> {
         let shown = file.display();
-        let text = std::fs::read_to_string(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
-        let steps = read::steps(&text).map_err(|wrong| {
+        let text = texts::read(file)?;
+        let steps = read::steps(&text, keys).map_err(|wrong| {
             let lines = wrong.iter().map(|(line, what)| format!("{shown}:{line}: {what}"));
             bad_input(lines.collect::<Vec<_>>().join("\n"))
         })?;
@@ -141,8 +147,17 @@ impl Runner {
                 let picture = tui::picture::svg(screen.backend().buffer());
                 std::fs::write(file, picture).map_err(|error| format!("{}: {error}", file.display()))
             }
-            Step::Command(line) => self.order(Msg::Line(line.clone())),
-            Step::Key(key) => self.order(Msg::Key((*key).into())),
+            Step::Command(line) => {
+                let first = line.split(' ').next().unwrap_or_default();
+                self.see_plan(find::named(first).map(|action| action.id))?;
+                self.order(Msg::Line(line.clone()))
+            }
+            Step::Key(key) => {
+                let model = &self.session.model;
+                let action = find::action_for(&model.console.keys, *key, &contexts(model));
+                self.see_plan(action.map(|action| action.id))?;
+                self.order(Msg::Key((*key).into()))
+            }
             Step::Wait(condition, within_s) => {
                 let within = Duration::from_secs_f64(*within_s);
                 if self.hear_until(within, |model| condition.holds(model, screen))? {
@@ -158,6 +173,25 @@ impl Runner {
                 Err(format!("not so: {condition}; {}", condition.instead(&self.session.model)))
             }
         }
+    }
+
+    /// Whoever starts a mission has waited for its plan. How long a planner may take, it is told itself.
+    fn see_plan(&mut self, action: Option<ActionId>) -> Result<(), String> {
+        if action != Some(ActionId::Start) {
+            return Ok(());
+        }
+        let readiness = |model: &Model| match model.live.run.standing.standing().readiness {
+            Readiness::NoPlan => Some(false),
+            Readiness::Preparing => Some(true),
+            Readiness::Unseen | Readiness::Failed(_) | Readiness::Plan(_) => None,
+        };
+        // The plan is ordered when the scenario is open.
+        self.hear_until(ANSWERING, |model| !model.live.waits() || readiness(model) != Some(false))?;
+        let is_planning = |model: &Model| model.live.waits() && readiness(model) == Some(true);
+        while is_planning(&self.session.model) && !self.is_left {
+            self.hear_until(LOOK_AGAIN, |model| !is_planning(model))?;
+        }
+        Ok(())
     }
 
     /// Gives a command or a key to the console; what it or the mission refuses is a failure.
@@ -219,12 +253,18 @@ impl Runner {
     }
 
     fn take(&mut self, msg: Msg) -> Result<(), String> {
-        if let Msg::Signal(signal @ (Signal::Interrupt | Signal::Terminate | Signal::Hangup)) = msg {
+        if let Msg::Signal(
+            signal @ (Signal::Interrupt | Signal::Terminate | Signal::Hangup | Signal::End(_)),
+        ) = msg
+        {
             return Err(format!("interrupted ({signal:?})"));
         }
         self.answers.hear(&msg);
         let effects = self.session.take(msg);
-        self.answers.await_for(self.session.sent());
+        // A HOLD that finds the robot held for good stops nothing, and no answer comes.
+        let may_move = self.session.model.live.may_move();
+        let sent = self.session.sent().iter().filter(|order| may_move || **order != Order::Hold);
+        self.answers.await_for(sent);
         self.is_left |= effects.iter().any(|effect| matches!(effect, Effect::Quit { .. }));
         Ok(())
     }

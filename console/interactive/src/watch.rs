@@ -17,15 +17,31 @@ use std::{
     path::Path,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 use tui::{
     Key, Measured, Msg, Places, Signal,
-    terminal::{self, Pointer},
+    terminal::{self, Keyboard, Pointer},
 };
 
 /// How long the console may take to exit cleanly after a signal; then it exits anyway.
 const GRACE: Duration = Duration::from_secs(1);
+
+/// Signals that nobody sends to a console on purpose, and that end a process which does not listen to them: the terminal would
+/// stay as the screen has it. A file that grows too large is noticed where it is written.
+const OTHERS: [i32; 11] = [
+    libc::SIGQUIT,
+    libc::SIGTRAP,
+    libc::SIGUSR1,
+    libc::SIGUSR2,
+    libc::SIGALRM,
+    libc::SIGSTKFLT,
+    libc::SIGXCPU,
+    libc::SIGVTALRM,
+    libc::SIGPROF,
+    libc::SIGIO,
+    libc::SIGPWR,
+];
 
 /// How often it is looked at who has the terminal.
 const TERMINAL_PERIOD: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
@@ -71,10 +87,10 @@ impl SharedPlaces {
 pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
-        let mut pointer = Pointer::default();
+        let (mut pointer, mut keyboard) = (Pointer::default(), Keyboard::default());
         while let Ok(event) = event::read() {
             let msg = match event {
-                Event::Key(key) => terminal::key_from_crossterm(&key).map(Msg::Key),
+                Event::Key(key) => keyboard.take(&key, Instant::now()).map(Msg::Key),
                 Event::Paste(text) => Some(Msg::Paste(text)),
                 Event::Resize(width, height) => Some(Msg::Resize { width, height }),
                 Event::Mouse(mouse) => pointer.take(&mouse, &places.get()).map(Msg::Mouse),
@@ -92,8 +108,9 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
 /// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
 pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
-    let mut signals =
-        Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN]).context("listening to signals")?;
+    let others = OTHERS.into_iter().chain(libc::SIGRTMIN()..=libc::SIGRTMAX());
+    let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN].into_iter().chain(others);
+    let mut signals = Signals::new(all).context("listening to signals")?;
     spawn("signals", move || {
         for number in signals.forever() {
             match number {
@@ -109,13 +126,14 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
                 SIGHUP => Signal::Hangup,
                 SIGTSTP => Signal::Stop,
                 SIGCONT => Signal::Continue,
-                _ => Signal::Interrupt,
+                SIGINT => Signal::Interrupt,
+                other => Signal::End(other),
             };
             // The robot is stopped from here, whatever the screen is doing.
             if !send_and_hold(&outbox, &engine, Msg::Signal(signal), signal != Signal::Continue) {
                 return;
             }
-            if matches!(signal, Signal::Terminate | Signal::Hangup) {
+            if matches!(signal, Signal::Terminate | Signal::Hangup | Signal::End(_)) {
                 leave_in_any_case(number);
             }
         }

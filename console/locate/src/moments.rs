@@ -7,7 +7,7 @@ use crate::{
     rows::Rows,
 };
 use csv::StringRecord;
-use positioning::Possible;
+use positioning::{Impossible, Possible};
 use world::{Odometry, Pose, RangeSet};
 
 /// Differences of arrival times become ranges by adding this to the time since the first arrival, metres: a range is positive.
@@ -20,7 +20,7 @@ pub(crate) struct Moment {
     pub t_s: f64,
     /// One set per station heard.
     pub ranges: Vec<RangeSet>,
-    /// The readings behind them, row by row.
+    /// The readings behind them that can be, row by row.
     pub heard: Vec<Heard>,
     /// Motion since the moment before, if it was measured.
     pub odometry: Option<Odometry>,
@@ -41,7 +41,7 @@ pub(crate) struct Moments {
     possible: Possible,
     last: Option<Place>,
     back: Option<Back>,
-    /// What is wrong with a row that waits for rows going back in time to be told first.
+    /// A row that waits until those before it that go back in time are told of.
     waiting: Option<Row>,
     /// Rows that are earlier than what came before them, but for the first of each stretch.
     pub left_behind: u64,
@@ -148,8 +148,18 @@ impl Moments {
 
     /// A moment of which nothing more comes.
     fn whole(&self, mut moment: Moment) -> Moment {
+        let (_, impossible) = match self.columns.kind() {
+            Kind::Ranges => self.possible.ranges(&moment.ranges),
+            Kind::Differences => self.possible.differences(&moment.ranges),
+        };
+        moment.heard.retain(|heard| {
+            let is_it = |one: &Impossible| {
+                one.station == heard.station && one.range_m.total_cmp(&heard.range_m).is_eq()
+            };
+            !impossible.iter().any(is_it)
+        });
         if self.columns.kind() == Kind::Differences {
-            moment.count_from_first(&self.possible);
+            moment.count_from_first();
         }
         moment
     }
@@ -217,11 +227,8 @@ impl Moment {
     }
 
     /// Counts ranges of which only the differences matter from the first arrival that can be.
-    fn count_from_first(&mut self, possible: &Possible) {
-        let least_m = {
-            let (sets, _) = possible.differences(&self.ranges);
-            sets.iter().flat_map(|set| &set.ranges_m).copied().fold(f64::INFINITY, f64::min)
-        };
+    fn count_from_first(&mut self) {
+        let least_m = self.heard.iter().map(|heard| heard.range_m).fold(f64::INFINITY, f64::min);
         let heard = self.heard.iter_mut().map(|heard| &mut heard.range_m);
         for range_m in self.ranges.iter_mut().flat_map(|set| &mut set.ranges_m).chain(heard) {
             *range_m += BASE_M - least_m;

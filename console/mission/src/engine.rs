@@ -186,6 +186,7 @@ impl Mission {
             planner: self.active.known(),
             shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
             has_offer: self.has_offer(),
+            readiness: self.readiness(),
         }
     }
 

@@ -17,6 +17,8 @@ mod governor;
 mod locate;
 pub mod order;
 pub mod phase;
+mod plan_extent;
+mod plan_id;
 pub mod planner;
 mod preview;
 pub mod spelling;
@@ -29,11 +31,13 @@ pub use config::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, Te
 pub use engine::{Fork, Input, Mission, Sending, Step};
 pub use event::{Event, EventKind, LogLine, RunOpened, Severity};
 pub use locate::Locator;
-pub use order::{Check, CheckOutcome, Injection, Order, Outlook, RangeFault, StepTo};
+pub use order::{Check, CheckOutcome, Injection, Note, Noted, Order, Outlook, RangeFault, StepTo};
 pub use phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes};
+pub use plan_extent::check_extent;
+pub use plan_id::{PlanId, PlanSeen};
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
     RefusedPlugin, Sandbox, todays_parameter,
 };
 pub use preview::preview;
-pub use standing::{FoldedStanding, PositionTrust, Refusal, Standing};
+pub use standing::{FoldedStanding, PositionTrust, Readiness, Refusal, Standing};

@@ -2,6 +2,7 @@
 
 use crate::{
     phase::Outcome,
+    plan_id::PlanId,
     planner::{ParamValue, PlannerChoice},
 };
 use serde::{Deserialize, Serialize};
@@ -13,8 +14,11 @@ use world::{Point, StationId};
 pub enum Order {
     /// While waiting: make the plan that the mission will begin with, once more if there is one. Nothing moves.
     Plan,
-    /// Begin the mission.
+    /// Begin the mission with whatever plan is made: nobody looks at one before. Refused where a start names its plan
+    /// ([`crate::MissionConfig::start_names_plan`]).
     Start,
+    /// Begin the mission with the plan that the operator saw.
+    StartPlan(PlanId),
     /// While waiting: note what was checked before the start, by the console and by hand.
     NoteChecks(Vec<Check>),
     /// While held: note how the mission would go on with some planners, as it was forecast.
@@ -61,7 +65,68 @@ pub enum Order {
         station: StationId,
         /// Whether they are.
         used: bool,
+        /// Who ordered it, if the console knows.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        by: Option<String>,
     },
+    /// Note what the operator did at the console; neither robot nor planner is concerned.
+    Note(Note),
+}
+
+/// Something that the operator did at the console.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Note {
+    /// What.
+    pub what: Noted,
+    /// Who did it, if the console knows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+}
+
+/// What the operator did at the console. An alarm has a name that is the same in every run, and the words that the operator
+/// saw.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Noted {
+    /// The operator has seen an alarm.
+    Acknowledged {
+        /// Its name.
+        alarm: String,
+        /// Its words.
+        text: String,
+    },
+    /// The operator has put an alarm aside.
+    Shelved {
+        /// Its name.
+        alarm: String,
+        /// Its words.
+        text: String,
+        /// For how long, seconds of mission time.
+        for_s: f64,
+        /// Why, in the words of the operator.
+        reason: String,
+    },
+    /// The operator has taken back an alarm that was put aside.
+    Unshelved {
+        /// Its name.
+        alarm: String,
+        /// Its words.
+        text: String,
+    },
+    /// The parameters of a preset were taken: the order that chooses them follows.
+    PresetTaken {
+        /// The name of the preset.
+        preset: String,
+        /// Whose parameters.
+        planner: String,
+    },
+}
+
+impl Order {
+    /// Whether it begins the mission.
+    pub fn is_start(&self) -> bool {
+        matches!(self, Self::Start | Self::StartPlan(_))
+    }
 }
 
 /// A fault of a simulated station, injected on purpose.

@@ -251,3 +251,12 @@ pub struct Fault {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plugin_sha256: Option<String>,
 }
+
+impl Fault {
+    /// Whether it is the planner's answer that no way leads from the start to the goal, and so no failure of the planner.
+    pub fn is_no_way(&self) -> bool {
+        use planner_api::Code::{GoalOccupied, GoalOutside, NoPath, StartOccupied, StartOutside};
+        let says = |code| matches!(code, NoPath | GoalOccupied | GoalOutside | StartOccupied | StartOutside);
+        matches!(self.cause, Cause::Planner(code) if says(code))
+    }
+}

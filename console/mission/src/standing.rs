@@ -11,6 +11,7 @@ use crate::{
     event::{READY_AFTER, ShadowTally},
     order::Order,
     phase::{Hold, HoldReason, Outcome, Phase},
+    plan_id::PlanId,
     planner::PlannerInfo,
 };
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,21 @@ pub enum PositionTrust {
     Alarmed,
 }
 
+/// What a start would begin with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Readiness<'a> {
+    /// Nobody looks at a plan before the start: whatever plan is made is run.
+    Unseen,
+    /// There is no plan, and none is being made.
+    NoPlan,
+    /// The planner is being opened or changed, or makes a plan.
+    Preparing,
+    /// The planner failed, or its plan may not be run: why, as a sentence.
+    Failed(&'a str),
+    /// This plan is ready.
+    Plan(PlanId),
+}
+
 /// Everything that decides whether an order is accepted. The mission and the screen both can compute it.
 #[derive(Debug, Clone, Copy)]
 pub struct Standing<'a> {
@@ -44,6 +60,8 @@ pub struct Standing<'a> {
     pub shadow: Option<ShadowTally>,
     /// Whether a better plan is offered and not taken yet.
     pub has_offer: bool,
+    /// What a start would begin with.
+    pub readiness: Readiness<'a>,
 }
 
 /// Why an order is not accepted.
@@ -55,6 +73,22 @@ pub enum Refusal {
     NotStarted,
     /// The mission has been started before.
     AlreadyStarted,
+    /// A plan or the planner is not ready yet.
+    Planning,
+    /// There is no plan to start with.
+    NoPlan,
+    /// The planner failed, or its plan may not be run.
+    PlanFailed {
+        /// Why, as a sentence.
+        why: String,
+    },
+    /// The plan is not the one that the start names; `None` if it names none.
+    OtherPlan {
+        /// The one that was seen.
+        seen: Option<PlanId>,
+        /// The one that is ready.
+        ready: PlanId,
+    },
     /// The mission is running.
     AlreadyMoving,
     /// A single step needs a robot that is held.
@@ -92,6 +126,18 @@ impl fmt::Display for Refusal {
             Self::Ended(outcome) => write!(f, "the mission has ended ({})", outcome.word()),
             Self::NotStarted => f.write_str("the mission has not been started"),
             Self::AlreadyStarted => f.write_str("the mission has already been started"),
+            Self::Planning => f.write_str("the plan is not ready yet; start when it is"),
+            Self::NoPlan => f.write_str("there is no plan to start with; make one first"),
+            Self::PlanFailed { why } => write!(f, "there is no plan that may be run: {why}"),
+            Self::OtherPlan { seen: None, ready } => {
+                write!(f, "a start must name the plan that was seen; ready is plan {}", ready.short())
+            }
+            Self::OtherPlan { seen: Some(seen), ready } => write!(
+                f,
+                "plan {} was seen, and plan {} is ready now; look at it and start again",
+                seen.short(),
+                ready.short()
+            ),
             Self::AlreadyMoving => f.write_str("the mission is already running"),
             Self::StepNeedsHold => f.write_str("a single step requires HOLD first"),
             Self::SwapNeedsHold => f.write_str("changing the planner requires HOLD first"),
@@ -125,16 +171,26 @@ impl Standing<'_> {
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
-            (Order::Abort | Order::Terminate | Order::UseStation { .. } | Order::DrawZone(_), _)
-            | (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Waiting)
+            (
+                Order::Abort
+                | Order::Terminate
+                | Order::UseStation { .. }
+                | Order::DrawZone(_)
+                | Order::Note(_),
+                _,
+            )
+            | (Order::Plan | Order::NoteChecks(_), Phase::Waiting)
             | (Order::Hold | Order::Inject(_) | Order::Shadow(_), Phase::Running(_) | Phase::Held(_))
             | (Order::NoteOutlooks(_), Phase::Held(_))
             | (Order::ChoosePlanner(_) | Order::SetParameter { .. }, Phase::Waiting | Phase::Held(_)) => {
                 Ok(())
             }
-            (Order::Plan | Order::Start | Order::NoteChecks(_), Phase::Running(_) | Phase::Held(_)) => {
-                Err(Refusal::AlreadyStarted)
-            }
+            (Order::Start, Phase::Waiting) => self.can_start(None),
+            (Order::StartPlan(seen), Phase::Waiting) => self.can_start(Some(*seen)),
+            (
+                Order::Plan | Order::Start | Order::StartPlan(_) | Order::NoteChecks(_),
+                Phase::Running(_) | Phase::Held(_),
+            ) => Err(Refusal::AlreadyStarted),
             (
                 Order::Hold
                 | Order::Resume
@@ -166,6 +222,18 @@ impl Standing<'_> {
                     Err(Refusal::NotLive { key: key.clone() })
                 }
             }
+        }
+    }
+
+    /// A start begins with the plan that was seen, and with no other.
+    fn can_start(&self, seen: Option<PlanId>) -> Result<(), Refusal> {
+        match self.readiness {
+            Readiness::Unseen => Ok(()),
+            Readiness::NoPlan => Err(Refusal::NoPlan),
+            Readiness::Preparing => Err(Refusal::Planning),
+            Readiness::Failed(why) => Err(Refusal::PlanFailed { why: why.to_owned() }),
+            Readiness::Plan(ready) if seen == Some(ready) => Ok(()),
+            Readiness::Plan(ready) => Err(Refusal::OtherPlan { seen, ready }),
         }
     }
 

@@ -8,6 +8,7 @@ use crate::stamp::{self, Abi};
 use crate::survey::Cache;
 use crate::user_folder::user_folder;
 use rustix::fs::OFlags;
+use rustix::process::{Resource, getrlimit};
 use sha2::{Digest, Sha256};
 use std::env;
 use std::ffi::OsStr;
@@ -93,7 +94,7 @@ fn is_plugin_name(path: &Path) -> bool {
 }
 
 /// A larger file is no plugin, bytes.
-const MOST_BYTES: u64 = 512 << 20;
+pub(crate) const MOST_BYTES: u64 = 128 << 20;
 
 /// A file that is named like a plugin, with what can be determined without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -174,6 +175,17 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
+/// Why this machine lets no process set aside a plugin, if it does not; a file that is no plugin for its size has another reason.
+pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
+    let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
+    let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;
+    Some(format!(
+        "the system lets no file grow beyond {limit} bytes, and {} has {length}: `ulimit -f {}`",
+        path.display(),
+        MOST_BYTES / 1024
+    ))
+}
+
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
@@ -218,7 +230,7 @@ mod tests {
         let sparse = File::create(place("sparse")).expect("a file");
         sparse.set_len(10 << 30).expect("a length");
         let why = read_bytes(&place("sparse")).expect_err("too large");
-        assert_eq!(why, "10737418240 bytes: no plugin is larger than 536870912");
+        assert_eq!(why, "10737418240 bytes: no plugin is larger than 134217728");
         std::os::unix::fs::symlink(place("pipe"), place("link")).expect("a link");
         assert_eq!(read_bytes(&place("link")), Err("not a plain file".into()));
     }

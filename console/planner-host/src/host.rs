@@ -1,7 +1,7 @@
 //! Answers the mission's asks: finds, starts, asks and ends planners, and never waits but in [`Host::next`].
 
 mod config;
-mod fault;
+pub(crate) mod fault;
 mod find;
 mod kept;
 mod leaving;

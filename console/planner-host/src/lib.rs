@@ -38,7 +38,7 @@ pub use host::{Host, HostConfig};
 pub use parameters::{check_parameters, parameter_problems};
 pub use progress::{OnProgress, Progress};
 pub use remains::{BadEnd, Crash, Printed};
-pub use replay::{Replayed, plugin_of, replay};
+pub use replay::{NotReplayed, Replayed, digest_of, plugin_of, replay};
 pub use stats::{CallStats, HostStats, Memory};
 pub use supervisor::{Waker, WorkerCommand};
 pub use survey::{Survey, SurveyedPlugin, Surveyor, check_plugin, survey};

@@ -10,9 +10,10 @@ use sink::{LONGEST_TEXT, plain};
 pub(crate) use sink::{Sink, Watch};
 use stage::Staged;
 
-use crate::discovery::{read_bytes, sha256_hex};
+use crate::discovery::{read_bytes, sha256_hex, too_large_for_machine};
 use crate::parameters;
 use crate::stamp::{self, Abi, CONSOLE_ABI};
+use crate::supervisor::no_worker;
 use crate::wire::answer::{Described, MOST_PLANNERS, Refusal};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use planner_api::abi;
@@ -41,21 +42,35 @@ pub(crate) struct File {
 /// A library whose constructors have run; it stays loaded until the process ends.
 pub(crate) struct Loaded(abi::Entry);
 
+/// Why there is no file to be loaded.
+pub(crate) enum NotRead {
+    /// It is no plugin that can be loaded.
+    Refused(String),
+    /// This machine does not let it be loaded.
+    Machine(String),
+}
+
 impl File {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// Why it is refused; reads on after "refused:". So below.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let bytes = read_bytes(path)?;
-        let abi = stamp::read(&bytes).map_err(|error| error.to_string())?;
-        let staged =
-            stage::stage(&bytes).map_err(|error| format!("cannot be set aside for loading: {error}"))?;
+    /// Why it is refused; reads on after "refused:".
+    pub(crate) fn read(path: &Path) -> Result<Self, NotRead> {
+        let bytes = read_bytes(path).map_err(NotRead::Refused)?;
+        let abi = stamp::read(&bytes).map_err(|error| NotRead::Refused(error.to_string()))?;
+        if let Some(why) = too_large_for_machine(path) {
+            return Err(NotRead::Machine(format!("cannot be loaded: {why}")));
+        }
+        let staged = stage::stage(&bytes)
+            .map_err(|error| NotRead::Machine(no_worker("cannot set the plugin aside", &error)))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Self { name, sha256: sha256_hex(&bytes), abi, staged })
     }
 
     /// Loads exactly the bytes that were checked.
+    ///
+    /// # Errors
+    /// Why it is refused; reads on after "refused:". So below.
     pub(crate) fn load(self) -> Result<Loaded, String> {
         let staged = self.staged.path();
         // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.

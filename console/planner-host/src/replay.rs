@@ -1,128 +1,159 @@
-//! Asks a plugin once more what it was asked before it failed, alone in a worker.
+//! Asks a plugin once more what it was asked before it failed, alone in a worker, and judges its answers as the console does.
 
-use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
+mod judge;
+
+use crate::discovery::sha256_hex;
+use crate::remains::is_crash;
+use crate::supervisor::{Failure, Worker, WorkerCommand};
 use crate::survey::{load_of, refusal_text};
-use crate::wire::answer::said_of;
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::kind;
+use crate::worker::check_descriptors;
+use judge::Judge;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How a replay ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Replayed {
-    /// Every request was answered.
-    ToTheEnd,
+    /// Every request was answered, and the console takes each answer.
+    ToTheEnd {
+        /// How many there were.
+        requests: usize,
+    },
     /// It failed again; how, as a sentence.
     Failed(String),
+}
+
+/// Why nothing was replayed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NotReplayed {
+    /// The requests are not whole; reads on after the name of their file.
+    Damaged(String),
+    /// This machine lets no planner run.
+    Machine(String),
 }
 
 /// Puts recorded requests to a worker, one after the other, and says what comes of each. With `patient` no deadline ends
 /// it, for a debugger.
 ///
 /// # Errors
-/// The requests cannot be read, or no worker can be started.
+/// The requests are not whole, or no worker can be started.
 pub fn replay(
     frames: &[u8],
     worker: &WorkerCommand,
     patient: bool,
     say: &mut dyn FnMut(&str),
-) -> Result<Replayed, String> {
-    let mut worker = Worker::spawn(worker).map_err(|failure| refusal_text(&failure))?;
-    let (mut stream, mut incoming) = (frames, Incoming::default());
-    for n in 1.. {
-        match incoming.receive(&mut stream) {
-            Received::Frame => {}
-            Received::Closed => break,
-            Received::Broken => return Err(format!("request {n} is damaged")),
+) -> Result<Replayed, NotReplayed> {
+    check_descriptors().map_err(NotReplayed::Machine)?;
+    let requests = whole(frames).map_err(NotReplayed::Damaged)?;
+    // A debugger has memory of its own.
+    let limit = memory_limit_of(frames).filter(|_| !patient).unwrap_or(u64::MAX);
+    let mut worker =
+        Worker::spawn(worker, limit).map_err(|failure| NotReplayed::Machine(refusal_text(&failure)))?;
+    let (mut stream, mut incoming, mut judge) = (frames, Incoming::default(), Judge::default());
+    for n in 1..=requests {
+        if incoming.receive(&mut stream) != Received::Frame {
+            break;
         }
+        judge.hear(&incoming).map_err(|_| NotReplayed::Damaged(format!("is damaged at request {n}")))?;
         let budget = incoming.soft_deadline().filter(|_| !patient).unwrap_or(Duration::from_hours(24));
         let budget = budget.mul_f64(10.0 / 9.0);
         let asked = worker.ask(incoming.kind(), budget, |w| {
             w.written(incoming.body().0);
         });
-        let answer = asked.and_then(|()| answered(&mut worker, incoming.kind()));
-        let what = name(&incoming);
-        match answer {
+        let what = judge.name();
+        match asked.and_then(|()| judge.answer(&mut worker)) {
             Ok(given) => say(&format!("{n:>4}  {what:<11} {given}")),
-            Err(Failure::Planner(refusal)) if worker.is_idle() => {
-                say(&format!("{n:>4}  {what:<11} gave up: {}", refusal.message));
-            }
-            Err(failure) => {
-                let how = match failure {
-                    // Only gdb knows how.
-                    Failure::Died { .. } if patient => "its process ended in the debugger".to_owned(),
-                    failure => sentence(&failure, budget),
-                };
+            // Only gdb knows how.
+            Err(_) if patient && !worker.is_idle() => {
+                let how = "its process ended in the debugger";
                 say(&format!("{n:>4}  {what:<11} {how}"));
                 return Ok(Replayed::Failed(format!("request {n} ({what}): {how}")));
             }
+            Err(Failure::Console(why)) => return Err(NotReplayed::Machine(format!("the plugin {why}"))),
+            Err(failure) => {
+                let fault = judge.fault(failure, budget);
+                say(&format!("{n:>4}  {what:<11} {}", fault.message));
+                if is_crash(fault.cause) || !worker.is_idle() || incoming.kind() == kind::LOAD {
+                    return Ok(Replayed::Failed(format!("request {n} ({what}): {}", fault.message)));
+                }
+            }
         }
     }
-    Ok(Replayed::ToTheEnd)
+    Ok(Replayed::ToTheEnd { requests })
+}
+
+/// SHA-256 of recorded requests, hexadecimal, by which a copy that was cut or changed is known.
+pub fn digest_of(frames: &[u8]) -> String {
+    sha256_hex(frames)
+}
+
+/// Makes sure that recorded requests are whole; how many there are.
+///
+/// # Errors
+/// What is wrong with them.
+fn whole(frames: &[u8]) -> Result<usize, String> {
+    if frames.is_empty() {
+        return Err("is empty: no request was kept".to_owned());
+    }
+    let (mut stream, mut incoming) = (frames, Incoming::default());
+    for n in 1.. {
+        match incoming.receive(&mut stream) {
+            Received::Frame if n == 1 && incoming.kind() != kind::LOAD => {
+                return Err("is damaged: its first request does not load a plugin".to_owned());
+            }
+            Received::Frame => {}
+            Received::Closed if incoming.has_more() => return Err(format!("is cut off within request {n}")),
+            Received::Closed => return Ok(n - 1),
+            Received::Broken => return Err(format!("is damaged at request {n}")),
+        }
+    }
+    unreachable!("the bytes come to an end")
 }
 
 /// The plugin's file that is named in recorded requests.
 pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
+    loaded(frames, |load| load.path.to_owned())
+}
+
+fn memory_limit_of(frames: &[u8]) -> Option<u64> {
+    loaded(frames, |load| load.memory_limit_bytes)
+}
+
+fn loaded<T>(frames: &[u8], take: impl FnOnce(crate::survey::Load<'_>) -> T) -> Option<T> {
     let (mut stream, mut incoming) = (frames, Incoming::default());
     while incoming.receive(&mut stream) == Received::Frame {
         if incoming.kind() == kind::LOAD {
-            return load_of(&mut incoming.body()).ok().flatten().map(|load| load.path.to_owned());
+            return load_of(&mut incoming.body()).ok().flatten().map(take);
         }
     }
     None
 }
 
-/// What was asked, a step with the number of its tick.
-fn name(request: &Incoming) -> String {
-    let what = match request.kind() {
-        kind::LOAD => "load",
-        kind::CONFIGURE => "configure",
-        kind::RECONFIGURE => "reconfigure",
-        kind::RESTORE => "restore",
-        kind::PLAN => "plan",
-        kind::STEP => {
-            let mut body = request.body();
-            let sensed = body.flag().and_then(|_| body.sensed());
-            return sensed.map_or_else(|_| "step".to_owned(), |sensed| format!("step {}", sensed.tick));
-        }
-        _ => "?",
-    };
-    what.to_owned()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::body::Writer;
 
-/// Waits for the answer, in a few words.
-fn answered(worker: &mut Worker, kind: u8) -> Result<String, Failure> {
-    let outcome = loop {
-        let ready = wait_for_one(worker, None);
-        if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
-            break outcome;
-        }
-    };
-    outcome?;
-    match kind {
-        kind::LOAD => worker.take_planners().map(|(sealed, _)| format!("sha256 {}", sealed.sha256)),
-        kind::PLAN => worker.take_answer(|body| {
-            let plan = body.plan()?;
-            said_of(body)?;
-            Ok(format!("{} points, complete: {}", plan.path.len(), plan.complete))
-        }),
-        kind::STEP => worker.take_answer(|body| {
-            let command = body.command()?;
-            said_of(body)?;
-            Ok(format!("{:?} {:?}", command.status, command.drive))
-        }),
-        kind::RESTORE => worker.take_answer(|_| Ok("done".to_owned())),
-        _ => worker.take_answer(|body| said_of(body).map(|_| "done".to_owned())),
+    fn frame(kind: u8) -> Vec<u8> {
+        Writer::default().begin(kind, 1, 250).text("x").finish().expect("short").to_vec()
     }
-}
 
-fn sentence(failure: &Failure, budget: Duration) -> String {
-    match failure {
-        Failure::Hung | Failure::Late | Failure::Starved => {
-            format!("did not answer within {:.1} s; its process was stopped", budget.as_secs_f64())
+    #[test]
+    fn what_is_empty_cut_or_begins_in_the_middle_is_not_whole() {
+        let (load, step) = (frame(kind::LOAD), frame(kind::STEP));
+        let both = [load.clone(), step.clone()].concat();
+        assert_eq!(whole(&both), Ok(2));
+        assert!(whole(&[]).is_err_and(|why| why.starts_with("is empty")));
+        for length in 1..both.len() {
+            let cut = whole(&both[..length]);
+            let n = if length < load.len() { 1 } else { 2 };
+            let expected =
+                if length == load.len() { Ok(1) } else { Err(format!("is cut off within request {n}")) };
+            assert_eq!(cut, expected, "{length}");
         }
-        Failure::Planner(refusal) => refusal.message.clone(),
-        other => refusal_text(other).replace(" while it was loaded", ""),
+        assert!(whole(&step).is_err_and(|why| why.contains("does not load a plugin")));
+        assert_eq!(whole(&[load, vec![0; 4]].concat()), Err("is damaged at request 2".into()));
     }
 }

@@ -17,14 +17,20 @@ mod files;
 #[cfg(target_os = "linux")]
 mod listener;
 #[cfg(target_os = "linux")]
+mod memory;
+#[cfg(target_os = "linux")]
 mod verdict;
 
 #[cfg(not(target_os = "linux"))]
-pub(crate) use elsewhere::{Listener, Verdict, close_all_but, close_files, ends_loading, seal, verdict};
+pub(crate) use elsewhere::{
+    Listener, MAY_HIDE, MAY_RESERVE, Uncounted, Verdict, close_all_but, close_files, ends_loading, seal,
+    verdict,
+};
 #[cfg(target_os = "linux")]
 pub(crate) use {
     files::nothing as close_files,
     listener::{Listener, close_all_but},
+    memory::{MAY_HIDE, MAY_RESERVE, Uncounted},
     verdict::{Verdict, ends_loading, verdict},
 };
 

@@ -87,12 +87,19 @@ pub(crate) enum Failure {
     Late,
     /// It hardly got the processor, for very long; the process was killed.
     Starved,
+    /// It had more memory than this, bytes; the process was killed.
+    Overweight(u64),
     /// An answer that is none; the process was killed.
     Protocol,
     /// There is no process any more.
     Gone,
     /// A worker could not be started, or the request is too long for it.
     Console(String),
+}
+
+/// What a process did that had more memory than this, bytes.
+pub(crate) fn overweight(limit: u64) -> String {
+    format!("took more than the {} MB of memory that it may have", limit >> 20)
 }
 
 /// Why a worker does not run: what cannot be done with its process, and what would let it.
@@ -115,6 +122,7 @@ impl Failure {
                 | Self::Forbidden { .. }
                 | Self::Hung
                 | Self::Late
+                | Self::Overweight(_)
                 | Self::Protocol
                 | Self::Gone
         )
@@ -125,6 +133,7 @@ impl Failure {
         match self {
             Self::Died { how, .. } => how.clone(),
             Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
+            Self::Overweight(limit) => overweight(*limit),
             Self::Protocol => "sent something that is no answer".to_owned(),
             _ => "did not end in time".to_owned(),
         }

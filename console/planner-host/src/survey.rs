@@ -4,11 +4,12 @@ mod cache;
 
 pub(crate) use cache::Cache;
 
-use crate::discovery::{PluginDirs, PluginFile};
-use crate::supervisor::{Failure, Worker, WorkerCommand, wait_for_one};
+use crate::discovery::{PluginDirs, PluginFile, too_large_for_machine};
+use crate::supervisor::{Failure, Worker, WorkerCommand, overweight, wait_for_one};
 use crate::wire::answer::{Described, Sealed};
 use crate::wire::body::{Body, Read, Writer};
 use crate::wire::{self, kind};
+use crate::worker::check_descriptors;
 use mission::{PlannerInfo, RefusedPlugin};
 use planner_api::Caps;
 use std::cell::RefCell;
@@ -91,10 +92,23 @@ impl<'a> Surveyor<'a> {
 
     /// Why this machine lets no planner run, if a worker could not be run for a plugin that was looked at.
     pub fn no_worker(&self) -> Option<String> {
-        self.probing.refused.borrow().values().find_map(|failure| match failure {
-            Failure::Console(why) => Some(why.clone()),
-            _ => None,
-        })
+        self.probing.no_worker()
+    }
+
+    /// The planners of these ids that more than one plugin has: each id, the plugin that is taken, and the first one that is not.
+    pub fn shadowed(&self, ids: &[&str]) -> Vec<(String, PathBuf, PathBuf)> {
+        let holders = |id: &&str| {
+            let has_it = |plugin: &&PluginFile| {
+                plugin.may_have(id)
+                    && self
+                        .probing
+                        .planners_of(plugin)
+                        .is_ok_and(|infos| infos.iter().any(|info| info.id == **id))
+            };
+            let mut holders = self.plugins.iter().filter(has_it).map(|plugin| plugin.path.clone());
+            Some(((*id).to_owned(), holders.next()?, holders.next()?))
+        };
+        ids.iter().filter_map(holders).collect()
     }
 
     /// Every plugin.
@@ -106,9 +120,24 @@ impl<'a> Surveyor<'a> {
 }
 
 /// Looks at one file, wherever it lies and whatever it is called; it is loaded also when it is known.
-pub fn check_plugin(file: &Path, worker: &WorkerCommand, requires_sandbox: bool) -> SurveyedPlugin {
+///
+/// # Errors
+/// Why this machine lets no planner run: no fault of the plugin.
+pub fn check_plugin(
+    file: &Path,
+    worker: &WorkerCommand,
+    requires_sandbox: bool,
+) -> Result<SurveyedPlugin, String> {
+    check_descriptors()?;
+    if let Some(why) = too_large_for_machine(file) {
+        return Err(why);
+    }
     let probing = Probing { worker, requires_sandbox, cache: Cache::new(None), refused: RefCell::default() };
-    look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new())
+    let surveyed = look_at(&PluginFile::read(file.to_path_buf()), &probing, &mut Vec::new());
+    match probing.no_worker() {
+        Some(why) => Err(format!("a planner plugin {why}")),
+        None => Ok(surveyed),
+    }
 }
 
 /// How plugins are looked at.
@@ -124,6 +153,13 @@ impl<'a> Probing<'a> {
     fn of(dirs: &PluginDirs, worker: &'a WorkerCommand) -> Self {
         let cache = Cache::new(dirs.cache.as_deref());
         Self { worker, requires_sandbox: dirs.requires_sandbox, cache, refused: RefCell::default() }
+    }
+
+    fn no_worker(&self) -> Option<String> {
+        self.refused.borrow().values().find_map(|failure| match failure {
+            Failure::Console(why) => Some(why.clone()),
+            _ => None,
+        })
     }
 
     fn planners_of(&self, plugin: &PluginFile) -> Result<Vec<PlannerInfo>, Failure> {
@@ -167,7 +203,7 @@ fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) 
 }
 
 fn probe(plugin: &PluginFile, probing: &Probing<'_>) -> Result<Vec<PlannerInfo>, Failure> {
-    let mut worker = Worker::spawn(probing.worker)?;
+    let mut worker = Worker::spawn(probing.worker, MEMORY_LIMIT)?;
     worker.ask(kind::LOAD, LOAD_WITHIN, |w| {
         write_load(w, &plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
     })?;
@@ -194,6 +230,8 @@ pub(crate) fn write_load(
     memory_limit_bytes: u64,
     requires_sandbox: bool,
 ) {
+    // What is recorded of it is replayed from anywhere.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     w.u32(wire::VERSION).u64(memory_limit_bytes).flag(requires_sandbox);
     w.bytes(path.as_os_str().as_encoded_bytes()).text(id);
 }
@@ -246,6 +284,9 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
         }
         Failure::Forbidden { call, .. } => {
             format!("tried {call} while it was loaded, which no planner may do; its process was killed")
+        }
+        Failure::Overweight(limit) => {
+            format!("{} while it was loaded; its process was killed", overweight(*limit))
         }
         Failure::Hung | Failure::Late | Failure::Starved => {
             "did not load in time; its process was stopped".to_owned()

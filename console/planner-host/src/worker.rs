@@ -7,6 +7,7 @@ mod session;
 
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::{CHANNEL_LOST, answer::BAD_OUTPUT, answer::Refusal, body::Writer, kind};
+pub(crate) use confine::check_descriptors;
 pub use confine::check_limits;
 use deadline::Deadline;
 use rustix::event::{PollFd, PollFlags, poll};

@@ -60,8 +60,6 @@ pub struct Recorder {
     ticks_waiting: u32,
     drawings_waiting: usize,
     sent_at: Instant,
-    /// Rows were sent before the end: what was sent at once has nothing to merge.
-    has_sent: bool,
 }
 
 impl Recorder {
@@ -98,7 +96,6 @@ impl Recorder {
             ticks_waiting: 0,
             drawings_waiting: 0,
             sent_at: now,
-            has_sent: false,
         })
     }
 
@@ -180,12 +177,11 @@ impl Recorder {
         let Some(watch) = &self.watch else { return Ok(None) };
         let sha256 = self.health.sha256();
         watch.check_content(self.health.bytes(), &sha256)?;
-        if !self.has_sent {
-            return Ok(Some(sha256));
-        }
+        // Also where everything was sent at once: only what is merged has the table of contents of the format.
         if let Err(error) = merge::merge(watch.path(), until) {
             // The recording is whole, only slower to open.
             tracing::warn!("{error}");
+            return Ok(Some(sha256));
         }
         Ok(file::sha256(watch.path()).ok())
     }
@@ -194,7 +190,6 @@ impl Recorder {
         let Some(stream) = &self.stream else { return Ok(()) };
         self.sent_at = now;
         (self.ticks_waiting, self.drawings_waiting) = (0, 0);
-        self.has_sent = true;
         if let Err(error) = self.fold.send(stream) {
             return self.stop(error);
         }

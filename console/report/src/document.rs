@@ -29,7 +29,7 @@ use crate::{
     account::{Account, account},
     joined::{Joined, PastRun, joined},
     record::Record,
-    summary::Coverage,
+    summary::{Coverage, REPORT_VERSION},
 };
 use indications::{Flown, Ground};
 use layers::Layers;
@@ -122,6 +122,8 @@ pub struct Signature {
 /// A report.
 #[derive(Debug, Serialize)]
 pub struct Document {
+    /// Version of the form, `REPORT_VERSION`.
+    pub report_version: u32,
     /// Number of the document: when the first run began, and its seed.
     pub number: String,
     /// Letter of the revision.
@@ -227,6 +229,7 @@ impl Document {
         let shapes = Shapes::of(&layers, &floor.missed);
         let pictures = Pictures::draw(&layers, &floor, &indications, past);
         let mut document = Self {
+            report_version: REPORT_VERSION,
             number: number(past),
             revision: letter(context.revisions.len()),
             signature: context.signature,

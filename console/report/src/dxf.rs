@@ -90,10 +90,24 @@ impl Drawing {
     }
 
     pub(crate) fn polyline(&mut self, layer: &str, points: &[Point], is_closed: bool) {
+        self.line(layer, points, is_closed, None);
+    }
+
+    /// A line of some width, metres.
+    pub(crate) fn wide(&mut self, layer: &str, points: &[Point], width_m: f64) {
+        self.line(layer, points, false, Some(width_m));
+    }
+
+    fn line(&mut self, layer: &str, points: &[Point], is_closed: bool, width_m: Option<f64>) {
         self.entity("POLYLINE", layer);
         self.pair(66, 1);
         self.place(Point::origin());
         self.pair(70, u8::from(is_closed));
+        for code in [40, 41] {
+            if let Some(width_m) = width_m {
+                self.pair(code, format_args!("{width_m:.4}"));
+            }
+        }
         for point in points {
             self.entity("VERTEX", layer);
             self.place(*point);

@@ -1,6 +1,6 @@
 //! What a plan promises before anything moves: time, coverage, clearance, tether, accuracy, and where each is worst.
 
-mod time;
+pub(crate) mod time;
 
 use mission::{MissionConfig, TaskConfig};
 use positioning::AccuracyMap;

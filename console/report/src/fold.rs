@@ -5,7 +5,7 @@ use crate::{
     accuracy::{Accuracy, Claimed, Estimate},
     drawn::DrawnZone,
     scanned::Scanned,
-    summary::{Summary, Tether},
+    summary::{REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
     tracking::Tracker,
     turning::Turning,
@@ -122,11 +122,16 @@ impl Fold {
             EventKind::PlannerFailed { fault, .. } => {
                 // What the console refused to load or to let drive was not at work, so it has not failed.
                 let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
-                self.known.planner_faults += u64::from(!refused);
-                self.note_fault(event.t_s, "", &fault.message);
+                // Nor has a planner that says that no way exists.
+                if !fault.is_no_way() {
+                    self.known.planner_faults += u64::from(!refused);
+                    self.note_fault(event.t_s, "", &fault.message);
+                }
             }
             EventKind::Shadowed { of } => {
-                if let EventKind::PlannerFailed { fault, .. } = &**of {
+                if let EventKind::PlannerFailed { fault, .. } = &**of
+                    && !fault.is_no_way()
+                {
                     self.note_fault(event.t_s, "shadow: ", &fault.message);
                 }
             }
@@ -183,6 +188,7 @@ impl Fold {
     /// The figures so far. Those that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
         Summary {
+            report_version: Some(REPORT_VERSION),
             floor: self.account(),
             coverage: self.scanned.as_ref().map(|scanned| scanned.coverage(self.is_to_scan())),
             turns: self.known.path_length_m.map(|_| self.turning.turns()),

@@ -47,5 +47,6 @@ pub use overlap::Overlap;
 pub use record::Record;
 pub use rescan::{Rescan, rescan};
 pub use summary::{
-    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
+    Accuracy, Coverage, CoverageByTruth, Logs, PlannerCalls, Positioning, REPORT_VERSION, Stops, Summary,
+    Tether, Tracking,
 };

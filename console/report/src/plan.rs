@@ -2,13 +2,14 @@
 
 use crate::{
     drawing::plan::{Drawn, svg},
+    estimate::time,
     leg::{Leg, legs},
 };
 use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start};
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
-    Cell, CoverageGrid, FloorMaker, Point, Shape, SweptArea, Tool, World,
+    Cell, CoverageGrid, FloorMaker, ObstacleMap, Point, Shape, SweptArea, Tool, World,
     coverage::percent_text,
     polyline,
     tether::{Cable, Certificate},
@@ -24,6 +25,8 @@ pub struct Planned {
     /// Lines that the tethered robot never crosses.
     pub(crate) cuts: Vec<Vec<Point>>,
     pub(crate) length_m: f64,
+    /// Time to drive it at full speed, with stops to turn at corners, seconds.
+    mission_time_s: f64,
     plan_time_ms: f64,
     pub(crate) complete: bool,
     /// Why it is not complete.
@@ -68,11 +71,13 @@ impl Planned {
     /// A plan for a mission on the drawing.
     pub fn new(mission: &MissionConfig, drawing: &World, made: Made) -> Self {
         let Made { plan, plan_time_ms, reason, warnings } = made;
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         Self {
             planner: mission.planner.id.clone(),
             parameters: mission.planner.parameters.clone(),
             legs: legs(&plan),
             length_m: polyline::length_m(&plan.path),
+            mission_time_s: time::time_s(mission, &map, &plan.path),
             plan_time_ms,
             complete: plan.complete,
             reason,
@@ -82,6 +87,11 @@ impl Planned {
             cuts: plan.cuts,
             path: plan.path,
         }
+    }
+
+    /// Length of its path, metres, and the time to drive it at full speed, with stops to turn at corners, seconds.
+    pub fn effort(&self) -> (f64, f64) {
+        (self.length_m, self.mission_time_s)
     }
 
     /// Whether the plan achieves the whole task, and its mission would not refuse it for what it does to the tether.

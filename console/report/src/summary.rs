@@ -4,9 +4,15 @@ use crate::{account::Account, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 
+/// Version of the form of reports as JSON, of one run and of several; raised when an old reader could not read a new one.
+pub const REPORT_VERSION: u32 = 1;
+
 /// Everything that is reported about a run when it is over. What is not known is `None`, in JSON `null`, never zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
+    /// Version of the form, `REPORT_VERSION`; absent in reports of before there were any.
+    #[serde(default)]
+    pub report_version: Option<u32>,
     /// Name of the scenario.
     pub scenario: Option<String>,
     /// Id of the planner that drove first.

@@ -218,6 +218,8 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
         .map_err(|errors| bad_input(errors.render()))?;
     // Runs of before this key made no better plans.
     scenario.mission.better_plan = opened.mission.better_plan;
+    // In runs of before this key a start did not name its plan.
+    scenario.mission.start_names_plan = opened.mission.start_names_plan;
     let flight = Flight::prepare(&scenario, opened.mission.attended);
     Ok((scenario, flight))
 }

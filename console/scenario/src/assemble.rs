@@ -118,6 +118,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         fallback,
         // Who flies it knows; a scenario does not.
         attended: false,
+        start_names_plan: false,
         better_plan: rest.better_plan,
     };
     let tether_anchor = mission.tether.as_ref().map(|tether| tether.anchor);

@@ -35,6 +35,7 @@ pub use renamed::with_todays_keys;
 pub use rescan::rescan;
 pub use settings::Settings;
 
+pub use import::Foreign;
 use mission::MissionConfig;
 use report::{Expect, Inspection};
 use sim::SimConfig;
@@ -74,12 +75,13 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads a scenario file and puts settings from the command line into it.
+    /// Reads a scenario file, `-` being the standard input, and puts settings from the command line into it.
     ///
     /// # Errors
     /// Everything that is wrong with it or with the settings.
     pub fn read_with(path: &Path, settings: &Settings) -> Result<Self, ScenarioErrors> {
-        let shown_name = path.display().to_string();
+        let shown_name =
+            if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() };
         let text = read_text(path).map_err(|what| ScenarioErrors::of_file(&shown_name, what))?;
         let (text, shown_name) = with_settings(&text, &shown_name, settings)?;
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -145,12 +147,24 @@ fn with_settings(
 fn read_text(path: &Path) -> Result<String, Complaint> {
     let unreadable = |error: std::io::Error| Complaint::Unreadable(error.to_string());
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    file.take(LIMIT_KB as u64 * 1000 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    let limit = LIMIT_KB as u64 * 1000 + 1;
+    if is_stdin(path) {
+        std::io::stdin().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+    } else {
+        File::open(path).map_err(unreadable)?.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
     if bytes.len() > LIMIT_KB * 1000 {
         return Err(Complaint::TooLarge { limit_kb: LIMIT_KB });
     }
-    String::from_utf8(bytes).map_err(|error| Complaint::NotText { at_byte: error.utf8_error().valid_up_to() })
+    match Foreign::of(&bytes) {
+        Some(foreign) => Err(Complaint::NotText(foreign)),
+        None => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+    }
+}
+
+/// Whether a path stands for the standard input, as `-` does.
+pub fn is_stdin(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 fn syntax_error(text: &str, shown_name: &str, error: &toml::de::Error) -> ScenarioErrors {

@@ -42,7 +42,10 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     let wrong = |what: String| problem("tank.map", named.span(), what);
     let map = OccupancyMap::read(&folder.join(file)).map_err(|error| wrong(error.to_string()))?;
     let floor = MapFloor::new(&map, start(table.get_ref()), tolerance_m);
-    let floor = floor.ok_or_else(|| wrong("shows no free floor".into()))?;
+    let floor = floor.ok_or_else(|| {
+        let why = map.unseen.map(|unseen| format!("; {unseen}")).unwrap_or_default();
+        wrong(format!("shows no free floor{why}"))
+    })?;
     let goal = table.get_ref().get("mission").and_then(|mission| mission.get_ref().get("goal_m"));
     if let Some(goal) = goal.filter(|goal| point(goal.get_ref()).is_some_and(|at| floor.is_cut_off(&map, at)))
     {

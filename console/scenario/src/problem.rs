@@ -1,5 +1,6 @@
 //! What can be wrong with a scenario.
 
+use import::Foreign;
 use std::{fmt, ops::Range};
 use thiserror::Error;
 
@@ -38,12 +39,9 @@ pub enum Complaint {
         /// Largest size accepted, kilobytes.
         limit_kb: usize,
     },
-    /// The file is not text.
-    #[error("no text: byte {at_byte} is not UTF-8")]
-    NotText {
-        /// Where the text ends.
-        at_byte: usize,
-    },
+    /// The file is not text in UTF-8.
+    #[error("{0}")]
+    NotText(Foreign),
     /// The text is not TOML.
     #[error("not TOML: {0}")]
     NotToml(String),
@@ -239,9 +237,8 @@ impl Complaint {
             Self::UnknownKey { remedy } | Self::Missing { remedy } | Self::WrongType { remedy, .. } => {
                 remedy.clone()
             }
-            Self::TooLarge { .. } | Self::NotText { .. } => {
-                "a scenario is a short TOML file; is this the right file?".into()
-            }
+            Self::NotText(foreign) => foreign.remedy(),
+            Self::TooLarge { .. } => "a scenario is a short TOML file; is this the right file?".into(),
             Self::NotToml(_) => "the format is TOML: `key = value` lines under `[section]` heads".into(),
             Self::UnknownWord { nearest: Some(word), .. } => format!("did you mean \"{word}\"?"),
             Self::OutOfPlace { .. } => "leave this key out".into(),

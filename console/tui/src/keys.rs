@@ -1,7 +1,7 @@
 //! Keys as the console names them, free of any terminal library.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{fmt, time::Duration};
 
 /// One key, with its modifier where it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -53,6 +53,38 @@ pub struct KeyPress {
     pub key: Key,
     /// Whether the terminal says that it repeats; only movement listens to repeats.
     pub repeat: bool,
+    /// How long after the same key, if no other went down between: many terminals do not say that a key repeats. `None` for a
+    /// press that follows another key, and for one that no keyboard made.
+    #[serde(default)]
+    pub since_same: Option<Duration>,
+}
+
+/// What a press is, as far as it can be told by the time that has passed since the same key went down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freshness {
+    /// The key is held down.
+    Held,
+    /// The key is held down and repeats for the first time, or it was pressed again: what follows tells.
+    Unclear,
+    /// The key was pressed.
+    Fresh,
+}
+
+impl KeyPress {
+    /// A key that is held down repeats at least this often.
+    pub const REPEATS_WITHIN: Duration = Duration::from_millis(300);
+    /// A key that is held down repeats for the first time within this.
+    const BEGINS_WITHIN: Duration = Duration::from_secs(2);
+
+    /// Whether the key is held down.
+    pub fn freshness(&self) -> Freshness {
+        match self.since_same {
+            _ if self.repeat => Freshness::Held,
+            Some(passed) if passed < Self::REPEATS_WITHIN => Freshness::Held,
+            Some(passed) if passed < Self::BEGINS_WITHIN => Freshness::Unclear,
+            Some(_) | None => Freshness::Fresh,
+        }
+    }
 }
 
 /// Keys with a name of their own, as `keys.toml` writes them.
@@ -105,7 +137,7 @@ impl Key {
 
 impl From<Key> for KeyPress {
     fn from(key: Key) -> Self {
-        Self { key, repeat: false }
+        Self { key, repeat: false, since_same: None }
     }
 }
 

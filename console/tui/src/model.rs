@@ -31,7 +31,7 @@ pub mod what_if;
 
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
-pub use console::{Console, Notice, Speed, Times};
+pub use console::{Console, Notice, Settling, Speed, Times};
 pub use coverage::{FloorClass, Raster};
 pub use event_list::EventList;
 pub use health::{Health, Measured, Recording, Watches};
@@ -172,6 +172,14 @@ impl Model {
         self.console.notice.as_ref().filter(|notice| notice.until_mono_s > self.console.now.mono_s)
     }
 
+    /// Whether it is known by now that the key that was waited for is not held down.
+    pub fn has_settled(&self) -> bool {
+        self.console
+            .settling
+            .as_ref()
+            .is_some_and(|settling| settling.until_mono_s <= self.console.now.mono_s)
+    }
+
     /// When the screen next changes by itself, on the console's own clock, seconds; `None` if it does not.
     pub fn wakes_at_mono_s(&self) -> Option<f64> {
         let notice = self.notice().map(|notice| notice.until_mono_s);
@@ -183,7 +191,8 @@ impl Model {
         let busy = self.live.busy.as_ref().map(|_| self.console.now.mono_s + 1.0);
         // A figure beyond its limit, or back within it, is looked at again.
         let health = self.console.watches.is_pending().then_some(self.console.now.mono_s + 1.0);
-        [notice, silence, busy, health].into_iter().flatten().reduce(f64::min)
+        let settling = self.console.settling.as_ref().map(|settling| settling.until_mono_s);
+        [notice, silence, busy, health, settling].into_iter().flatten().reduce(f64::min)
     }
 
     /// Shows the operator a message in the line above the keys.

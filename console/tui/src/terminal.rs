@@ -6,7 +6,7 @@ mod output;
 mod pointer;
 mod restore;
 
-pub use key::key_from_crossterm;
+pub use key::Keyboard;
 pub use pointer::Pointer;
 pub use restore::{RESTORE, install_panic_hook, restore, restore_from_signal};
 

@@ -7,6 +7,7 @@ mod events;
 mod go;
 mod health;
 mod hear;
+mod held_keys;
 mod look_only;
 mod map;
 mod message;
@@ -28,6 +29,7 @@ mod what_if;
 mod zones;
 
 pub use act::act;
+pub use command::check_line;
 pub use message::{Effect, Job, Mouse, Msg, ReplayMsg, Rows, RunMsg, Signal, Target, Transport};
 pub use offer::offered;
 pub use palette::{Choice, choices};
@@ -39,17 +41,22 @@ use crate::keys::{Key, KeyPress};
 use crate::model::console::Bell;
 use crate::model::plugins::differences;
 use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
-use mission::{PlannerInfo, RefusedPlugin, Severity};
+use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
+
+/// How long it is said that a key is not assigned, seconds.
+const UNASSIGNED_S: f64 = 2.0;
 
 /// Takes in one message and answers what has to be done outside.
 ///
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     let alarms_before = ringing(model);
+    let said_before = model.console.notice.clone().map(|notice| (notice, Pressing::of(model)));
     let mut effects = Vec::new();
     match msg {
         Msg::Key(press) => effects = press_key(model, press),
+        Msg::Settled => effects = held_keys::settled(model),
         Msg::Signal(signal) => effects = obey_signal(model, signal),
         Msg::ThreadPanicked { thread, message } => {
             overlay::withdraw_motion(model);
@@ -71,10 +78,39 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
         Msg::Notice { severity, text } => news(model, &Cause::Console, severity, text),
     }
     events::refresh(model);
+    if let Some((notice, before)) = said_before
+        && model.console.notice == Some(notice)
+        && Pressing::of(model).is_more_than(&before)
+    {
+        model.console.notice = None;
+    }
     if ringing(model) > alarms_before {
         effects.push(Effect::Bell);
     }
     effects
+}
+
+/// What is more important than anything that was said before it.
+struct Pressing {
+    hold_asked: bool,
+    hold: Option<Hold>,
+    critical: usize,
+}
+
+impl Pressing {
+    fn of(model: &Model) -> Self {
+        let run = &model.live.run;
+        let hold = match run.phase() {
+            Phase::Held(hold) => Some(hold.clone()),
+            _ => None,
+        };
+        Self { hold_asked: model.live.hold_asked, hold, critical: run.alarms.unacknowledged(Severity::Crit) }
+    }
+
+    fn is_more_than(&self, before: &Self) -> bool {
+        let is_held_anew = self.hold.is_some() && self.hold != before.hold;
+        self.hold_asked && !before.hold_asked || is_held_anew || self.critical > before.critical
+    }
 }
 
 /// How many alarms ring the bell that the operator has not acknowledged.
@@ -89,11 +125,12 @@ fn ringing(model: &Model) -> usize {
 }
 
 fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
+    model.console.settling = None;
     if press.key == Key::Char(' ')
         && !model.live.may_move()
         && matches!(model.ui.overlay, Overlay::Preflight { .. })
     {
-        return if press.repeat { Vec::new() } else { preflight::tick(model) };
+        return if held_keys::is_pressed(model, press) { preflight::tick(model) } else { Vec::new() };
     }
     // A letter is typed where text is typed, and so is the space: there Ctrl-C holds.
     if typing::press(model, press.key) {
@@ -109,6 +146,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         // A key that is held down stops the robot, too, and does nothing else.
         ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
         _ if press.repeat && !action.repeats => Vec::new(),
+        id if held_keys::is_agreement(model, id) && !held_keys::is_pressed(model, press) => Vec::new(),
         id => act(model, id),
     }
 }
@@ -119,7 +157,7 @@ fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
             let help = model.console.keys.spelled("(<help>: show keys)");
-            model.say(Severity::Info, format!("key {key} is not assigned {help}"));
+            model.say_for(UNASSIGNED_S, Severity::Info, format!("key {key} is not assigned {help}"));
         }
         Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping => {
             let was_stepping = model.ui.overlay == Overlay::Stepping;
@@ -172,7 +210,7 @@ fn obey_signal(model: &mut Model, signal: Signal) -> Vec<Effect> {
         Signal::Interrupt => act(model, ActionId::Interrupt),
         Signal::Stop => act(model, ActionId::Suspend),
         Signal::Continue => vec![Effect::Redraw],
-        Signal::Terminate | Signal::Hangup => {
+        Signal::Terminate | Signal::Hangup | Signal::End(_) => {
             let mut effects = hold_now(model);
             effects.push(Effect::Quit { signal: Some(signal) });
             effects

@@ -18,6 +18,7 @@ mod look;
 mod map;
 mod missed;
 mod next;
+mod notice;
 mod plan;
 mod planner;
 mod plugins;
@@ -81,6 +82,9 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
         framed(&look, frame, area, arrangement);
     }
     lists::draw(&look, frame, area);
+    if arrangement != Arrangement::Strip {
+        notice::draw(&look, frame, area);
+    }
     readable::make(frame.buffer_mut());
     if caps.glyphs == Glyphs::Ascii {
         ascii::reduce(frame.buffer_mut());

@@ -240,20 +240,12 @@ impl RegularPlates {
         };
         let steps = ((b - a).norm() / SEAM_STEP_M).ceil().max(1.0) as usize;
         let at = |k: usize| k as f64 / steps as f64;
-        // Where it enters or leaves, to a thousandth of a step.
-        let edge = |mut inside: f64, mut outside: f64| {
-            for _ in 0..10 {
-                let half = f64::midpoint(inside, outside);
-                *(if is_in(half) { &mut inside } else { &mut outside }) = half;
-            }
-            inside
-        };
         let (mut parts, mut from) = (Vec::new(), None);
         for k in 0..=steps {
             match (is_in(at(k)), from) {
-                (true, None) => from = Some(if k == 0 { 0.0 } else { edge(at(k), at(k - 1)) }),
+                (true, None) => from = Some(if k == 0 { 0.0 } else { edge(is_in, at(k), at(k - 1)) }),
                 (false, Some(first)) => {
-                    parts.push((first, edge(at(k - 1), at(k))));
+                    parts.push((first, edge(is_in, at(k - 1), at(k))));
                     from = None;
                 }
                 _ => {}
@@ -280,15 +272,27 @@ impl RegularPlates {
             let angle = TAU * f64::from(k) / f64::from(n);
             // Plates are counted by their direction from the origin.
             let from = |share: f64| Point::new(far_m * share * angle.cos(), far_m * share * angle.sin());
-            let is_in = |share: &f64| {
-                boundary.contains(from(*share)) && boundary.wall_distance_m(from(*share)) < self.annular_m
+            let is_in = |share: f64| {
+                boundary.contains(from(share)) && boundary.wall_distance_m(from(share)) < self.annular_m
             };
             let steps = (far_m / (SEAM_STEP_M / 10.0)).ceil() as usize;
-            let shares: Vec<f64> = (0..=steps).map(|k| k as f64 / steps as f64).filter(is_in).collect();
-            Some(vec![from(*shares.first()?), from(*shares.last()?)])
+            let at = |k: usize| k as f64 / steps as f64;
+            let (first, last) = ((0..=steps).find(|k| is_in(at(*k)))?, (0..=steps).rfind(|k| is_in(at(*k)))?);
+            let inner = if first == 0 { at(0) } else { edge(is_in, at(first), at(first - 1)) };
+            let outer = if last == steps { at(steps) } else { edge(is_in, at(last), at(last + 1)) };
+            Some(vec![from(inner), from(outer)])
         };
         std::iter::once(inner).chain((0..n).filter_map(seam)).collect()
     }
+}
+
+/// Where a line enters or leaves what is within, to a thousandth of the step between two places on it, as shares of the line.
+fn edge(is_in: impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
+    for _ in 0..10 {
+        let half = f64::midpoint(inside, outside);
+        *(if is_in(half) { &mut inside } else { &mut outside }) = half;
+    }
+    inside
 }
 
 /// A closed outline whose edges lie so much further inwards, metres; counter-clockwise, as walls are.
@@ -364,6 +368,19 @@ mod tests {
         let names: std::collections::BTreeSet<&str> = map.plates.iter().map(|p| p.name.as_str()).collect();
         assert_eq!(names.len(), map.plates.len(), "names are given once");
         assert!(names.contains("A-01") && names.iter().any(|name| name.starts_with("S-01-01")));
+    }
+
+    #[test]
+    fn seams_end_at_the_shell_and_at_the_ring() {
+        let boundary = Boundary::Circle { radius_m: 5.9985 };
+        let seams = layout().seams(&boundary);
+        for ends in seams.iter().filter(|seam| seam.len() == 2) {
+            for at in ends {
+                let off_m = boundary.wall_distance_m(*at);
+                let is_inner_end = ends.iter().all(|end| boundary.wall_distance_m(*end) > 0.76);
+                assert!(off_m < 1e-4 || (off_m - 0.75).abs() < 1e-3 || is_inner_end, "{at}: {off_m} m");
+            }
+        }
     }
 
     #[test]

@@ -37,6 +37,8 @@ pub(crate) const FAULTS: &[&str] = &[
     "plan_nap",
     "plan_long",
     "plan_progress",
+    "replan_hang",
+    "replan_long",
 ];
 
 /// Longer than a tick of usual length, and no fault.

@@ -1,7 +1,8 @@
 //! A planner that misbehaves in every way the tests can think of.
 //!
 //! It drives straight to the target like an honest one, until its own step number `at_step`; then it commits the
-//! fault that the parameter `fault` names. Faults that begin with `configure_` or `plan_` come in those calls.
+//! fault that the parameter `fault` names. Faults that begin with `configure_` or `plan_` come in those calls,
+//! those that begin with `replan_` in every plan after the first.
 
 mod faults;
 
@@ -41,6 +42,9 @@ impl Planner for Faulty {
 
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
         if let Some(kind) = self.fault.strip_prefix("plan_") {
+            commit(kind, ctx)?;
+        }
+        if let Some(kind) = self.fault.strip_prefix("replan_").filter(|_| request.reason != Reason::Start) {
             commit(kind, ctx)?;
         }
         let mut path = vec![request.start.position];

@@ -2,7 +2,7 @@
 
 use crate::shared_folder::SharedFolder;
 use anyhow::Context;
-use campaign::{Campaign, Table, table};
+use campaign::{Campaign, Table, TableError, part};
 use flight::failure::bad_input;
 use recording::{open_regular, read_regular};
 use std::{
@@ -46,7 +46,7 @@ impl Folder {
             }
             return Ok(there);
         }
-        self.publish(Path::new(FROZEN), &serde_json::to_vec_pretty(&campaign)?)?;
+        self.publish(Path::new(FROZEN), &campaign.to_json()?)?;
         Ok(campaign)
     }
 
@@ -54,17 +54,37 @@ impl Folder {
         Path::new("parts").join(format!("part-{block:05}.parquet"))
     }
 
-    pub(crate) fn has_part(&self, block: u64) -> bool {
-        self.0.has(&Self::part(block))
+    /// Whether the part of a block is there, byte for byte as it was written.
+    pub(crate) fn has_part(&self, campaign: &Campaign, block: u64) -> bool {
+        matches!(self.check_part(campaign, block), Ok(true))
+    }
+
+    /// Whether there is a part of a block.
+    ///
+    /// # Errors
+    /// It is damaged, or not the part of this block.
+    fn check_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<bool> {
+        if !self.0.has(&Self::part(block)) {
+            return Ok(false);
+        }
+        self.with_part(block, |file| part::check(campaign, block, file)).map(|()| true)
     }
 
     /// Reads a part.
     pub(crate) fn read_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<Table> {
+        self.with_part(block, |file| part::read(campaign, block, file))
+    }
+
+    fn with_part<T>(
+        &self,
+        block: u64,
+        read: impl FnOnce(fs::File) -> Result<T, TableError>,
+    ) -> anyhow::Result<T> {
         let file = self.path().join(Self::part(block));
-        let read = open_regular(&file).with_context(|| file.display().to_string())?;
-        let remedy = "delete it, then fly the block again";
-        table::read_part(campaign, read)
-            .map_err(|why| bad_input(format!("{}: {why}; {remedy}", file.display())))
+        let open = open_regular(&file).with_context(|| file.display().to_string())?;
+        read(open).map_err(|why| {
+            bad_input(format!("{} {why}; block {block} has to be flown again", file.display()))
+        })
     }
 
     /// Publishes the rows of a block, after what they cost.
@@ -73,9 +93,18 @@ impl Folder {
         self.publish(&Self::part(block), part)
     }
 
-    /// Blocks without a part.
-    pub(crate) fn missing(&self, campaign: &Campaign) -> Vec<u64> {
-        (0..campaign.blocks()).filter(|block| !self.has_part(*block)).collect()
+    /// Blocks without a whole part, and what is wrong with the parts that are there and not whole.
+    pub(crate) fn missing(&self, campaign: &Campaign) -> (Vec<u64>, Vec<String>) {
+        let (mut missing, mut damaged) = (Vec::new(), Vec::new());
+        for block in 0..campaign.blocks() {
+            match self.check_part(campaign, block) {
+                Ok(true) => continue,
+                Ok(false) => {}
+                Err(why) => damaged.push(format!("{why:#}")),
+            }
+            missing.push(block);
+        }
+        (missing, damaged)
     }
 
     /// Seconds that one core took for all parts so far.

@@ -5,6 +5,7 @@ use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
 use flight::{
     failure::bad_input,
     planners::{Found, check_choices, choice_of},
+    texts,
 };
 use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_limits};
 use scenario::{Scenario, Settings};
@@ -62,7 +63,7 @@ impl Here {
 /// Reads a plan and freezes it with the texts of its scenarios.
 pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {
     let shown = file.display().to_string();
-    let text = recording::read_regular(file).map_err(|error| bad_input(format!("{shown}: {error}")))?;
+    let text = texts::read_regular(file)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let plan = Plan::parse(&text, &shown, &name).map_err(|errors| bad_input(errors.render()))?;
     let folder = file.parent().unwrap_or(Path::new(""));

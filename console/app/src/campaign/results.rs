@@ -4,6 +4,7 @@ use super::folder::Folder;
 use anyhow::anyhow;
 use campaign::{Campaign, Findings, Table, Watch, findings, page, table};
 use flight::failure::bad_input;
+use report::print::warn_line;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -14,12 +15,16 @@ pub(crate) struct Results {
     pub sha256: String,
 }
 
-/// Blocks that are still to be flown; none if those without a gap are enough.
+/// Blocks that are still to be flown; none if those without a gap are enough. Names parts that are there and not whole.
 pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Vec<u64>> {
-    let missing = folder.missing(campaign);
+    let (missing, damaged) = folder.missing(campaign);
     let whole = missing.first().copied().unwrap_or(campaign.blocks());
     let enough = enough(campaign, (0..whole).map(|block| folder.read_part(campaign, block)))?;
-    Ok(if enough.is_some() { Vec::new() } else { missing })
+    if enough.is_some() {
+        return Ok(Vec::new());
+    }
+    damaged.iter().for_each(|why| warn_line(why));
+    Ok(missing)
 }
 
 /// Seeds after which enough is known, looking at parts in their order.
@@ -45,7 +50,7 @@ pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyh
             "blocks are missing: {list}; fly them, or merge what is there with --partial"
         )));
     }
-    let there = (0..campaign.blocks()).filter(|block| folder.has_part(*block));
+    let there = (0..campaign.blocks()).filter(|block| folder.has_part(campaign, *block));
     let parts: Vec<Table> = there.map(|block| folder.read_part(campaign, block)).collect::<Result<_, _>>()?;
     let failed = |error: table::TableError| anyhow!("merging: {error}");
     let parts = match enough(campaign, parts.iter().cloned().map(Ok))?.filter(|_| missing.is_empty()) {
@@ -75,7 +80,12 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let shown = file.display();
     let open = recording::open_regular(&file)
         .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
-    Table::read(open).map_err(|error| bad_input(format!("{shown}: {error}")))
+    let (table, is_proven) = Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
+    if !is_proven {
+        let why = "an earlier tankops or another program wrote it, so that damage to it is not noticed";
+        warn_line(&format!("{shown} carries no digest: {why}"));
+    }
+    Ok(table)
 }
 
 /// Numbers with ranges, as Slurm and people read them: `3,7-9`.

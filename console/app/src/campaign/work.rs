@@ -3,7 +3,7 @@
 use super::{folder::Folder, pilot::Pilot};
 use crate::stop_signal::StopSignal;
 use anyhow::anyhow;
-use campaign::{Campaign, Row, Watch, table};
+use campaign::{Campaign, Row, Watch, part};
 use flight::planners::Found;
 use planner_host::PluginDirs;
 use std::{
@@ -104,7 +104,7 @@ impl Work<'_> {
                 return None;
             }
             let block = queue.blocks.pop_front()?;
-            if !self.folder.has_part(block) && (!self.pulls || self.folder.claim(block)) {
+            if !self.folder.has_part(self.campaign, block) && (!self.pulls || self.folder.claim(block)) {
                 queue.open.insert(block, Vec::new());
                 queue.current = Some((block, self.campaign.block(block)));
             }
@@ -129,7 +129,8 @@ impl Work<'_> {
     fn publish(&self, (block, mut rows): Whole) -> anyhow::Result<()> {
         rows.sort_by_key(|(row, _)| row.case);
         let (rows, costs): (Vec<Row>, Vec<String>) = rows.into_iter().unzip();
-        let part = table::part(self.campaign, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
+        let part =
+            part::write(self.campaign, block, &rows).map_err(|error| anyhow!("block {block}: {error}"))?;
         self.folder.publish_part(block, &part, &(costs.join("\n") + "\n"))?;
         if self.pulls {
             self.folder.release(block);
@@ -141,7 +142,7 @@ impl Work<'_> {
     fn look(&self, queue: &Mutex<Queue<'_>>, is_enough: &AtomicBool) -> anyhow::Result<()> {
         let mut queue = lock(queue);
         let Some((watch, next)) = &mut queue.until else { return Ok(()) };
-        while *next < self.campaign.blocks() && self.folder.has_part(*next) {
+        while *next < self.campaign.blocks() && self.folder.has_part(self.campaign, *next) {
             let part = self.folder.read_part(self.campaign, *next)?;
             *next += 1;
             if watch.take(&part).is_some() {

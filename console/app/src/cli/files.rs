@@ -71,7 +71,7 @@ pub(crate) struct MapArgs {
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
     /// Drawing (.dxf) with layers SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES, or list of columns (.csv) with the fields `x_m`, `y_m`,
-    /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name.
+    /// `radius_m` or `diameter_m` (also in mm, cm, in, ft), and name; `-` reads either from the standard input.
     pub file: PathBuf,
     /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]

@@ -33,6 +33,9 @@ pub(crate) struct ReproduceArgs {
     /// Print the rows as a JSON array on stdout.
     #[arg(long)]
     pub json: bool,
+    /// Print the rows as CSV on stdout.
+    #[arg(long, conflicts_with = "json")]
+    pub csv: bool,
     /// List everything that can be reproduced.
     #[arg(long, conflicts_with = "name")]
     pub list: bool,

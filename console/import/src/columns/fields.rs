@@ -1,5 +1,6 @@
 //! The fields of a list of columns, and the numbers in them.
 
+use super::marks::Marks;
 use csv::StringRecord;
 
 /// So much of the name of a field is repeated in a message, characters.
@@ -80,15 +81,17 @@ impl Fields {
         record.get(self.name?)
     }
 
-    /// A length of a column, metres.
+    /// A length of a column, metres; its number is shown to the marks of the list.
     pub(super) fn metres(
         &self,
         record: &StringRecord,
         quantity: Quantity,
         has_commas: bool,
+        marks: &mut Marks,
     ) -> Result<f64, (&str, String)> {
         let (index, unit_m) = self.lengths[quantity as usize];
         let written = record.get(index).unwrap_or_default();
+        marks.see(written, self.name_of(quantity), unit_m);
         let number = if has_commas { written.replacen(',', ".", 1).parse() } else { written.parse() };
         number.ok().filter(|number: &f64| number.is_finite()).map(|number| number * unit_m).ok_or_else(|| {
             let what = format!(

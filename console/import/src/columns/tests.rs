@@ -5,7 +5,8 @@ fn read_bytes(bytes: &[u8]) -> Result<FloorPlan, String> {
     let file = dir.path().join("c.csv");
     std::fs::write(&file, bytes).unwrap();
     let shown = |error: ImportError| ImportError { file: "c.csv".into(), ..error }.to_string();
-    read(&file, 10.0).map_err(|errors| errors.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
+    read(&Input::read(&file).unwrap(), 10.0)
+        .map_err(|errors| errors.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
 }
 
 fn found(text: &[u8]) -> Vec<(String, f64, f64, f64)> {
@@ -100,4 +101,23 @@ fn errors_name_line_and_field() {
     }
     assert_eq!(message(header), "c.csv: no columns: below the first line there are no rows");
     assert!(message("\u{0}\u{1}\u{2}").contains("line 1: no text"));
+}
+
+#[test]
+fn thousands_beside_decimals_are_refused_with_both_lines() {
+    let text = b"name;x_mm;y_mm;diameter_mm\nA;4.000;250,5;500\nB;-4.000;1.250;500,0\n";
+    assert_eq!(
+        read_bytes(text).unwrap_err(),
+        "c.csv, line 2, y_mm: `250,5`, and `4.000` in line 2: two decimal marks in one list; write one of them \
+         throughout, and no separators of thousands"
+    );
+}
+
+#[test]
+fn columns_on_one_spot_are_named() {
+    let text = b"name,x_m,y_m,radius_m\nA,1,1,0.3\nB,4,1,0.3\nC,1.004,1,0.3\nD,1.5,1,0.3\n";
+    assert_eq!(
+        read_bytes(text).unwrap().notes,
+        ["`C` (line 4) stands in `A` (line 2): their centres are 4 mm apart"]
+    );
 }

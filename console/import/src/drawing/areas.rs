@@ -27,8 +27,8 @@ pub(super) struct Area {
     half_width_m: f64,
 }
 
-/// The closed outlines among some, and how many lines close none.
-pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, usize) {
+/// The closed outlines among some, and the lines that close none.
+pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, Vec<Vec<Point>>) {
     let (mut areas, mut chains) = (Vec::new(), Vec::new());
     for outline in outlines {
         match outline {
@@ -46,12 +46,26 @@ pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, usiz
     areas.extend(rings.into_iter().map(|ring| Area::new(ring, 0.0)));
     // What encloses nothing is no outline.
     areas.retain(|area| area.size_m() + area.half_width_m > SMALLEST_M);
-    (areas, open.len())
+    (areas, open)
 }
 
 impl Area {
     fn new(points: Vec<Point>, half_width_m: f64) -> Self {
         Self { round: round(&points), points, half_width_m }
+    }
+
+    /// Its corners; none of a circle.
+    pub(super) fn corners(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Larger extent, metres.
+    pub(super) fn across_m(&self) -> f64 {
+        let of_corners = || {
+            let (low, high) = world::shape::bounds_of(&self.points);
+            (high - low).amax()
+        };
+        self.round.map_or_else(of_corners, |(_, _, largest_m)| 2.0 * largest_m)
     }
 
     /// Radius of a circle as large as its inner side, metres.

@@ -83,6 +83,9 @@ fn collect(
     unfolded.count()?;
     let own = entity.text(8).unwrap_or("0");
     let layer = place.layer.as_deref().filter(|_| own == "0").unwrap_or(own).to_owned();
+    if entity.kind == "INSERT" {
+        attributes(entity, &layer, &place.map, unfolded)?;
+    }
     let block = entity.text(2).filter(|_| entity.kind == "INSERT");
     let block = block.and_then(|name| blocks.get(&name.to_uppercase()));
     let Some(block) = block.filter(|_| depth < DEEPEST) else {
@@ -109,6 +112,22 @@ fn collect(
     Some(())
 }
 
+/// Adds the attributes of an insertion. One of them names what is inserted: the first whose tag says so, else the first.
+fn attributes(insert: &Entity, layer: &str, map: &Affine2<f64>, unfolded: &mut Unfolded) -> Option<()> {
+    let naming = insert.parts.iter().position(labels::is_name_tag).unwrap_or(0);
+    for (index, attribute) in insert.parts.iter().enumerate() {
+        unfolded.count()?;
+        let own = attribute.text(8).filter(|own| *own != "0").unwrap_or(layer);
+        unfolded.found.push(Drawn {
+            layer: own.to_owned(),
+            kind: attribute.kind.clone(),
+            outlines: Vec::new(),
+            label: label(attribute, map).filter(|_| index == naming),
+        });
+    }
+    Some(())
+}
+
 /// Where the rows and columns of an insertion lie.
 fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     let count = |code: i32| insert.number(code, 1.0).clamp(1.0, 1000.0) as usize;
@@ -120,7 +139,7 @@ fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
 /// A text and where it stands.
 fn label(entity: &Entity, map: &Affine2<f64>) -> Option<(Point, String)> {
     let text = labels::text(entity)?;
-    let is_aligned = entity.number(72, 0.0) > 0.5 || entity.number(73, 0.0) > 0.5;
+    let is_aligned = [72, 73, 74].iter().any(|code| entity.number(*code, 0.0) > 0.5);
     if entity.kind == "MTEXT" || !is_aligned {
         let at = Point::new(entity.number(10, 0.0), entity.number(20, 0.0));
         let map = if entity.kind == "MTEXT" { *map } else { *map * mirroring(entity.number(230, 1.0)) };
@@ -197,7 +216,7 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
 fn polyline(entity: &Entity, in_plane: &Affine2<f64>, scale: f64) -> Option<Outline> {
     let of_vertex = |v: &Entity| [v.number(10, 0.0), v.number(20, 0.0), v.number(42, 0.0)];
     let corners = match entity.kind.as_str() {
-        "POLYLINE" => entity.vertices.iter().map(of_vertex).collect(),
+        "POLYLINE" => entity.parts.iter().map(of_vertex).collect(),
         _ => entity.corners(),
     };
     let corners: Vec<(Point, f64)> =

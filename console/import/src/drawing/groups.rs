@@ -2,10 +2,10 @@
 
 use super::curves::Spline;
 use crate::{
-    error::{ImportError, read_file},
+    error::ImportError,
+    input::Input,
     text::{code_page, decoded},
 };
-use std::path::Path;
 use world::Point;
 
 /// What a drawing holds, by its codes.
@@ -14,8 +14,8 @@ pub(super) struct Entity {
     /// As the file names it: `LINE`, `CIRCLE`, `INSERT`, ...
     pub kind: String,
     groups: Vec<(i32, String)>,
-    /// The vertices of a `POLYLINE`.
-    pub vertices: Vec<Entity>,
+    /// The vertices of a `POLYLINE`, the attributes of an `INSERT`.
+    pub parts: Vec<Entity>,
 }
 
 /// A named part of a drawing.
@@ -100,19 +100,19 @@ impl Drawing {
     ///
     /// # Errors
     /// It cannot be read, is binary, is cut off, or has a line without a code where one must be.
-    pub(super) fn read(file: &Path) -> Result<Self, ImportError> {
-        let bytes = read_file(file)?;
+    pub(super) fn read(input: &Input) -> Result<Self, ImportError> {
+        let bytes = &input.bytes;
         if bytes.starts_with(b"AutoCAD Binary DXF") {
-            return Err(ImportError::of_file(file, "a binary DXF; save it as ASCII (text) DXF"));
+            return Err(ImportError::of_input(input, "a binary DXF; save it as ASCII (text) DXF"));
         }
-        let text = decoded(&bytes, code_page_of(&bytes).and_then(code_page));
+        let text = decoded(bytes, code_page_of(bytes).and_then(code_page));
         let mut drawing = Self::default();
         let (mut section, mut variable, mut block) = (String::new(), String::new(), None::<Block>);
         let mut record = Entity::new("");
         let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
         while let Some((line, code)) = lines.next() {
             let wrong = |what: String| ImportError {
-                file: file.display().to_string(),
+                file: input.name.clone(),
                 line: Some(line + 1),
                 key: None,
                 what,
@@ -174,7 +174,7 @@ impl Drawing {
             }
         }
         // What is missing could be columns.
-        Err(ImportError::of_file(file, "the drawing is cut off: it does not end with EOF; save it again"))
+        Err(ImportError::of_input(input, "the drawing is cut off: it does not end with EOF; save it again"))
     }
 
     /// Takes what a record of a table says.
@@ -190,19 +190,20 @@ impl Drawing {
 
 impl Entity {
     fn new(kind: &str) -> Self {
-        Self { kind: kind.to_owned(), groups: Vec::new(), vertices: Vec::new() }
+        Self { kind: kind.to_owned(), groups: Vec::new(), parts: Vec::new() }
     }
 
-    /// The vertex that is being read, or the entity itself.
+    /// The part that is being read, or the entity itself.
     fn innermost(&mut self) -> &mut Self {
-        if self.vertices.is_empty() { self } else { self.vertices.last_mut().expect("it is not empty") }
+        if self.parts.is_empty() { self } else { self.parts.last_mut().expect("it is not empty") }
     }
 }
 
-/// Begins an entity; vertices belong to the polyline before them.
+/// Begins an entity; vertices belong to the polyline before them, attributes to the insertion.
 fn begin(entities: &mut Vec<Entity>, kind: &str) {
     match (kind, entities.last_mut()) {
-        ("VERTEX", Some(last)) if last.kind == "POLYLINE" => last.vertices.push(Entity::new(kind)),
+        ("VERTEX", Some(last)) if last.kind == "POLYLINE" => last.parts.push(Entity::new(kind)),
+        ("ATTRIB", Some(last)) if last.kind == "INSERT" => last.parts.push(Entity::new(kind)),
         ("SEQEND", _) => {}
         _ => entities.push(Entity::new(kind)),
     }

@@ -5,10 +5,14 @@ use super::groups::{Entity, unescaped};
 /// Letters of a name that are kept.
 const LONGEST: usize = 40;
 
+/// Words in the tags of attributes that name or number something.
+const NAME_TAGS: [&str; 12] =
+    ["NO", "NR", "NUM", "NUMBER", "NUMMER", "NAME", "ID", "TAG", "MARK", "POS", "PLATE", "BLECH"];
+
 /// The text of an entity on one line and without its formatting; none if it has none.
 pub(super) fn text(entity: &Entity) -> Option<String> {
     let plain = match entity.kind.as_str() {
-        "TEXT" => signs(entity.text(1)?),
+        "TEXT" | "ATTRIB" => signs(entity.text(1)?),
         // Long ones come in pieces.
         "MTEXT" => {
             let pieces = entity.groups().iter().filter(|(code, _)| *code == 3 || *code == 1);
@@ -20,6 +24,13 @@ pub(super) fn text(entity: &Entity) -> Option<String> {
     let words: Vec<&str> = plain.split_whitespace().collect();
     let name: String = words.join(" ").chars().take(LONGEST).collect();
     (!name.is_empty()).then_some(name)
+}
+
+/// Whether the tag of an attribute says that it names or numbers something.
+pub(super) fn is_name_tag(attribute: &Entity) -> bool {
+    let tag = attribute.text(2).unwrap_or_default().to_uppercase();
+    let mut words = tag.split(|letter: char| !letter.is_alphabetic());
+    words.any(|word| NAME_TAGS.contains(&word))
 }
 
 /// Letters and signs that stand as `\U+00FC` and `%%c`; underlining is left out.

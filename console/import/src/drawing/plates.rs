@@ -1,6 +1,6 @@
 //! The plates of a floor: closed outlines, or what seams and the shell enclose.
 
-use super::{entities::Outline, faces};
+use super::{entities::Outline, faces, near};
 use crate::{
     is_wholly_outside,
     plan::{MOST_CORNERS, MOST_PLATES},
@@ -37,19 +37,21 @@ pub(super) struct Label {
     pub what: String,
 }
 
-/// Plates in the tank frame. Of `labels` those are left that name none.
+/// Plates in the tank frame, to which the drawing of some metres to the unit is moved. Of `labels` those are left that name
+/// none.
 pub(super) fn plates(
     outlines: Vec<Outline>,
     labels: &mut Vec<Label>,
     boundary: &Boundary,
-    moved: &Isometry2<f64>,
+    (moved, unit_m): (&Isometry2<f64>, f64),
     notes: &mut Vec<String>,
 ) -> Vec<DrawnPlate> {
     for label in labels.iter_mut() {
         label.at = moved * label.at;
     }
     let lines: Vec<(Vec<Point>, bool)> = outlines.into_iter().map(|outline| line(outline, moved)).collect();
-    let mut rings = rings(lines, boundary, notes);
+    let drawn_at = |at: Point| near::place(moved.inverse_transform_point(&at), unit_m);
+    let mut rings = rings(lines, boundary, &drawn_at, notes);
     rings.iter_mut().for_each(straighten);
     let n = rings.len();
     rings.retain(|ring| !is_wholly_outside(boundary, &Shape::Polygon { vertices: ring.clone() }));
@@ -93,11 +95,26 @@ fn around(center: Point, radius_m: f64, n: usize) -> Vec<Point> {
 }
 
 /// Counter-clockwise outlines: the closed ones if all are, else what all of them and the shell enclose.
-fn rings(lines: Vec<(Vec<Point>, bool)>, boundary: &Boundary, notes: &mut Vec<String>) -> Vec<Vec<Point>> {
+fn rings(
+    lines: Vec<(Vec<Point>, bool)>,
+    boundary: &Boundary,
+    drawn_at: &dyn Fn(Point) -> String,
+    notes: &mut Vec<String>,
+) -> Vec<Vec<Point>> {
     if lines.iter().all(|(_, is_closed)| *is_closed) {
         let mut rings: Vec<Vec<Point>> = lines.into_iter().map(|(ring, _)| ring).collect();
-        for ring in &mut rings {
+        rings.retain_mut(|ring| {
             ring.pop();
+            let crossing = near::crossing(ring);
+            if let Some(at) = crossing {
+                let at = drawn_at(at);
+                notes.push(format!(
+                    "PLATES: an outline that crosses itself at {at} in the drawing is left out"
+                ));
+            }
+            crossing.is_none()
+        });
+        for ring in &mut rings {
             if ring_area_m2(ring) < 0.0 {
                 ring.reverse();
             }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use world::Point;
 
 /// Ends nearer than this are one, metres.
-const SAME_M: f64 = 2e-3;
+pub(super) const SAME_M: f64 = 2e-3;
 
 /// Points, and whether the last is joined to the first.
 pub(super) type Chain = (Vec<Point>, bool);

@@ -31,7 +31,7 @@ impl Role {
         let upper = word.to_uppercase();
         match upper.strip_suffix('S').unwrap_or(&upper) {
             "SHELL" => Some(Self::Shell),
-            "COLUMN" => Some(Self::Columns),
+            "COLUMN" | "OBSTACLE" => Some(Self::Columns),
             "PIPE" => Some(Self::Pipes),
             "SUMP" => Some(Self::Sump),
             "NOGO" => Some(Self::NoGo),
@@ -57,6 +57,11 @@ impl Layers {
         let is_named = |(_, name): &&(Role, String)| is_same(name, layer);
         let named: Vec<Role> = self.0.iter().filter(is_named).map(|(role, _)| *role).collect();
         if named.is_empty() { by_name(layer).into_iter().collect() } else { named }
+    }
+
+    /// The layers that somebody says hold this.
+    pub(super) fn stated(&self, role: Role) -> Vec<&str> {
+        self.0.iter().filter(|(known, _)| *known == role).map(|(_, name)| name.as_str()).collect()
     }
 
     /// A layer of these on which nothing lies.

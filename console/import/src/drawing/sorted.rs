@@ -3,15 +3,18 @@
 use super::{
     Assumed, areas,
     entities::{Drawn, Outline},
+    near::{self, NearMiss},
     plates::{Label, plates},
     roles::Role,
 };
 use nalgebra::Isometry2;
 use std::collections::{BTreeMap, BTreeSet};
-use world::{Boundary, DrawnPlate, Shape};
+use world::{Boundary, DrawnPlate, Point, Shape};
 
 /// What lies on the layers of each role.
 pub(super) struct Sorted {
+    /// Metres to the unit of the drawing, for places in messages.
+    unit_m: f64,
     by_role: BTreeMap<Role, Vec<Outline>>,
     /// Whether a layer holds columns besides the shell.
     is_shared: bool,
@@ -22,13 +25,15 @@ pub(super) struct Sorted {
 impl Sorted {
     pub(super) fn new(
         all: Vec<Drawn>,
+        unit_m: f64,
         assumed: &Assumed,
         hidden: &[String],
         notes: &mut Vec<String>,
     ) -> Self {
-        let mut sorted = Self { by_role: BTreeMap::new(), is_shared: false, labels: Vec::new() };
+        let mut sorted = Self { unit_m, by_role: BTreeMap::new(), is_shared: false, labels: Vec::new() };
         let is_of_plates = |drawn: &Drawn| assumed.layers.roles(&drawn.layer).contains(&Role::Plates);
         let has_plates = all.iter().any(|drawn| is_of_plates(drawn) && !drawn.outlines.is_empty());
+        let drawn_on = lined_layers(&all);
         let mut unused: BTreeMap<String, usize> = BTreeMap::new();
         let mut in_the_dark = BTreeSet::new();
         for drawn in all {
@@ -37,9 +42,10 @@ impl Sorted {
             if role.is_none() || drawn.outlines.is_empty() {
                 let is_ignored = roles.contains(&Role::Ignored);
                 let what = format!("layer {}: {}", drawn.layer, drawn.kind);
-                let is_name = has_plates && !is_ignored;
+                let is_of_plates = roles.contains(&Role::Plates);
+                let is_of_others = !is_of_plates && drawn_on.contains(&drawn.layer);
+                let is_name = has_plates && !is_ignored && !is_of_others;
                 if let Some((at, text)) = drawn.label.filter(|_| is_name) {
-                    let is_of_plates = roles.contains(&Role::Plates);
                     sorted.labels.push(Label { at, text, is_of_plates, what });
                     continue;
                 }
@@ -66,18 +72,39 @@ impl Sorted {
     }
 
     /// The shell, and what else on its layer is a column.
-    pub(super) fn shell(&mut self, notes: &mut Vec<String>) -> Option<(areas::Area, Vec<areas::Area>)> {
-        let (all, n_open) = areas::areas(self.take(Role::Shell));
-        note_open(Role::Shell, n_open, notes);
+    ///
+    /// # Errors
+    /// Why there is none: empty, or what is nearly one, or that it crosses itself.
+    pub(super) fn shell(
+        &mut self,
+        notes: &mut Vec<String>,
+    ) -> Result<(areas::Area, Vec<areas::Area>), String> {
+        let (all, open) = areas::areas(self.take(Role::Shell));
         let n = all.len();
-        let (shell, rest) = areas::shell(all, notes)?;
+        let miss = near::nearest(&open);
+        let told = |miss: &NearMiss| format!("{}; join the ends there", miss.told(self.unit_m));
+        let Some((shell, rest)) = areas::shell(all, notes) else {
+            return Err(miss.as_ref().map(told).unwrap_or_default());
+        };
+        if let Some(miss) = miss.filter(|miss| miss.across_m > shell.across_m()) {
+            let largest_m = shell.across_m();
+            return Err(format!(
+                "the largest closed outline is {largest_m:.3} m across, but {}",
+                told(&miss)
+            ));
+        }
+        if let Some(at) = near::crossing(shell.corners()) {
+            let at = near::place(at, self.unit_m);
+            return Err(format!("the outline crosses itself at {at} in the drawing; draw it once around"));
+        }
+        self.note_open(Role::Shell, &open, notes);
         if self.is_shared {
-            return Some((shell, rest));
+            return Ok((shell, rest));
         }
         if !rest.is_empty() {
             notes.push(format!("SHELL: {n} closed outlines; the largest is the shell"));
         }
-        Some((shell, Vec::new()))
+        Ok((shell, Vec::new()))
     }
 
     /// Closed outlines as convex shapes.
@@ -88,8 +115,8 @@ impl Sorted {
         more: Vec<areas::Area>,
         notes: &mut Vec<String>,
     ) -> Vec<Shape> {
-        let (mut all, n_open) = areas::areas(self.take(role));
-        note_open(role, n_open, notes);
+        let (mut all, open) = areas::areas(self.take(role));
+        self.note_open(role, &open, notes);
         all.extend(more);
         let (shapes, grown) = areas::shapes(&all);
         notes.extend(grown.iter().map(|k| format!("{name} {k} is not convex; its convex hull was taken")));
@@ -107,13 +134,22 @@ impl Sorted {
         if outlines.is_empty() {
             return Vec::new();
         }
-        let found = plates(outlines, &mut self.labels, boundary, moved, notes);
+        let found = plates(outlines, &mut self.labels, boundary, (moved, self.unit_m), notes);
         let mut unused: BTreeMap<String, usize> = BTreeMap::new();
         for label in self.labels.drain(..) {
             *unused.entry(label.what).or_default() += 1;
         }
         note_unused(unused, notes);
         found
+    }
+
+    fn note_open(&self, role: Role, open: &[Vec<Point>], notes: &mut Vec<String>) {
+        if open.is_empty() {
+            return;
+        }
+        let miss =
+            near::nearest(open).map(|miss| format!("; {}", miss.told(self.unit_m))).unwrap_or_default();
+        notes.push(format!("{role:?}: {} lines that close no outline are left out{miss}", open.len()));
     }
 
     pub(super) fn pipes(&mut self, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
@@ -137,13 +173,13 @@ impl Sorted {
     }
 }
 
+/// Layers with lines of their own, which their texts name; layer 0 holds anything.
+fn lined_layers(all: &[Drawn]) -> BTreeSet<String> {
+    let lined = all.iter().filter(|drawn| !drawn.outlines.is_empty() && drawn.layer != "0");
+    lined.map(|drawn| drawn.layer.clone()).collect()
+}
+
 fn note_unused(unused: BTreeMap<String, usize>, notes: &mut Vec<String>) {
     let unused = unused.into_iter().filter(|(_, n)| *n > 0);
     notes.extend(unused.map(|(what, n)| format!("not used: {what}, {n} of them")));
-}
-
-fn note_open(role: Role, n_open: usize, notes: &mut Vec<String>) {
-    if n_open > 0 {
-        notes.push(format!("{role:?}: {n_open} lines that close no outline are left out"));
-    }
 }

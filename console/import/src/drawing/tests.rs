@@ -22,7 +22,7 @@ fn read_text(units: &str, blocks: &str, entities: &str, assumed: &Assumed) -> Re
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    read(&file, assumed).map_err(|error| {
+    read(&Input::read(&file).unwrap(), assumed).map_err(|error| {
         let file = "d.dxf".into();
         ImportError { file, ..error }.to_string()
     })
@@ -118,7 +118,7 @@ fn what_is_missing_is_named() {
     let file = dir.path().join("d.dxf");
     fs::write(&file, "this is not a drawing\nat all\n").unwrap();
     assert!(
-        read(&file, &plain())
+        read(&Input::read(&file).unwrap(), &plain())
             .unwrap_err()
             .to_string()
             .contains("line 1: no DXF drawing: `this is not a drawin` is no group code")
@@ -130,7 +130,11 @@ fn the_scenario_holds_shell_obstacles_and_zones() {
     let entities = format!(
         "{SHELL}0 CIRCLE,8 COLUMNS,10 20000,20 15000,40 250,0 CIRCLE,8 NOGO,10 15000,20 15000,40 500"
     );
-    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario("t", "d.dxf");
+    let text = read_text(",9 $INSUNITS,70 4", "", &entities, &plain()).unwrap().scenario(
+        "t",
+        "d.dxf",
+        "tether-safe",
+    );
     for wanted in [
         "radius_m = 10\n",
         "[[obstacles]]\nname = \"column 1\"\nkind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 0.25\n",
@@ -153,7 +157,7 @@ fn blocks_that_insert_each_other_without_end_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    let message = read(&file, &plain()).unwrap_err().to_string();
+    let message = read(&Input::read(&file).unwrap(), &plain()).unwrap_err().to_string();
     assert!(message.contains("more than 1000000 entities"), "{message}");
 }
 
@@ -174,7 +178,7 @@ fn a_hundred_thousand_lines_are_joined_to_the_shell() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, text).unwrap();
-    let plan = read(&file, &plain()).unwrap();
+    let plan = read(&Input::read(&file).unwrap(), &plain()).unwrap();
     let lost_m2 = std::f64::consts::PI * 6000.0 - plan.boundary.area_m2();
     assert!((0.0..5.0).contains(&lost_m2), "{lost_m2}");
 }
@@ -194,7 +198,7 @@ fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
     fs::write(&file, "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\nSHELL\n10\n0\n20\n0\n40\n5\n").unwrap();
-    let message = read(&file, &plain()).unwrap_err().to_string();
+    let message = read(&Input::read(&file).unwrap(), &plain()).unwrap_err().to_string();
     assert!(
         message.ends_with("the drawing is cut off: it does not end with EOF; save it again"),
         "{message}"
@@ -358,7 +362,7 @@ fn old_encodings_hidden_layers_and_coordinates_of_a_survey() {
     let file = dir.path().join("d.dxf");
     fs::write(&file, bytes).unwrap();
     let layers = Layers::new(vec![(Role::Columns, "Stütze".into())]);
-    let plan = read(&file, &Assumed { layers, ..plain() }).unwrap();
+    let plan = read(&Input::read(&file).unwrap(), &Assumed { layers, ..plain() }).unwrap();
     assert_eq!(shapes(&plan.obstacles), ["column 1: disc (-5.000 0.000) 0.200"]);
     assert_eq!(
         plan.notes,
@@ -399,7 +403,7 @@ fn seams_and_the_shell_enclose_plates_that_texts_name() {
     assert!(plan.notes.contains(&"not used: layer TEXTS: MTEXT, 2 of them".into()), "{:?}", plan.notes);
     assert!(plan.notes.contains(&"not used: layer TEXTS: TEXT, 1 of them".into()), "{:?}", plan.notes);
     // The scenario's outlines are those of the plan.
-    let text = plan.scenario("t", "d.dxf");
+    let text = plan.scenario("t", "d.dxf", "tether-safe");
     assert!(text.contains("[plates]\noutlines = [\n    { name = \"P-02\", vertices_m = [["), "{text}");
 }
 
@@ -429,4 +433,132 @@ fn closed_outlines_are_plates_as_they_are_drawn() {
         "{:?}",
         plan.notes
     );
+}
+
+#[test]
+fn attributes_of_blocks_are_numbers_of_plates() {
+    let blocks = "0 BLOCK,8 0,2 PL0,10 0,20 0,0 LWPOLYLINE,8 PLATES,90 4,70 1,10 0,20 0,10 3,20 0,10 3,20 4,10 0,20 4,0 ENDBLK";
+    let insert = |x: i32, number: &str| {
+        format!(
+            "0 INSERT,8 0,66 1,2 PL0,10 {x},20 -2,0 ATTRIB,8 PLATES,10 {m},20 -1,40 0.2,1 8 mm,2 THICKNESS,70 0,\
+             0 ATTRIB,8 0,10 {m},20 0,40 0.2,1 {number},2 PLATE_NO,70 0,0 SEQEND,8 0,",
+            m = f64::from(x) + 1.5
+        )
+    };
+    let entities = format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}{}", insert(-3, "B7"), insert(0, "B8"));
+    let plan = read_text(",9 $INSUNITS,70 6", blocks, &entities, &plain()).unwrap();
+    let mut found = plates(&plan);
+    found.sort_unstable_by(|a, b| a.0.cmp(b.0));
+    assert_eq!(found, [("B7", 12.0), ("B8", 12.0)]);
+    assert!(plan.notes.contains(&"not used: layer PLATES: ATTRIB, 2 of them".into()), "{:?}", plan.notes);
+}
+
+#[test]
+fn texts_of_what_else_is_drawn_name_no_plate() {
+    let entities = [
+        "0 CIRCLE,8 SHELL,10 0,20 0,40 6,",
+        "0 LINE,8 PLATES,10 -6,20 0,11 6,21 0,",
+        "0 LWPOLYLINE,8 MISSED,90 4,70 1,10 1,20 1,10 2,20 1,10 2,20 2,10 1,20 2,0 TEXT,8 MISSED,10 1.5,20 1.5,1 4,",
+        "0 TEXT,8 NUMBERS,10 0,20 -2,1 S-1",
+    ];
+    let plan = read_text(",9 $INSUNITS,70 6", "", &entities.concat(), &plain()).unwrap();
+    let names: Vec<&str> = plates(&plan).into_iter().map(|(name, _)| name).collect();
+    assert!(names.contains(&"S-1") && names.contains(&"P-01") && names.len() == 2, "{names:?}");
+    assert!(plan.notes.contains(&"not used: layer MISSED: TEXT, 1 of them".into()), "{:?}", plan.notes);
+}
+
+/// The four sides of a tank of 10 by 8 m in millimetres, with a gap after the first.
+const GAPPED: &str = "0 LINE,8 SHELL,10 0,20 0,11 9980,21 0,0 LINE,8 SHELL,10 10000,20 0,11 10000,21 8000,\
+                      0 LINE,8 SHELL,10 10000,20 8000,11 0,21 8000,0 LINE,8 SHELL,10 0,20 8000,11 0,21 0,";
+
+#[test]
+fn an_outline_with_a_gap_is_named_with_its_place() {
+    let told = "4 lines are nearly an outline of 10.000 m across: one gap of 20.0 mm, from (9980, 0) to (10000, 0) in the \
+                drawing; join the ends there";
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 4", "", GAPPED, &plain()).unwrap_err(),
+        format!("d.dxf: no shell on a layer SHELL: {told}; layers: `SHELL` (4 LINE)")
+    );
+    // A column drawn on the same layer is no shell.
+    let with_column = format!("{GAPPED}0 CIRCLE,8 SHELL,10 3000,20 3000,40 1000");
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 4", "", &with_column, &plain()).unwrap_err(),
+        format!(
+            "d.dxf: no shell on a layer SHELL: the largest closed outline is 2.000 m across, but {told}; layers: `SHELL` \
+             (1 CIRCLE, 4 LINE)"
+        )
+    );
+    let columns = "0 CIRCLE,8 SHELL,10 0,20 0,40 6,0 LWPOLYLINE,8 COLUMNS,90 4,70 0,10 1,20 1,10 2,20 1,10 2,20 2,10 1.05,20 1";
+    let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
+    assert!(
+        plan.notes.iter().any(|note| note
+            .starts_with("Columns: 1 lines that close no outline are left out; 1 line is nearly")
+            && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
+        "{:?}",
+        plan.notes
+    );
+}
+
+#[test]
+fn an_outline_that_crosses_itself_is_named_with_its_place() {
+    let crossed = "0 LWPOLYLINE,8 SHELL,90 4,70 1,10 0,20 0,10 10,20 8,10 10,20 0,10 0,20 8";
+    assert_eq!(
+        read_text(",9 $INSUNITS,70 6", "", crossed, &plain()).unwrap_err(),
+        "d.dxf: no shell on a layer SHELL: the outline crosses itself at (5, 4) in the drawing; draw it once around; layers: \
+         `SHELL` (1 LWPOLYLINE)"
+    );
+}
+
+#[test]
+fn a_layer_that_was_named_is_not_asked_for_again() {
+    let line = "0 LINE,8 0,10 0,20 0,11 1,21 1";
+    assert_eq!(
+        with_layers(&[(Role::Shell, "0")], line).unwrap_err(),
+        "d.dxf: no circle and no closed outline on the layer 0 that is named for SHELL; draw the inner side of the shell \
+         there, or name another layer; layers: `0` (1 LINE)"
+    );
+    let plan = with_layers(
+        &[(Role::Columns, "POSTS")],
+        &format!("0 CIRCLE,8 SHELL,10 0,20 0,40 6,{}", line.replace("8 0", "8 POSTS")),
+    );
+    let notes = plan.unwrap().notes;
+    assert!(
+        notes.iter().any(|note| note.contains("the layers that are named for them hold none: POSTS")),
+        "{notes:?}"
+    );
+}
+
+#[test]
+fn names_of_any_letters_are_written_as_toml_has_them() {
+    let names = [
+        "St\u{a0}1",
+        "Stu\u{308}tze",
+        "a\u{200b}b",
+        "so\u{ad}ft",
+        "\u{2764}\u{fe0f}",
+        "\u{915}\u{94d}\u{937}",
+        "say \"x\"",
+        "back\\slash",
+    ];
+    let disc = |name: &&str| Named {
+        name: (*name).to_owned(),
+        shape: Shape::Disc { center: Point::origin(), radius_m: 0.3 },
+    };
+    let vertices_m = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let plate = |name: &&str| world::DrawnPlate { name: (*name).to_owned(), vertices_m: vertices_m.clone() };
+    let plan = FloorPlan {
+        boundary: Boundary::Circle { radius_m: 6.0 },
+        obstacles: names.iter().map(disc).collect(),
+        no_go: Vec::new(),
+        plates: names.iter().map(plate).collect(),
+        notes: vec!["a\nb".into()],
+    };
+    let text = plan.scenario("t", "plan \"of\" 1\\2.dxf", "tether-safe");
+    let read: toml::Table = text.parse().unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let of = |list: &toml::Value| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(of(&read["obstacles"]), names);
+    assert_eq!(of(&read["plates"]["outlines"]), names);
+    assert_eq!(read["about"].as_str(), Some("The floor of plan \"of\" 1\\2.dxf"));
 }

@@ -6,7 +6,13 @@ use rand_pcg::Pcg64Mcg;
 use world::{Obstacle, ObstacleId, ObstacleMap, Shape, Vector, shape::ring_area_m2};
 
 fn map_of(columns: usize, is_free: Vec<bool>) -> OccupancyMap {
-    OccupancyMap { columns, is_free, cell_m: 0.5, tank_from_map: Isometry2::new(Vector::new(-3.0, 2.0), 0.3) }
+    OccupancyMap {
+        columns,
+        is_free,
+        cell_m: 0.5,
+        tank_from_map: Isometry2::new(Vector::new(-3.0, 2.0), 0.3),
+        unseen: None,
+    }
 }
 
 fn drawn(rows: &[&str]) -> OccupancyMap {

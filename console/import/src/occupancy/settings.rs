@@ -6,6 +6,9 @@ use serde::Deserialize;
 use serde_saphyr::Spanned;
 use std::{f64::consts::TAU, path::Path};
 
+/// The grey that map savers write for cells that nobody has seen.
+const UNSEEN: u8 = 205;
+
 /// The keys of the file, as they are written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,7 +65,8 @@ pub(super) struct Settings {
     mode: Mode,
     negate: bool,
     occupied: f64,
-    free: f64,
+    /// Occupancy up to which a cell is free.
+    pub free: f64,
 }
 
 impl Settings {
@@ -144,6 +148,25 @@ impl Settings {
 
     /// Whether a pixel is known to be free.
     pub(super) fn is_free(&self, pixel: Pixel) -> bool {
+        !self.is_unseen(pixel) && self.is_bright(pixel)
+    }
+
+    /// Whether a pixel has the grey that map savers write for what nobody has seen, and the thresholds take it for floor.
+    pub(super) fn is_unseen_but_bright(&self, pixel: Pixel) -> bool {
+        self.is_unseen(pixel) && self.is_bright(pixel)
+    }
+
+    /// The grey of cells that nobody has seen, as map savers write it; none where percentages are written.
+    pub(super) fn unseen_grey(&self) -> Option<u8> {
+        (self.mode != Mode::Raw).then_some(if self.negate { u8::MAX - UNSEEN } else { UNSEEN })
+    }
+
+    fn is_unseen(&self, pixel: Pixel) -> bool {
+        self.unseen_grey() == Some(pixel.grey)
+    }
+
+    /// Whether a pixel is free by the thresholds alone.
+    fn is_bright(&self, pixel: Pixel) -> bool {
         let bright = f64::from(pixel.grey) / 255.0;
         let occupancy = if self.negate { bright } else { 1.0 - bright };
         match self.mode {

@@ -12,8 +12,8 @@ pub(super) struct Answers {
 
 impl Answers {
     /// These orders were sent.
-    pub(super) fn await_for(&mut self, sent: &[Order]) {
-        self.awaited.extend_from_slice(sent);
+    pub(super) fn await_for<'a>(&mut self, sent: impl IntoIterator<Item = &'a Order>) {
+        self.awaited.extend(sent.into_iter().cloned());
     }
 
     /// Whether an order is not answered yet.

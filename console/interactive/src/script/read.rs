@@ -1,7 +1,10 @@
 //! The lines of a script.
 
 use super::{Condition, Step};
-use tui::{Key, actions::duration_s};
+use tui::{
+    Key,
+    actions::{duration_s, keymap::Keymap},
+};
 
 /// Time that a wait takes at most if the script does not say, seconds.
 const WITHIN_S: f64 = 60.0;
@@ -13,12 +16,12 @@ type Numbered<T> = (usize, T);
 ///
 /// # Errors
 /// Each line that is none, by its number, and what is wrong with it.
-pub(super) fn steps(text: &str) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
+pub(super) fn steps(text: &str, keys: &Keymap) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let (mut steps, mut wrong) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        match step(line) {
+        match step(line, keys) {
             Ok(step) => steps.push((number, step)),
             Err(what) => wrong.push((number, what)),
         }
@@ -26,7 +29,7 @@ pub(super) fn steps(text: &str) -> Result<Vec<Numbered<Step>>, Vec<Numbered<Stri
     if wrong.is_empty() { Ok(steps) } else { Err(wrong) }
 }
 
-fn step(line: &str) -> Result<Step, String> {
+fn step(line: &str, keys: &Keymap) -> Result<Step, String> {
     let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
     let rest = rest.trim();
     match word {
@@ -36,7 +39,7 @@ fn step(line: &str) -> Result<Step, String> {
         "size" => size(rest).map(Step::Size),
         "picture" if rest.is_empty() => Err("write picture FILE.svg".into()),
         "picture" => Ok(Step::Picture(rest.into())),
-        _ => Ok(Step::Command(line.to_owned())),
+        _ => tui::check_line(keys, line).map(|()| Step::Command(line.to_owned())),
     }
 }
 
@@ -76,13 +79,24 @@ mod tests {
             (10, Step::Size((80, 24))),
             (11, Step::Picture("a b.svg".into())),
         ];
-        assert_eq!(steps(text), Ok(expected));
+        assert_eq!(steps(text, &Keymap::default()), Ok(expected));
     }
 
     #[test]
     fn every_wrong_line_is_named() {
-        let text = "wait for it\nassert phase walking\nkey hyper\nwait until alarm within soon\nassert coverage 95\nsize 9x9\npicture\n";
-        let lines: Vec<usize> = steps(text).expect_err("faults").into_iter().map(|(line, _)| line).collect();
-        assert_eq!(lines, [1, 2, 3, 4, 5, 6, 7]);
+        let text = "wait for it\nassert phase walking\nkey hyper\nwait until alarm within soon\nassert coverage 95\nsize 9x9\npicture\n\
+                    bogus command\nspeed fast\nset gain\ninject S1 dead\nhold it\n";
+        let wrong = steps(text, &Keymap::default()).expect_err("faults");
+        let lines: Vec<usize> = wrong.iter().map(|(line, _)| *line).collect();
+        assert_eq!(lines, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], "{wrong:?}");
+    }
+
+    #[test]
+    fn what_only_the_run_decides_is_left_to_it() {
+        let text = "planner mine\nset gain=2\nexclude S9\nopen tank\nverify latest\nshelve 15m noise\nstop\n";
+        let mut keys = Keymap::default();
+        keys.aliases.insert("stop".to_owned(), "hold".to_owned());
+        assert_eq!(steps(text, &keys).map(|steps| steps.len()), Ok(7));
+        assert_eq!(steps("stop now\n", &keys).map_err(|wrong| wrong[0].0), Err(1));
     }
 }

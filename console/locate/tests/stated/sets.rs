@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
-use std::fmt::Write as _;
+use std::{f64::consts::TAU, fmt::Write as _};
 use world::{Point, Pose, Vector};
 
 /// Metres per second at which sound runs.
@@ -91,7 +91,7 @@ impl Draw {
         let radius_m = rng.random_range(5.0..20.0);
         let n: u32 = rng.random_range(6..=8);
         let on_line = matches!(kind, Kind::Line | Kind::LineWrongStart);
-        let turn: f64 = rng.random_range(0.0..6.28);
+        let turn: f64 = rng.random_range(0.0..TAU);
         let stations = if on_line {
             let along = Vector::new(turn.cos(), turn.sin());
             let across = Vector::new(-along.y, along.x);
@@ -106,7 +106,7 @@ impl Draw {
                 .collect()
         } else {
             (0..n)
-                .map(|k| turn + 6.283 * (f64::from(k) + rng.random_range(-0.2..0.2)) / f64::from(n))
+                .map(|k| turn + TAU * (f64::from(k) + rng.random_range(-0.2..0.2)) / f64::from(n))
                 .map(|angle| Point::new(radius_m * angle.cos(), radius_m * angle.sin()) * 0.999)
                 .collect()
         };
@@ -152,7 +152,7 @@ impl Draw {
 
     /// A drive, a pose for each tenth of a second, that keeps inside.
     fn drive(&mut self, ticks: u32, speed_m_s: f64) -> Vec<(Pose, f64)> {
-        let at = self.rng.random_range(0.0..6.28_f64);
+        let at = self.rng.random_range(0.0..TAU);
         let from_m = 0.5 * self.radius_m;
         let mut pose = Pose::new(from_m * at.cos(), from_m * at.sin(), at + 1.5);
         let mut turn_rad = 0.0;
@@ -193,7 +193,7 @@ impl Set {
         }
         let said = match kind {
             Kind::LineWrongStart => {
-                let turned = draw.rng.random_range(0.0..6.28_f64);
+                let turned = draw.rng.random_range(0.0..TAU);
                 let by_m = draw.rng.random_range(0.5..2.0);
                 let off = Vector::new(turned.cos(), turned.sin()) * by_m;
                 Pose { position: start.position + off, ..start }

@@ -11,6 +11,7 @@ use crate::{
     config::TaskConfig,
     event::EventKind,
     phase::{Gait, Hold, HoldReason, Phase, Resumes},
+    plan_extent::check_extent,
     planner::{Cause, During, Fault, PlannerInfo},
 };
 use planner_api::{Code, Plan};
@@ -53,6 +54,7 @@ impl Mission {
             (PendingKind::Reconfigure(choice), Given::Reconfigured) => {
                 self.pass_on(said, &choice.id);
                 self.active.choice = choice.clone();
+                self.active.first_plan = None;
                 self.happened.push(EventKind::ParametersChanged { ask: Some(ask), choice });
             }
             (PendingKind::Plan(asked), Given::Plan(plan)) => self.plan_arrived(ask, asked, plan, said),
@@ -104,7 +106,7 @@ impl Mission {
     pub(super) fn fitting(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
         let id = &slot.choice.id;
         if let Given::Plan(plan) = &given
-            && let Err(what) = self.check_extent(plan)
+            && let Err(what) = check_extent(plan, &self.chart.world().boundary, self.config.lane_m())
         {
             let (message, partial) = (format!("planner {id} {what}"), Vec::new());
             let plugin_sha256 = slot.info.as_ref().map(|info| info.sha256.clone());
@@ -137,6 +139,11 @@ impl Mission {
         self.pass_on(said, &id);
         let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
         self.happened.extend(events);
+        let may_retry =
+            objection.as_ref().is_some_and(|why| why.by_tether) && self.may_try_from_anchor(&asked);
+        if !may_retry {
+            self.show_first_plan(&plan, objection.as_ref());
+        }
         match objection {
             None => {
                 let is_repair = asked.is_repair && self.task.keeps_to(&plan);
@@ -146,7 +153,7 @@ impl Mission {
                     self.want_better_plan();
                 }
             }
-            Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
+            Some(_) if may_retry => {
                 self.active.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
             }
             Some(Objection { by_tether, message }) => {
@@ -179,7 +186,7 @@ impl Mission {
 
     fn fail_active(&mut self, Failed { ask, kind, fault, said }: Failed) {
         self.pass_on(said, &self.active.choice.id.clone());
-        let (message, cause) = (fault.message.clone(), fault.cause);
+        let (message, cause, is_no_way) = (fault.message.clone(), fault.cause, fault.is_no_way());
         self.note_fault(ask, fault, self.active.info.as_ref().map(|info| info.sha256.clone()));
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
         match kind {
@@ -188,7 +195,10 @@ impl Mission {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
                 // A planner that was ordered meanwhile stays ordered.
                 if unsupported && self.candidate.is_none() && !self.is_running() {
+                    let prepare = self.active.prepare;
                     self.choose(choice, planner_api::Reason::Operator);
+                    // A plan that was ordered before the start stays ordered.
+                    self.active.prepare = prepare.max(self.active.prepare);
                 }
                 return;
             }
@@ -199,13 +209,20 @@ impl Mission {
                 if says_no => {}
             _ => self.close_active(),
         }
+        if self.phase == Phase::Waiting {
+            self.active.first_plan = Some(Err(message.clone()));
+        }
         if !self.active.has_plan() {
             // The operator agreed to the plan that was refused, not to one of later.
             self.allow_uncertified(
                 self.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
             );
         }
-        self.active_is_no_use(HoldReason::PlannerFault { message });
+        self.active_is_no_use(if is_no_way {
+            HoldReason::Stuck { message }
+        } else {
+            HoldReason::PlannerFault { message }
+        });
     }
 
     /// The active planner cannot drive the robot on.

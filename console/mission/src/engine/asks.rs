@@ -85,7 +85,7 @@ impl Mission {
             return self.ask_for_snapshot();
         }
         if let PlanState::Due { reason, from_anchor } = &self.active.plan {
-            if !is_running && self.active.prepare < Prepare::Plan {
+            if !is_running && self.active.prepare < Prepare::Plan && !self.is_seen_plan_outdated() {
                 return None;
             }
             let keep = self.active.keep.clone().or_else(|| under_way(&self.task, reason));

@@ -22,7 +22,8 @@ impl Mission {
         }
     }
 
-    /// After a fault: the fallback takes over, if there is one; with nobody there to help the mission ends.
+    /// After a fault, or where the planner sees no way: the fallback takes over, if there is one; with nobody there to help the
+    /// mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
         let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
         if *resumes == Resumes::ByFallback {
@@ -37,14 +38,16 @@ impl Mission {
                 self.replace_active(slot);
             }
         } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
-            let (HoldReason::PlannerFault { message }
-            | HoldReason::PlanRefused { message }
-            | HoldReason::PlannerSilent { message }) = by
-            else {
-                return;
+            let (outcome, message) = match by {
+                // A planner that says that no way exists has not failed.
+                HoldReason::Stuck { message } => (Outcome::Stuck, message),
+                HoldReason::PlannerFault { message }
+                | HoldReason::PlanRefused { message }
+                | HoldReason::PlannerSilent { message } => (Outcome::Aborted, message),
+                _ => return,
             };
             let reason = format!("unattended hold: {message}");
-            self.end(Outcome::Aborted, reason);
+            self.end(outcome, reason);
         }
     }
 

@@ -3,13 +3,16 @@
 use super::{
     Mission,
     candidate::NEAR_PLAN_M,
+    planning::Objection,
     slot::{LeftPlan, PlannerSlot, Prepare},
 };
 use crate::{
     event::EventKind,
     order::Order,
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
+    plan_id::{PlanId, PlanSeen},
     planner::{ParamValue, PlannerChoice},
+    standing::Readiness,
 };
 use planner_api::{Plan, Reason};
 
@@ -24,11 +27,11 @@ impl Mission {
         self.happened.push(EventKind::Ordered { order: order.clone() });
         match order {
             Order::Plan => self.plan_ahead(),
-            Order::Start => self.start(),
-            Order::NoteChecks(_) | Order::NoteOutlooks(_) => {}
+            Order::Start | Order::StartPlan(_) => self.start(),
+            Order::NoteChecks(_) | Order::NoteOutlooks(_) | Order::Note(_) => {}
             // The simulator obeys it.
             Order::Inject(_) => self.stay_held(),
-            Order::UseStation { station, used } => {
+            Order::UseStation { station, used, .. } => {
                 self.locator.use_station(*station, *used);
                 self.stay_held();
             }
@@ -74,6 +77,45 @@ impl Mission {
     fn plan_ahead(&mut self) {
         self.active.want_plan(Reason::Start);
         self.active.prepare = Prepare::Plan;
+    }
+
+    /// What a start would begin with.
+    pub(super) fn readiness(&self) -> Readiness<'_> {
+        let slot = &self.active;
+        if !self.config.start_names_plan {
+            return Readiness::Unseen;
+        }
+        if slot.is_being_prepared() || slot.prepare > Prepare::No || slot.newest_change().is_some() {
+            return Readiness::Preparing;
+        }
+        match &slot.first_plan {
+            None => Readiness::NoPlan,
+            Some(Err(why)) => Readiness::Failed(why),
+            Some(Ok(plan)) if slot.has_plan() => Readiness::Plan(*plan),
+            // It is made again, because something was found in its way.
+            Some(Ok(_)) => Readiness::Preparing,
+        }
+    }
+
+    /// Whether the plan that the operator saw before the start is not the one to be run any more.
+    pub(super) fn is_seen_plan_outdated(&self) -> bool {
+        let is_seen = matches!(self.active.first_plan, Some(Ok(_)));
+        self.phase == Phase::Waiting && is_seen && !self.active.has_plan()
+    }
+
+    /// Keeps which plan the operator sees before the start, or why there is none.
+    pub(super) fn show_first_plan(&mut self, plan: &Plan, objection: Option<&Objection>) {
+        if self.phase != Phase::Waiting || !self.config.start_names_plan {
+            return;
+        }
+        let Plan { path, legs, cuts, complete, .. } = plan;
+        let seen = PlanSeen { path, legs, cuts, complete: *complete };
+        let slot = &self.active;
+        let id = slot.info.as_ref().map(|info| PlanId::of(&slot.choice, info, seen));
+        self.active.first_plan = match objection {
+            None => id.map(Ok),
+            Some(objection) => Some(Err(objection.message.clone())),
+        };
     }
 
     fn start(&mut self) {

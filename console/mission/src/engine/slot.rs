@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     ask::{Ask, AskId, Said, Site, What, WorkerId},
+    plan_id::PlanId,
     planner::{PlannerChoice, PlannerInfo},
 };
 use geometry::PathFollower;
@@ -24,6 +25,8 @@ pub(super) struct PlannerSlot {
     /// Whether it is loaded, configured and has not failed since.
     pub is_ready: bool,
     pub plan: PlanState,
+    /// The plan that it made before the start, or why that may not be run; `None` where nobody looks at it.
+    pub first_plan: Option<Result<PlanId, String>>,
     /// A plan of its own that it is to keep to, other than the one that is flown.
     pub keep: Option<Plan>,
     /// How far it is to be prepared while it does not drive.

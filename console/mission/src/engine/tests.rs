@@ -5,6 +5,7 @@ mod better_plan;
 mod caught;
 mod covering;
 mod shadow;
+mod start;
 mod stopping;
 mod tethered;
 mod under_way;
@@ -61,6 +62,8 @@ struct Straight {
     scans_less_from_plan: Option<usize>,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
+    /// It proves that no way leads to the goal.
+    sees_no_way: bool,
 }
 
 impl Straight {
@@ -83,6 +86,9 @@ impl Straight {
         let result = match what {
             What::Open { choice, .. } => self.open(&choice.id).map(|info| Given::Opened(Box::new(info))),
             What::Reconfigure(_) => self.reconfigure().map(|()| Given::Reconfigured),
+            What::Plan(_) if self.sees_no_way => {
+                Err(self.fault(During::Plan, Cause::Planner(api::Code::NoPath)))
+            }
             What::Plan(request) => Ok(Given::Plan(self.plan(&request))),
             What::Step(sensed) if id.worker.0 == 2 && self.second_fails_at_tick == Some(sensed.tick) => {
                 Err(self.fault(During::Step, Cause::Died))
@@ -232,6 +238,7 @@ fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        start_names_plan: false,
         better_plan: BetterPlan::Offer,
     }
 }
@@ -581,6 +588,21 @@ fn every_exclusion_is_reported_with_its_reason() {
     let late = |kind: &EventKind| matches!(kind, EventKind::StationRejected { station: StationId(0), reason: positioning::Exclusion::Residual { residual_m, .. } } if *residual_m > 1.0);
     assert_eq!(count(&flight, late), 1);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::StationRestored { .. })), 1);
+}
+
+#[test]
+fn a_planner_that_sees_no_way_has_not_failed() {
+    for attended in [true, false] {
+        let mut flight = Flight::new(MissionConfig { attended, ..config() });
+        flight.planner.sees_no_way = true;
+        flight.tick(&[Order::Start]);
+        flight.fly(3);
+        if attended {
+            assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
+        } else {
+            assert_eq!(flight.ended(), Some(Outcome::Stuck));
+        }
+    }
 }
 
 #[test]

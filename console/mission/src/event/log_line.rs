@@ -5,7 +5,7 @@ use super::{
     severity::{self, Severity},
 };
 use crate::{
-    order::{Injection, Order, RangeFault, StepTo},
+    order::{Injection, Note, Noted, Order, RangeFault, StepTo},
     phase::Outcome,
 };
 use planner_api::LogLevel;
@@ -262,6 +262,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::StepTo(StepTo::LaneEnd) => "step to the end of the lane".into(),
         Order::StepTo(StepTo::Event) => "step to the next event".into(),
         Order::Start => "start".into(),
+        Order::StartPlan(plan) => format!("start of plan {}", plan.short()),
         Order::NoteOutlooks(outlooks) => {
             let planners: Vec<&str> = outlooks.iter().map(|outlook| outlook.choice.id.as_str()).collect();
             format!("forecasts compared: {}", planners.join(", "))
@@ -281,10 +282,28 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
         Order::SetParameter { key, value } => format!("set {key} = {value}"),
         Order::DrawZone(_) => "draw no-go zone".into(),
         Order::Inject(injection) => injection_text(injection, stations),
-        Order::UseStation { station, used } => {
-            let word = if *used { "use" } else { "exclude" };
-            format!("{word} {}", station_text(*station, stations))
+        Order::UseStation { station, used, by } => {
+            let word = if *used { "include" } else { "exclude" };
+            format!("{word} {}{}", station_text(*station, stations), by_text(by.as_ref()))
         }
+        Order::Note(note) => note_text(note),
+    }
+}
+
+/// Who did something, as the end of what was done.
+fn by_text(by: Option<&String>) -> String {
+    by.map_or_else(String::new, |name| format!(" by {name}"))
+}
+
+fn note_text(Note { what, by }: &Note) -> String {
+    let by = by_text(by.as_ref());
+    match what {
+        Noted::Acknowledged { text, .. } => format!("alarm acknowledged{by}: {text}"),
+        Noted::Shelved { text, for_s, reason, .. } => {
+            format!("alarm shelved{by} for {} min ({reason}): {text}", (for_s / 6.0).round() / 10.0)
+        }
+        Noted::Unshelved { text, .. } => format!("alarm taken back from the shelf{by}: {text}"),
+        Noted::PresetTaken { preset, planner } => format!("preset {preset} of {planner} taken{by}"),
     }
 }
 
@@ -293,7 +312,7 @@ fn injection_text(Injection { station, fault, for_s, by }: &Injection, stations:
         RangeFault::Dead => "dead".to_owned(),
         RangeFault::Offset(metres) => format!("ranges {metres} m too long"),
     };
-    let by = by.as_ref().map_or_else(String::new, |name| format!(" by {name}"));
+    let by = by_text(by.as_ref());
     format!("fault injected{by}: {} {fault} for {for_s} s", station_text(*station, stations))
 }
 

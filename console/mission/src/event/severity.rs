@@ -22,10 +22,11 @@ pub enum Severity {
 }
 
 impl Fault {
-    /// How much it asks of the operator: what came too late may be the machine's doing, and what was refused has not
-    /// driven the robot.
+    /// How much it asks of the operator: what came too late may be the machine's doing, what was refused has not driven the
+    /// robot, and that no way exists is an answer.
     pub fn severity(&self) -> Severity {
         match self.cause {
+            _ if self.is_no_way() => Severity::Warn,
             Cause::Late | Cause::Starved | Cause::Refused => Severity::Warn,
             _ => Severity::Crit,
         }

@@ -13,6 +13,7 @@ fn limits(motion: Motion, v: f64, w: f64, acceleration_m_per_s2: f64, tick_s: f6
         sensing_range_m: 4.0,
         acceleration_m_per_s2,
         tick_s,
+        amphibious: None,
     }
 }
 

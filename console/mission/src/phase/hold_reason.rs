@@ -23,9 +23,9 @@ pub enum HoldReason {
         /// Which, as a sentence.
         message: String,
     },
-    /// The robot gets nowhere.
+    /// The robot gets nowhere, or the planner says that no way leads on.
     Stuck {
-        /// Where, as a sentence.
+        /// Where or why, as a sentence.
         message: String,
     },
     /// The cable has reached a limit.

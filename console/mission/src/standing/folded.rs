@@ -1,12 +1,16 @@
 //! The standing of a mission, folded from its events.
 
-use super::{PositionTrust, Standing};
+mod ready;
+
+use super::{PositionTrust, Readiness, Standing};
 use crate::{
     event::{EventKind, ShadowTally},
     order::Order,
     phase::{Gait, Hold, Phase},
+    plan_id::PlanId,
     planner::PlannerInfo,
 };
+use ready::Ready;
 use serde::{Deserialize, Serialize};
 
 /// The standing of a mission as it follows from its events, for those who see nothing else of the mission.
@@ -28,14 +32,17 @@ pub struct FoldedStanding {
     /// Whether a better plan is offered and not taken yet.
     #[serde(default)]
     has_offer: bool,
+    /// What a start would begin with, and who plans.
+    #[serde(default)]
+    ready: Ready,
 }
 
 impl FoldedStanding {
     /// Takes in one event; they must come in the order of the journal.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
-            EventKind::RunOpened(_) => *self = Self::default(),
-            EventKind::Ordered { order: Order::Start } => self.phase = Phase::Running(Gait::Steady),
+            EventKind::RunOpened(run) => *self = Self { ready: Ready::of(run), ..Self::default() },
+            EventKind::Ordered { order } if order.is_start() => self.phase = Phase::Running(Gait::Steady),
             EventKind::Ordered { order } => {
                 if matches!(order, Order::Shadow(_)) {
                     self.shadow = Some(ShadowTally::default());
@@ -67,6 +74,17 @@ impl FoldedStanding {
             _ => {}
         }
         self.shadow.iter_mut().for_each(|shadow| shadow.apply(event));
+        if self.phase == Phase::Waiting {
+            self.ready.apply(event, self.planner.as_deref());
+        }
+    }
+
+    /// The plan that a start would begin with, if it is ready.
+    pub fn ready_plan(&self) -> Option<PlanId> {
+        match self.ready.readiness() {
+            Readiness::Plan(plan) => Some(plan),
+            _ => None,
+        }
     }
 
     /// Everything that decides whether an order is accepted now.
@@ -82,6 +100,7 @@ impl FoldedStanding {
             planner: self.planner.as_deref(),
             shadow: self.shadow,
             has_offer: self.has_offer,
+            readiness: self.ready.readiness(),
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    order::{Injection, RangeFault, StepTo},
+    order::{Injection, Note, Noted, RangeFault, StepTo},
     phase::{Gait, Outcome, Resumes},
     planner::{ParamValue, Parameters, PlannerChoice},
 };
@@ -40,13 +40,24 @@ fn orders() -> Vec<Order> {
         Order::TakePlan,
         Order::SetParameter { key: "gain".into(), value: ParamValue::Flag(true) },
         Order::Inject(Injection { station: StationId(1), fault: RangeFault::Dead, for_s: 20.0, by: None }),
-        Order::UseStation { station: StationId(1), used: false },
+        Order::UseStation { station: StationId(1), used: false, by: None },
+        Order::Note(Note {
+            what: Noted::Acknowledged { alarm: "no_fix".into(), text: "no fix".into() },
+            by: None,
+        }),
     ]
 }
 
 fn standing(phase: &Phase, position: PositionTrust) -> Standing<'_> {
     let shadow = ShadowTally { answered: 40, in_row: READY_AFTER, missed: 2 };
-    Standing { phase, position, planner: None, shadow: Some(shadow), has_offer: true }
+    Standing {
+        phase,
+        position,
+        planner: None,
+        shadow: Some(shadow),
+        has_offer: true,
+        readiness: Readiness::Unseen,
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Failures as sentences for the operator. They go into the journal: no time, no process id, no address.
 
-use crate::supervisor::Failure;
+use crate::supervisor::{Failure, overweight};
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
 use mission::planner::{Cause, During, Fault};
 use nalgebra::Point2;
@@ -9,7 +9,7 @@ use std::fmt;
 
 /// What a planner was doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Phase {
+pub(crate) enum Phase {
     Load,
     Configure,
     Plan,
@@ -58,7 +58,7 @@ pub(super) fn bad_output(planner: &str, phase: Phase, what: &str) -> Fault {
 }
 
 /// A failure as the fault of a planner.
-pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
+pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
     let fault = |cause, message| new(planner, phase.during(), cause, message);
     match failure {
         Failure::Planner(refusal) => of_refusal(refusal, planner, phase),
@@ -88,6 +88,10 @@ pub(super) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
             format!(
                 "planner {planner} got so little of the processor that it did not finish {phase}; its process was killed"
             ),
+        ),
+        Failure::Overweight(limit) => fault(
+            Cause::Died,
+            format!("planner {planner} {} during {phase}; its process was killed", overweight(limit)),
         ),
         Failure::Protocol => fault(
             Cause::Protocol,

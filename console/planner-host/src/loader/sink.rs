@@ -4,7 +4,6 @@ use crate::Progress;
 use crate::wire::answer::{
     MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS, Said, log_level,
 };
-use crate::wire::body;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::LogLevel;

@@ -27,9 +27,7 @@ const FREE: &[i64] = &[
     libc::SYS_fstat,
     libc::SYS_lseek,
     libc::SYS_pread64,
-    libc::SYS_mprotect,
     libc::SYS_munmap,
-    libc::SYS_mremap,
     libc::SYS_brk,
     libc::SYS_futex,
     libc::SYS_set_robust_list,
@@ -111,10 +109,16 @@ fn rules() -> Result<Rules, String> {
     rules.insert(libc::SYS_prctl, only(0, &names.map(|name| name as u64))?);
     let flags = [libc::F_GETFD, libc::F_SETFD, libc::F_GETFL];
     rules.insert(libc::SYS_fcntl, only(1, &flags.map(|flag| flag as u64))?);
-    // Memory that is shared, or that grows by itself, does not count towards the limit of memory.
-    let counted = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64;
-    let private = argument(3, SeccompCmpOp::MaskedEq(counted), libc::MAP_PRIVATE as u64)?;
-    rules.insert(libc::SYS_mmap, vec![rule(vec![private])?]);
+    // What counts towards the limit of memory: what is private, does not grow by itself and can be written.
+    let kinds = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64
+        | (libc::MAP_LOCKED | libc::MAP_HUGETLB) as u64;
+    let private = argument(3, SeccompCmpOp::MaskedEq(kinds), libc::MAP_PRIVATE as u64)?;
+    let writable = || {
+        let write = libc::PROT_WRITE as u64;
+        argument(2, SeccompCmpOp::MaskedEq(write), write)
+    };
+    rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
+    rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
     // All but taking pages of the machine out of use, which who is privileged may do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);

@@ -47,6 +47,25 @@ pub(crate) fn verdict(call: &Call, _: super::Stage, _: &mut String) -> Verdict {
     match *call {}
 }
 
+/// Address space beside the memory of a planner, bytes.
+pub(crate) const MAY_RESERVE: u64 = 1 << 30;
+/// Memory that a worker may have beside that of its planner, bytes.
+pub(crate) const MAY_HIDE: u64 = 32 << 20;
+
+/// Nothing is known of it.
+#[derive(Default)]
+pub(crate) struct Uncounted;
+
+impl Uncounted {
+    pub(crate) fn of(_: u64) -> Self {
+        Self
+    }
+
+    pub(crate) fn verdict(&mut self, call: &Call) -> Option<Verdict> {
+        match *call {}
+    }
+}
+
 pub(crate) fn ends_loading(call: &Call) -> bool {
     match *call {}
 }

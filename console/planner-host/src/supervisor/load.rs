@@ -24,11 +24,23 @@ pub(super) fn memory_of(pid: Pid) -> Option<Memory> {
     memory_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
 }
 
+/// Memory that a process alone has, bytes: what it has written to, and the tables of its pages. Files that it shares with
+/// others are not part of it.
+pub(super) fn weight_of(pid: Pid) -> Option<u64> {
+    weight_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
+}
+
+fn weight_in(status: &str) -> Option<u64> {
+    Some(bytes_in(status, "RssAnon:")? + bytes_in(status, "VmPTE:").unwrap_or_default())
+}
+
+fn bytes_in(status: &str, key: &str) -> Option<u64> {
+    let value = status.lines().find_map(|line| line.strip_prefix(key))?;
+    Some(value.strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}
+
 fn memory_in(status: &str) -> Option<Memory> {
-    let bytes = |key: &str| {
-        let value = status.lines().find_map(|line| line.strip_prefix(key))?;
-        Some(value.strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
-    };
+    let bytes = |key: &str| bytes_in(status, key);
     let threads = status.lines().find_map(|line| line.strip_prefix("Threads:"))?.trim().parse().ok()?;
     Some(Memory { now_bytes: bytes("VmRSS:")?, most_bytes: bytes("VmHWM:")?, threads })
 }
@@ -72,6 +84,12 @@ mod tests {
         let status = "Name:\tworker\nVmHWM:\t    5600 kB\nVmRSS:\t    5000 kB\nThreads:\t3\n";
         let memory = Memory { now_bytes: 5000 << 10, most_bytes: 5600 << 10, threads: 3 };
         assert_eq!((memory_in(status), memory_in("Name:\tworker\n")), (Some(memory), None));
+    }
+
+    #[test]
+    fn what_a_process_alone_has_is_what_it_wrote_and_the_tables_for_it() {
+        let status = "VmRSS:\t 9000 kB\nRssAnon:\t  3000 kB\nRssFile:\t 6000 kB\nVmPTE:\t 100 kB\n";
+        assert_eq!((weight_in(status), weight_in("VmRSS:\t9 kB\n")), (Some(3100 << 10), None));
     }
 
     #[cfg(target_os = "linux")]

@@ -3,6 +3,7 @@
 mod end;
 mod exchange;
 mod guard;
+mod scale;
 mod state;
 
 use super::load::memory_of;
@@ -17,6 +18,7 @@ use crate::wire::body::Writer;
 use crate::wire::frame::Incoming;
 use guard::Guard;
 use rustix::event::PollFlags;
+use scale::Scale;
 use state::{Request, State};
 use std::io::{ErrorKind, Write};
 use std::os::fd::AsFd;
@@ -38,6 +40,7 @@ pub(crate) struct Worker {
     n_sent: usize,
     sequence: u32,
     state: State,
+    scale: Scale,
     tape: Tape,
     /// Whether it had nothing to do when it was asked to end.
     leaves_idle: bool,
@@ -46,8 +49,8 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    /// Starts a worker; nothing is loaded yet.
-    pub(crate) fn spawn(command: &WorkerCommand) -> Result<Self, Failure> {
+    /// Starts a worker for a planner that may have so much memory, bytes; nothing is loaded yet.
+    pub(crate) fn spawn(command: &WorkerCommand, memory_limit_bytes: u64) -> Result<Self, Failure> {
         let start = || {
             let (socket, theirs) = UnixStream::pair()?;
             socket.set_nonblocking(true)?;
@@ -56,7 +59,7 @@ impl Worker {
         let (process, socket) = start()
             .map_err(|error: std::io::Error| Failure::Console(no_worker("cannot be started", &error)))?;
         let (incoming, writer) = (Incoming::default(), Writer::default());
-        let guard = Guard::default();
+        let (guard, scale) = (Guard::new(memory_limit_bytes), Scale::new(memory_limit_bytes));
         let (state, tape) = (State::Idle, Tape::default());
         Ok(Self {
             process,
@@ -67,6 +70,7 @@ impl Worker {
             n_sent: 0,
             sequence: 0,
             state,
+            scale,
             tape,
             leaves_idle: false,
             bad_end: None,
@@ -155,6 +159,7 @@ impl Worker {
         self.tape.note(kind, self.writer.frame());
         self.n_sent = 0;
         self.state = State::Busy(Request::new(kind, budget, now));
+        self.scale.begin(now);
         self.send(now);
         Ok(())
     }
@@ -173,6 +178,13 @@ impl Worker {
                 Err(_) => return self.lose(now),
             }
         }
+    }
+
+    /// Ends a busy worker that has too much memory.
+    fn weigh(&mut self, now: Instant) -> Option<Failure> {
+        let is_busy = matches!(self.state, State::Busy(_) | State::Cancelling(..));
+        let limit = self.scale.weigh(self.process.pid(), now).filter(|_| is_busy)?;
+        Some(self.end(Failure::Overweight(limit)))
     }
 
     fn has_sent(&self) -> bool {
@@ -209,8 +221,8 @@ impl Worker {
     pub(super) fn wake_at(&self) -> Option<Instant> {
         let at = match &self.state {
             State::Idle | State::Gone => return None,
-            State::Busy(request) => return Some(request.look_at),
-            State::Cancelling(_, until) => return Some(*until),
+            State::Busy(request) => return Some(request.look_at.min(self.scale.look_at())),
+            State::Cancelling(_, until) => return Some((*until).min(self.scale.look_at())),
             State::Dying(dying) => Some(dying.until),
             State::Leaving(until) => *until,
         };
@@ -232,7 +244,9 @@ impl Worker {
         match &self.state {
             State::Idle | State::Gone => None,
             State::Busy(_) | State::Cancelling(..) => {
-                self.exchange(ready, now, on_progress).or_else(|| self.keep_deadline(now).map(Err))
+                let outcome = self.exchange(ready, now, on_progress);
+                let outcome = outcome.or_else(|| self.weigh(now).map(Err));
+                outcome.or_else(|| self.keep_deadline(now).map(Err))
             }
             State::Dying(_) => self.advance_dying(ready, now).map(Err),
             State::Leaving(until) => {

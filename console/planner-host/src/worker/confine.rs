@@ -1,9 +1,9 @@
 //! The privileges and resources that a worker drops before it loads anything.
 
 use super::Socket;
-use crate::discovery::PluginDirs;
+use crate::discovery::{MOST_BYTES, PluginDirs, too_large_for_machine};
 use crate::loader::File;
-use crate::sandbox::{ClosedOff, PLUGIN_AT, close_all_but, seal};
+use crate::sandbox::{ClosedOff, MAY_RESERVE, PLUGIN_AT, close_all_but, seal};
 use crate::wire::answer::Sealed;
 use crate::wire::body::Writer;
 use crate::wire::{SHUT_DOWN_WITHIN, kind};
@@ -19,7 +19,8 @@ use std::os::unix::net::UnixStream;
 /// The socket lives above the numbers that careless plugins close; there is only this one descriptor of it.
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
-const LARGEST_FILE: u64 = 64 << 20;
+/// Of the first thread; it does not count as memory that can be written.
+const LARGEST_STACK: u64 = 16 << 20;
 
 /// Makes sure, before a worker is started, that it can have its socket and its plugin where they belong, and that the system lets
 /// every plugin in these folders be set aside.
@@ -27,25 +28,21 @@ const LARGEST_FILE: u64 = 64 << 20;
 /// # Errors
 /// A sentence about the limit that is too low.
 pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
+    check_descriptors()?;
+    plugins.candidates().iter().find_map(|path| too_large_for_machine(path)).map_or(Ok(()), Err)
+}
+
+/// Makes sure that a worker can have its socket and its plugin where they belong.
+///
+/// # Errors
+/// A sentence about the limit that is too low.
+pub(crate) fn check_descriptors() -> Result<(), String> {
     let last = SOCKET_AT.max(PLUGIN_AT) as u64;
-    if let Some(limit) = getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
-        return Err(format!(
+    match getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
+        Some(limit) => Err(format!(
             "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
-        ));
-    }
-    let largest = plugins.candidates().into_iter().filter_map(|path| {
-        let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
-        Some((length, path))
-    });
-    // What is beyond the largest file that a worker may write is for its own limit.
-    let largest = largest.filter(|(length, _)| *length <= LARGEST_FILE).max();
-    match (getrlimit(Resource::Fsize).current, largest) {
-        (Some(limit), Some((length, path))) if limit < length => Err(format!(
-            "the system lets no file grow beyond {limit} bytes, and {} has {length}: `ulimit -f {}`",
-            path.display(),
-            LARGEST_FILE / 1024
         )),
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 
@@ -65,7 +62,8 @@ pub(super) fn confine() {
     let _ = setsid();
     limit(Resource::Core, 0);
     limit(Resource::Nofile, MOST_FILES);
-    limit(Resource::Fsize, LARGEST_FILE);
+    limit(Resource::Fsize, MOST_BYTES);
+    limit(Resource::Stack, LARGEST_STACK);
     #[cfg(target_os = "linux")]
     {
         let _ = rustix::thread::set_no_new_privs(true);
@@ -77,8 +75,16 @@ pub(super) fn confine() {
 ///
 /// # Errors
 /// The console cannot be informed; then nothing may be loaded.
-pub(super) fn close_off(socket: &Socket, sequence: u32, file: &File) -> io::Result<(Sandbox, bool)> {
+pub(super) fn close_off(
+    socket: &Socket,
+    sequence: u32,
+    file: &File,
+    memory_limit_bytes: u64,
+) -> io::Result<(Sandbox, bool)> {
     let ClosedOff { sandbox, listener, reads_libraries } = seal();
+    if listener.is_none() {
+        limit_space(memory_limit_bytes);
+    }
     let sealed = Sealed { sandbox, sha256: file.sha256.clone(), abi: file.abi };
     let mut frame = Writer::default();
     let frame = frame.begin(kind::SEALED, sequence, 0).sealed(&sealed).finish().expect("a few words");
@@ -95,15 +101,18 @@ pub(super) fn close_off(socket: &Socket, sequence: u32, file: &File) -> io::Resu
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Address space that is not memory: the C library reserves 64 MB for each thread that allocates.
-const RESERVED: u64 = 1 << 30;
-
-/// Limits memory to this much beside what the worker itself has: that is the planner's. What is shared does not count for
-/// the system, and cannot be had in a worker.
+/// Limits memory to this much beside what the worker itself has: that is the planner's. The system counts what is private and
+/// can be written; what a planner does about the rest, the console decides ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
-    let (own_space, own_data) = own_memory();
+    let (_, own_data) = own_memory();
     limit(Resource::Data, own_data.saturating_add(bytes));
-    limit(Resource::As, own_space.saturating_add(bytes).saturating_add(RESERVED));
+}
+
+/// Limits address space where the console cannot decide about it. Elsewhere this would harm: the system makes memory
+/// writable without counting it when this limit is reached.
+fn limit_space(bytes: u64) {
+    let (own_space, _) = own_memory();
+    limit(Resource::As, own_space.saturating_add(bytes).saturating_add(MAY_RESERVE));
 }
 
 /// Address space of this process, and what of it is memory of its own, bytes; nothing where the system does not say.

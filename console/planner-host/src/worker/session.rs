@@ -3,7 +3,7 @@
 use super::Socket;
 use super::confine::{close_off, die_with_the_console, limit_memory};
 use super::deadline::Deadline;
-use crate::loader::{File, Instance, Sink, Table};
+use crate::loader::{File, Instance, NotRead, Sink, Table};
 use crate::sandbox::close_files;
 use crate::supervisor::no_worker;
 use crate::survey::{Load, load_of};
@@ -34,6 +34,15 @@ impl From<Malformed> for Trouble {
 impl From<Refusal> for Trouble {
     fn from(refusal: Refusal) -> Self {
         Self::Failed(refusal)
+    }
+}
+
+impl From<NotRead> for Trouble {
+    fn from(why: NotRead) -> Self {
+        match why {
+            NotRead::Refused(why) => Self::Refused(why),
+            NotRead::Machine(why) => Self::Unable(why),
+        }
     }
 }
 
@@ -79,8 +88,8 @@ impl<'a> Session<'a> {
             ));
         };
         limit_memory(memory_limit_bytes);
-        let file = File::read(path).map_err(Trouble::Refused)?;
-        let reads_libraries = self.close_off(sequence, &file, requires_sandbox)?;
+        let file = File::read(path)?;
+        let reads_libraries = self.close_off(sequence, &file, memory_limit_bytes, requires_sandbox)?;
         let library = file.load().map_err(Trouble::Refused)?;
         if reads_libraries {
             close_files()
@@ -97,9 +106,16 @@ impl<'a> Session<'a> {
     }
 
     /// From here on the process can only compute. Whether files are still to be closed.
-    fn close_off(&self, sequence: u32, file: &File, requires_sandbox: bool) -> Result<bool, Trouble> {
+    fn close_off(
+        &self,
+        sequence: u32,
+        file: &File,
+        memory_limit_bytes: u64,
+        requires_sandbox: bool,
+    ) -> Result<bool, Trouble> {
         let lost = |error| Trouble::Unable(no_worker("cannot be closed off", &error));
-        let (sandbox, reads_libraries) = close_off(self.socket, sequence, file).map_err(lost)?;
+        let (sandbox, reads_libraries) =
+            close_off(self.socket, sequence, file, memory_limit_bytes).map_err(lost)?;
         if requires_sandbox && sandbox != Sandbox::Full {
             return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));
         }

@@ -8,6 +8,7 @@ mod desk;
 mod faults;
 mod files;
 mod in_c;
+mod memory;
 mod processes;
 mod progress;
 mod stand;

@@ -9,7 +9,7 @@ use super::{
     style,
 };
 use crate::{error::RecordingError, rr};
-use mission::{EventKind, HoldReason, Order, Outcome};
+use mission::{EventKind, HoldReason, Outcome};
 
 type Done = Result<(), RecordingError>;
 
@@ -66,7 +66,8 @@ impl States {
 
     pub(crate) fn apply(&mut self, stream: &Stream, event: &EventKind, at: At) -> Done {
         match event {
-            EventKind::Ordered { order: Order::Start } | EventKind::Resumed => self.enter(stream, MOVING, at),
+            EventKind::Ordered { order } if order.is_start() => self.enter(stream, MOVING, at),
+            EventKind::Resumed => self.enter(stream, MOVING, at),
             // A run without an operator never receives a start order.
             EventKind::Commanded { .. } if self.mission == WAITING => self.enter(stream, MOVING, at),
             EventKind::Held { by, .. } => self.enter(stream, held(by), at),

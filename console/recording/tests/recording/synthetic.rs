@@ -371,6 +371,7 @@ fn opened() -> RunOpened {
             tether: None,
             fallback: None,
             attended: false,
+            start_names_plan: false,
             better_plan: mission::BetterPlan::Off,
         },
     }

@@ -1,20 +1,25 @@
-//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, MISSED, TRACK and INDICATIONS,
+//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS,
 //! and NO_GO_ZONES, ZONES and STATIONS.
+//!
+//! `tankops import` reads the floor back: seams end at each other and at the shell, each plate has its name on their layer, and
+//! pipes have their width.
 
 use super::{Document, shapes::zones};
 use crate::{
-    drawing::{polygons::Polygon, trace::thinned},
+    account::plate_map,
+    drawing::{plates::PlateLines, polygons::Polygon, trace::thinned},
     dxf::Drawing,
     joined::{PastRun, found_name},
 };
 use mission::RunOpened;
-use world::{Point, Shape, ZoneKind};
+use world::{PlateLayout, Point, Shape, ZoneKind};
 
 /// The layers and their colours by the numbers of the format.
-const LAYERS: [(&str, u8); 9] = [
+const LAYERS: [(&str, u8); 10] = [
     ("SHELL", 7),
     ("PLATES", 8),
     ("OBSTACLES", 5),
+    ("PIPES", 5),
     ("MISSED", 1),
     ("TRACK", 4),
     ("INDICATIONS", 6),
@@ -29,15 +34,13 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     let mut drawing = Drawing::new(&LAYERS);
     if let Some(run) = past.last().and_then(|past| past.fold.run.as_ref()) {
         drawing.boundary("SHELL", &run.world.boundary);
-        for seam in run.plates.iter().flat_map(|layout| layout.seams(&run.world.boundary)) {
-            drawing.polyline("PLATES", &seam, false);
-        }
+        plates(&mut drawing, run);
         for obstacle in run.world.obstacles.iter().filter(|obstacle| obstacle.known) {
-            drawing.shape("OBSTACLES", &obstacle.shape);
+            solid(&mut drawing, &obstacle.shape);
         }
         for (index, of_run) in past.iter().enumerate() {
             for solid in of_run.fold.found() {
-                drawing.shape("OBSTACLES", &solid.shape);
+                self::solid(&mut drawing, &solid.shape);
                 drawing.text("OBSTACLES", solid.shape.center(), &found_name(&solid.name, index, past.len()));
             }
         }
@@ -80,5 +83,30 @@ fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) 
     for station in &run.world.stations {
         drawing.point("STATIONS", station.position);
         drawing.text("STATIONS", station.position, &station.name);
+    }
+}
+
+/// What stands on the floor, on the layer of its kind.
+fn solid(drawing: &mut Drawing, shape: &Shape) {
+    match shape {
+        Shape::Polyline { points, half_width_m } => drawing.wide("PIPES", points, 2.0 * half_width_m),
+        _ => drawing.shape("OBSTACLES", shape),
+    }
+}
+
+/// The plates with their names.
+fn plates(drawing: &mut Drawing, run: &RunOpened) {
+    let Some((layout, map)) = run.plates.as_ref().zip(plate_map(run, &run.floor)) else { return };
+    match layout {
+        PlateLayout::Drawn { plates } => {
+            plates.iter().for_each(|plate| drawing.polyline("PLATES", &plate.vertices_m, true));
+        }
+        PlateLayout::Regular(_) => {
+            let seams = layout.seams(&run.world.boundary);
+            seams.iter().for_each(|seam| drawing.polyline("PLATES", seam, false));
+        }
+    }
+    for (name, at) in PlateLines::new(layout, &run.world.boundary, &run.floor, &map).names() {
+        drawing.text("PLATES", at, name);
     }
 }

@@ -42,6 +42,11 @@ impl PlateLines {
         }
     }
 
+    /// The names with the places where they stand, tank frame: each on its plate.
+    pub(crate) fn names(&self) -> impl Iterator<Item = (&str, Point)> {
+        self.names.iter().map(|plate| (plate.name.as_str(), plate.at))
+    }
+
     /// The seams and names of a layout on a floor.
     pub(crate) fn new(layout: &PlateLayout, boundary: &Boundary, floor: &Floor, map: &PlateMap) -> Self {
         let mut sums: Vec<Sum> = vec![(0, Point::origin(), None); map.plates.len()];
@@ -53,8 +58,8 @@ impl PlateLines {
             *bounds =
                 Some(bounds.map_or((center, center), |(low, high)| (low.inf(&center), high.sup(&center))));
         }
-        let name = |(plate, (count, sum, bounds)): (&world::Plate, &Sum)| {
-            let mean = Point::from(sum.coords / (*count).max(1) as f64);
+        let name = |(number, (plate, (count, sum, bounds))): (usize, (&world::Plate, &Sum))| {
+            let mean = on_plate(floor, map, number, Point::from(sum.coords / (*count).max(1) as f64));
             let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
             match (boundary, layout) {
                 // Along the ring.
@@ -76,8 +81,22 @@ impl PlateLines {
                 _ => PlateName { name: plate.name.clone(), at: mean, turn_deg: 0.0, room_m: extent },
             }
         };
-        Self { seams: layout.seams(boundary), names: map.plates.iter().zip(&sums).map(name).collect() }
+        Self {
+            seams: layout.seams(boundary),
+            names: map.plates.iter().zip(&sums).enumerate().map(name).collect(),
+        }
     }
+}
+
+/// The place of a plate that is nearest to another: that of an angle lies beside it.
+fn on_plate(floor: &Floor, map: &PlateMap, plate: usize, at: Point) -> Point {
+    let is_on = |cell: &usize| map.plate_of(*cell) == Some(plate);
+    if floor.cell_at(at).as_ref().is_some_and(is_on) {
+        return at;
+    }
+    let off_m = |cell: &usize| (floor.center(*cell) - at).norm();
+    let nearest = (0..floor.len()).filter(is_on).min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+    nearest.map_or(at, |cell| floor.center(cell))
 }
 
 impl Sheet {

@@ -112,6 +112,7 @@ fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String
         EventKind::TetherAlarmRaised { alarm, .. } => ("alarm", key(alarm.word()), None),
         EventKind::TetherAlarmCleared { alarm } => ("", None, key(alarm.word())),
         EventKind::Truth { collided: true, .. } => ("alarm", None, None),
+        EventKind::PlannerFailed { fault, .. } if fault.is_no_way() => ("plan", None, None),
         EventKind::PlannerFailed { .. } => ("fault", None, None),
         EventKind::Shadowed { of } if matches!(**of, EventKind::PlannerFailed { .. }) => {
             ("shadow", None, None)

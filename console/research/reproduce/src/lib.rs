@@ -16,5 +16,5 @@ mod traps;
 pub mod tune;
 
 pub use registry::{gallery, list, studies, study};
-pub use study::{Gallery, Options, Parts, Result, Row, Runner, Study, StudyError};
-pub use table::table;
+pub use study::{Gallery, Options, Parts, Result, Row, Runner, Study, StudyError, Verdict};
+pub use table::{csv, table};

@@ -8,6 +8,7 @@ mod planners;
 mod row;
 mod runner;
 mod sample;
+mod verdict;
 
 pub use error::{Result, StudyError};
 pub use gallery::Gallery;
@@ -18,6 +19,12 @@ pub(crate) use row::Block;
 pub use row::Row;
 pub use runner::Runner;
 pub(crate) use sample::Sample;
+pub use verdict::Verdict;
+#[cfg(test)]
+pub(crate) use verdict::judged;
+pub(crate) use verdict::{without_seed, wrong_signs};
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of cases or methods that an error names.
 const KNOWN_SHOWN: usize = 20;
@@ -56,7 +63,8 @@ impl Study {
         if options.layouts == Some(0) {
             return Err(StudyError::Refused("--layouts 0 measures nothing; give at least 1".into()));
         }
-        let rows = (self.run)(&Job { study: self, runner, options }).map_err(|error| match error {
+        let job = Job { study: self, runner, options, has_drawn: AtomicBool::new(false) };
+        let rows = (self.run)(&job).map_err(|error| match error {
             StudyError::Planner { case, fault } => {
                 StudyError::Planner { case: format!("{}: {case}", self.name), fault }
             }
@@ -68,7 +76,8 @@ impl Study {
                 self.name
             )));
         }
-        Ok(rows)
+        let has_drawn = job.has_drawn.load(Ordering::Relaxed);
+        Ok(rows.into_iter().map(|row| verdict::judged(row, has_drawn)).collect())
     }
 }
 
@@ -77,6 +86,8 @@ pub(crate) struct Job<'a> {
     pub runner: &'a Runner<'a>,
     study: &'a Study,
     options: &'a Options,
+    /// Whether seeds were asked for: otherwise nothing of it is drawn.
+    has_drawn: AtomicBool,
 }
 
 impl Job<'_> {
@@ -128,6 +139,7 @@ impl Job<'_> {
 
     /// The seeds of the layouts.
     pub(crate) fn seeds(&self) -> Vec<u64> {
+        self.has_drawn.store(true, Ordering::Relaxed);
         let n = self.options.layouts.unwrap_or(self.study.layouts) as u64;
         (0..n).map(|k| self.options.first_seed.wrapping_add(k)).collect()
     }
@@ -151,7 +163,7 @@ mod tests {
 
     fn chosen(options: &Options, ids: [&'static str; 3]) -> [Result<Vec<&'static str>>; 2] {
         let runner = Runner::new(&PluginDirs::of(Vec::new()), 1, &|_, _| ()).unwrap();
-        let job = Job { study: &STUDY, runner: &runner, options };
+        let job = Job { study: &STUDY, runner: &runner, options, has_drawn: AtomicBool::new(false) };
         let id = |id: &&str| (*id).to_owned();
         [job.cases(ids, id), job.methods(ids, id)]
     }

@@ -41,6 +41,23 @@ pub enum Kind {
     Text,
 }
 
+impl Kind {
+    /// Whether a run that is open, or what was found on the disk, decides which values there are.
+    pub(crate) fn depends_on_run(self) -> bool {
+        matches!(
+            self,
+            Self::Planner
+                | Self::Parameter
+                | Self::Scenario
+                | Self::Run
+                | Self::Place
+                | Self::Preset
+                | Self::Alarm
+                | Self::Station
+        )
+    }
+}
+
 /// What a command takes: in the order of the table, or by its name: `planner=navfn`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Arg {

@@ -1,7 +1,8 @@
 //! The console itself: time, speeds, plugins, and its notices to the operator.
 
-use super::{Preset, Watches};
+use super::{Overlay, Preset, Watches};
 use crate::actions::keymap::Keymap;
+use crate::keys::Key;
 use mission::{PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +87,17 @@ pub struct Notice {
     pub until_mono_s: f64,
 }
 
+/// A key that is held down, or was pressed again; if no other press follows, it was pressed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Settling {
+    /// Which key.
+    pub key: Key,
+    /// What was over the screen: the press is meant for that and for nothing else.
+    pub over: Overlay,
+    /// When it is known, on the console's own clock, seconds.
+    pub until_mono_s: f64,
+}
+
 /// Which new alarms ring the terminal's bell: from this severity on, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bell(pub Option<Severity>);
@@ -141,6 +153,9 @@ pub struct Console {
     /// Figures of the console and their limits.
     #[serde(default)]
     pub watches: Watches,
+    /// A key that may be held down: what it does waits until that is known.
+    #[serde(default)]
+    pub settling: Option<Settling>,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.
     pub interrupted_mono_s: Option<f64>,
 }

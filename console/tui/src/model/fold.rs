@@ -8,7 +8,9 @@ mod shadow;
 mod tether;
 
 use super::{About, Cause, Change, Progress, Raster, Run, Withdrawn};
-use mission::{Event, EventKind, Hold, HoldReason, Order, Outcome, Severity, TaskConfig, event::RunOpened};
+use mission::{
+    Event, EventKind, Hold, HoldReason, Order, Outcome, Phase, Severity, TaskConfig, event::RunOpened,
+};
 use positioning::AccuracyMap;
 use world::{Obstacle, ObstacleId};
 
@@ -28,11 +30,17 @@ impl Run {
         match &event.kind {
             EventKind::RunOpened(run) => self.open(run),
             EventKind::Ordered { order } => {
-                if *order == Order::Start {
+                if order.is_start() {
                     self.clock.started_s = Some(event.t_s);
+                }
+                if let Order::Note(note) = order {
+                    self.alarms.take(&note.what, event.t_s);
                 }
                 if *order == Order::TakePlan {
                     self.planning.offer.iter_mut().for_each(|offer| offer.is_taken = true);
+                }
+                if self.is_waiting() && changes_plan(order) {
+                    self.forget_plan();
                 }
                 change.answered = Some(order.clone());
                 self.shadowed(event, &mut change);
@@ -55,6 +63,9 @@ impl Run {
             EventKind::ZoneDrawn { zone } => {
                 // The plan before does not know it: another one is made.
                 self.forget_certificate();
+                if self.is_waiting() {
+                    self.forget_plan();
+                }
                 self.about.iter_mut().for_each(|about| about.world.zones.push(zone.clone()));
             }
             EventKind::ObstacleMoved { id, obstacle } => self.moved(*id, obstacle),
@@ -115,6 +126,17 @@ impl Run {
             self.alarms.note(&cause, number, place);
         }
         change
+    }
+
+    /// Before the start, a plan that is being made anew is not the one that would be run: nothing is shown of the one before.
+    fn forget_plan(&mut self) {
+        self.planning.plan = None;
+        self.forget_certificate();
+        self.clear(&Cause::Certificate);
+    }
+
+    fn is_waiting(&self) -> bool {
+        *self.phase() == Phase::Waiting
     }
 
     fn progress(&mut self, event: &Event) {
@@ -226,4 +248,9 @@ impl Run {
         };
         self.raise(event, Cause::Ended, severity, format!("ended ({}): {reason}", outcome.word()));
     }
+}
+
+/// Whether an order that comes before the start makes the plan that there is a plan of the past.
+fn changes_plan(order: &Order) -> bool {
+    matches!(order, Order::Plan | Order::ChoosePlanner(_) | Order::SetParameter { .. })
 }

@@ -49,6 +49,16 @@ pub struct Busy {
     pub at: Option<(f64, String)>,
 }
 
+impl Busy {
+    /// What it is and how far: `Planning (rpf) 23 %`.
+    pub fn how_far(&self) -> String {
+        // Only the end makes it whole.
+        let percent = |share: f64| format!(" {} %", (100.0 * share).floor().clamp(0.0, 99.0));
+        let share = self.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
+        format!("{}{share}", self.work)
+    }
+}
+
 /// What a run that was flown leaves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {

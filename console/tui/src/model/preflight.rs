@@ -1,7 +1,7 @@
 //! The check before the start: what the console finds by itself, and what the operator ticks by hand.
 
 use super::{Model, ui::Arrangement};
-use mission::{Check, CheckOutcome};
+use mission::{Check, CheckOutcome, PlanId, Readiness};
 use serde::{Deserialize, Serialize};
 
 /// Fewer stations than this cannot find a position.
@@ -16,6 +16,9 @@ pub struct Preflight {
     pub is_checking: bool,
     /// Whether the mission is to be started as soon as everything has passed.
     pub is_starting: bool,
+    /// The plan that was shown when that was agreed to.
+    #[serde(default)]
+    pub seen: Option<PlanId>,
     /// Which points of the scenario's checklist are ticked.
     pub ticked: Vec<bool>,
 }
@@ -56,6 +59,14 @@ impl Model {
         self.blocking_check().map(|failed| format!("start blocked: {}: {}", failed.what, failed.found))
     }
 
+    /// What the screen knows that blocks the start, and points that are not ticked, as a sentence. What else is checked is
+    /// looked at again when the start is ordered.
+    pub(crate) fn start_is_blocked_here(&self) -> Option<String> {
+        let mut checks = self.own_checks().into_iter().chain(self.hand_checks());
+        let failed = checks.find(|check| check.outcome == CheckOutcome::Failed)?;
+        Some(format!("start blocked: {}: {}", failed.what, failed.found))
+    }
+
     /// The first check that blocks the start.
     pub(crate) fn blocking_check(&self) -> Option<Check> {
         self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)
@@ -87,9 +98,15 @@ impl Model {
 
     fn plan_check(&self) -> Check {
         let planning = &self.live.run.planning;
+        let standing = self.live.run.standing.standing();
         match (&planning.plan, &self.live.busy) {
-            (_, Some(busy)) => {
-                check("plan", CheckOutcome::Warning, format!("{}: the robot will wait for it", busy.work))
+            (_, Some(busy)) => check(
+                "plan",
+                CheckOutcome::Failed,
+                format!("{}: start when the plan is ready", busy.how_far()),
+            ),
+            (_, None) if standing.readiness == Readiness::Preparing => {
+                check("plan", CheckOutcome::Failed, "being made: start when it is ready".into())
             }
             (Some(plan), None) if plan.complete => {
                 check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
@@ -97,9 +114,7 @@ impl Model {
             (Some(plan), None) => {
                 check("plan", CheckOutcome::Warning, format!("{:.1} m, only part of the task", plan.length_m))
             }
-            (None, None) => {
-                check("plan", CheckOutcome::Warning, "none yet: it will be made at the start".into())
-            }
+            (None, None) => check("plan", CheckOutcome::Failed, "none yet; make one first".into()),
         }
     }
 
@@ -120,7 +135,7 @@ impl Model {
                 CheckOutcome::Failed,
                 "plan NOT certified; change planner or parameters".into(),
             ),
-            None => check("tether", CheckOutcome::Warning, "no certified plan yet".into()),
+            None => check("tether", CheckOutcome::Failed, "no certified plan yet".into()),
         })
     }
 

@@ -4,7 +4,7 @@ use super::line_edit::LineEdit;
 use super::palette::Palette;
 use super::{Cause, EventList};
 use crate::theme::ThemeName;
-use mission::{Order, PlannerChoice};
+use mission::{Order, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
@@ -342,8 +342,8 @@ pub enum Purpose {
 /// What a confirm line asks for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Ask {
-    /// Start the mission.
-    Start,
+    /// Start the mission with the plan that is shown; `None` where a start names none.
+    Start(Option<PlanId>),
     /// Resume.
     Resume,
     /// Fly a plan that was refused because of the tether.
@@ -362,7 +362,7 @@ impl Ask {
     /// The order that follows when the operator agrees.
     pub fn order(&self) -> Order {
         match self {
-            Self::Start => Order::Start,
+            Self::Start(plan) => plan.map_or(Order::Start, Order::StartPlan),
             Self::Resume => Order::Resume,
             Self::FlyUncertified => Order::FlyUncertified,
             Self::Abort => Order::Abort,

@@ -2,11 +2,31 @@
 
 use crate::keys::{Key, KeyPress};
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use std::time::Instant;
+
+/// The keyboard: which key went down last, and when.
+#[derive(Debug, Default)]
+pub struct Keyboard {
+    last: Option<(Key, Instant)>,
+}
+
+impl Keyboard {
+    /// The key of a terminal event that came at some time, and how long after the same key; `None` for a release and for a
+    /// key that the console does not know: what comes after it is pressed anew.
+    pub fn take(&mut self, event: &KeyEvent, now: Instant) -> Option<KeyPress> {
+        let press = key_from_crossterm(event);
+        let last = self.last.take();
+        let press = press?;
+        self.last = Some((press.key, now));
+        let same = last.filter(|(key, _)| *key == press.key);
+        Some(KeyPress { since_same: same.map(|(_, at)| now.saturating_duration_since(at)), ..press })
+    }
+}
 
 /// The key of a terminal event; `None` for releases and for keys that the console does not know.
 ///
 /// Alt is not used: over a slow connection it cannot be distinguished from Esc followed by a letter.
-pub fn key_from_crossterm(event: &KeyEvent) -> Option<KeyPress> {
+fn key_from_crossterm(event: &KeyEvent) -> Option<KeyPress> {
     let repeat = match event.kind {
         KeyEventKind::Press => false,
         KeyEventKind::Repeat => true,
@@ -38,12 +58,14 @@ pub fn key_from_crossterm(event: &KeyEvent) -> Option<KeyPress> {
         KeyCode::End => Key::End,
         _ => return None,
     };
-    Some(KeyPress { key, repeat })
+    Some(KeyPress { repeat, ..key.into() })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::keys::Freshness;
+    use std::time::Duration;
 
     fn press(code: KeyCode, modifiers: KeyModifiers, kind: KeyEventKind) -> Option<KeyPress> {
         key_from_crossterm(&KeyEvent::new_with_kind(code, modifiers, kind))
@@ -53,8 +75,29 @@ mod tests {
     fn releases_are_ignored_and_repeats_are_marked() {
         let space = |kind| press(KeyCode::Char(' '), KeyModifiers::NONE, kind);
         assert_eq!(space(KeyEventKind::Press), Some(Key::Char(' ').into()));
-        assert_eq!(space(KeyEventKind::Repeat), Some(KeyPress { key: Key::Char(' '), repeat: true }));
+        assert_eq!(space(KeyEventKind::Repeat), Some(KeyPress { repeat: true, ..Key::Char(' ').into() }));
         assert_eq!(space(KeyEventKind::Release), None);
+    }
+
+    #[test]
+    fn a_press_knows_how_long_after_the_same_key_it_came() {
+        let (mut keyboard, began) = (Keyboard::default(), Instant::now());
+        let mut since = |letter, kind, at_ms| {
+            let event = KeyEvent::new_with_kind(KeyCode::Char(letter), KeyModifiers::NONE, kind);
+            let press = keyboard.take(&event, began + Duration::from_millis(at_ms));
+            press.map(|press| (press.since_same.map(|passed| passed.as_millis()), press.freshness()))
+        };
+        let press = KeyEventKind::Press;
+        assert_eq!(since('.', press, 0), Some((None, Freshness::Fresh)));
+        assert_eq!(since('.', press, 500), Some((Some(500), Freshness::Unclear)));
+        assert_eq!(since('.', press, 533), Some((Some(33), Freshness::Held)));
+        assert_eq!(since('.', press, 3000), Some((Some(2467), Freshness::Fresh)));
+        assert_eq!(since('x', press, 3010), Some((None, Freshness::Fresh)));
+        assert_eq!(since('.', press, 3020), Some((None, Freshness::Fresh)));
+        assert_eq!(since('.', KeyEventKind::Repeat, 9000), Some((Some(5980), Freshness::Held)));
+        // A terminal that tells when the key comes up tells that the next press is one.
+        assert_eq!(since('.', KeyEventKind::Release, 9010), None);
+        assert_eq!(since('.', press, 9020), Some((None, Freshness::Fresh)));
     }
 
     #[test]

@@ -61,7 +61,7 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
         ActionId::Back => back(model).unwrap_or_else(|| leave(model)),
         ActionId::Leave => leave(model),
         ActionId::Abort => [hold_now(model), ask(model, Ask::Abort)].concat(),
-        ActionId::Start => ask(model, Ask::Start),
+        ActionId::Start => ask(model, Ask::Start(model.live.run.standing.ready_plan())),
         ActionId::Resume => ask(model, Ask::Resume),
         ActionId::FlyUncertified => ask(model, Ask::FlyUncertified),
         ActionId::Step => step(model, Order::Step),

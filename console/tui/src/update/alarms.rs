@@ -1,14 +1,14 @@
 //! What the operator does about alarms.
 
 use super::message::Effect;
-use super::offer::refuse;
+use super::offer::{accepted, demand, refuse};
 use super::place;
 use crate::actions::ActionId;
 use crate::guide::{guide, name};
 use crate::model::alarms::State;
 use crate::model::ui::Shelving;
-use crate::model::{Cause, LineEdit, Model, Overlay, Screen};
-use mission::Severity;
+use crate::model::{Alarm, Cause, LineEdit, Model, Overlay, Screen};
+use mission::{Note, Noted, Order, Severity};
 
 fn selected_cause(model: &Model) -> Option<Cause> {
     model.selected_alarm().map(|alarm| alarm.cause.clone())
@@ -22,45 +22,83 @@ pub(super) fn select(model: &mut Model, by: isize) {
     model.ui.alarm = table.get(next).map(|alarm| alarm.cause.clone());
 }
 
-/// Acknowledges the selected alarm of the table if it waits for that, else the most severe one.
-pub(super) fn acknowledge(model: &mut Model) -> Vec<Effect> {
-    let chosen = (model.ui.screen == Screen::Alarms).then(|| selected_cause(model)).flatten();
-    let alarms = &mut model.live.run.alarms;
-    let text = chosen.and_then(|cause| alarms.acknowledge_one(&cause)).or_else(|| alarms.acknowledge());
-    if let Some(text) = text {
-        model.say(Severity::Info, format!("acknowledged: {text}"));
+/// Why the alarm that a command is about cannot be acknowledged, if it cannot.
+///
+/// # Errors
+/// Why not, as a sentence.
+pub(super) fn can_acknowledge(model: &Model) -> Result<(), String> {
+    let alarms = &model.live.run.alarms;
+    demand(alarms.open().any(Alarm::is_unacknowledged), "no unacknowledged alarms")?;
+    demand(to_acknowledge(model).is_some(), "the selected alarm needs no acknowledgement; select another")
+}
+
+/// On the table of alarms the selected one, and no other; elsewhere the most severe one.
+fn to_acknowledge(model: &Model) -> Option<&Alarm> {
+    if model.ui.screen == Screen::Alarms {
+        return model.selected_alarm().filter(|alarm| alarm.is_unacknowledged());
     }
-    Vec::new()
+    model.live.run.alarms.worst_unacknowledged()
+}
+
+/// Acknowledges the alarm that the screen is about.
+pub(super) fn acknowledge(model: &mut Model) -> Vec<Effect> {
+    let Some(alarm) = to_acknowledge(model) else { return Vec::new() };
+    let (text, noted) = (alarm.text.clone(), acknowledged(alarm));
+    model.say(Severity::Info, format!("acknowledged: {text}"));
+    note(model, noted)
 }
 
 /// Acknowledges every alarm.
 pub(super) fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
-    let count = model.live.run.alarms.acknowledge_all();
-    model.say(Severity::Info, format!("{count} alarms acknowledged"));
+    let waiting = model.live.run.alarms.list().iter().filter(|alarm| alarm.is_unacknowledged());
+    let all: Vec<Noted> = waiting.map(acknowledged).collect();
+    model.say(Severity::Info, format!("{} alarms acknowledged", all.len()));
+    all.into_iter().flat_map(|noted| note(model, noted)).collect()
+}
+
+fn acknowledged(alarm: &Alarm) -> Noted {
+    Noted::Acknowledged { alarm: alarm.cause.key(), text: alarm.text.clone() }
+}
+
+/// Has the mission write down what the operator did; from there it takes effect. After the mission nothing is written any
+/// more, and it takes effect here.
+pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
+    let order = Order::Note(Note { what, by: model.console.preferences.operator.clone() });
+    if model.live.run.about.is_some() && accepted(model, &order).is_ok() {
+        return vec![Effect::Order(order)];
+    }
+    if let Order::Note(Note { what, .. }) = &order {
+        let t_s = model.live.run.clock.t_s;
+        model.live.run.alarms.take(what, t_s);
+    }
     Vec::new()
 }
 
 /// Asks for how long and why the selected alarm shall be put aside; takes a shelved one back.
 pub(super) fn shelve(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = model.selected_alarm() else { return Vec::new() };
-    let cause = alarm.cause.clone();
+    let (cause, text) = (alarm.cause.clone(), alarm.text.clone());
     if !matches!(alarm.state, State::Shelved(_)) {
         model.ui.overlay = Overlay::Shelve(Shelving { cause, line: LineEdit::default(), refusal: None });
         return Vec::new();
     }
-    model.live.run.alarms.unshelve(&cause);
     model.say(Severity::Info, format!("taken back: {}", name(&cause, &model.live.run)));
-    Vec::new()
+    note(model, Noted::Unshelved { alarm: cause.key(), text })
 }
 
 /// Puts an alarm aside as typed, or says what is wrong with it.
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
     let typed = parse_shelving(shelving.line.text());
     match typed.and_then(|(minutes, reason)| put_aside(model, &shelving.cause, minutes, &reason)) {
-        Ok(()) => model.ui.overlay = Overlay::None,
-        Err(why) => model.ui.overlay = Overlay::Shelve(Shelving { refusal: Some(why), ..shelving }),
+        Ok(effects) => {
+            model.ui.overlay = Overlay::None;
+            effects
+        }
+        Err(why) => {
+            model.ui.overlay = Overlay::Shelve(Shelving { refusal: Some(why), ..shelving });
+            Vec::new()
+        }
     }
-    Vec::new()
 }
 
 /// Puts the named alarm aside, or the one that is selected, for so many seconds.
@@ -72,7 +110,7 @@ pub(super) fn shelve_for(
     named: Option<Cause>,
     for_s: f64,
     reason: &str,
-) -> Result<(), String> {
+) -> Result<Vec<Effect>, String> {
     let selected = || (model.ui.screen == Screen::Alarms).then(|| selected_cause(model)).flatten();
     let cause =
         named.or_else(selected).ok_or("no alarm is selected; name one (alarm=NAME) or go to <alarms>");
@@ -80,7 +118,7 @@ pub(super) fn shelve_for(
     put_aside(model, &cause, for_s / 60.0, reason)
 }
 
-fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Result<(), String> {
+fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Result<Vec<Effect>, String> {
     let alarm = model.live.run.alarms.get(cause).ok_or("there is no such alarm")?;
     if matches!(alarm.state, State::Shelved(_)) {
         return Err("it is shelved already".into());
@@ -95,11 +133,10 @@ fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Re
     if reason.is_empty() {
         return Err("a reason is needed, such as: 15 pump noise".into());
     }
-    let until_s = model.live.run.clock.t_s + 60.0 * minutes;
-    model.live.run.alarms.shelve(cause, until_s, reason);
-    let text = format!("shelved for {minutes} min: {}", name(cause, &model.live.run));
-    model.say(Severity::Info, text);
-    Ok(())
+    let (text, reason) = (alarm.text.clone(), reason.to_owned());
+    let said = format!("shelved for {minutes} min: {}", name(cause, &model.live.run));
+    model.say(Severity::Info, said);
+    Ok(note(model, Noted::Shelved { alarm: cause.key(), text, for_s: 60.0 * minutes, reason }))
 }
 
 /// Minutes of mission time and a reason: `15 pump noise`.

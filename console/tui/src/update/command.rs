@@ -15,11 +15,11 @@ use super::offer::{accepted, offered, refuse};
 use super::overlay;
 use super::preset;
 use super::replay;
-use super::send::send;
+use super::send::{send, set_parameter};
 use super::stations;
 use super::typing;
 use super::zones;
-use crate::actions::{Action, ActionId, Arg, find};
+use crate::actions::{Action, ActionId, Arg, Kind, find, keymap::Keymap};
 use crate::model::{
     Model,
     palette::LineFault,
@@ -49,16 +49,44 @@ impl Command {
 /// # Errors
 /// Which part of the line is wrong, and what would be right.
 pub(super) fn read(model: &Model, text: &str) -> Result<Command, LineFault> {
-    let first = text.split(' ').next().unwrap_or_default();
-    if let Some(line) = model.console.keys.aliases.get(first) {
-        // Aliases stand for commands, not for aliases; what follows one belongs to its command.
-        let line = format!("{line}{}", &text[first.len()..]);
-        return read_line(model, &line).map_err(|fault| LineFault { at: 0..text.len(), ..fault });
-    }
-    read_line(model, text)
+    let value = |kind, text: &str| value::read(model, kind, text);
+    let (action, values) = read_with(&model.console.keys, text, &value)?;
+    Ok(Command { action, values })
 }
 
-fn read_line(model: &Model, text: &str) -> Result<Command, LineFault> {
+/// Whether a line is a command, whatever mission is open: its name, how many values it has, and those values of which no run
+/// and nothing that was found decides.
+///
+/// # Errors
+/// What is wrong, and what would be right, as a clause.
+pub fn check_line(keys: &Keymap, text: &str) -> Result<(), String> {
+    let nothing = Model::default();
+    let value = |kind: Kind, text: &str| match kind {
+        Kind::Parameter if !text.contains('=') => value::read(&nothing, kind, text).map(drop),
+        _ if kind.depends_on_run() => Ok(()),
+        _ => value::read(&nothing, kind, text).map(drop),
+    };
+    read_with(keys, text, &value).map(drop).map_err(|fault| fault.what)
+}
+
+/// A command, and its values as they are read by `value`.
+type Read<V> = (&'static Action, Vec<V>);
+
+fn read_with<V>(
+    keys: &Keymap,
+    text: &str,
+    value: &impl Fn(Kind, &str) -> Result<V, String>,
+) -> Result<Read<V>, LineFault> {
+    let first = text.split(' ').next().unwrap_or_default();
+    if let Some(line) = keys.aliases.get(first) {
+        // Aliases stand for commands, not for aliases; what follows one belongs to its command.
+        let line = format!("{line}{}", &text[first.len()..]);
+        return read_line(&line, value).map_err(|fault| LineFault { at: 0..text.len(), ..fault });
+    }
+    read_line(text, value)
+}
+
+fn read_line<V>(text: &str, value: &impl Fn(Kind, &str) -> Result<V, String>) -> Result<Read<V>, LineFault> {
     let words = line::words(text)?;
     let (name, rest) = words.split_first().ok_or(LineFault { at: 0..0, what: "no command".into() })?;
     let unknown = || LineFault { at: name.at.clone(), what: format!("no command `{}`", name.text) };
@@ -66,14 +94,13 @@ fn read_line(model: &Model, text: &str) -> Result<Command, LineFault> {
     let (mut values, mut given) = (Vec::new(), Vec::new());
     for (index, word) in rest.iter().enumerate() {
         let (arg, text) = arg_of(action, index, word)?;
-        let value = value::read(model, arg.kind, text);
-        values.push(value.map_err(|what| LineFault { at: word.at.clone(), what })?);
+        values.push(value(arg.kind, text).map_err(|what| LineFault { at: word.at.clone(), what })?);
         given.push(arg);
     }
     if action.args.iter().any(|arg| arg.is_required && !given.contains(&arg)) {
         return Err(LineFault { at: text.len()..text.len() + 1, what: format!("usage: {}", action.usage()) });
     }
-    Ok(Command { action, values })
+    Ok((action, values))
 }
 
 /// Which argument a word is, and its value: by its name, which the first one does without, or by its place.
@@ -140,7 +167,13 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             };
             return overlay::choose(model, purpose, planner);
         }
-        Value::Parameter { key, value } => return give(model, Order::SetParameter { key, value }),
+        Value::Parameter { key, value } => {
+            let order = Order::SetParameter { key: key.clone(), value: value.clone() };
+            return match accepted(model, &order) {
+                Ok(()) => set_parameter(model, key, value),
+                Err(why) => refuse(model, why),
+            };
+        }
         Value::Scenario(source) => {
             let planner = values.find_map(|value| match value {
                 Value::Planner(info) => Some(PlannerChoice { id: info.id, parameters: Parameters::new() }),
@@ -197,7 +230,7 @@ fn shelve(model: &mut Model, for_s: f64, values: impl Iterator<Item = Value>) ->
         }
     }
     match alarms::shelve_for(model, named, for_s, &reason) {
-        Ok(()) => Vec::new(),
+        Ok(effects) => effects,
         Err(why) => refuse(model, why),
     }
 }

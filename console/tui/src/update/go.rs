@@ -117,10 +117,11 @@ pub(super) fn select_missed(model: &mut Model, by: isize) {
     }
 }
 
-/// The run that a command is about: on the home screen the selected one, else the one that is open.
+/// The run that a command is about: on the home screen the one that is selected in the list of runs, else the one that is open.
 pub(super) fn named_run(model: &Model) -> Option<String> {
     match model.ui.screen {
-        Screen::Home => selected_run(model),
+        Screen::Home if model.home.list == HomeList::Runs => selected_run(model),
+        Screen::Home => None,
         Screen::Review => model.review.run(&model.home).map(|run| run.name.clone()),
         _ => model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model)),
     }
@@ -173,8 +174,8 @@ fn view(model: &Model, run: String) -> Job {
 /// Work on a past run is done.
 pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>) -> Vec<Effect> {
     let (severity, text) = match result {
-        Ok(text) => (Severity::Info, text),
-        Err(why) => (Severity::Warn, format!("{} failed: {why}", job.word())),
+        Ok(text) => (Severity::Info, format!("{}: {text}", job.run())),
+        Err(why) => (Severity::Warn, format!("{} {} failed: {why}", job.word(), job.run())),
     };
     model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     model.say(severity, text);
@@ -191,9 +192,9 @@ impl Job {
 
     fn word(&self) -> &'static str {
         match self {
-            Self::Verify(_) => "verifying the run",
-            Self::Report(_) => "writing the report",
-            Self::View(_) | Self::ViewAt(..) => "opening the recording",
+            Self::Verify(_) => "verifying",
+            Self::Report(_) => "writing the report of",
+            Self::View(_) | Self::ViewAt(..) => "opening the recording of",
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::model::{
     Busy, Cause, Change, Health, Live, Model, Overlay, Recording, RunId, RunResult, Screen, Withdrawn,
     ui::Ask,
 };
-use mission::{Event, EventKind, Order, Severity};
+use mission::{Event, EventKind, Order, PlanId, Severity};
 
 /// Takes in news of a run. News of one that is not open any more is late and dropped; of one that may stay open, because
 /// the next cannot be opened, it is taken in, but nothing follows from it.
@@ -101,6 +101,21 @@ fn take(model: &mut Model, event: &Event) {
         model.say(severity, text);
     }
     withdraw(model, withdrawn);
+    withdraw_start(model);
+}
+
+/// Takes back a start that was asked for with a plan that is not the one to be run any more.
+fn withdraw_start(model: &mut Model) {
+    let ready = model.live.run.standing.ready_plan();
+    let is_other = |seen: Option<PlanId>| seen.is_some() && seen != ready;
+    if matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(seen)) if is_other(seen)) {
+        model.ui.overlay = Overlay::None;
+        model.say(Severity::Warn, "question cancelled: the plan is being made again");
+    }
+    if model.live.preflight.is_starting && is_other(model.live.preflight.seen) {
+        model.live.preflight.is_starting = false;
+        model.say(Severity::Warn, "start cancelled: the plan is being made again");
+    }
 }
 
 /// Takes back a question that was asked under circumstances that no longer hold.

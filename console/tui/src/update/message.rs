@@ -17,6 +17,8 @@ use world::Point;
 pub enum Msg {
     /// A key went down.
     Key(KeyPress),
+    /// A key that might have been held down was pressed: no other press has followed.
+    Settled,
     /// Text was pasted.
     Paste(String),
     /// A command line that was not typed into the screen: from a script or from stdin.
@@ -211,6 +213,8 @@ pub enum Signal {
     Terminate,
     /// SIGHUP, or the terminal was closed: hold and leave.
     Hangup,
+    /// Any other signal that would end the process, by its number: hold and leave.
+    End(i32),
     /// SIGTSTP: hold and give the terminal back for a while.
     Stop,
     /// SIGCONT: redraw.

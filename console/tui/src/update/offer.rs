@@ -3,9 +3,12 @@
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
 use super::message::Effect;
-use super::{preset, replay, shadow, stations, typing, zones};
+use super::{alarms, preset, replay, shadow, stations, typing, zones};
 use crate::actions::ActionId;
-use crate::model::{Alarm, Model, Overlay, Pane, Screen, ui::MAX_ZOOM};
+use crate::model::{
+    Alarm, Model, Overlay, Pane, Screen,
+    ui::{Ask, MAX_ZOOM},
+};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -199,7 +202,8 @@ pub(super) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
 /// Whether something can be done with an alarm or an event.
 fn of_line(model: &Model, id: ActionId) -> Result<(), String> {
     match id {
-        ActionId::Acknowledge | ActionId::AcknowledgeAll => {
+        ActionId::Acknowledge => alarms::can_acknowledge(model),
+        ActionId::AcknowledgeAll => {
             let waiting = model.live.run.alarms.open().any(Alarm::is_unacknowledged);
             demand(waiting, "no unacknowledged alarms")
         }
@@ -249,9 +253,17 @@ fn hold(model: &Model) -> Result<(), String> {
 fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
-    accepted(model, &Order::Start)?;
     demand(!model.live.preflight.is_starting, "already checking for the start; Esc: cancel")?;
-    demand(model.live.asked.is_none(), "start already requested; space: HOLD")
+    demand(model.live.asked.is_none(), "start already requested; space: HOLD")?;
+    if let Some(busy) = model.live.busy.as_ref().filter(|_| model.live.waits()) {
+        return Err(format!("{}: start when the plan is ready", busy.how_far()));
+    }
+    let plan = model.live.run.standing.ready_plan();
+    accepted(model, &Ask::Start(plan).order())?;
+    match model.start_is_blocked_here() {
+        Some(why) => Err(format!("{why}; <preflight>: pre-flight check")),
+        None => Ok(()),
+    }
 }
 
 /// Ending a mission that was never started would leave a run of nothing.
@@ -325,6 +337,8 @@ fn map(model: &Model) -> Result<(), String> {
 fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
     match why {
         Refusal::NotStarted => Some("<start>: start"),
+        Refusal::NoPlan => Some("<plan-again>: plan"),
+        Refusal::PlanFailed { .. } => Some("<planner>: change planner"),
         // Space asks to resume then.
         Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,
         Refusal::AlreadyStarted
@@ -334,7 +348,9 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         Refusal::Ended(_) => Some("<home>: open another one"),
         Refusal::NoShadow => Some(":shadow NAME flies one"),
         // These say themselves what would be right, as far as there is anything.
-        Refusal::NotLive { .. }
+        Refusal::Planning
+        | Refusal::OtherPlan { .. }
+        | Refusal::NotLive { .. }
         | Refusal::PositionLost { .. }
         | Refusal::RangesInconsistent
         | Refusal::NoPlanRefused

@@ -7,7 +7,7 @@ use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
-use super::send::send;
+use super::send::{send, set_parameter};
 use super::{palette, shadow, typing, what_if};
 use crate::actions::ActionId;
 use crate::guide::guide;
@@ -31,7 +31,7 @@ pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
 pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     let moves = matches!(
         model.ui.overlay,
-        Overlay::Stepping | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified)
+        Overlay::Stepping | Overlay::Confirm(Ask::Start(_) | Ask::Resume | Ask::FlyUncertified)
     );
     if moves {
         model.ui.overlay = Overlay::None;
@@ -93,7 +93,7 @@ pub(super) fn cancel(model: &mut Model) {
 fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let id = match ask {
-        Ask::Start => ActionId::Start,
+        Ask::Start(_) => ActionId::Start,
         Ask::Resume => ActionId::Resume,
         Ask::FlyUncertified => ActionId::FlyUncertified,
         Ask::Abort => ActionId::Abort,
@@ -103,8 +103,8 @@ fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     };
     match offered(model, id) {
         Ok(()) => {
-            if *ask == Ask::Start {
-                preflight::start(model)
+            if let Ask::Start(seen) = ask {
+                preflight::start(model, *seen)
             } else {
                 send(model, ask.order())
             }
@@ -214,7 +214,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
                 what_if::set(model, &key, value);
                 return Vec::new();
             }
-            send(model, Order::SetParameter { key, value })
+            set_parameter(model, key, value)
         }
         Err(why) => {
             let refused = Edit { refusal: Some(why), ..edit };

@@ -3,8 +3,8 @@
 use super::message::Effect;
 use super::offer::refuse;
 use super::send::send;
-use crate::model::{Model, Overlay, Screen};
-use mission::{Check, Order, Severity};
+use crate::model::{Model, Overlay, Screen, ui::Ask};
+use mission::{Check, Order, PlanId, Severity};
 
 /// What a recording takes of a mission's time, bytes a second: 90 to 110 MB an hour were measured.
 const BYTES_PER_S: f64 = 30_000.0;
@@ -17,9 +17,9 @@ pub(super) fn open(model: &mut Model) -> Vec<Effect> {
     look(model)
 }
 
-/// The operator agreed to the start: everything is checked once more, now.
-pub(super) fn start(model: &mut Model) -> Vec<Effect> {
-    model.live.preflight.is_starting = true;
+/// The operator agreed to the start of the plan that was shown: everything is checked once more, now.
+pub(super) fn start(model: &mut Model, seen: Option<PlanId>) -> Vec<Effect> {
+    (model.live.preflight.is_starting, model.live.preflight.seen) = (true, seen);
     look(model)
 }
 
@@ -42,7 +42,8 @@ pub(super) fn checked(model: &mut Model, found: Vec<Check>) -> Vec<Effect> {
     }
     model.ui.go(Screen::Mission);
     let noted = Effect::Order(Order::NoteChecks(model.checks()));
-    std::iter::once(noted).chain(send(model, Order::Start)).collect()
+    let start = Ask::Start(model.live.preflight.seen.take()).order();
+    std::iter::once(noted).chain(send(model, start)).collect()
 }
 
 /// Gives the start up that was agreed to.

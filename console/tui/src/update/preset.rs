@@ -1,11 +1,12 @@
 //! Parameters under a name: kept, and taken after a look at what they change.
 
+use super::alarms;
 use super::message::Effect;
 use super::offer::{accepted, demand, refuse};
 use super::overlay::open;
 use super::send::send;
 use crate::model::{Model, Overlay, preset};
-use mission::{Order, PlannerChoice, Severity};
+use mission::{Noted, Order, PlannerChoice, Severity};
 
 /// Whether a preset can be taken now.
 ///
@@ -55,11 +56,13 @@ fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
 /// Takes a preset that was looked at. Nothing moves: the planner plans with it.
 pub(super) fn take(model: &mut Model, name: &str, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
+    let planner = choice.id.clone();
     let order = Order::ChoosePlanner(choice);
     // Checked again: the mission may have changed meanwhile.
     if let Err(why) = accepted(model, &order) {
         return refuse(model, why);
     }
     model.say(Severity::Info, format!("preset {name} taken; the planner plans with it"));
-    send(model, order)
+    let noted = alarms::note(model, Noted::PresetTaken { preset: name.to_owned(), planner });
+    noted.into_iter().chain(send(model, order)).collect()
 }

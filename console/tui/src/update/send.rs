@@ -2,15 +2,13 @@
 
 use super::message::Effect;
 use super::preflight;
-use crate::model::{Model, Speed};
-use mission::Order;
+use crate::model::{Model, Speed, parameter};
+use mission::{Order, ParamValue, Severity};
 
 /// Sends an order and remembers that an answer is due if it makes the robot move.
 pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
-    let moves = matches!(
-        order,
-        Order::Start | Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_)
-    );
+    let moves = matches!(order, Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_))
+        || order.is_start();
     if moves {
         model.live.asked = Some(order.clone());
         // A HOLD that was sent before it does not stop what comes after it.
@@ -22,11 +20,25 @@ pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
     std::iter::once(Effect::Order(order)).chain(plan).collect()
 }
 
+/// Sends the new value of a parameter, and says what it was: while the robot moves it takes effect at once.
+pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -> Vec<Effect> {
+    let info = model.planner().and_then(|info| info.parameters.iter().find(|info| info.key == key));
+    if let Some(info) = info {
+        let before = parameter::value(model.live.run.planning.choice.as_ref(), info);
+        let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
+        let now = if model.live.run.is_running() { ", takes effect now" } else { "" };
+        let text = format!("{key}: {before} → {value}{unit}{now}");
+        model.say(Severity::Info, text);
+    }
+    send(model, Order::SetParameter { key, value })
+}
+
 /// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
 ///
 /// Who stops the robot is in no hurry: the mission goes on no faster than the clock until the operator says so again.
 pub(super) fn hold_now(model: &mut Model) -> Vec<Effect> {
     preflight::cancel(model);
+    model.console.settling = None;
     if model.live.is_look_only() {
         return Vec::new();
     }

@@ -18,7 +18,7 @@ pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {
         ActionId::Inject => {
             Order::Inject(Injection { station, fault: RangeFault::Dead, for_s: 1.0, by: None })
         }
-        _ => Order::UseStation { station, used: true },
+        _ => Order::UseStation { station, used: true, by: None },
     };
     accepted(model, &order)
 }
@@ -30,8 +30,9 @@ pub(super) fn order(
     station: StationId,
     values: impl Iterator<Item = Value>,
 ) -> Option<Order> {
+    let by = model.console.preferences.operator.clone();
     if id != ActionId::Inject {
-        return Some(Order::UseStation { station, used: id == ActionId::Include });
+        return Some(Order::UseStation { station, used: id == ActionId::Include, by });
     }
     let (mut fault, mut for_s) = (None, None);
     for value in values {
@@ -41,6 +42,5 @@ pub(super) fn order(
             _ => {}
         }
     }
-    let by = model.console.preferences.operator.clone();
     Some(Order::Inject(Injection { station, fault: fault?, for_s: for_s?, by }))
 }

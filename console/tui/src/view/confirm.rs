@@ -7,39 +7,37 @@ use super::next::{self, Clauses};
 use super::{coverage, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
-use crate::model::{LineEdit, Model, Overlay, Screen};
+use crate::model::{LineEdit, Model, Overlay, Screen, log::clock};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Rows of a message that is longer than the screen is wide, at most.
+/// Rows of the question before the start, at most.
 const MOST_ROWS: usize = 3;
 
-/// Rows that the line takes: more than one only for a long message.
+/// Rows that the line takes: more than one only for what nobody may overlook before the robot moves for the first time.
 pub(super) fn rows(look: &Look, columns: u16) -> u16 {
-    long_message(look.model, columns).map_or(1, |(_, lines)| lines.len() as u16)
+    whole_question(look.model, columns).map_or(1, |lines| lines.len() as u16)
 }
 
-/// A message that one line does not hold, in as many as it takes.
-fn long_message(model: &Model, columns: u16) -> Option<(Role, Vec<String>)> {
-    let has_line = matches!(model.ui.overlay, Overlay::Filter(_) | Overlay::Shelve(_));
-    if has_line || asked(model).is_some() {
-        return None;
-    }
-    model.notice()?;
-    let (role, clauses) = next::clauses(model);
+/// The question before the start with everything that is started, in as many lines as it takes.
+fn whole_question(model: &Model, columns: u16) -> Option<Vec<String>> {
+    let is_start = matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_)));
+    let clauses = asked(model).filter(|_| is_start)?;
     let mut lines = text::wrap(&clauses.join(" "), usize::from(columns).saturating_sub(2));
     lines.truncate(MOST_ROWS);
-    (lines.len() > 1).then_some((role, lines))
+    Some(lines)
 }
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
-    if let Some((role, lines)) = long_message(look.model, area.width).filter(|_| area.height > 1) {
-        let lines: Vec<Line> =
-            lines.into_iter().map(|line| look.line([(role, format!(" {line}"))])).collect();
-        return frame.render_widget(Paragraph::new(lines), area);
+    if let Some(lines) = whole_question(look.model, area.width).filter(|_| area.height > 1) {
+        let columns = usize::from(area.width).saturating_sub(1);
+        let asked = |line: String| text::column(&line, columns);
+        let lines =
+            lines.into_iter().map(|line| look.line([(Role::Text, " ".into()), (Role::Confirm, asked(line))]));
+        return frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), area);
     }
     if let Overlay::Filter(line) = &look.model.ui.overlay {
         return filter(look, frame, area, line);
@@ -102,10 +100,14 @@ pub(crate) fn question(model: &Model) -> Option<String> {
 fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
-        Overlay::Confirm(Ask::Start) => {
+        Overlay::Confirm(Ask::Start(_)) => {
             let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
             let speed = text::speed(model.live.speed);
-            vec![format!("Start ({planner}, {speed})? Enter: start, Esc: cancel."), "Robot will move.".into()]
+            vec![
+                format!("Start ({planner}, {speed})? Enter: start, Esc: cancel."),
+                "Robot will move.".into(),
+                promised(model),
+            ]
         }
         Overlay::Confirm(Ask::Resume) => vec!["Resume? Enter: resume, Esc: stay held.".into(), moves()],
         Overlay::Confirm(Ask::FlyUncertified) => vec![
@@ -157,6 +159,27 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(clauses)
+}
+
+/// What is started, as a clause: length and time of the plan, and whether it is certified for the tether.
+fn promised(model: &Model) -> String {
+    let length = match &model.live.run.planning.plan {
+        Some(plan) if plan.path.is_empty() => "Step by step, no path planned".to_owned(),
+        Some(plan) => format!("Plan: {} m", text::number(plan.length_m, 1)),
+        None => "No plan yet".into(),
+    };
+    let time = model.live.estimate().map_or_else(
+        || "time not known".to_owned(),
+        |estimate| format!("{} of mission time", clock(estimate.time_s)),
+    );
+    let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
+    let certificate = match model.live.run.tether.as_ref().and_then(|tether| tether.certified) {
+        _ if !has_tether => "no tether",
+        Some(true) => "certified for the tether",
+        Some(false) => "NOT certified for the tether",
+        None => "not certified for the tether",
+    };
+    format!("{length}, {time}, {certificate}.")
 }
 
 /// What the line does in which is typed for how long an alarm is put aside.

@@ -3,23 +3,13 @@
 use super::{events, text};
 use crate::model::{Busy, Model, Replay, Screen};
 use crate::theme::Role;
-use mission::{Hold, HoldReason, Order, Outcome, Phase, PositionTrust, Resumes, Severity};
+use mission::{Hold, HoldReason, Outcome, Phase, PositionTrust, Readiness, Resumes, Severity};
 
 /// How a line looks, and its clauses, the most important one first.
 pub(super) type Clauses = (Role, Vec<String>);
 
-/// What comes next.
-pub(super) fn clauses(model: &Model) -> Clauses {
-    if let Some(notice) = model.notice() {
-        let role =
-            if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
-        return (role, vec![text::capitalized(&notice.text)]);
-    }
-    without_notice(model)
-}
-
 /// What comes next, with the keys that the operator has.
-fn without_notice(model: &Model) -> Clauses {
+pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
     if model.live.is_look_only() {
         clauses.retain(|clause| !clause.contains(['<', '>']) && !clause.contains("space:"));
@@ -51,7 +41,7 @@ fn by_phase(model: &Model) -> Clauses {
     }
     let work = model.live.busy.as_ref().map(|busy| work(model, busy));
     match (&model.live.asked, model.live.run.phase()) {
-        (Some(Order::Start), _) => (Role::Title, vec!["Starting...".into()]),
+        (Some(order), _) if order.is_start() => (Role::Title, vec!["Starting...".into()]),
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
             let mut clauses = held(model, hold);
@@ -93,7 +83,7 @@ pub(crate) fn standing(model: &Model) -> String {
     if model.live.run.is_running() {
         return "Mission running.".into();
     }
-    without_notice(model).1.join(" ")
+    clauses(model).1.join(" ")
 }
 
 /// Where the operator goes from a mission that has ended.
@@ -108,11 +98,8 @@ fn more(model: &Model) -> String {
 /// What a planner is doing and how far, for how long already and its limit, and what exactly.
 fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
-    // Only the end makes it whole.
-    let percent = |share: f64| format!(" {} %", (100.0 * share).floor().clamp(0.0, 99.0));
-    let share = busy.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
     let time = |limit_s: f64| format!(", {passed_s} s (limit {} s)", limit_s as u64);
-    let first = format!("{}{share}{}.", busy.work, busy.limit_s.map_or_else(String::new, time));
+    let first = format!("{}{}.", busy.how_far(), busy.limit_s.map_or_else(String::new, time));
     let what = busy
         .at
         .iter()
@@ -142,6 +129,10 @@ fn idle(model: &Model) -> Clauses {
     }
     if model.live.preflight.is_starting {
         return (Role::Title, vec!["Checking before the start...".into()]);
+    }
+    let is_preparing = model.live.run.standing.standing().readiness == Readiness::Preparing;
+    if model.live.busy.is_some() || is_preparing {
+        return (Role::Title, vec!["Start when the plan is ready.".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
     // A planner that is still being opened blocks nothing yet.

@@ -2,7 +2,7 @@
 
 use super::look::Look;
 use super::next::Clauses;
-use super::{confirm, coverage, footer, next, text, top};
+use super::{confirm, coverage, footer, next, notice, text, top};
 use crate::model::{Model, Overlay};
 use crate::theme::Role;
 use ratatui::Frame;
@@ -28,6 +28,9 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     lines.extend(alarm(look, columns));
     if !asks(look.model) {
         lines.extend(wrapped(look, &next::clauses(look.model), columns));
+    }
+    if let Some((role, said)) = notice::lines(look.model, columns) {
+        lines.extend(said.iter().map(|line| look.line([(role, format!(" {line}"))])));
     }
     lines.push(Line::from(look.span(Role::Text, text::fit(&position(look), columns))));
     lines.push(footer::line(look, columns));

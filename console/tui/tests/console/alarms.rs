@@ -3,7 +3,7 @@
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use mission::event::TetherAlarm;
-use mission::{EventKind, HoldReason, Order, Resumes, Severity};
+use mission::{EventKind, HoldReason, Noted, Order, Resumes, Severity};
 use tui::model::alarms::State;
 use tui::model::ui::Ask;
 use tui::model::{Cause, Overlay};
@@ -35,10 +35,17 @@ fn troubled() -> Screen {
     screen.hear(RunMsg::Events(wait));
     hear(&mut screen, EventKind::Held { by: HoldReason::PositionLost, resumes: Resumes::WhenCleared });
     hear(&mut screen, EventKind::RangesConsistent);
-    screen.model.live.run.alarms.shelve(&Cause::Station(world::StationId(4)), 1500.0, "pump noise");
+    let shelved = Noted::Shelved {
+        alarm: Cause::Station(world::StationId(4)).key(),
+        text: String::new(),
+        for_s: 1500.0,
+        reason: "pump noise".into(),
+    };
+    screen.model.live.run.alarms.take(&shelved, 0.0);
     let events = screen.mission.planner_fails();
     screen.hear(RunMsg::Events(events[..1].to_vec()));
-    screen.model.live.run.alarms.acknowledge_one(&Cause::Planner);
+    let text = screen.model.live.run.alarms.get(&Cause::Planner).expect("an alarm").text.clone();
+    screen.model.live.run.alarms.take(&Noted::Acknowledged { alarm: Cause::Planner.key(), text }, 0.0);
     screen.type_text("4");
     screen
 }

@@ -102,6 +102,7 @@ pub(crate) fn config() -> MissionConfig {
         tether: None,
         fallback: None,
         attended: true,
+        start_names_plan: true,
         better_plan: mission::BetterPlan::Offer,
     }
 }
@@ -242,6 +243,18 @@ impl ScriptedMission {
     /// The events before anything moves.
     pub(crate) fn opening(&self) -> Vec<Event> {
         vec![self.now(opened()), self.now(self.estimated())]
+    }
+
+    /// The plan is made that the operator sees before the start.
+    pub(crate) fn planned_ahead(&self) -> Vec<Event> {
+        let info = Box::new(planners().remove(1));
+        [
+            EventKind::Ordered { order: Order::Plan },
+            EventKind::PlannerChosen { ask: None, choice: choice("rpf"), info, from: None },
+            self.planned(None),
+        ]
+        .map(|kind| self.now(kind))
+        .into()
     }
 
     /// The events of the start.
@@ -503,13 +516,21 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// A run that is open and waits.
+    /// A run that is open and waits, with its plan.
     pub(crate) fn idle() -> Self {
         static MADE: OnceLock<Screen> = OnceLock::new();
         MADE.get_or_init(Self::make_idle).clone()
     }
 
     fn make_idle() -> Self {
+        let mut screen = Self::opened();
+        let events = screen.mission.planned_ahead();
+        screen.hear(RunMsg::Events(events));
+        screen
+    }
+
+    /// A run that is open and has no plan yet.
+    pub(crate) fn opened() -> Self {
         let mut model = Model::opened(RunId(1), Source::Demo, Speed::default());
         model.ui.go(tui::model::Screen::Mission);
         let mut screen = Self { model, mission: ScriptedMission::new(), mono_s: 0.0 };
@@ -578,9 +599,16 @@ impl Screen {
         screen
     }
 
-    /// Sends a message to the model.
+    /// Sends a message to the model. What the operator does about alarms is written down by the mission in the same tick.
     pub(crate) fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
-        update(&mut self.model, msg)
+        let effects = update(&mut self.model, msg);
+        for effect in &effects {
+            if let tui::Effect::Order(order @ Order::Note(_)) = effect {
+                let written = self.mission.now(EventKind::Ordered { order: order.clone() });
+                update(&mut self.model, of_run(RunMsg::Events(vec![written])));
+            }
+        }
+        effects
     }
 
     /// Sends news of the run that is open to the model.

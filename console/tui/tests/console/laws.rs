@@ -85,11 +85,12 @@ fn msg() -> impl Strategy<Value = Msg> {
         Signal::Interrupt,
         Signal::Terminate,
         Signal::Hangup,
+        Signal::End(3),
         Signal::Stop,
         Signal::Continue,
     ]);
     prop_oneof![
-        8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { key, repeat })),
+        8 => (key(), any::<bool>()).prop_map(|(key, repeat)| Msg::Key(KeyPress { repeat, ..key.into() })),
         4 => prop::collection::vec(event(), 0..6).prop_map(|events| of_run(RunMsg::Events(events))),
         1 => (0..300_u16, 0..100_u16).prop_map(|(width, height)| Msg::Resize { width, height }),
         1 => any::<f64>().prop_map(|mono_s| Msg::Time(Times { mono_s, wall_unix_s: mono_s })),
@@ -201,6 +202,7 @@ fn is_harmless(order: &Order) -> bool {
         Order::Hold
             | Order::SetParameter { .. }
             | Order::UseStation { .. }
+            | Order::Note(_)
             | Order::Shadow(_)
             | Order::DropShadow
     )
@@ -316,7 +318,7 @@ proptest! {
         let mut screen = Screen::held();
         for key in keys {
             let moves = screen.press([key]).into_iter().any(|effect| {
-                matches!(effect, Effect::Order(Order::Start | Order::Resume | Order::Step | Order::ChoosePlanner(_)))
+                matches!(effect, Effect::Order(Order::Start | Order::StartPlan(_) | Order::Resume | Order::Step | Order::ChoosePlanner(_)))
             });
             prop_assert!(!moves, "{key} moved the robot");
         }

@@ -66,7 +66,7 @@ fn the_mission_starts_only_after_the_operator_agreed() {
     assert!(matches!(screen.press([Key::Enter])[..], [Effect::Check { .. }]));
     assert!(screen.model.live.may_move(), "it may be started by what is found");
     let effects = screen.hear(RunMsg::Checked(Vec::new()));
-    let [Effect::Order(Order::NoteChecks(checks)), Effect::Order(Order::Start)] = &effects[..] else {
+    let [Effect::Order(Order::NoteChecks(checks)), Effect::Order(Order::StartPlan(_))] = &effects[..] else {
         panic!("{effects:?}")
     };
     assert!(checks.iter().all(|check| check.outcome < CheckOutcome::Failed), "{checks:?}");
@@ -85,7 +85,7 @@ fn what_fails_before_the_start_blocks_it_and_is_checked_again_at_the_moment_of_s
     assert_eq!(notice(&screen), "start blocked: disk: 1 MB free");
     assert!(matches!(screen.model.ui.overlay, Overlay::Preflight { .. }), "what failed is shown");
     screen.press([Key::Esc]);
-    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::Start)]));
+    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::StartPlan(_))]));
 }
 
 #[test]
@@ -340,11 +340,12 @@ fn starting_a_mission_that_is_held_is_refused_without_a_key_that_would_resume() 
 fn an_order_that_does_not_reach_the_mission_is_an_alarm_and_can_be_given_again() {
     let mut screen = Screen::idle();
     screen.start();
-    let failed = RunMsg::OrderFailed { order: Order::Start, why: "cannot create the run folder".into() };
+    let order = screen.model.live.asked.clone().expect("a start");
+    let failed = RunMsg::OrderFailed { order, why: "cannot create the run folder".into() };
     assert_eq!(screen.hear(failed), [Effect::Bell]);
     assert_eq!((&screen.model.live.asked, screen.model.live.may_move()), (&None, false));
     assert!(notice(&screen).contains("cannot create the run folder"));
-    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::Start)]));
+    assert!(matches!(screen.start()[..], [_, Effect::Order(Order::StartPlan(_))]));
 }
 
 #[test]
@@ -646,7 +647,7 @@ fn control_z_holds_before_the_terminal_is_given_back() {
 
 #[test]
 fn a_signal_to_end_holds_and_leaves() {
-    for signal in [Signal::Terminate, Signal::Hangup] {
+    for signal in [Signal::Terminate, Signal::Hangup, Signal::End(3)] {
         let effects = Screen::running().send(Msg::Signal(signal));
         assert_eq!(effects, [order(Order::Hold), Effect::Quit { signal: Some(signal) }]);
         assert_eq!(Screen::idle().send(Msg::Signal(signal)), [Effect::Quit { signal: Some(signal) }]);
@@ -679,7 +680,7 @@ fn pasted_text_is_never_a_command() {
 #[test]
 fn a_key_that_is_held_down_moves_the_map_or_stops_the_robot_and_nothing_else() {
     let mut screen = Screen::running();
-    let mut repeat = |letter| screen.send(Msg::Key(KeyPress { key: Key::Char(letter), repeat: true }));
+    let mut repeat = |letter| screen.send(Msg::Key(KeyPress { repeat: true, ..Key::Char(letter).into() }));
     assert_eq!(repeat('q'), []);
     assert_eq!(repeat(' '), [Effect::Order(Order::Hold)]);
     assert_eq!(repeat(' '), [], "it has been asked for");

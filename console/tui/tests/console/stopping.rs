@@ -46,7 +46,7 @@ fn overlays() -> Vec<Overlay> {
     let edit = Some(Edit { line: "1".into(), refusal: None });
     let all = vec![
         Overlay::None,
-        Overlay::Confirm(Ask::Start),
+        Overlay::Confirm(Ask::Start(None)),
         Overlay::Confirm(Ask::Resume),
         Overlay::Confirm(Ask::FlyUncertified),
         Overlay::Confirm(Ask::Abort),
@@ -74,7 +74,7 @@ fn overlays() -> Vec<Overlay> {
         match overlay {
             Overlay::None
             | Overlay::Confirm(
-                Ask::Start
+                Ask::Start(_)
                 | Ask::Resume
                 | Ask::FlyUncertified
                 | Ask::Abort
@@ -135,7 +135,7 @@ impl Where {
 fn ways() -> Vec<(Msg, Where)> {
     let key = |key: Key, place: Where| (Msg::Key(key.into()), place);
     let panicked = Msg::ThreadPanicked { thread: "recorder".into(), message: "out of bounds".into() };
-    let signals = [Signal::Interrupt, Signal::Terminate, Signal::Hangup, Signal::Stop];
+    let signals = [Signal::Interrupt, Signal::Terminate, Signal::Hangup, Signal::End(3), Signal::Stop];
     [
         key(Key::Char(' '), Where::NotInText),
         key(Key::Ctrl('c'), Where::Everywhere),
@@ -151,7 +151,12 @@ fn ways() -> Vec<(Msg, Where)> {
 }
 
 fn moves(effect: &Effect) -> bool {
-    matches!(effect, Effect::Order(Order::Start | Order::Resume | Order::Step | Order::FlyUncertified))
+    matches!(
+        effect,
+        Effect::Order(
+            Order::Start | Order::StartPlan(_) | Order::Resume | Order::Step | Order::FlyUncertified
+        )
+    )
 }
 
 /// A screen in a phase that its events have led to.
@@ -216,12 +221,12 @@ fn is_loose(model: &Model) -> bool {
 
 /// Whether the console is on its way out: it reads no keys any more.
 fn is_farewell(way: &Msg) -> bool {
-    matches!(way, Msg::Signal(Signal::Terminate | Signal::Hangup))
+    matches!(way, Msg::Signal(Signal::Terminate | Signal::Hangup | Signal::End(_)))
 }
 
 /// Whether Enter would make the robot move.
 fn asks_to_move(overlay: &Overlay) -> bool {
-    matches!(overlay, Overlay::Stepping | Overlay::Confirm(Ask::Start | Ask::Resume | Ask::FlyUncertified))
+    matches!(overlay, Overlay::Stepping | Overlay::Confirm(Ask::Start(_) | Ask::Resume | Ask::FlyUncertified))
 }
 
 fn is_held_for_good(phase: &Phase) -> bool {

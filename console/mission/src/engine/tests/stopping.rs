@@ -292,7 +292,7 @@ fn what_changes_the_ranges_of_a_held_robot_leaves_it_to_an_order() {
     let station = StationId(1);
     let fault = Order::Inject(Injection { station, fault: RangeFault::Dead, for_s: 1.0, by: None });
     let held = |case: &Case| matches!(case.flight.mission.phase(), Phase::Held(_));
-    for order in [fault, Order::UseStation { station, used: false }] {
+    for order in [fault, Order::UseStation { station, used: false, by: None }] {
         for Case { name, mut flight, clear } in cases().into_iter().filter(held) {
             let before = flight.pose;
             flight.tick(std::slice::from_ref(&order));
@@ -307,7 +307,7 @@ fn what_changes_the_ranges_of_a_held_robot_leaves_it_to_an_order() {
 fn an_excluded_station_is_not_used_until_it_is_taken_back() {
     let station = StationId(1);
     let mut flight = started(config());
-    flight.tick(&[Order::UseStation { station, used: false }]);
+    flight.tick(&[Order::UseStation { station, used: false, by: None }]);
     let used = |flight: &mut Flight| {
         let events: Vec<EventKind> = (0..20).flat_map(|_| flight.tick(&[])).collect();
         let ranged = events.iter().filter_map(|kind| match kind {
@@ -318,6 +318,6 @@ fn an_excluded_station_is_not_used_until_it_is_taken_back() {
         (ranged.len() > 1, ranged.iter().any(|used| *used))
     };
     assert_eq!(used(&mut flight), (true, false));
-    flight.tick(&[Order::UseStation { station, used: true }]);
+    flight.tick(&[Order::UseStation { station, used: true, by: None }]);
     assert_eq!(used(&mut flight), (true, true));
 }

@@ -72,9 +72,9 @@ impl Host {
 
     /// Starts a worker and asks it to load a file.
     fn load(&self, candidate: &Candidate, planner: &str) -> Result<Worker, Failure> {
-        let mut worker = Worker::spawn(&self.config.worker_command)?;
         let (memory_limit_bytes, requires_sandbox) =
             (self.config.memory_limit_bytes, self.catalog.requires_sandbox());
+        let mut worker = Worker::spawn(&self.config.worker_command, memory_limit_bytes)?;
         worker.ask(kind::LOAD, self.config.load_deadline, |w| {
             write_load(w, &candidate.path, planner, memory_limit_bytes, requires_sandbox);
         })?;

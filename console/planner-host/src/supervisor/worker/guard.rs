@@ -1,6 +1,6 @@
 //! The console's side of a worker's sandbox: how far it reaches, and decisions about calls of the system.
 
-use crate::sandbox::{Listener, Stage, Verdict, ends_loading, verdict};
+use crate::sandbox::{Listener, Stage, Uncounted, Verdict, ends_loading, verdict};
 use crate::wire::answer::Sealed;
 use mission::Sandbox;
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
@@ -20,9 +20,15 @@ pub(super) struct Guard {
     has_loaded: bool,
     /// The folder in which a library was looked for last.
     sought: String,
+    uncounted: Uncounted,
 }
 
 impl Guard {
+    /// Of a planner that may have so much memory, bytes.
+    pub(super) fn new(memory_limit_bytes: u64) -> Self {
+        Self { uncounted: Uncounted::of(memory_limit_bytes), ..Self::default() }
+    }
+
     /// How far the worker is closed off, and for which file.
     pub(super) fn sealed(&self) -> Option<&Sealed> {
         self.sealed.as_ref()
@@ -58,9 +64,11 @@ impl Guard {
 
     /// Decides about the call that waits; what was tried, if that may not be.
     pub(super) fn decide(&mut self) -> Option<String> {
+        let stage = self.stage();
         let listener = self.listener.as_ref()?;
         let call = listener.next()?;
-        let verdict = verdict(&call, self.stage(), &mut self.sought);
+        let about_memory = self.uncounted.verdict(&call);
+        let verdict = about_memory.unwrap_or_else(|| verdict(&call, stage, &mut self.sought));
         self.has_loaded |= ends_loading(&call);
         listener.answer(&call, &verdict);
         match verdict {

@@ -12,7 +12,7 @@ const PATIENT: Duration = Duration::from_secs(10);
 /// A worker that runs this script; its standard input is the socket.
 fn worker(script: &str) -> Worker {
     let command = WorkerCommand { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] };
-    Worker::spawn(&command).unwrap()
+    Worker::spawn(&command, 256 << 20).unwrap()
 }
 
 /// A worker that answers every request without a body by one of these, and then only listens.

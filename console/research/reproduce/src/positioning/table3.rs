@@ -73,13 +73,15 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
                     let name = format!("P{environment:02}");
                     let paper = printed(&name, printed_id, nu);
                     columns.push((paper, ours));
-                    rows.push(row(job, &case(&name), metric, ours, values.len()).printed(paper));
+                    let row = row(job, &case(&name), metric, ours, values.len()).printed(paper);
+                    rows.push(row.of_one_draw(values.range_95()));
                 }
                 if metric != "p_value" {
                     let paper = columns.iter().filter_map(|column| column.0).collect::<Sample>().mean();
-                    let ours = columns.iter().filter_map(|column| column.1).collect::<Sample>().mean();
+                    let means: Sample = columns.iter().filter_map(|column| column.1).collect();
                     let n = cells.len() * seeds.len();
-                    rows.push(row(job, &case("all"), metric, ours, n).printed(paper));
+                    let row = row(job, &case("all"), metric, means.mean(), n).printed(paper);
+                    rows.push(row.within(means.mean_interval_95()));
                 }
             }
         }

@@ -48,24 +48,52 @@ fn claims(job: &Job<'_>, runs: &[Run], plans: &[Vec<Measured>]) -> Vec<Row> {
             ),
             ("rpf/gated+ir", "iapf+ir", 0.0351, "follows from the printed errors"),
         ] {
-            let error = |id: &str| mean_error(runs, plans, sampling, id);
-            let (Some(new), Some(old)) = (error(ours), error(theirs)) else { continue };
+            let reduction = |without: Option<usize>| {
+                let error = |id: &str| mean_error(runs, plans, sampling, id, without);
+                Some(1.0 - error(ours)? / error(theirs)?)
+            };
+            let Some(reduced) = reduction(None) else { continue };
             let (case, method) = (format!("mean/{sampling}"), format!("{ours} against {theirs}"));
             let block = job.block(&case, &method, note);
-            rows.push(block.row("rmse_reduction", 1.0 - new / old, "", plans[0].len()).printed(paper));
+            let n = plans[0].len();
+            let row = block.row("rmse_reduction", reduced, "", n).printed(paper);
+            rows.push(row.claimed(jackknife_95(reduced, n, reduction)));
         }
     }
     rows
 }
 
-/// Mean over the three distributions of a method's mean error; none unless all three were run.
-fn mean_error(runs: &[Run], plans: &[Vec<Measured>], sampling: &str, method: &str) -> Option<f64> {
+/// 95 % interval of a figure by what it is without each of the layouts.
+fn jackknife_95(figure: f64, n: usize, without: impl Fn(Option<usize>) -> Option<f64>) -> Option<[f64; 2]> {
+    let others: Vec<f64> = (0..n).filter_map(|index| without(Some(index))).collect();
+    let mean = others.iter().copied().collect::<Sample>().mean().filter(|_| n > 1 && others.len() == n)?;
+    let squares: f64 = others.iter().map(|other| (other - mean).powi(2)).sum();
+    let half = 1.96 * (squares * (n - 1) as f64 / n as f64).sqrt();
+    Some([figure - half, figure + half])
+}
+
+/// Mean over the three distributions of a method's mean error, perhaps without one of the layouts; none unless all three were
+/// run.
+fn mean_error(
+    runs: &[Run],
+    plans: &[Vec<Measured>],
+    sampling: &str,
+    method: &str,
+    without: Option<usize>,
+) -> Option<f64> {
+    let kept = |plans: &Vec<Measured>| {
+        let kept = plans.iter().enumerate().filter(|(index, _)| Some(*index) != without);
+        kept.map(|(_, plan)| plan)
+            .filter(|plan| plan.has_path())
+            .map(|plan| plan.score.rmse_m)
+            .collect::<Sample>()
+    };
     let is_meant = |run: &Run| run.method.id == method && run.case.ends_with(sampling);
     let means: Vec<f64> = runs
         .iter()
         .zip(plans)
         .filter(|(run, _)| is_meant(run))
-        .filter_map(|(_, plans)| mean(plans, |plan| plan.score.rmse_m))
+        .filter_map(|(_, plans)| kept(plans).mean())
         .collect();
     (means.len() == 3).then(|| means.iter().sum::<f64>() / 3.0)
 }
@@ -179,4 +207,22 @@ fn asked(job: &Job<'_>, entries: Vec<Entry>) -> Result<Vec<Run>> {
     let groups = job.cases(Group::all(), |group| group.id())?;
     let entries = job.methods(entries, |entry| entry.method.id.clone())?;
     Ok(entries.iter().flat_map(|entry| groups.iter().map(|group| Run::new(entry, *group))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_a_mean_without_each_value_is_that_of_the_mean() {
+        let values = [1.0, 2.0, 4.0, 9.0];
+        let mean = |without: Option<usize>| {
+            let kept = values.iter().enumerate().filter(|(index, _)| Some(*index) != without);
+            kept.map(|(_, value)| *value).collect::<Sample>().mean()
+        };
+        let margin = values.into_iter().collect::<Sample>().mean_margin_95().expect("four values");
+        let [low, high] = jackknife_95(4.0, 4, mean).expect("four values");
+        assert!((low - 4.0 + margin).abs() < 1e-9 && (high - 4.0 - margin).abs() < 1e-9, "{low} {high}");
+        assert_eq!(jackknife_95(4.0, 1, |_| Some(4.0)), None);
+    }
 }

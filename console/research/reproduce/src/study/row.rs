@@ -1,6 +1,6 @@
 //! One figure of a table.
 
-use super::sample::Sample;
+use super::{sample::Sample, verdict::Verdict};
 use serde::{Deserialize, Serialize};
 
 /// A figure of ours beside the printed one.
@@ -26,9 +26,49 @@ pub struct Row {
     pub n: usize,
     /// What a reader must know; empty if nothing.
     pub note: String,
+    /// Ours less the printed value.
+    #[serde(default)]
+    pub difference: Option<f64>,
+    /// 95 % interval of ours over layouts or draws; none of a single one, and where none is known.
+    #[serde(default)]
+    pub interval_95: Option<[f64; 2]>,
+    /// Whether the interval is that of a single draw, which the printed value is.
+    #[serde(default)]
+    pub is_of_one_draw: bool,
+    /// What ours says about the printed value; none where nothing is printed.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
+    /// Why that is the verdict; empty if it is reproduced.
+    #[serde(default)]
+    pub why: String,
+    /// Whether `--first-seed` changes anything about it.
+    #[serde(default = "is_seeded")]
+    pub seeded: bool,
+    /// Whether it is a claim of the paper, whose sign counts.
+    #[serde(default)]
+    pub is_claim: bool,
+}
+
+fn is_seeded() -> bool {
+    true
 }
 
 impl Row {
+    /// With its 95 % interval.
+    pub(crate) fn within(self, interval_95: Option<[f64; 2]>) -> Self {
+        Self { interval_95, ..self }
+    }
+
+    /// With the 95 % interval of a single draw, which the printed value is.
+    pub(crate) fn of_one_draw(self, interval_95: Option<[f64; 2]>) -> Self {
+        Self { is_of_one_draw: true, interval_95, ..self }
+    }
+
+    /// As a claim of the paper, with its 95 % interval.
+    pub(crate) fn claimed(self, interval_95: Option<[f64; 2]>) -> Self {
+        Self { is_claim: true, interval_95, ..self }
+    }
+
     /// With the printed value.
     pub(crate) fn printed(self, paper: impl Into<Option<f64>>) -> Self {
         Self { paper: paper.into(), ..self }
@@ -68,6 +108,13 @@ impl Block<'_> {
             unit: unit.into(),
             n,
             note: self.note.into(),
+            difference: None,
+            interval_95: None,
+            is_of_one_draw: false,
+            verdict: None,
+            why: String::new(),
+            seeded: true,
+            is_claim: false,
         }
     }
 
@@ -75,8 +122,9 @@ impl Block<'_> {
     pub(crate) fn mean_and_median(&self, metric: &str, sample: &Sample, unit: &str) -> [Row; 2] {
         let n = sample.len();
         [
-            self.row(metric, sample.mean(), unit, n),
-            self.row(&format!("{metric}_median"), sample.median(), unit, n),
+            self.row(metric, sample.mean(), unit, n).within(sample.mean_interval_95()),
+            self.row(&format!("{metric}_median"), sample.median(), unit, n)
+                .within(sample.median_interval_95()),
         ]
     }
 }

@@ -60,6 +60,28 @@ impl Sample {
         Some((squares / (self.len() - 1) as f64).sqrt())
     }
 
+    /// 95 % confidence interval of the mean, by the normal distribution.
+    pub(crate) fn mean_interval_95(&self) -> Option<[f64; 2]> {
+        let (mean, margin) = self.mean().zip(self.mean_margin_95())?;
+        Some([mean - margin, mean + margin])
+    }
+
+    /// Where 95 % of the values lie; none of fewer than forty.
+    pub(crate) fn range_95(&self) -> Option<[f64; 2]> {
+        const FEWEST: usize = 40;
+        let range = || Some([self.quantile(0.025)?, self.quantile(0.975)?]);
+        (self.len() >= FEWEST).then(range)?
+    }
+
+    /// 95 % confidence interval of the median, by the ranks of the values; none of fewer than six.
+    pub(crate) fn median_interval_95(&self) -> Option<[f64; 2]> {
+        const FEWEST: usize = 6;
+        let n = self.len();
+        let (middle, half) = (n as f64 / 2.0, 0.98 * (n as f64).sqrt());
+        let (low, high) = ((middle - half).floor().max(0.0) as usize, (middle + half).ceil() as usize);
+        (n >= FEWEST).then(|| [self.sorted[low], self.sorted[high.min(n - 1)]])
+    }
+
     /// Half width of the 95 % confidence interval of the mean, by the normal distribution.
     pub(crate) fn mean_margin_95(&self) -> Option<f64> {
         Some(1.96 * self.standard_deviation()? / (self.len() as f64).sqrt())
@@ -79,6 +101,15 @@ mod tests {
         assert_eq!(sample.quantile(1.0 / 3.0), Some(2.0));
         let deviation = sample.standard_deviation().expect("four values");
         assert!((deviation - (5.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn intervals_hold_what_they_are_of() {
+        let sample: Sample = (0..100).map(f64::from).collect();
+        let [low, high] = sample.mean_interval_95().expect("many values");
+        assert!((low - 43.8).abs() < 0.1 && (high - 55.2).abs() < 0.1, "{low} {high}");
+        assert_eq!(sample.median_interval_95(), Some([40.0, 60.0]));
+        assert_eq!([1.0; 5].into_iter().collect::<Sample>().median_interval_95(), None);
     }
 
     #[test]

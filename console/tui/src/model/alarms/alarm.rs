@@ -156,19 +156,18 @@ impl Alarm {
         }
     }
 
-    /// Notes that the operator has seen it, and gives the words that were seen. Those of the lower severity were not, and
-    /// may be about something else of the same cause: they are to be acknowledged next.
-    pub(super) fn acknowledge(&mut self) -> String {
+    /// Notes that the operator has seen it. The words of the lower severity were not seen, and may be about something else of
+    /// the same cause: they are to be acknowledged next.
+    pub(super) fn acknowledge(&mut self) {
         if let Some((severity, text)) = self.fallen.take() {
-            self.severity = severity;
-            return std::mem::replace(&mut self.text, text);
+            (self.severity, self.text) = (severity, text);
+            return;
         }
         match self.state {
             State::Unacknowledged => self.state = State::Acknowledged,
             State::Returned => self.state = State::Cleared,
             State::Acknowledged | State::Shelved(_) | State::Cleared => {}
         }
-        self.text.clone()
     }
 
     /// Why it cannot be put aside, if it cannot.

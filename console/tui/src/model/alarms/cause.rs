@@ -64,6 +64,29 @@ impl Cause {
         })
     }
 
+    /// Its name in journals: the same in every run and whatever the alarm says.
+    pub fn key(&self) -> String {
+        match self {
+            Self::PositionLost => "position_lost".into(),
+            Self::Contradiction => "contradiction".into(),
+            Self::NoFix => "no_fix".into(),
+            Self::Station(id) => format!("station {}", id.0),
+            Self::Map => "map".into(),
+            Self::Tether(word) => format!("tether {word}"),
+            Self::Certificate => "certificate".into(),
+            Self::Planner => "planner".into(),
+            Self::Stuck => "stuck".into(),
+            Self::Ended => "ended".into(),
+            Self::Recording => "recording".into(),
+            Self::Writer => "writer".into(),
+            Self::Console => "console".into(),
+            Self::Response => "response".into(),
+            Self::Frames => "frames".into(),
+            Self::RecorderLag => "recorder_lag".into(),
+            Self::Disk => "disk".into(),
+        }
+    }
+
     fn of_hold(by: &HoldReason) -> Option<Self> {
         match by {
             HoldReason::PositionLost => Some(Self::PositionLost),

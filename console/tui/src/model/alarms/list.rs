@@ -2,7 +2,7 @@
 
 use super::alarm::{Alarm, Reading, State};
 use super::cause::Cause;
-use mission::Severity;
+use mission::{Noted, Severity};
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use world::Point;
@@ -62,36 +62,28 @@ impl Alarms {
         }
     }
 
-    /// Acknowledges the worst alarm that the operator has not acknowledged, the oldest of them; returns its words.
-    pub fn acknowledge(&mut self) -> Option<String> {
-        let worst = self.worst().filter(|alarm| alarm.is_unacknowledged())?.cause.clone();
-        self.acknowledge_one(&worst)
-    }
-
-    /// Acknowledges one alarm, if it waits for that; returns its words.
-    pub fn acknowledge_one(&mut self, cause: &Cause) -> Option<String> {
-        let alarm = self.get_mut(cause).filter(|alarm| alarm.is_unacknowledged())?;
-        Some(alarm.acknowledge())
-    }
-
-    /// Acknowledges every alarm that waits for it; returns how many there were.
-    pub fn acknowledge_all(&mut self) -> usize {
-        let waiting = self.list.iter_mut().filter(|alarm| alarm.is_unacknowledged());
-        waiting.map(Alarm::acknowledge).count()
-    }
-
-    /// Puts an alarm aside until some mission time, seconds, if it can be.
-    pub fn shelve(&mut self, cause: &Cause, until_s: f64, reason: &str) {
-        if let Some(alarm) = self.get_mut(cause) {
-            alarm.shelve(until_s, reason);
+    /// Takes in what the operator did about an alarm. Words that the operator has not seen are not acknowledged.
+    pub fn take(&mut self, noted: &Noted, t_s: f64) {
+        let (Noted::Acknowledged { alarm: key, .. }
+        | Noted::Shelved { alarm: key, .. }
+        | Noted::Unshelved { alarm: key, .. }) = noted
+        else {
+            return;
+        };
+        let Some(alarm) = self.list.iter_mut().find(|alarm| alarm.cause.key() == *key) else { return };
+        match noted {
+            Noted::Acknowledged { text, .. } if alarm.is_unacknowledged() && alarm.text == *text => {
+                alarm.acknowledge();
+            }
+            Noted::Shelved { for_s, reason, .. } => alarm.shelve(t_s + for_s, reason),
+            Noted::Unshelved { .. } => alarm.unshelve(),
+            _ => {}
         }
     }
 
-    /// Takes an alarm back from the shelf.
-    pub fn unshelve(&mut self, cause: &Cause) {
-        if let Some(alarm) = self.get_mut(cause) {
-            alarm.unshelve();
-        }
+    /// The worst alarm that the operator has not acknowledged, the oldest of them.
+    pub fn worst_unacknowledged(&self) -> Option<&Alarm> {
+        self.worst().filter(|alarm| alarm.is_unacknowledged())
     }
 
     /// Takes back what was shelved until now.

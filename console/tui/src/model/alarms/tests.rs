@@ -1,7 +1,10 @@
 //! The life of alarms.
 
 use super::*;
-use mission::Severity::{self, Crit, Info, Warn, Watch};
+use mission::{
+    Noted,
+    Severity::{self, Crit, Info, Warn, Watch},
+};
 
 const CAUSE: Cause = Cause::PositionLost;
 
@@ -9,6 +12,29 @@ fn raised(severity: Severity) -> Alarms {
     let mut alarms = Alarms::default();
     alarms.raise(CAUSE, severity, "position lost".into(), 1.0);
     alarms
+}
+
+/// The operator acknowledges an alarm in the words that it has.
+fn acknowledge_one(alarms: &mut Alarms, cause: &Cause) {
+    let text = alarms.get(cause).map(|alarm| alarm.text.clone()).unwrap_or_default();
+    alarms.take(&Noted::Acknowledged { alarm: cause.key(), text }, 5.0);
+}
+
+/// The operator acknowledges the worst alarm; its words.
+fn acknowledge(alarms: &mut Alarms) -> Option<String> {
+    let (cause, text) =
+        alarms.worst_unacknowledged().map(|alarm| (alarm.cause.clone(), alarm.text.clone()))?;
+    acknowledge_one(alarms, &cause);
+    Some(text)
+}
+
+fn shelve(alarms: &mut Alarms, cause: &Cause) {
+    let (text, reason) = (String::new(), "known".into());
+    alarms.take(&Noted::Shelved { alarm: cause.key(), text, for_s: 55.0, reason }, 5.0);
+}
+
+fn unshelve(alarms: &mut Alarms, cause: &Cause) {
+    alarms.take(&Noted::Unshelved { alarm: cause.key(), text: String::new() }, 5.0);
 }
 
 /// What can happen to an alarm.
@@ -27,9 +53,9 @@ fn take(alarms: &mut Alarms, step: Step) {
     match step {
         Step::Raise(severity) => alarms.raise(CAUSE, severity, "again".into(), 5.0),
         Step::Clear => alarms.clear(&CAUSE, 5.0),
-        Step::Acknowledge => drop(alarms.acknowledge_one(&CAUSE)),
-        Step::Shelve => alarms.shelve(&CAUSE, 60.0, "known"),
-        Step::Unshelve => alarms.unshelve(&CAUSE),
+        Step::Acknowledge => acknowledge_one(alarms, &CAUSE),
+        Step::Shelve => shelve(alarms, &CAUSE),
+        Step::Unshelve => unshelve(alarms, &CAUSE),
         Step::Expire => alarms.expire(60.0),
     }
 }
@@ -102,7 +128,7 @@ fn a_critical_alarm_stays_until_it_is_acknowledged() {
     let mut alarms = raised(Crit);
     alarms.clear(&CAUSE, 2.0);
     assert_eq!(alarms.count(Crit), 1);
-    assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
+    assert_eq!(acknowledge(&mut alarms).as_deref(), Some("position lost"));
     assert_eq!(alarms.open().count(), 0);
     assert_eq!(alarms.list().len(), 1, "it is listed as cleared");
 }
@@ -110,7 +136,7 @@ fn a_critical_alarm_stays_until_it_is_acknowledged() {
 #[test]
 fn an_acknowledged_alarm_stays_until_its_cause_is_gone_and_wakes_when_it_comes_back() {
     let mut alarms = raised(Crit);
-    alarms.acknowledge();
+    acknowledge(&mut alarms);
     assert_eq!((alarms.count(Crit), alarms.unacknowledged(Crit)), (1, 0));
     alarms.clear(&CAUSE, 2.0);
     alarms.raise(CAUSE, Crit, "again".into(), 3.0);
@@ -124,10 +150,10 @@ fn the_worst_alarm_is_acknowledged_first_and_all_of_them_at_once() {
     alarms.raise(Cause::Planner, Crit, "planner failed".into(), 2.0);
     assert_eq!(alarms.worst().map(|alarm| alarm.text.as_str()), Some("planner failed"));
     let mut all = alarms.clone();
-    assert_eq!(alarms.acknowledge().as_deref(), Some("planner failed"));
-    assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
-    assert_eq!(alarms.acknowledge(), None);
-    assert_eq!((all.acknowledge_all(), all.acknowledge_all()), (2, 0));
+    assert_eq!(acknowledge(&mut alarms).as_deref(), Some("planner failed"));
+    assert_eq!(acknowledge(&mut alarms).as_deref(), Some("position lost"));
+    assert_eq!(acknowledge(&mut alarms), None);
+    while acknowledge(&mut all).is_some() {}
     assert_eq!(all.open().count(), 2, "seen, and not over");
 }
 
@@ -139,17 +165,17 @@ fn what_fell_while_nobody_looked_is_acknowledged_next() {
             alarms.clear(&CAUSE, 1.5);
         }
         alarms.raise(CAUSE, Warn, "position poor".into(), 2.0);
-        assert_eq!(alarms.acknowledge().as_deref(), Some("position lost"));
+        assert_eq!(acknowledge(&mut alarms).as_deref(), Some("position lost"));
         assert_eq!((alarms.count(Crit), alarms.unacknowledged(Warn)), (0, 1), "not seen yet");
-        assert_eq!(alarms.acknowledge().as_deref(), Some("position poor"));
+        assert_eq!(acknowledge(&mut alarms).as_deref(), Some("position poor"));
         alarms.raise(CAUSE, Watch, "position fair".into(), 3.0);
         assert_eq!((alarms.count(Watch), alarms.unacknowledged(Watch)), (1, 0));
     }
     let mut alarms = raised(Crit);
     alarms.raise(CAUSE, Warn, "position poor".into(), 2.0);
     alarms.raise(CAUSE, Crit, "lost again".into(), 3.0);
-    assert_eq!(alarms.acknowledge().as_deref(), Some("lost again"));
-    assert_eq!(alarms.acknowledge(), None, "what it had fallen to is forgotten");
+    assert_eq!(acknowledge(&mut alarms).as_deref(), Some("lost again"));
+    assert_eq!(acknowledge(&mut alarms), None, "what it had fallen to is forgotten");
 }
 
 #[test]
@@ -183,8 +209,8 @@ fn the_table_shows_what_matters_most_first() {
     ] {
         alarms.raise(cause, severity, String::new(), 1.0);
     }
-    alarms.acknowledge_one(&Cause::Planner);
-    alarms.shelve(&Cause::Disk, 60.0, "known");
+    acknowledge_one(&mut alarms, &Cause::Planner);
+    shelve(&mut alarms, &Cause::Disk);
     alarms.clear(&Cause::Map, 2.0);
     let causes: Vec<Cause> = alarms.table().into_iter().map(|alarm| alarm.cause.clone()).collect();
     let expected = [Cause::PositionLost, Cause::Stuck, Cause::NoFix, Cause::Planner, Cause::Disk, Cause::Map];
@@ -201,4 +227,27 @@ fn there_are_never_too_many_and_what_is_open_is_not_lost() {
         alarms.note(&station, u64::from(id), None);
     }
     assert_eq!((alarms.list().len(), alarms.count(Crit)), (64, 1));
+}
+
+#[test]
+fn words_that_were_not_seen_are_not_acknowledged() {
+    let mut alarms = raised(Warn);
+    let seen = Noted::Acknowledged { alarm: CAUSE.key(), text: "position lost".into() };
+    alarms.raise(CAUSE, Crit, "position lost for good".into(), 2.0);
+    alarms.take(&seen, 2.0);
+    assert_eq!(alarms.unacknowledged(Crit), 1, "it became worse in the tick before");
+    acknowledge_one(&mut alarms, &CAUSE);
+    assert_eq!(alarms.unacknowledged(Crit), 0);
+    // An alarm that the run does not have, as in the journal of a console that was slow.
+    alarms.take(&Noted::Acknowledged { alarm: "response".into(), text: String::new() }, 2.0);
+    assert_eq!(alarms.list().len(), 1);
+}
+
+#[test]
+fn every_cause_has_a_name_of_its_own() {
+    let mut keys: Vec<String> = Cause::every().iter().map(Cause::key).collect();
+    let n = keys.len();
+    keys.sort();
+    keys.dedup();
+    assert_eq!(keys.len(), n);
 }

@@ -86,6 +86,10 @@ pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, Strin
         Kind::Moment => moment_s(text).map(Value::Moment),
         Kind::Fault => read_fault(text).map(Value::Fault),
         Kind::Corner => read_corner(text).map(Value::Corner),
+        Kind::Scenario if problem_of(model, text).is_some() => Err(format!(
+            "scenario `{text}` cannot be opened: {}",
+            problem_of(model, text).unwrap_or_default()
+        )),
         _ => {
             named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
         }
@@ -227,6 +231,12 @@ fn read_corner(text: &str) -> Result<Point, String> {
 fn scenarios(model: &Model) -> impl Iterator<Item = (&str, &Source)> {
     let all = model.home.found.iter().flat_map(|found| &found.scenarios);
     all.filter(|entry| entry.problem.is_none()).map(|entry| (entry.name.as_str(), &entry.source))
+}
+
+/// What is wrong with a scenario that was found and cannot be opened.
+fn problem_of<'a>(model: &'a Model, name: &str) -> Option<&'a str> {
+    let all = model.home.found.iter().flat_map(|found| &found.scenarios);
+    all.filter(|entry| entry.name == name).find_map(|entry| entry.problem.as_deref())
 }
 
 /// Past runs, the newest first.

@@ -63,8 +63,6 @@ pub(super) fn row(look: &Look, alarm: &Alarm, columns: usize, wide: bool) -> Par
     let at = Columns::of(wide);
     let role = if alarm.is_open() { events::role(alarm.severity) } else { Role::Dim };
     let reading = alarm.reading.clone().unwrap_or_default();
-    let right =
-        |word: &str, columns: usize| format!("{:>columns$}", text::fit(word, columns.saturating_sub(1)));
     let is_first = look.run.alarms.is_first_out(alarm);
     let since = match (wide, is_first) {
         (true, true) => format!("T+{} 1st", text::clock(alarm.since_s)),
@@ -80,9 +78,24 @@ pub(super) fn row(look: &Look, alarm: &Alarm, columns: usize, wide: bool) -> Par
         (Role::Dim, text::column(&since, at.since)),
         (Role::Dim, format!("{count:>width$} ", width = at.count - 1)),
         (Role::Text, text::column(&what(look, alarm), at.name(columns))),
-        (Role::Text, right(&reading.now, at.now)),
+        right_now(alarm, &reading.now, at.now),
         (Role::Dim, right(&reading.limit, at.limit)),
     ]
+}
+
+/// A word at the right end of its columns.
+fn right(word: &str, columns: usize) -> String {
+    format!("{:>columns$}", text::fit(word, columns.saturating_sub(1)))
+}
+
+/// The figure of an alarm; of one whose cause is gone the last figure before, which is not the one of now.
+fn right_now(alarm: &Alarm, last: &str, columns: usize) -> (Role, String) {
+    if alarm.is_active() || last.is_empty() {
+        return (Role::Text, right(last, columns));
+    }
+    let was = format!("was {last}");
+    let fits = text::width(&was) < columns;
+    (Role::Dim, right(if fits { &was } else { "over" }, columns))
 }
 
 /// The letter of a severity, as the top line counts them.

@@ -1,0 +1,88 @@
+//! What is imported: a file or the standard input.
+
+use crate::{
+    error::{ImportError, LARGEST_BYTES, read_file},
+    text::decoded,
+};
+use std::{
+    io::{Read, stdin},
+    path::Path,
+};
+
+/// A drawing or a list, as bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// What messages call it.
+    pub name: String,
+    /// All of it.
+    pub(crate) bytes: Vec<u8>,
+    /// What it is by the name of its file.
+    kind: Option<InputKind>,
+}
+
+/// What an input can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputKind {
+    /// A DXF drawing.
+    Drawing,
+    /// A list of columns.
+    List,
+}
+
+impl Input {
+    /// Reads a file, or, for `-`, the standard input.
+    ///
+    /// # Errors
+    /// It cannot be read, is empty or too large.
+    pub fn read(path: &Path) -> Result<Self, ImportError> {
+        if path == Path::new("-") {
+            return Self::of_stdin();
+        }
+        let suffix = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let kind = match suffix.as_str() {
+            "dxf" => InputKind::Drawing,
+            "csv" => InputKind::List,
+            _ => return Err(ImportError::of_file(path, "import reads .dxf and .csv files")),
+        };
+        Ok(Self { name: path.display().to_string(), bytes: read_file(path)?, kind: Some(kind) })
+    }
+
+    fn of_stdin() -> Result<Self, ImportError> {
+        let mut input = Self { name: "standard input".into(), bytes: Vec::new(), kind: None };
+        let read = stdin().take(LARGEST_BYTES + 1).read_to_end(&mut input.bytes);
+        let wrong = match read {
+            Err(error) => format!("cannot be read: {error}"),
+            Ok(0) => "is empty".into(),
+            Ok(n) if n as u64 > LARGEST_BYTES => {
+                format!("more than {} MB, which are not read", LARGEST_BYTES / 1_000_000)
+            }
+            Ok(_) => return Ok(input),
+        };
+        Err(ImportError::of_input(&input, wrong))
+    }
+
+    /// What it is: by the name of the file, else by how it begins. A drawing begins with the number of a code alone on a line.
+    pub fn kind(&self) -> InputKind {
+        let is_code = |line: &str| line.trim().parse::<u16>().is_ok();
+        let begins_as_drawing = || {
+            let head = &self.bytes[..self.bytes.len().min(200)];
+            head.starts_with(b"AutoCAD Binary DXF") || decoded(head, None).lines().next().is_some_and(is_code)
+        };
+        self.kind.unwrap_or_else(|| if begins_as_drawing() { InputKind::Drawing } else { InputKind::List })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_without_a_name_is_known_by_how_it_begins() {
+        let kind = |bytes: &[u8]| Input { name: String::new(), bytes: bytes.to_vec(), kind: None }.kind();
+        assert_eq!(kind(b"  0\r\nSECTION\r\n"), InputKind::Drawing);
+        assert_eq!(kind(b"999\nmade by hand\n0\nSECTION\n"), InputKind::Drawing);
+        assert_eq!(kind(b"AutoCAD Binary DXF\r\n"), InputKind::Drawing);
+        assert_eq!(kind(b"# survey\nx_m,y_m,radius_m\n1,2,0.3\n"), InputKind::List);
+        assert_eq!(kind(b"name;x_m;y_m;diameter_m\n"), InputKind::List);
+    }
+}

@@ -1,0 +1,142 @@
+//! What the console would say of an answer: the same checks in the same sentences as while a mission is flown.
+
+use crate::checks;
+use crate::host::fault::{self, Phase};
+use crate::supervisor::{Failure, Worker, wait_for_one};
+use crate::survey::load_of;
+use crate::wire::answer::said_of;
+use crate::wire::body::Read;
+use crate::wire::frame::Incoming;
+use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, kind};
+use mission::ask::Site;
+use mission::{Fault, check_extent};
+use planner_api::{Drive, Limits, Status};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Knows what was asked so far, as far as an answer depends on it.
+#[derive(Default)]
+pub(super) struct Judge {
+    planner: String,
+    kind: u8,
+    tick: u64,
+    /// The robot's limits for the commands that follow.
+    limits: Option<Limits>,
+    /// Those of the plan that is asked for: they hold once there is one.
+    next_limits: Option<Limits>,
+    /// The tank that is planned in.
+    site: Option<Arc<Site>>,
+}
+
+impl Judge {
+    /// Hears a request.
+    pub(super) fn hear(&mut self, request: &Incoming) -> Read<()> {
+        let mut body = request.body();
+        self.kind = request.kind();
+        match self.kind {
+            kind::LOAD => self.planner = load_of(&mut body)?.map(|load| load.id).unwrap_or_default(),
+            kind::CONFIGURE => {
+                body.values()?;
+                self.limits = Some(body.site()?.limits);
+            }
+            kind::PLAN => {
+                body.flag()?;
+                let site = body.request()?.site;
+                self.next_limits = Some(site.limits);
+                self.site = Some(site);
+            }
+            kind::STEP => {
+                body.flag()?;
+                self.tick = body.sensed()?.tick;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What was asked, a step with the number of its tick.
+    pub(super) fn name(&self) -> String {
+        match self.kind {
+            kind::LOAD => "load".to_owned(),
+            kind::CONFIGURE => "configure".to_owned(),
+            kind::RECONFIGURE => "reconfigure".to_owned(),
+            kind::RESTORE => "restore".to_owned(),
+            kind::PLAN => "plan".to_owned(),
+            kind::STEP => format!("step {}", self.tick),
+            _ => "?".to_owned(),
+        }
+    }
+
+    fn phase(&self) -> Phase {
+        match self.kind {
+            kind::LOAD => Phase::Load,
+            kind::PLAN => Phase::Plan,
+            kind::STEP => Phase::Step(self.tick),
+            kind::RESTORE => Phase::State,
+            _ => Phase::Configure,
+        }
+    }
+
+    /// Waits for the answer and checks it; the answer in a few words.
+    pub(super) fn answer(&mut self, worker: &mut Worker) -> Result<String, Failure> {
+        let outcome = loop {
+            let ready = wait_for_one(worker, None);
+            if let Some(outcome) = worker.advance(ready, Instant::now(), &mut |_| {}) {
+                break outcome;
+            }
+        };
+        outcome?;
+        match self.kind {
+            kind::LOAD => worker.take_planners().map(|(sealed, _)| format!("sha256 {}", sealed.sha256)),
+            kind::PLAN => {
+                let (plan, _) = worker.take_answer(|body| Ok((body.plan()?, said_of(body)?)))?;
+                checks::plan(&plan).map_err(bad_output)?;
+                if let Some(site) = &self.site {
+                    check_extent(&plan, &site.boundary, site.swath_m).map_err(bad_output)?;
+                }
+                self.limits = self.next_limits;
+                Ok(format!("{} points, complete: {}", plan.path.len(), plan.complete))
+            }
+            kind::STEP => {
+                let (command, _) = worker.take_answer(|body| Ok((body.command()?, said_of(body)?)))?;
+                let checked = self.limits.map_or(Ok(()), |limits| checks::command(&command, &limits));
+                checked.map_err(bad_output)?;
+                Ok(format!("{}, {}", driven(&command.drive), named(command.status)))
+            }
+            kind::RESTORE => worker.take_answer(|_| Ok("done".to_owned())),
+            _ => worker.take_answer(|body| said_of(body).map(|_| "done".to_owned())),
+        }
+    }
+
+    /// The fault that the console makes of it. How long a planner was waited for is said here, where nothing is compared.
+    pub(super) fn fault(&self, failure: Failure, budget: Duration) -> Fault {
+        let is_of_time = matches!(failure, Failure::Hung | Failure::Late | Failure::Starved);
+        let mut fault = fault::of(failure, &self.planner, self.phase());
+        if is_of_time {
+            let within = format!(" (it has {:.1} s for it)", budget.as_secs_f64());
+            fault.message.push_str(&within);
+        }
+        fault
+    }
+}
+
+/// As the worker itself says of an answer that it cannot pass on.
+fn bad_output(message: String) -> Failure {
+    Failure::Planner(Refusal { code: BAD_OUTPUT, message, partial: Vec::new() })
+}
+
+fn driven(drive: &Drive) -> String {
+    match drive {
+        Drive::Twist { v_m_per_s, w_rad_per_s } => format!("{v_m_per_s:.4} m/s, {w_rad_per_s:.4} rad/s"),
+        Drive::Velocity(velocity) => format!("velocity ({:.4}, {:.4}) m/s", velocity.x, velocity.y),
+    }
+}
+
+fn named(status: Status) -> &'static str {
+    match status {
+        Status::Moving => "moving",
+        Status::Arrived => "arrived",
+        Status::Stuck => "stuck",
+        Status::Waiting => "waiting",
+    }
+}

@@ -1,0 +1,37 @@
+//! What was said to the operator last, in lines of its own right above the state: it covers neither that nor a question.
+
+use super::look::Look;
+use super::{confirm, events, text};
+use crate::model::Model;
+use crate::theme::Role;
+use mission::Severity;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use ratatui::widgets::{Clear, Paragraph};
+
+/// Rows of a notice, at most.
+const MOST_ROWS: usize = 3;
+
+/// A notice in as many lines as it takes, and how they look.
+pub(super) fn lines(model: &Model, columns: usize) -> Option<(Role, Vec<String>)> {
+    let notice = model.notice()?;
+    let role = if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
+    let mut lines = text::wrap(&text::capitalized(&notice.text), columns.saturating_sub(2));
+    lines.truncate(MOST_ROWS);
+    Some((role, lines))
+}
+
+/// Draws the notice over the last rows above the state; `area` is the whole screen.
+pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
+    let columns = usize::from(area.width);
+    let Some((role, lines)) = lines(look.model, columns) else { return };
+    let foot = confirm::rows(look, area.width) + 1;
+    // The line on top stays, and a row of what the screen shows.
+    let most = area.height.saturating_sub(foot + 2);
+    let rows = most.min(lines.len() as u16);
+    let place = Rect { y: area.bottom().saturating_sub(foot + rows), height: rows, ..area };
+    let lines = lines.iter().map(|line| look.line([(role, text::column(&format!(" {line}"), columns))]));
+    frame.render_widget(Clear, place);
+    frame.render_widget(Paragraph::new(lines.collect::<Vec<Line>>()), place);
+}

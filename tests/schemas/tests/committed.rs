@@ -1,0 +1,86 @@
+//! The schemas in `console/docs` are those of the types.
+
+use schemas::{Document, Root, Sources};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// The crates whose types are written.
+const CRATES: [(&str, &str); 8] = [
+    ("geometry", "console/geometry/src"),
+    ("world", "console/world/src"),
+    ("positioning", "console/positioning/src"),
+    ("sim", "console/sim/src"),
+    ("planner_api", "plugins/planner-api/src"),
+    ("mission", "console/mission/src"),
+    ("report", "console/report/src"),
+    ("runs", "console/runs/src"),
+];
+
+fn project() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn sources() -> Sources {
+    let folders = CRATES.map(|(name, folder)| (name, project().join(folder)));
+    Sources::read(&folders.each_ref().map(|(name, folder)| (*name, folder.as_path())))
+}
+
+/// A constant of the sources, by its declaration.
+fn version(file: &str, name: &str) -> u32 {
+    let text = fs::read_to_string(project().join(file)).unwrap();
+    let declared = text.split(&format!("pub const {name}: u32 = ")).nth(1).unwrap();
+    declared.split(';').next().unwrap().parse().unwrap()
+}
+
+/// Compares a schema with the file that is committed, or renews that.
+fn is_committed(file: &str, schema: &serde_json::Value) {
+    let path = project().join("console/docs").join(file);
+    let text = serde_json::to_string_pretty(schema).unwrap() + "\n";
+    if std::env::var_os("SCHEMA_UPDATE").is_some() {
+        fs::write(&path, &text).unwrap();
+    }
+    let committed = fs::read_to_string(&path).unwrap_or_default();
+    let first = text.lines().zip(committed.lines()).position(|(new, old)| new != old);
+    assert!(
+        text == committed,
+        "console/docs/{file} is not that of the types (line {:?}); `SCHEMA_UPDATE=1 cargo test --release -p schemas` renews \
+         it. If what is there already is written otherwise now, raise the version.",
+        first.map(|line| line + 1)
+    );
+}
+
+#[test]
+fn the_schema_of_reports_is_that_of_the_types() {
+    let version = version("console/report/src/summary.rs", "REPORT_VERSION");
+    let roots = [
+        Root {
+            of_crate: "runs",
+            name: "ReportFile",
+            about: "The figures of one run, as `report.json` in its folder.",
+        },
+        Root {
+            of_crate: "report",
+            name: "Summary",
+            about: "The figures of one run, as `tankops run --json` and `tankops report RUN --json` print them.",
+        },
+        Root {
+            of_crate: "report",
+            name: "Document",
+            about: "The inspection report: `tankops report RUN... -o FILE.json`.",
+        },
+    ];
+    let id = format!("urn:tankops:report:{version}");
+    is_committed("report-schema.json", &Document::of(&sources(), "Reports of tankops", &id, &roots));
+}
+
+#[test]
+fn the_schema_of_events_is_that_of_the_types() {
+    let version = version("console/mission/src/event.rs", "JOURNAL_VERSION");
+    let about = "One line of a journal: `events.jsonl.zst` in the folder of a run, decompressed, or `tankops events RUN --json`. The \
+                 first line is the event `run_opened`, whose `journal_version` is the version of this schema.";
+    let roots = [Root { of_crate: "mission", name: "Event", about }];
+    let id = format!("urn:tankops:events:{version}");
+    is_committed("events-schema.json", &Document::of(&sources(), "Events of tankops", &id, &roots));
+}
