@@ -9,7 +9,7 @@ use crate::{
     scanned::Scanned,
     summary::{Logs, Summary},
 };
-use mission::event::RunOpened;
+use mission::{TaskConfig, event::RunOpened};
 use std::{borrow::Cow, collections::BTreeSet};
 use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
 
@@ -45,6 +45,17 @@ pub(crate) struct Joined<'a> {
     pub(crate) run: &'a RunOpened,
     pub(crate) scanned: Cow<'a, Scanned>,
     pub(crate) evidence: Cow<'a, Evidence>,
+}
+
+/// Refuses a run that was not there to scan the floor: nothing of it was missed.
+pub(crate) fn require_scans(runs: &[PastRun]) -> Result<(), String> {
+    let Some(other) = runs.iter().find(|past| !past.fold.has_floor_to_scan()) else { return Ok(()) };
+    let task = match other.fold.run.as_deref().map(|run| &run.mission.task) {
+        Some(TaskConfig::Follow { .. }) => "its task is to follow a preset path",
+        Some(TaskConfig::Goto { .. }) => "its task is to reach a goal",
+        _ => "its journal does not say what it was to do",
+    };
+    Err(format!("run {} scans no floor: {task}", other.name))
 }
 
 /// What several runs scanned together, on the floor as all of them found it.

@@ -7,7 +7,7 @@ use crate::{
         floor,
         text::{Text, overlap, percent},
     },
-    joined::{Joined, joined},
+    joined::{Joined, joined, require_scans},
     summary::{Coverage, Summary},
 };
 use serde::Serialize;
@@ -45,6 +45,7 @@ pub struct MergedRun {
 /// # Errors
 /// No run, a run given twice, a mission that scans no floor, other cells, or another tank.
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
+    require_scans(runs)?;
     let Joined { run, scanned, evidence } = joined(runs)?;
     let opened = |past: &PastRun| past.fold.run.as_ref().map(|run| run.mission.clone());
     let listed = runs.iter().filter_map(|past| {

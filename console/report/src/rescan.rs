@@ -8,7 +8,7 @@ use crate::{
         areas::{area_of, areas as areas_of},
         plate_map,
     },
-    joined::{Joined, PastRun, joined, updated_floor},
+    joined::{Joined, PastRun, joined, require_scans, updated_floor},
 };
 use std::collections::{BTreeSet, VecDeque};
 use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
@@ -47,6 +47,7 @@ pub struct Rescan {
 /// # Errors
 /// As [`crate::merged()`].
 pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan, String> {
+    require_scans(runs)?;
     let Joined { run, scanned, evidence } = joined(runs)?;
     let grid = scanned.believed();
     let floor = grid.floor();

@@ -73,6 +73,19 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     drawing.finish()
 }
 
+/// What is special about parts of the floor, and where the stations are.
+fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) {
+    for zone in zones(past) {
+        let layer = if zone.kind == ZoneKind::NoGo { "NO_GO_ZONES" } else { "ZONES" };
+        drawing.shape(layer, &zone.shape);
+        drawing.text(layer, zone.shape.center(), &zone.name);
+    }
+    for station in &run.world.stations {
+        drawing.point("STATIONS", station.position);
+        drawing.text("STATIONS", station.position, &station.name);
+    }
+}
+
 /// What stands on the floor, on the layer of its kind.
 fn solid(drawing: &mut Drawing, shape: &Shape) {
     match shape {
@@ -95,18 +108,5 @@ fn plates(drawing: &mut Drawing, run: &RunOpened) {
     }
     for (name, at) in PlateLines::new(layout, &run.world.boundary, &run.floor, &map).names() {
         drawing.text("PLATES", at, name);
-    }
-}
-
-/// What is special about parts of the floor, and where the stations are.
-fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) {
-    for zone in zones(past) {
-        let layer = if zone.kind == ZoneKind::NoGo { "NO_GO_ZONES" } else { "ZONES" };
-        drawing.shape(layer, &zone.shape);
-        drawing.text(layer, zone.shape.center(), &zone.name);
-    }
-    for station in &run.world.stations {
-        drawing.point("STATIONS", station.position);
-        drawing.text("STATIONS", station.position, &station.name);
     }
 }
