@@ -60,6 +60,11 @@ impl Drop for FailureMarker {
     }
 }
 
+/// Removes what a writer that was killed had taken for the file; not a file that says why something failed.
+pub fn remove_reserve(folder: &Path) {
+    let _ = fs::remove_file(folder.join(RESERVE_FILE));
+}
+
 /// Why journal or recording of the run in a folder failed, if they did.
 pub fn recorded_failure(folder: &Path) -> Option<String> {
     let mut text = Vec::new();
