@@ -43,7 +43,7 @@ impl Reading {
         budget.take_lines(reader.bytes());
         if !read? {
             self.is_partial = true;
-            JournalReader::open_end(journal)?.try_for_each(|event| {
+            JournalReader::open_end(journal)?.try_for_each(|event| -> Result<(), JournalError> {
                 self.take(&event?);
                 Ok::<_, JournalError>(())
             })?;

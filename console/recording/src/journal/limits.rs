@@ -14,8 +14,8 @@ const MOST_TICK_BYTES: u64 = 64 << 20;
 const MOST_TICK_LINES: u32 = 50_000;
 /// Most obstacles that are found and zones that are drawn in a run: each of them stays, and every figure counts it.
 const MOST_LASTING: u32 = 20_000;
-/// So many times as long as the file are its lines at most. A mission that is held for a day without any noise of its sensors, the
-/// most regular one there is, comes to a quarter of it (decisions.md).
+/// So many times as long as the file are its lines at most. Those of a mission that is held, which repeat most, are 11 times as long
+/// (decisions.md).
 const MOST_EXPANSION: u64 = 200;
 /// So much is given whatever the expansion, bytes.
 const FREE_BYTES: u64 = 16 << 20;
