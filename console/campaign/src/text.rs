@@ -104,7 +104,9 @@ impl fmt::Display for Findings {
         let intervals =
             |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
         let cells = |of: Share, means: &[Option<Mean>]| {
-            std::iter::once(format!("{} of {}", of.hits, of.n)).chain(intervals(means)).collect::<Vec<String>>()
+            std::iter::once(format!("{} of {}", of.hits, of.n))
+                .chain(intervals(means))
+                .collect::<Vec<String>>()
         };
         let head =
             |first: &str| std::iter::once(first.to_owned()).chain(self.metrics.clone()).collect::<Vec<_>>();
