@@ -83,10 +83,9 @@ pub(crate) fn unit(name: &str, is_number: bool) -> &'static str {
     if !is_number {
         return "";
     }
-    let last = name.rsplit('.').next().unwrap_or_default();
-    let is_share = SHARES.contains(&last) || last.ends_with("_truly");
+    let is_share = |end: &&&str| name.rsplit('.').next() == Some(**end) || name.ends_with("_truly");
     let of_name = UNITS.iter().find(|(end, _)| name.ends_with(end)).map(|(_, unit)| *unit);
-    of_name.unwrap_or(if is_share { "share from 0 to 1" } else { "1" })
+    of_name.or_else(|| SHARES.iter().find(is_share).map(|_| "share from 0 to 1")).unwrap_or("1")
 }
 
 /// A column with its unit and meaning beside it.
