@@ -42,6 +42,8 @@ mod looking_on;
 mod planning;
 #[path = "acceptance/proof.rs"]
 mod proof;
+#[path = "acceptance/recovered.rs"]
+mod recovered;
 #[path = "acceptance/replay.rs"]
 mod replay;
 #[path = "acceptance/report.rs"]

@@ -41,9 +41,112 @@ fn readings_of_a_run_are_located_where_the_mission_believed_to_be() {
     let is_located = |run: &std::path::PathBuf| run.to_string_lossy().contains("-located-");
     let located = bench.runs().into_iter().find(is_located).unwrap();
     let verified = bench.verify(&located, &[]);
-    assert!(verified.code == Some(2) && verified.err.contains("nothing was flown"), "{verified:?}");
+    assert!(verified.code == Some(0) && verified.out.contains("nothing was flown"), "{verified:?}");
     let report = bench.tankops(&["report", located.to_str().unwrap(), "--json"]).json();
     assert_eq!((&report["coverage"], &report["collisions"]), (&Value::Null, &Value::Null));
+}
+
+/// Readings of a short run, located with the tool on for a while, or without a word about it; the folder of that run.
+fn located_run(bench: &Bench, tool_on: Option<&str>) -> String {
+    let cover = scenario("cover-circle.toml");
+    bench.fly(&cover, &["--set", "mission.time_limit_s=120"]);
+    let run = bench.runs().pop().unwrap();
+    assert_eq!(bench.tankops(&["export", run.to_str().unwrap(), "--ranges", "r.csv"]).code, Some(0));
+    std::fs::remove_dir_all(&run).unwrap();
+    let mut arguments = vec!["locate", "r.csv", "--scenario", cover.to_str().unwrap()];
+    if let Some(stretches) = tool_on {
+        bench.file("on.csv", stretches);
+        arguments.extend(["--tool-on", "on.csv"]);
+    }
+    let located = bench.tankops(&arguments);
+    assert_eq!(located.code, Some(0), "{located:?}");
+    bench.runs().pop().unwrap().to_str().unwrap().to_owned()
+}
+
+#[test]
+fn readings_are_reported_as_what_they_are_and_what_they_do_not_say_is_not_zero() {
+    let bench = Bench::new();
+    let run = located_run(&bench, None);
+    for file in ["d.html", "d.json", "d.csv", "d.geojson", "d.dxf"] {
+        let written = bench.tankops(&["report", &run, "-o", file]);
+        assert_eq!(written.code, Some(0), "{file}: {written:?}");
+    }
+    let read = |file: &str| std::fs::read_to_string(bench.path().join(file)).unwrap();
+    let page = read("d.html");
+    for wanted in [
+        "LOCATED FROM READINGS",
+        "positions located from readings",
+        "coverage not stated",
+        "inspection.coverage_waiver",
+    ] {
+        assert!(page.contains(wanted), "{wanted}");
+    }
+    for unwanted in ["SIMULATION", "Missed areas", "Mission time", "missed_accepted", "planner"] {
+        assert!(!page.contains(unwanted), "{unwanted}");
+    }
+    let report: Value = serde_json::from_str(&read("d.json")).unwrap();
+    assert_eq!((&report["coverage"], &report["floor"]["whole"]["scanned"]), (&Value::Null, &Value::Null));
+    assert_eq!(report["located"]["tool_on_s"], Value::Null);
+    assert!(
+        report["runs"][0].get("collisions").is_none() && report["runs"][0]["accuracy"]["p95_m"].is_number()
+    );
+    let plates = read("d.csv");
+    assert!(
+        plates.lines().nth(1).unwrap().starts_with("whole floor,base,") && plates.contains(",,,,,"),
+        "{plates}"
+    );
+    assert!(!plates.contains("reachable floor"), "{plates}");
+    let track = read("d-track.csv");
+    assert!(track.lines().count() > 1000, "{}", track.lines().count());
+    let map: Value = serde_json::from_str(&read("d.geojson")).unwrap();
+    let of = |layer: &str| {
+        map["features"].as_array().unwrap().iter().filter(|f| f["properties"]["layer"] == layer).count()
+    };
+    assert!(of("positions") > 20 && of("track") == 1 && of("missed") == 0, "{}", of("positions"));
+    let text = bench.tankops(&["report", &run]).out;
+    assert!(text.contains("located from the readings of r.csv") && !text.contains("0 turns"), "{text}");
+}
+
+#[test]
+fn readings_with_the_tool_on_state_coverage_and_are_signed_as_located() {
+    let bench = Bench::new();
+    let run = located_run(&bench, Some("from_s,to_s\n20,60\n"));
+    let facts = crate::report_file::FACTS;
+    let sign = |facts: &str| {
+        bench.file("facts.toml", facts);
+        bench.file("found.csv", "t_s,kind\n30,pit\n");
+        bench.tankops(&[
+            "report",
+            &run,
+            "-o",
+            "a.html",
+            "--inspection",
+            "facts.toml",
+            "--indications",
+            "found.csv",
+            "--sign",
+            "L. Kern",
+        ])
+    };
+    let open = sign(facts);
+    assert!(open.code == Some(2) && open.err.contains("inspection.inspected_on"), "{open:?}");
+    let signed = sign(&format!("{facts}inspected_on = \"2026-11-24\"\n"));
+    assert!(signed.code == Some(0) && signed.out.contains("signed as revision A"), "{signed:?}");
+    let page = std::fs::read_to_string(bench.path().join("a.html")).unwrap();
+    assert!(page.contains("The tool was on for 0:00:40") && page.contains("LOCATED FROM READINGS"));
+    let report = bench.tankops(&["report", &run, "-o", "d.json"]);
+    assert_eq!(report.code, Some(0), "{report:?}");
+    let report: Value =
+        serde_json::from_str(&std::fs::read_to_string(bench.path().join("d.json")).unwrap()).unwrap();
+    let scanned = report["floor"]["whole"]["scanned"].as_f64().unwrap();
+    assert!(scanned > 0.01 && scanned < 0.2 && report["located"]["tool_on_s"] == 40.0, "{scanned}");
+    let run = std::path::PathBuf::from(run);
+    let verified = bench.verify(&run, &[]);
+    assert!(verified.code == Some(0) && verified.out.contains("signed: revision A"), "{verified:?}");
+    assert!(verified.out.contains("events computed again from the readings, byte for byte"), "{verified:?}");
+    std::fs::remove_file(bench.path().join("a.html")).unwrap();
+    let verified = bench.verify(&run, &[]);
+    assert!(verified.code == Some(1) && verified.out.contains("NOT AS SIGNED"), "{verified:?}");
 }
 
 #[test]

@@ -100,6 +100,142 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     assert_refused(&sign(&bench, &run, "b.html"), "signed revision A is about another journal");
 }
 
+/// A scenario file of the round tank with what makes it another one.
+fn tank(bench: &Bench, name: &str, facts: &str) -> PathBuf {
+    let text = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap();
+    let text = text.replace("name = \"cover-circle\"", &format!("name = \"{name}\""));
+    bench.file(&format!("{name}.toml"), format!("{text}\n[inspection]\n{facts}"))
+}
+
+#[test]
+fn twin_tanks_never_become_one_report_and_a_rescan_names_the_run_that_it_continues() {
+    let bench = Bench::new();
+    let short = ["--set", "mission.time_limit_s=60"];
+    let fly = |file: &Path, more: &[&str]| {
+        let before = bench.runs();
+        bench.fly(file, &[&short[..], more].concat());
+        let run = bench.runs().into_iter().find(|run| !before.contains(run)).unwrap();
+        run.to_str().unwrap().to_owned()
+    };
+    let t09 = "tank_id = \"T-09\"\nsite = \"Basel\"\nnominal_thickness_mm = 8\n";
+    let one = fly(&tank(&bench, "tank-9", t09), &[]);
+    let twin = fly(&tank(&bench, "tank-10", &t09.replace("T-09", "T-10")), &["--seed", "2"]);
+    let other_name = fly(&tank(&bench, "tank-11", t09), &["--seed", "3"]);
+    let again = fly(&tank(&bench, "tank-9", t09), &["--seed", "4"]);
+    for command in [
+        vec!["report"],
+        vec!["report", "--json"],
+        vec!["report", "-o", "s.html"],
+        vec!["rescan", "-o", "s.toml"],
+    ] {
+        let together = |other: &str| bench.tankops(&[&command[..], &[&one, other]].concat());
+        let refused = together(&twin);
+        assert!(
+            refused.code == Some(2)
+                && refused.err.contains("inspection.tank_id is \"T-09\" in ")
+                && refused.err.contains("and \"T-10\" in "),
+            "{refused:?}"
+        );
+        let refused = together(&other_name);
+        assert!(refused.code == Some(2) && refused.err.contains("name is tank-9 in "), "{refused:?}");
+        assert_eq!(together(&again).code, Some(0), "another scan of the same tank: {:?}", together(&again));
+    }
+    std::fs::remove_file(bench.path().join("s.toml")).unwrap();
+    // A re-scan of the one is none of the other.
+    assert_eq!(bench.tankops(&["rescan", &one, "-o", "again.toml"]).code, Some(0));
+    let rescan = fly(&bench.path().join("again.toml"), &[]);
+    assert_eq!(bench.tankops(&["report", &one, &rescan]).code, Some(0));
+    let refused = bench.tankops(&["report", &again, &rescan]);
+    let digest = digest(&journal_text(Path::new(&one)));
+    assert!(
+        refused.code == Some(2)
+            && refused.err.contains("continues_sha256 of ")
+            && refused.err.contains(&digest),
+        "{refused:?}"
+    );
+    // Facts of a file do not make one tank another.
+    bench.file("facts.toml", "[inspection]\ntank_id = \"T-10\"\n");
+    let draft = bench.tankops(&["report", &one, "-o", "d.json", "--inspection", "facts.toml"]);
+    let text = std::fs::read_to_string(bench.path().join("d.json")).unwrap();
+    assert!(draft.code == Some(0) && text.contains("inspection.identity_corrected"), "{draft:?}");
+}
+
+#[test]
+fn verify_and_runs_name_every_signed_report_that_is_not_as_it_was() {
+    let bench = Bench::new();
+    let run = scanned(&bench);
+    let signed = sign(&bench, &run, "a.html");
+    assert_eq!(signed.code, Some(0), "{signed:?}");
+    let (page, list) = (bench.path().join("a.html"), run.join("signed.json"));
+    let (page_text, list_text) = (std::fs::read(&page).unwrap(), std::fs::read_to_string(&list).unwrap());
+    let wrong = |why: &str| {
+        let verified = bench.verify(&run, &["--from-journal"]);
+        let listed = bench.tankops(&["runs"]);
+        assert!(
+            verified.code == Some(1)
+                && verified.out.contains("NOT AS SIGNED: ")
+                && verified.out.contains(why),
+            "{why}: {verified:?}"
+        );
+        assert!(verified.out.contains("equal: "), "the run itself is as it was: {verified:?}");
+        assert!(listed.out.contains(why), "{why}: {listed:?}");
+    };
+    let writable = || {
+        let mut permissions = std::fs::metadata(&page).unwrap().permissions();
+        #[expect(clippy::permissions_set_readonly_false, reason = "as a forger would")]
+        permissions.set_readonly(false);
+        std::fs::set_permissions(&page, permissions).unwrap();
+    };
+    writable();
+    std::fs::write(&page, [&page_text[..], b" "].concat()).unwrap();
+    wrong("signed revision A was changed after it was signed: ");
+    std::fs::rename(&page, bench.path().join("moved.html")).unwrap();
+    wrong("signed revision A cannot be read");
+    std::fs::write(&page, &page_text).unwrap();
+    let digest = list_text.split('"').find(|part| part.len() == 64).unwrap();
+    let other = digest.replace(&digest[..1], if digest.starts_with('0') { "1" } else { "0" });
+    std::fs::write(&list, list_text.replace(digest, &other)).unwrap();
+    wrong("signed.json was changed: sha256 of revision A is ");
+    std::fs::remove_file(&list).unwrap();
+    wrong("signed.json is missing");
+    std::fs::write(&list, "[]").unwrap();
+    wrong("signed.json does not list that");
+    std::fs::write(&list, "[{]").unwrap();
+    wrong("signed.json is damaged");
+    std::fs::write(&list, &list_text).unwrap();
+    assert_eq!(bench.verify(&run, &["--from-journal"]).code, Some(0));
+}
+
+#[test]
+fn empty_words_an_expired_certificate_and_sound_of_unknown_origin_are_not_signed() {
+    let bench = Bench::new();
+    let run = scanned(&bench);
+    let open = |from: &str, to: &str| {
+        assert!(FACTS.contains(from));
+        bench.file("facts.toml", FACTS.replace(from, to));
+        let refused = sign(&bench, &run, "a.html");
+        assert!(refused.code == Some(2) && refused.err.contains("not signed: "), "{to}: {refused:?}");
+        refused.err
+    };
+    let calibration = "2026-11-22 03:10, plate K1, passed, L. Kern";
+    for words in ["n.a.", "none", "to be done", "unknown"] {
+        let why = open(calibration, words);
+        assert!(why.contains(&format!("inspection.calibration_before says nothing: `{words}`")), "{why}");
+    }
+    let why = open("\"2099-05\"", "\"2019-05\"");
+    assert!(why.contains("it expired on 2019-05-31, before the inspection on 20"), "{why}");
+    assert!(
+        open("inspector_certificate_expires = \"2099-05\"\n", "").contains("inspector_certificate_expires")
+    );
+    assert!(
+        open("UT-2 1234", "UT-2 1234, expired 2019")
+            .contains("inspector_certificate says that it is expired")
+    );
+    assert!(open("sound_speed = \"1180 m/s, gas oil, 14 deg\"\n", "").contains("inspection.sound_speed"));
+    assert!(open("1180 m/s, gas oil, 14 deg", "1180 m/s").contains("how that was determined"));
+    assert!(open("Port of <Rotterdam>", "n/a").contains("inspection.client says nothing"));
+}
+
 #[test]
 fn tables_are_no_formulas_and_none_of_them_is_written_over() {
     let bench = Bench::new();

@@ -116,6 +116,16 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
+    /// Close a run that was killed: fix what is there by digests, so that it can be part of a signed report.
+    Recover {
+        /// Run folder, or its name in the logs folder.
+        run: PathBuf,
+        /// Who closes it; the report says so.
+        #[arg(long, value_name = "NAME", value_parser = person)]
+        by: String,
+        #[command(flatten)]
+        logs: LogsArg,
+    },
     /// Print the events of a past run as JSON lines.
     Events(EventsArgs),
     /// Write a past run as another file: its recording, regenerated, or the readings of its sensors.
@@ -144,6 +154,12 @@ pub(crate) enum Command {
     /// Gives the terminal to this process's group; started by a console that has lost it.
     #[command(hide = true)]
     TakeTerminal,
+}
+
+fn person(text: &str) -> Result<String, String> {
+    let is_name = !report::document::says_nothing(text) && foreign::unplain(text).is_none();
+    let name = is_name.then(|| text.trim().to_owned());
+    name.ok_or_else(|| "write the name of the person who answers for it".into())
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Closed, RunLog};
 use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode};
-use world::Station;
+use world::{Station, coverage::percent_text};
 
 /// Options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -170,9 +170,9 @@ fn show_progress(bar: &ProgressBar, events: &[Event], stations: &[Station]) {
         if let EventKind::Progressed { done, covered_reachable, .. } = event.kind {
             bar.set_position((done * 1000.0) as u64);
             bar.set_message(format!(
-                "T+{:.0} s, {:.1} % of reachable floor",
+                "T+{:.0} s, {} % of reachable floor",
                 event.t_s,
-                covered_reachable * 100.0
+                percent_text(covered_reachable, 1)
             ));
         }
         if let Some(line) = event.log_line(stations).filter(|line| line.severity >= mission::Severity::Warn) {

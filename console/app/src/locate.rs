@@ -120,6 +120,7 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         finds_sound_speed: args.find.contains(&FindArg::SoundSpeed),
         finds_clock_offset: args.find.contains(&FindArg::ClockOffset),
         skips_bad_rows: args.skip_bad_rows,
+        tool_on: args.tool_on.as_deref(),
     };
     args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
     let survey = task.survey()?;

@@ -134,6 +134,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
         Some(Command::Verify { run, from_journal, logs }) => {
             past_runs::verify(&run, &logs, &plugins, from_journal)
         }
+        Some(Command::Recover { run, by, logs }) => past_runs::recover(&run, &by, &logs),
         Some(Command::Events(args)) => events::events(&args),
         Some(Command::Export(args)) => export::export(&args),
         Some(Command::Locate(args)) => locate::locate(&args),

@@ -5,10 +5,11 @@ use crate::{
     output::pretty_json,
     report_file,
 };
+use ::locate::Again;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
 use planner_host::PluginDirs;
 use report::{
-    PastRun, human, merged,
+    PastRun, merged,
     print::{say, say_line},
 };
 use runs::{Past, find};
@@ -16,7 +17,7 @@ use std::{path::Path, process::ExitCode};
 
 /// `tankops runs`.
 pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
-    let listed = runs::list(&logs.folder())?;
+    let listed = runs::list(&logs.folder(), &review::register())?;
     say(&if json {
         pretty_json("the list", &listed)?
     } else if listed.is_empty() {
@@ -45,8 +46,26 @@ pub(crate) fn report(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<
 }
 
 fn one(past: &Past, json: bool) -> anyhow::Result<String> {
-    let summary = review::summary(past)?;
-    if json { pretty_json("the report", &summary) } else { Ok(human(&summary)) }
+    if json { pretty_json("the report", &review::summary(past)?) } else { review::text_of(past) }
+}
+
+/// `tankops recover`.
+pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<ExitCode> {
+    let folder = find(run, &logs.folder())?;
+    let recovered = runs::recover(&folder, by)?;
+    say_line(&format!(
+        "{}: recovered by {}, {} UTC; missing:",
+        folder.display(),
+        recovered.by,
+        recovered.at
+    ))?;
+    for missing in &recovered.missing {
+        say_line(&format!("  {missing}"))?;
+    }
+    say_line(
+        "journal and recording are fixed by their SHA-256 in report.json; the run can be part of a signed report",
+    )?;
+    Ok(ExitCode::from(COMPLETE))
 }
 
 /// `tankops verify`.
@@ -56,9 +75,26 @@ pub(crate) fn verify(
     plugins: &PluginDirs,
     from_journal: bool,
 ) -> anyhow::Result<ExitCode> {
-    let verified = review::verify(&find(run, &logs.folder())?, plugins, from_journal)?;
+    let folder = find(run, &logs.folder())?;
+    let verified = review::verify(&folder, plugins, from_journal)?;
     for line in &verified.lines {
         say_line(line)?;
     }
-    Ok(ExitCode::from(if verified.is_equal { COMPLETE } else { ENDED_OTHERWISE }))
+    let is_again = !verified.is_located || is_located_again(&folder)?;
+    Ok(ExitCode::from(if verified.is_equal && is_again { COMPLETE } else { ENDED_OTHERWISE }))
+}
+
+/// Locates readings again and says what comes of them; whether nothing else does.
+fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
+    let again = ::locate::again(folder)?;
+    say_line(&match &again {
+        Again::Equal(events) => {
+            format!("equal: {events} events computed again from the readings, byte for byte")
+        }
+        Again::Different { line, recorded, computed } => {
+            format!("different from line {line} on\n  recorded: {recorded}\n  computed: {computed}")
+        }
+        Again::NoReadings(why) => format!("note: not computed again from the readings: {why}"),
+    })?;
+    Ok(!matches!(again, Again::Different { .. }))
 }

@@ -4,8 +4,8 @@ use crate::{
     cli::ReportArgs,
     output::{check_free, pretty_json, write_file},
     signing::{
-        Chain, refuse_doubts, refuse_not_recomputed, refuse_open_items, refuse_other_signer, register, seal,
-        signature,
+        Chain, refuse_doubts, refuse_not_located_again, refuse_not_recomputed, refuse_open_items,
+        refuse_other_signer, seal, signature,
     },
 };
 use flight::{
@@ -15,9 +15,10 @@ use flight::{
 use planner_host::PluginDirs;
 use report::{
     Document, Inspection, PastRun,
-    document::{Context, Revision, csv, dxf, geojson, html},
+    document::{Context, Revision, csv, dxf, geojson, html, located_json},
     print::say_line,
 };
+use review::register;
 use runs::{Past, find};
 use std::{
     fs,
@@ -36,7 +37,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     }
     let folders: Vec<PathBuf> =
         args.runs.iter().map(|run| find(run, &args.logs.folder())).collect::<Result<_, _>>()?;
-    let mut chain = Chain::of(&folders, &register())?;
+    let mut chain = Chain::of(&folders, &register());
     for file in names(output, format) {
         may_write(&file, args.force, (&chain.revisions, &folders))?;
     }
@@ -47,9 +48,12 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     if let Some(by) = &args.sign {
         refuse_other_signer(by, inspection.inspector.as_deref())?;
     }
-    let was_flown =
-        |(past, folder): (&Past, &PathBuf)| past.opened.measured.is_none().then(|| folder.clone());
-    let flown: Vec<PathBuf> = read.iter().zip(&folders).filter_map(was_flown).collect();
+    let of_kind = |is_located: bool| -> Vec<PathBuf> {
+        let those =
+            read.iter().zip(&folders).filter(|(past, _)| past.opened.measured.is_some() == is_located);
+        those.map(|(_, folder)| folder.clone()).collect()
+    };
+    let (flown, located) = (of_kind(false), of_kind(true));
     let past: Vec<PastRun> = read.into_iter().map(|past| past.run).collect();
     chain.compare(&past);
     let signature = args.sign.as_deref().map(signature);
@@ -65,6 +69,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
         refuse_doubts(&chain)?;
         refuse_open_items(&document)?;
         refuse_not_recomputed(&flown, plugins)?;
+        refuse_not_located_again(&located)?;
     }
     for doubt in &chain.doubts {
         say_line(&format!("WARNING: {doubt}"))?;
@@ -138,6 +143,7 @@ fn files(
     let one = |text: String| vec![(output.to_owned(), text)];
     Ok(match format {
         "html" => one(html(document)),
+        "json" if document.located.is_some() => one(pretty_json("the report", &located_json(document)?)?),
         "json" => one(pretty_json("the report", document)?),
         "geojson" => one(geojson::geojson(document, past)),
         "dxf" => one(dxf::dxf(document, past)),

@@ -1,14 +1,16 @@
 //! Signing a report: what was signed before on its runs, what keeps it from being signed, and what is done when it is.
 
+use ::locate::Again;
 use flight::failure::bad_input;
-use planner_host::{PluginDirs, user_folder};
+use planner_host::PluginDirs;
 use recording::sha256_of;
 use report::{
     Document, PastRun,
     document::{Revision, Signature, SignedRun},
     print::{say_line, warn_line},
 };
-use runs::{Register, SIGNED_FILE, add_signed, signed_reports};
+use review::register;
+use runs::{Register, SIGNED_FILE, Signatures, add_signed, signatures, utc_minute};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -26,24 +28,19 @@ pub(crate) struct Chain {
 
 impl Chain {
     /// The chain of the runs in some folders.
-    ///
-    /// # Errors
-    /// A list, or the register, cannot be read.
-    pub(crate) fn of(folders: &[PathBuf], register: &Register) -> anyhow::Result<Self> {
+    pub(crate) fn of(folders: &[PathBuf], register: &Register) -> Self {
         let mut chain = Self::default();
         for folder in folders {
-            let (signed, mut against) = signed_reports(folder)?;
-            let run = folder.file_name().unwrap_or_default().to_string_lossy();
-            against.extend(register.doubts(&run, &signed)?);
-            for revision in signed {
+            let Signatures { revisions, doubts } = signatures(folder, register);
+            for revision in revisions {
                 if !chain.revisions.contains(&revision) {
                     chain.revisions.push(revision);
                 }
             }
-            chain.doubt(against);
+            chain.doubt(doubts);
         }
         chain.revisions.sort_by(|a, b| a.signature.at.cmp(&b.signature.at));
-        Ok(chain)
+        chain
     }
 
     /// Adds what speaks against runs that are not those that were signed.
@@ -61,14 +58,9 @@ impl Chain {
     }
 }
 
-/// The register of this user's signatures.
-pub(crate) fn register() -> Register {
-    Register::at(user_folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("signatures")))
-}
-
 /// The signature of somebody at this minute.
 pub(crate) fn signature(by: &str) -> Signature {
-    Signature { by: by.to_owned(), at: now() }
+    Signature { by: by.to_owned(), at: utc_minute(SystemTime::now()) }
 }
 
 /// Refuses a signature that continues a chain with a doubt.
@@ -123,6 +115,23 @@ pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -
     Ok(())
 }
 
+/// Refuses located runs that do not come out of their readings again. `folders`: of the runs that were located.
+pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()> {
+    for folder in folders {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        warn_line(&format!("locating the readings of run {name} again ..."));
+        let why = match ::locate::again(folder)? {
+            Again::Equal(_) => continue,
+            Again::Different { line, .. } => {
+                format!("other positions come out of them from line {line} of its journal on")
+            }
+            Again::NoReadings(why) => format!("put them back where they were: {why}"),
+        };
+        return Err(bad_input(format!("not signed: the readings of run {name}: {why}")));
+    }
+    Ok(())
+}
+
 /// Lists a signed report in the folders of its runs and in the register, and makes it read-only. One that cannot be listed is
 /// removed: it could be changed without anybody noticing.
 pub(crate) fn seal(
@@ -152,13 +161,6 @@ fn make_read_only(file: &Path) -> anyhow::Result<()> {
     fs::set_permissions(file, permissions).map_err(|error| {
         bad_input(format!("{} cannot be made read-only: {error}; see {SIGNED_FILE}", file.display()))
     })
-}
-
-/// This minute, UTC.
-fn now() -> String {
-    let utc = runs::utc(SystemTime::now());
-    let digits = |range: std::ops::Range<usize>| utc.get(range).unwrap_or_default().to_owned();
-    format!("{}-{}-{} {}:{}", digits(0..4), digits(4..6), digits(6..8), digits(9..11), digits(11..13))
 }
 
 #[cfg(test)]
@@ -199,11 +201,11 @@ mod tests {
         add_signed(&folders[1..], &register, &of_other).unwrap();
         add_signed(&folders, &register, &both).unwrap();
         let chain = Chain { revisions: vec![first, of_other, both.clone()], doubts: vec![] };
-        assert_eq!(Chain::of(&folders, &register).unwrap(), chain);
+        assert_eq!(Chain::of(&folders, &register), chain);
         assert!(refuse_doubts(&chain).is_ok());
         fs::write(&both.file, "forged").unwrap();
         for folders in [&folders[..], &folders[..1], &folders[1..]] {
-            let chain = Chain::of(folders, &register).unwrap();
+            let chain = Chain::of(folders, &register);
             let refused = refuse_doubts(&chain).unwrap_err().to_string();
             assert!(
                 chain.doubts.len() == 1 && refused.starts_with("not signed: signed revision B was changed"),

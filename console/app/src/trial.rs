@@ -50,6 +50,13 @@ fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
     fs::create_dir_all(folder).map_err(failed)?;
     for Lost { name, scenario } in lost {
         let file = folder.join(format!("{name}.toml"));
+        // The same tank is the same text; one that was changed is somebody's work.
+        if fs::read_to_string(&file).is_ok_and(|there| there != *scenario) {
+            return Err(bad_input(format!(
+                "--keep {}: already exists and was changed; choose another folder",
+                file.display()
+            )));
+        }
         write_file("--keep", &file, scenario)?;
         warn_line(&format!("kept {}", file.display()));
     }

@@ -5,6 +5,7 @@ use crate::{
     statistics::{Mean, Share},
 };
 use std::fmt;
+use world::coverage::percent_text;
 
 /// Arms that are shown; a page has all of them.
 const MOST_ARMS: usize = 20;
@@ -16,7 +17,10 @@ const BEGINNING: usize = 10;
 /// A share as per cent with its interval.
 pub(crate) fn share(share: &Share) -> String {
     match share.share() {
-        Some(p) => format!("{:.1} % ({:.1} to {:.1})", 100.0 * p, 100.0 * share.low, 100.0 * share.high),
+        Some(p) => {
+            let [p, low, high] = [p, share.low, share.high].map(|share| percent_text(share, 1));
+            format!("{p} % ({low} to {high})")
+        }
         None => "-".into(),
     }
 }

@@ -4,7 +4,7 @@ use super::{desk::Tools, inbox::Outbox};
 use anyhow::{Context, bail};
 use mission::Severity;
 use recording::RECORDING_FILE;
-use review::{report_page, report_text, verdict};
+use review::{report_page, verdict};
 use std::{
     io,
     path::Path,
@@ -39,11 +39,7 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
     match job {
         Job::Verify(_) => verdict(&folder, plugins),
         Job::Report(_) => {
-            let (name, text) = match report_page(&folder)? {
-                Some(page) => (PAGE, page),
-                None => (TEXT, report_text(&folder)?),
-            };
-            let file = folder.join(name);
+            let (file, text) = (folder.join(PAGE), report_page(&folder)?);
             runs::write_whole(&file, text.as_bytes()).context("writing the report")?;
             Ok(format!("report written, a draft: {}", file.display()))
         }

@@ -47,7 +47,7 @@ impl Disk {
     fn found(&self) -> Found {
         let Tools { logs, .. } = &self.tools;
         let scenarios = self.scenarios();
-        let (runs, unreadable) = match runs::list(logs) {
+        let (runs, unreadable) = match runs::list(logs, &review::register()) {
             Ok(listed) => (listed.iter().rev().take(MOST_RUNS).map(past_run).collect(), None),
             Err(error) => (Vec::new(), Some(error.to_string())),
         };

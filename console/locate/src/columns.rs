@@ -31,8 +31,9 @@ const TURN: usize = 10;
 const TRUE_X: usize = 11;
 const TRUE_Y: usize = 12;
 const TRUE_HEADING: usize = 13;
+const TOOL_ON: usize = 14;
 
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 15] = [
     ("t", TIME_OR_DATE),
     ("emission", NAME),
     ("station", NAME),
@@ -47,6 +48,7 @@ const COLUMNS: [Column; 14] = [
     ("true_x", LENGTH),
     ("true_y", LENGTH),
     ("true_heading", ANGLE),
+    ("tool_on", NAME),
 ];
 
 /// A mean of more repetitions than this is no reading.
@@ -87,6 +89,8 @@ pub(crate) struct Row {
     pub range: Option<Heard>,
     pub motion: Option<Odometry>,
     pub truth: Option<Pose>,
+    /// Whether the tool is on from here on; none if the row does not say it.
+    pub tool_on: Option<bool>,
 }
 
 /// A station was heard.
@@ -213,7 +217,24 @@ impl Columns {
             range: self.heard(cells, line, range_m)?,
             motion,
             truth: truth.map(|(x, y)| Pose { position: Point::new(x, y), heading_rad }),
+            tool_on: self.tool_on(cells, line)?,
         })
+    }
+
+    /// Whether the file says when the tool was on.
+    pub(crate) fn has_tool(&self) -> bool {
+        self.has(TOOL_ON)
+    }
+
+    fn tool_on(&self, cells: &StringRecord, line: u64) -> Result<Option<bool>, Problem> {
+        match self.cell(cells, TOOL_ON).to_lowercase().as_str() {
+            "" => Ok(None),
+            "1" | "true" | "on" | "yes" => Ok(Some(true)),
+            "0" | "false" | "off" | "no" => Ok(Some(false)),
+            other => {
+                Err(self.problem(line, TOOL_ON, format!("`{other}` is neither on nor off; write 1 or 0")))
+            }
+        }
     }
 
     fn heard(&self, cells: &StringRecord, line: u64, range_m: Option<f64>) -> Result<Option<Heard>, Problem> {

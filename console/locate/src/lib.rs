@@ -4,6 +4,7 @@
 //! A file is read twice, row by row: once to check it and to find out about clocks and sound, once to locate. Memory does not
 //! grow with it.
 
+mod again;
 mod clock;
 mod columns;
 mod doubts;
@@ -16,7 +17,9 @@ mod problem;
 mod repeats;
 mod rows;
 mod tally;
+mod tool;
 
+pub use again::{Again, again};
 pub use columns::Kind;
 pub use doubts::{Doubts, Refused};
 pub use fixes::Fixes;

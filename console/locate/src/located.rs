@@ -8,13 +8,17 @@ use crate::{
     problem::Problem,
     repeats::{Repeats, Scatter},
     rows::Rows,
+    tool::{self, Stretches},
 };
 use flight::{Flight, failure::bad_input};
-use mission::{Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice, event::Measured};
+use mission::{
+    Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
+    event::{Asked, Measured, ToolTrack},
+};
 use positioning::{Doubt, Possible, RangeNoise, SolverKind, Verdict};
 use scenario::Scenario;
 use std::path::Path;
-use world::ObstacleMap;
+use world::{CoverageGrid, ObstacleMap, Tool};
 
 mod learning;
 
@@ -42,6 +46,8 @@ pub struct Task<'a> {
     pub finds_clock_offset: bool,
     /// Whether bad rows are left out instead of refused.
     pub skips_bad_rows: bool,
+    /// The file that says when the tool was on, if the readings have no column for it.
+    pub tool_on: Option<&'a Path>,
 }
 
 /// What a look over the whole file found, before anything is located.
@@ -61,6 +67,8 @@ pub struct Survey {
     pub ignored: Vec<String>,
     /// What was found out about clocks and sound; absent if it was not asked for.
     pub calibration: Option<Found>,
+    /// From when to when the tool was on, seconds after the first moment; absent if nothing says it.
+    pub tool_on_s: Option<Vec<[f64; 2]>>,
     /// What the residuals say of sound and stations, with that taken out.
     pub verdict: Verdict,
     /// How several readings of one station in one emission scatter.
@@ -110,6 +118,8 @@ impl Task<'_> {
     /// It cannot be read, or has bad rows and those are not to be left out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
+        let tool_on = self.tool_on(&columns)?;
+        let mut stretches = Stretches::default();
         self.check_findable(&columns)?;
         let (mut problems, mut bad) = (Vec::new(), 0);
         let (mut first, mut last): (Option<Moment>, Option<Moment>) = (None, None);
@@ -119,6 +129,7 @@ impl Task<'_> {
             match moment {
                 Ok(moment) => {
                     repeats.take(&moment, &scatter);
+                    stretches.take(moment.t_s, moment.tool_on);
                     if moment.odometry.is_some() {
                         let since_s = moved_s.replace(moment.t_s).map(|before_s| moment.t_s - before_s);
                         intervals_s.extend(since_s.filter(|_| intervals_s.len() < INTERVALS));
@@ -147,6 +158,8 @@ impl Task<'_> {
         };
         let verdict = self.judged(&columns, assumed.as_ref())?.verdict();
         intervals_s.sort_by(f64::total_cmp);
+        let tool_on = tool_on.or_else(|| columns.has_tool().then(|| stretches.finish()));
+        let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
         Ok(Survey {
             kind: columns.kind(),
             has_motion: columns.has_motion() && moved_s.is_some(),
@@ -155,12 +168,26 @@ impl Task<'_> {
             problems,
             ignored: columns.ignored().map(str::to_owned).collect(),
             calibration,
+            tool_on_s: tool_on.map(|stretches| stretches.into_iter().map(from_first).collect()),
             verdict,
             repeats,
             first_s: first.t_s,
             dates: first.is_dated.then(|| [first.t_s, last.t_s].map(crate::clock::written)),
             gap_s: intervals_s.get(intervals_s.len() / 2).map_or(f64::INFINITY, |usual_s| GAP * usual_s),
         })
+    }
+
+    /// The stretches of the file that says when the tool was on.
+    fn tool_on(&self, columns: &Columns) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
+        let Some(file) = self.tool_on else { return Ok(None) };
+        if columns.has_tool() {
+            let (readings, file) = (self.file.display(), file.display());
+            return Err(bad_input(format!(
+                "{readings} has a column tool_on, and {file} says it as well; keep one of the two"
+            )));
+        }
+        let stretches = tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())))?;
+        Ok(Some(stretches))
     }
 
     fn listed(&self, problems: &[Problem], bad: u64) -> String {
@@ -185,10 +212,24 @@ impl Task<'_> {
         let (moments, _) = self.open()?;
         let config = self.config(survey);
         let mut opened = Flight::prepare(self.scenario, false).opened();
+        let mut tool = None;
         if let EventKind::RunOpened(run) = &mut opened.kind {
             run.mission = config.clone();
-            run.measured =
-                Some(Measured { file: self.shown.to_owned(), sha256: recording::sha256(self.file)? });
+            let measured = Measured {
+                file: self.shown.to_owned(),
+                sha256: recording::sha256(self.file)?,
+                asked: Asked {
+                    sound_speed_m_per_s: self.sound_speed_m_s,
+                    finds_sound_speed: self.finds_sound_speed,
+                    finds_clock_offset: self.finds_clock_offset,
+                    skips_bad_rows: self.skips_bad_rows,
+                },
+                has_motion: survey.has_motion,
+                tool_on_s: survey.tool_on_s.clone(),
+            };
+            let passes = || (ToolTrack::new(&measured, &config), CoverageGrid::new(run.floor.clone()));
+            tool = survey.tool_on_s.is_some().then(passes);
+            run.measured = Some(measured);
         }
         let drawing = self.scenario.sim.world.as_drawn();
         let mut track = Track {
@@ -200,6 +241,7 @@ impl Task<'_> {
             has_moved: false,
             doubts: Doubts::default(),
             radius_m: config.limits.radius_m,
+            swept: tool.map(|(track, grid)| Swept { tool: config.tool(), track, grid }),
             tick: 0,
             t_s: 0.0,
         };
@@ -252,8 +294,27 @@ struct Track {
     has_moved: bool,
     doubts: Doubts,
     radius_m: f64,
+    swept: Option<Swept>,
     tick: u64,
     t_s: f64,
+}
+
+/// The floor that the tool passed while it was on.
+struct Swept {
+    tool: Tool,
+    track: ToolTrack,
+    grid: CoverageGrid,
+}
+
+impl Swept {
+    /// What an estimate adds to it.
+    fn visit(&mut self, Event { t_s, kind, .. }: &Event) -> Option<EventKind> {
+        let EventKind::Estimated { pose } = kind else { return None };
+        let (from, to) = self.track.visit(*t_s, pose)?;
+        let runs = self.grid.not_covered_under(self.tool, from, to);
+        self.grid.apply(&runs);
+        (!runs.is_empty()).then_some(EventKind::Covered { runs })
+    }
 }
 
 impl Track {
@@ -284,7 +345,11 @@ impl Track {
         if readings.ranging_cycle {
             self.doubts.take(self.t_s, self.locator.sides(), self.locator.impossible());
         }
-        let events = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
+        let mut events: Vec<Event> = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
+        if let Some(swept) = &mut self.swept {
+            let covered: Vec<EventKind> = events.iter().filter_map(|event| swept.visit(event)).collect();
+            events.extend(covered.into_iter().map(|kind| self.event(kind)));
+        }
         self.tick += 1;
         events
     }

@@ -26,6 +26,8 @@ pub(crate) struct Moment {
     pub odometry: Option<Odometry>,
     /// Where the robot truly was, if somebody knows.
     pub truth: Option<Pose>,
+    /// Whether the tool is on from here on; none if no row says it. Rows that contradict each other: it is off.
+    pub tool_on: Option<bool>,
     /// Whether the time is written with a date.
     pub is_dated: bool,
 }
@@ -201,6 +203,7 @@ impl Moment {
             odometry: None,
             truth: None,
             is_dated: first.is_dated,
+            tool_on: None,
         };
         moment.add(first);
         moment
@@ -224,6 +227,10 @@ impl Moment {
             sum.turn_rad += turn_rad;
         }
         self.truth = row.truth.or(self.truth);
+        self.tool_on = match (self.tool_on, row.tool_on) {
+            (Some(before), Some(now)) => Some(before && now),
+            (before, now) => before.or(now),
+        };
     }
 
     /// Counts ranges of which only the differences matter from the first arrival that can be.

@@ -59,6 +59,7 @@ impl Readable {
             finds_sound_speed: false,
             finds_clock_offset: false,
             skips_bad_rows: false,
+            tool_on: None,
         }
     }
 
@@ -338,4 +339,62 @@ fn lines_are_counted_behind_comments_and_empty_lines_and_however_they_end() {
             ]
         );
     }
+}
+
+/// Ranges and motion of a walk with a column that says whether the tool is on.
+fn walk_with_tool(tool_on: impl Fn(u32) -> &'static str) -> String {
+    let mut text = String::from("t_s,station,range_m,forward_m,turn_rad,tool_on\n");
+    for k in 0..200_u32 {
+        let t_s = f64::from(k) * 0.5;
+        let forward_m = if k == 0 { 0.0 } else { 2.0 * 3.0 * 0.025_f64.sin() };
+        let turn_rad = if k == 0 { 0.0 } else { 0.05 };
+        let _ = writeln!(text, "{t_s},,,{forward_m},{turn_rad},{}", tool_on(k));
+        for station in scenario().sim.world.stations {
+            let range_m = (place(k) - station.position).norm();
+            let _ = writeln!(text, "{t_s},{},{range_m},,,", station.name);
+        }
+    }
+    text
+}
+
+#[test]
+fn floor_counts_as_scanned_only_while_the_tool_was_on() {
+    let scenario = scenario();
+    let covered = |text: &str| {
+        let file = Readable::new("r.csv", text);
+        let task = file.task(&scenario);
+        let survey = task.survey().unwrap();
+        let times: Vec<f64> = located(&task, &survey)
+            .1
+            .iter()
+            .filter_map(|event| match event.kind {
+                EventKind::Covered { .. } => Some(event.t_s),
+                _ => None,
+            })
+            .collect();
+        (survey.tool_on_s, times)
+    };
+    let (on_s, times) = covered(&walk_with_tool(|k| if (40..=80).contains(&k) { "1" } else { "0" }));
+    assert_eq!(on_s, Some(vec![[20.0, 40.5]]));
+    assert!(times.len() > 30 && times.iter().all(|t_s| (20.0..=40.5).contains(t_s)), "{times:?}");
+    let (on_s, times) = covered(&walk_with_tool(|_| ""));
+    assert_eq!((on_s, times), (Some(vec![]), vec![]), "never said to be on");
+    let text = walk_with_tool(|_| "");
+    let (on_s, times) = covered(&text.replace(",tool_on", ",other"));
+    assert_eq!((on_s, times), (None, vec![]), "nothing says it");
+    let bad = Readable::new("r.csv", walk_with_tool(|k| if k == 3 { "maybe" } else { "on" })).refused();
+    assert!(bad.contains("tool_on: `maybe` is neither on nor off"), "{bad}");
+}
+
+#[test]
+fn stretches_of_a_file_are_by_the_clock_of_the_readings() {
+    let scenario = scenario();
+    let text = walk_with_tool(|_| "").replace(",tool_on", ",other");
+    let file = Readable::new("r.csv", &text);
+    let on = Readable::new("on.csv", "from_s,to_s\n10,20\n30,32\n");
+    let task = Task { tool_on: Some(&on.file), ..file.task(&scenario) };
+    assert_eq!(task.survey().unwrap().tool_on_s, Some(vec![[10.0, 20.0], [30.0, 32.0]]));
+    let both = Readable::new("r.csv", walk_with_tool(|_| "1"));
+    let task = Task { tool_on: Some(&on.file), ..both.task(&scenario) };
+    assert!(task.survey().unwrap_err().to_string().contains("keep one of the two"));
 }

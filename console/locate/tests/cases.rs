@@ -43,6 +43,7 @@ fn run(scenario: &Scenario, readings: &[u8], change: impl Fn(&mut Task)) -> Resu
         finds_sound_speed: false,
         finds_clock_offset: false,
         skips_bad_rows: false,
+        tool_on: None,
     };
     change(&mut task);
     let survey = task.survey().map_err(|error| error.to_string())?;

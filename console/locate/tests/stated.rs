@@ -73,6 +73,7 @@ fn counted(set: &Set) -> Count {
         finds_sound_speed: set.finds_sound_speed,
         finds_clock_offset: false,
         skips_bad_rows: false,
+        tool_on: None,
     };
     let survey = task.survey().unwrap();
     let (mut count, mut truth) = (Count::default(), None);
@@ -175,6 +176,7 @@ fn the_error_does_not_depend_on_how_often_rows_come() {
                 finds_sound_speed: false,
                 finds_clock_offset: false,
                 skips_bad_rows: false,
+                tool_on: None,
             };
             let mut by_second = Vec::new();
             let take = |events: &[Event]| {

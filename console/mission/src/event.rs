@@ -5,6 +5,7 @@
 
 mod effort;
 mod log_line;
+mod measured;
 mod recorded;
 mod rounding;
 mod severity;
@@ -13,6 +14,7 @@ mod tether;
 
 pub use effort::Effort;
 pub use log_line::{LogLine, late_text};
+pub use measured::{Asked, Measured, ToolTrack};
 pub use recorded::RecordedAnswers;
 pub(crate) use rounding::rounded_command;
 pub use severity::Severity;
@@ -501,13 +503,4 @@ pub struct RunOpened {
     /// What was measured by others and located afterwards; absent for a run that was flown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
-}
-
-/// The file of readings behind a run that was located and not flown.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Measured {
-    /// Its name.
-    pub file: String,
-    /// SHA-256 of its bytes, hexadecimal.
-    pub sha256: String,
 }

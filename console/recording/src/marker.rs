@@ -5,7 +5,7 @@
 
 use std::{
     fs::{self, File},
-    io,
+    io::{self, Read},
     os::unix::fs::FileExt,
     path::{Path, PathBuf},
 };
@@ -58,6 +58,11 @@ impl Drop for FailureMarker {
         // Only the reserve: what is shown stays for those who look at the run later.
         let _ = fs::remove_file(&self.reserve);
     }
+}
+
+/// Removes what a writer that was killed had taken for the file; not a file that says why something failed.
+pub fn remove_reserve(folder: &Path) {
+    let _ = fs::remove_file(folder.join(RESERVE_FILE));
 }
 
 /// Why journal or recording of the run in a folder failed, if they did.

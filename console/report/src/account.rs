@@ -15,7 +15,7 @@ pub use reasons::Reasons;
 use zone::rim;
 pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
-use crate::{accuracy::nearest_rank, scanned::Scanned};
+use crate::{accuracy::nearest_rank, joined::updated_floor, scanned::Scanned};
 use areas::areas;
 use mission::event::RunOpened;
 use serde::{Deserialize, Serialize};
@@ -54,6 +54,29 @@ pub struct Account {
     /// Areas out of reach that are too small to be listed.
     #[serde(default)]
     pub unreachable_slivers: Slivers<OutOfReach>,
+}
+
+impl Account {
+    /// The account of a floor that nobody was to scan: nothing of it is missed, nor asked for along the shell.
+    pub(crate) fn of_no_scan(self) -> Self {
+        Self {
+            whole: Shares::default(),
+            reachable: Shares::default(),
+            exact: None,
+            critical_zone: CriticalZone::default(),
+            plates: Vec::new(),
+            missed: Vec::new(),
+            slivers: Slivers::default(),
+            unreachable: Vec::new(),
+            unreachable_slivers: Slivers::default(),
+            ..self
+        }
+    }
+
+    /// Whether it is that of a floor that nobody was to scan.
+    pub(crate) fn is_of_no_scan(&self) -> bool {
+        self.whole.area_m2 <= 0.0
+    }
 }
 
 /// How a floor divides. The shares are of its area and sum to 1.
@@ -187,7 +210,7 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
         position_limit_m: run.mission.scan_limit_m(),
         whole: whole.shares(floor.cell_m2()),
         reachable: reachable.shares(floor.cell_m2()),
-        exact: evidence.exact_share(floor),
+        exact: evidence.exact_share(&updated_floor(run, floor, evidence, run.mission.swath_m)),
         critical_zone: CriticalZone::of(&evidence.shell(), &rim(&run.mission), plate_at),
         plates: plates
             .as_ref()

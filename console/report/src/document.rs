@@ -1,7 +1,9 @@
 //! The report that an inspector signs: one model behind HTML, JSON, CSV, `GeoJSON` and DXF.
 
+mod certificate;
 mod charts;
 pub mod csv;
+mod dates;
 mod decisions;
 pub mod dxf;
 mod facts;
@@ -9,27 +11,38 @@ mod gate;
 pub mod geojson;
 mod indications;
 pub(crate) mod layers;
+mod located;
 mod maps;
 mod marks;
 mod page;
 mod run_part;
 mod sections;
+mod shapes;
+mod task;
+mod words;
 
+pub use dates::Date;
 pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
+pub use located::{Located, Readings, located_json};
 pub use maps::Figure;
 pub use page::html;
-pub use run_part::{Driver, Files, RunPart, TetherPart};
+pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
+pub use task::TaskPart;
+pub use words::{is_placeholder, says_nothing};
 
 use crate::{
     account::{Account, account},
-    joined::{Joined, PastRun, joined},
+    identity::{Stated, contradiction},
+    joined::{Joined, PastRun, joined_or_located},
     record::Record,
     summary::{Coverage, REPORT_VERSION},
 };
+use indications::{Flown, Ground};
 use layers::Layers;
 use serde::Serialize;
+use shapes::Shapes;
 use world::Point;
 
 /// What is known beside the journals.
@@ -70,7 +83,7 @@ pub struct Revision {
 /// A run as it was when a report on it was signed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct SignedRun {
-    /// Name of its folder.
+    /// Name of its folder when it was closed.
     pub run: String,
     /// SHA-256 of its journal, hexadecimal.
     pub journal_sha256: Option<String>,
@@ -81,8 +94,8 @@ pub struct SignedRun {
 impl SignedRun {
     /// A run as it is now.
     pub fn of(past: &PastRun) -> Self {
-        let Files { journal_sha256, recording_sha256, .. } = past.files.clone();
-        Self { run: past.name.clone(), journal_sha256, recording_sha256 }
+        let Files { journal_sha256, recording_sha256, closed_as, .. } = past.files.clone();
+        Self { run: closed_as.unwrap_or_else(|| past.name.clone()), journal_sha256, recording_sha256 }
     }
 }
 
@@ -131,11 +144,18 @@ pub struct Document {
     pub made_by: String,
     /// Whether positions and passes were computed and no floor was inspected.
     pub is_simulation: bool,
+    /// The readings that were located; absent for missions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub located: Option<Located>,
     /// What only people know; `null` is missing.
     pub inspection: Inspection,
+    /// Where that contradicts the scenario that was flown in what identifies the floor, as a sentence; absent if it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contradiction: Option<String>,
     /// How much of the floor was scanned by all runs together.
     pub coverage: Coverage,
-    /// The account of the floor over all runs.
+    /// The account of the floor over all runs; left out if they were not there to scan it.
+    #[serde(skip_serializing_if = "Account::is_of_no_scan")]
     pub floor: Account,
     /// The runs, in the order given.
     pub runs: Vec<RunPart>,
@@ -151,6 +171,13 @@ pub struct Document {
     pub size: String,
     /// Whether the runs together were to scan the whole floor.
     pub is_whole_floor: bool,
+    /// Whether the runs were there to scan the floor; without that no floor was missed, and there is no account of it.
+    pub is_to_scan: bool,
+    /// What a run did that was not there to scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub task: Option<TaskPart>,
+    #[serde(skip)]
+    pub(crate) shapes: Shapes,
 }
 
 /// The pictures of a report.
@@ -193,22 +220,38 @@ impl Document {
     /// # Errors
     /// As [`crate::merged()`], or indications that cannot be placed.
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
-        let all = joined(past)?;
+        let all = joined_or_located(past)?;
+        let located = Located::of(past);
         let Joined { run, scanned, evidence } = &all;
         let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
+        let is_to_scan = past.iter().all(|past| past.fold.has_floor_to_scan());
         let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
-        let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
-        let layers = Layers::new(run, scanned, evidence, &places);
-        let records: Vec<(&str, &Record)> =
-            past.iter().map(|past| (past.name.as_str(), &past.record)).collect();
-        let thickness_mm = context.inspection.nominal_thickness_mm;
-        let place = |(name, csv)| {
-            let placed = indications::indications(csv, &records, thickness_mm, |at| layers.plate_at(at));
-            placed.map_err(|error| format!("{name}: {error}"))
+        let tool_is_known = located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
+        let floor = match &located {
+            Some(_) => located::without_task(floor, tool_is_known),
+            None if is_to_scan => floor,
+            None => floor.of_no_scan(),
         };
+        let places: Vec<Point> = floor.missed.iter().map(|area| area.at).collect();
+        let layers = Layers::new(run, scanned, evidence, &places).of_scan(is_to_scan);
+        let flown: Vec<Flown<'_>> = past.iter().map(flown).collect();
+        let ground = Ground {
+            thickness_mm: context.inspection.nominal_thickness_mm,
+            nearest_solid: &|at| {
+                let (name, off_m) = evidence.nearest_solid(at);
+                (name.to_owned(), off_m)
+            },
+            plate_at: &|at| layers.plate_at(at),
+        };
+        let place = |file| indications::indications(file, &flown, &ground);
         let indications = context.indications_csv.map(place).transpose()?.unwrap_or_default();
+        let contradiction = contradiction(&context.inspection, &Stated::by(run)?.inspection);
         let runs: Vec<RunPart> = past.iter().filter_map(RunPart::of).collect();
-        let pictures = Pictures::draw(&layers, &floor, &indications, past);
+        let shapes = Shapes::of(&layers, &floor.missed);
+        let mut pictures = Pictures::draw(&layers, &floor, &indications, past);
+        if located.is_some() {
+            pictures.coverage = located::map(&layers, past, &indications, tool_is_known);
+        }
         let mut document = Self {
             report_version: REPORT_VERSION,
             number: number(past),
@@ -216,9 +259,11 @@ impl Document {
             signature: context.signature,
             revisions: context.revisions,
             made_by: format!("tankops {}", context.version),
-            is_simulation: runs.iter().any(|run| run.positioning.is_some()),
+            is_simulation: located.is_none() && runs.iter().any(|run| run.positioning.is_some()),
+            located,
             inspection: context.inspection,
-            coverage: scanned.coverage(true),
+            contradiction,
+            coverage: scanned.coverage(is_to_scan),
             floor,
             runs,
             indications,
@@ -226,6 +271,9 @@ impl Document {
             pictures,
             scenario: past[0].fold.run.as_deref().unwrap_or(run).scenario.clone(),
             size: gate::size(run),
+            shapes,
+            is_to_scan,
+            task: past.last().and_then(TaskPart::of),
             is_whole_floor: evidence.asks_for_everything(),
         };
         document.gate = gate::gate(&document);
@@ -235,6 +283,17 @@ impl Document {
     /// The items of the gate that are open; a report is signed without any.
     pub fn open_items(&self) -> impl Iterator<Item = &GateItem> {
         self.gate.iter().filter(|item| !item.is_answered)
+    }
+}
+
+/// A run on whose track indications can be placed.
+fn flown(past: &PastRun) -> Flown<'_> {
+    let name = past.files.closed_as.as_deref().unwrap_or(&past.name);
+    Flown {
+        name: &past.name,
+        record: &past.record,
+        began: indications::began(name),
+        reach_m: past.fold.run.as_ref().map_or(f64::INFINITY, |run| run.mission.swath_m / 2.0),
     }
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod forecast;
 pub(crate) mod frame;
 pub mod plan;
 pub(crate) mod plates;
+pub(crate) mod polygons;
 pub(crate) mod sheet;
 pub(crate) mod trace;
 

@@ -115,6 +115,11 @@ impl Drawing {
         self.entity("SEQEND", layer);
     }
 
+    pub(crate) fn point(&mut self, layer: &str, at: Point) {
+        self.entity("POINT", layer);
+        self.place(at);
+    }
+
     pub(crate) fn text(&mut self, layer: &str, at: Point, text: &str) {
         self.entity("TEXT", layer);
         self.place(at);

@@ -4,6 +4,7 @@ use crate::summary::Summary;
 use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use world::coverage::percent_text;
 
 /// The bounds; those that are absent bind nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -92,7 +93,7 @@ impl Expect {
         let outcome = self.outcome.map(|outcome| outcome.word().to_owned());
         let coverage = self
             .coverage_reachable_min
-            .map(|share| format!("at least {:.1} % of reachable floor", 100.0 * share));
+            .map(|share| format!("at least {} % of reachable floor", percent_text(share, 1)));
         let time = self.mission_time_max_s.map(|time_s| format!("within {:.0} min", (time_s / 60.0).ceil()));
         let collisions = self.collisions_max.filter(|most| *most == 0).map(|_| "no collision".to_owned());
         [outcome, coverage, time, collisions].into_iter().flatten().collect::<Vec<_>>().join(", ")

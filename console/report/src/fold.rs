@@ -13,9 +13,9 @@ use crate::{
 use mission::{
     Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Phase, PlannerChoice,
     PlannerInfo, TaskConfig,
-    event::{RunOpened, TetherAlarm},
+    event::{RunOpened, TetherAlarm, ToolTrack},
 };
-use world::{Obstacle, Pose, Zone};
+use world::{Obstacle, Point, Pose, Zone};
 
 /// So many faults are named.
 const MOST_FAULTS: usize = 20;
@@ -34,6 +34,8 @@ pub struct Fold {
     standing: FoldedStanding,
     turning: Turning,
     tethered: Option<Tethered>,
+    /// The tool of readings that were located; none for a run that was flown.
+    tool: Option<ToolTrack>,
     pub(crate) run: Option<Box<RunOpened>>,
     pub(crate) evidence: Option<Evidence>,
     /// Whether the event before drew a zone: the change of the floor that follows is its.
@@ -74,7 +76,11 @@ impl Fold {
             EventKind::Estimated { pose } => {
                 let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
                 let estimate = Estimate { position: pose.position, covariance_m2 };
-                self.believe(Pose { position: pose.position, heading_rad: pose.heading_rad }, estimate);
+                let here = Pose { position: pose.position, heading_rad: pose.heading_rad };
+                match self.tool.as_mut().map(|tool| tool.visit(event.t_s, pose)) {
+                    Some(passed) => self.believe_located(here, estimate, passed),
+                    None => self.believe(here, estimate),
+                }
                 self.accuracy.estimate(event.tick, estimate);
             }
             EventKind::Ranged { .. } => self.claimed.end_cycle(),
@@ -174,6 +180,29 @@ impl Fold {
         }
     }
 
+    /// What was located was here; what its tool passed that counts lies between two poses.
+    fn believe_located(&mut self, here: Pose, estimate: Estimate, passed: Option<(Pose, Pose)>) {
+        let limit_m = self.scan_limit_m();
+        self.claimed.estimate(&estimate, limit_m);
+        let Some(scanned) = &mut self.scanned else { return };
+        let is_one_place = passed.is_some_and(|(from, to)| from == to);
+        if is_one_place {
+            // Nothing counts on the way there.
+            scanned.visit(here, &estimate, None);
+        }
+        scanned.visit(here, &estimate, passed.map(|_| self.claimed.tip_m()));
+        if let Some(evidence) = &mut self.evidence {
+            if is_one_place {
+                evidence.visit(here, f64::INFINITY, limit_m);
+            }
+            evidence.visit(
+                here,
+                if passed.is_some() { estimate.error_95_m() } else { f64::INFINITY },
+                limit_m,
+            );
+        }
+    }
+
     /// The 95 % error above which nothing counts as scanned, metres.
     fn scan_limit_m(&self) -> f64 {
         self.run.as_ref().map_or(f64::INFINITY, |run| run.mission.scan_limit_m())
@@ -190,9 +219,13 @@ impl Fold {
         Summary {
             report_version: Some(REPORT_VERSION),
             floor: self.account(),
-            coverage: self.scanned.as_ref().map(|scanned| scanned.coverage(self.is_to_scan())),
-            turns: self.known.path_length_m.map(|_| self.turning.turns()),
-            rotation_turns: self.known.path_length_m.map(|_| self.turning.rotation_turns()),
+            coverage: self
+                .scanned
+                .as_ref()
+                .filter(|_| self.says_what_was_scanned())
+                .map(|scanned| scanned.coverage(self.is_to_scan())),
+            turns: self.has_heading().then(|| self.turning.turns()),
+            rotation_turns: self.has_heading().then(|| self.turning.rotation_turns()),
             tether: self.tether(),
             tracking: self.tracker.as_ref().and_then(Tracker::tracking),
             accuracy: self.claimed.statement(self.scan_limit_m()),
@@ -213,9 +246,30 @@ impl Fold {
         self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
     }
 
+    /// Whether it is known what was scanned: of readings that were located, only if they say when the tool was on.
+    pub(crate) fn says_what_was_scanned(&self) -> bool {
+        self.tool.as_ref().is_none_or(ToolTrack::is_known)
+    }
+
+    /// Whether the true heading is known: readings may have true places without one.
+    fn has_heading(&self) -> bool {
+        self.known.path_length_m.is_some() && self.tool.is_none()
+    }
+
+    /// Whether the task is to scan the floor; what was located from readings has no task that speaks against it.
+    pub(crate) fn has_floor_to_scan(&self) -> bool {
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
+    }
+
     /// What was found that is not on the drawing.
     pub(crate) fn found(&self) -> impl Iterator<Item = &crate::account::Solid> {
         self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
+    }
+
+    /// Where the robot truly was at the end; `None` outside simulation.
+    pub(crate) fn true_place(&self) -> Option<Point> {
+        self.truth.map(|pose| pose.position)
     }
 
     fn tether(&self) -> Option<Tether> {
@@ -250,11 +304,15 @@ impl Fold {
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
-        if run.measured.is_some() {
-            // Where something was, and nothing of what it did there.
+        if let Some(measured) = &run.measured {
+            // Where something was, and of what it did there only where its tool was on.
+            self.known.located = Some(measured.file.clone());
+            self.tool = Some(ToolTrack::new(measured, &run.mission));
+            self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
+            self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
             return;
         }
-        if !self.leaves_out_floor && !matches!(run.mission.task, TaskConfig::Goto { .. }) {
+        if !self.leaves_out_floor {
             self.evidence = Some(Evidence::new(run));
         }
         self.tethered = run.mission.tether.as_ref().map(Tethered::new);
@@ -284,7 +342,7 @@ impl Fold {
             known.clearance_min_m =
                 Some(known.clearance_min_m.map_or(clearance_m, |least| least.min(clearance_m)));
         }
-        if let Some(scanned) = &mut self.scanned {
+        if let Some(scanned) = self.scanned.as_mut().filter(|_| self.tool.is_none()) {
             scanned.pass(before, pose);
         }
         if let Some(tracker) = &mut self.tracker {

@@ -1,6 +1,6 @@
 //! Places and shapes as `GeoJSON`.
 
-use crate::document::Inspection;
+use crate::{document::Inspection, drawing::polygons::Polygon};
 use serde_json::{Value, json};
 use world::{Boundary, Point, Shape};
 
@@ -9,36 +9,76 @@ pub(crate) struct Datum<'a> {
     east_m: f64,
     north_m: f64,
     turn_rad: f64,
-    /// What the system is called.
-    pub name: &'a str,
+    /// What the system is called; `None` for the tank frame.
+    crs: Option<&'a str>,
 }
 
 impl<'a> Datum<'a> {
     /// The datum that an inspection states.
     pub(crate) fn of(facts: &'a Inspection) -> Self {
         let [east_m, north_m] = facts.datum_m.unwrap_or([0.0, 0.0]);
-        let name = match (&facts.datum_crs, facts.datum_m) {
-            (Some(name), Some(_)) => name,
-            (None, Some(_)) => "system not named (inspection.datum_crs), metres",
-            (_, None) => "tank frame, metres",
-        };
-        Self { east_m, north_m, turn_rad: -facts.datum_north_deg.unwrap_or(0.0).to_radians(), name }
+        let unnamed = "system not named (inspection.datum_crs)";
+        let crs = facts.datum_m.map(|_| facts.datum_crs.as_deref().unwrap_or(unnamed));
+        Self { east_m, north_m, turn_rad: -facts.datum_north_deg.unwrap_or(0.0).to_radians(), crs }
     }
 
-    /// A place.
+    /// The member that names the system. Programs take coordinates for degrees of longitude and latitude unless this
+    /// member has a name that they know, so one that they may not know is written as a local system in WKT.
+    pub(crate) fn crs(&self) -> Value {
+        let name = match self.crs {
+            Some(name) if is_known(name) => name.to_owned(),
+            Some(name) => local(name),
+            None => local("tank frame: x east and y north in the tank, no datum (inspection.datum_m)"),
+        };
+        json!({ "type": "name", "properties": { "name": name } })
+    }
+
+    /// What the coordinates are, for people.
+    pub(crate) fn words(&self) -> String {
+        match self.crs {
+            Some(name) => format!("{name}, metres"),
+            None => "tank frame, metres; not longitude and latitude".to_owned(),
+        }
+    }
+
+    /// A place, to a tenth of a millimetre.
     pub(crate) fn at(&self, p: Point) -> Value {
         let (sin, cos) = self.turn_rad.sin_cos();
-        let millimetres = |m: f64| (1000.0 * m).round() / 1000.0;
-        json!([
-            millimetres(self.east_m + p.x * cos - p.y * sin),
-            millimetres(self.north_m + p.x * sin + p.y * cos)
-        ])
+        json!([rounded(self.east_m + p.x * cos - p.y * sin), rounded(self.north_m + p.x * sin + p.y * cos)])
+    }
+
+    /// Polygons with holes as one geometry.
+    pub(crate) fn polygons(&self, polygons: &[Polygon]) -> Value {
+        let rings = |polygon: &Polygon| -> Value { polygon.rings().map(|ring| self.ring(ring)).collect() };
+        match polygons {
+            [only] => json!({ "type": "Polygon", "coordinates": rings(only) }),
+            all => {
+                let all: Value = all.iter().map(rings).collect();
+                json!({ "type": "MultiPolygon", "coordinates": all })
+            }
+        }
+    }
+
+    /// A point.
+    pub(crate) fn point(&self, at: Point) -> Value {
+        json!({ "type": "Point", "coordinates": self.at(at) })
+    }
+
+    /// The geometry of a shape: a polygon, or the middle line of a pipe.
+    pub(crate) fn shape(&self, shape: &Shape) -> Value {
+        match shape {
+            Shape::Polyline { points, .. } => self.line(points),
+            shape => self.polygon(&corners(shape)),
+        }
+    }
+
+    fn ring(&self, points: &[Point]) -> Value {
+        points.iter().chain(points.first()).map(|p| self.at(*p)).collect()
     }
 
     /// A polygon; its ring is closed here.
     pub(crate) fn polygon(&self, points: &[Point]) -> Value {
-        let ring: Value = points.iter().chain(points.first()).map(|p| self.at(*p)).collect();
-        json!({ "type": "Polygon", "coordinates": [ring] })
+        json!({ "type": "Polygon", "coordinates": [self.ring(points)] })
     }
 
     /// A line.
@@ -46,6 +86,26 @@ impl<'a> Datum<'a> {
         let places: Value = points.iter().map(|p| self.at(*p)).collect();
         json!({ "type": "LineString", "coordinates": places })
     }
+}
+
+/// Whether programs know a name of a system: a code of EPSG, or its definition in WKT.
+fn is_known(name: &str) -> bool {
+    let is_code = |code: &str| !code.is_empty() && code.bytes().all(|byte| byte.is_ascii_digit());
+    let lower = name.trim().to_ascii_lowercase();
+    let code = ["epsg:", "urn:ogc:def:crs:epsg::"].iter().find_map(|start| lower.strip_prefix(start));
+    code.is_some_and(is_code) || (lower.contains("crs[") || lower.contains("cs[")) && lower.ends_with(']')
+}
+
+/// A local system in metres as WKT, version 1: what all programs on GDAL read, and none of them transforms.
+fn local(name: &str) -> String {
+    let name: String = name.chars().map(|c| if matches!(c, '"' | '[' | ']') { ' ' } else { c }).collect();
+    format!(r#"LOCAL_CS["{name}",UNIT["metre",1]]"#)
+}
+
+/// A number to four decimals: a tenth of a millimetre, or a square centimetre.
+pub(crate) fn rounded(value: f64) -> f64 {
+    // A number near zero has no sign.
+    (10_000.0 * value).round() / 10_000.0 + 0.0
 }
 
 /// A feature.
@@ -63,7 +123,7 @@ pub(crate) fn outline(boundary: &Boundary) -> Vec<Point> {
 }
 
 /// The outline of a shape.
-pub(crate) fn corners(shape: &Shape) -> Vec<Point> {
+fn corners(shape: &Shape) -> Vec<Point> {
     match shape {
         Shape::Disc { center, radius_m } => circle(*center, *radius_m),
         Shape::Polygon { vertices } => vertices.clone(),
@@ -74,4 +134,31 @@ pub(crate) fn corners(shape: &Shape) -> Vec<Point> {
 fn circle(center: Point, radius_m: f64) -> Vec<Point> {
     let at = |k: u32| center + world::geometry::unit_vector(f64::from(k).to_radians() * 5.0) * radius_m;
     (0..72).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_system_that_programs_may_not_know_is_written_as_a_local_one() {
+        let name = |facts: &Inspection| Datum::of(facts).crs()["properties"]["name"].clone();
+        let facts = |crs: Option<&str>| Inspection {
+            datum_m: Some([691_000.0, 5_334_000.0]),
+            datum_crs: crs.map(str::to_owned),
+            ..Inspection::default()
+        };
+        assert_eq!(name(&facts(Some("EPSG:25832"))), "EPSG:25832");
+        assert_eq!(name(&facts(Some("works grid \"A\""))), r#"LOCAL_CS["works grid  A ",UNIT["metre",1]]"#);
+        for unknown in [facts(None), Inspection::default(), facts(Some("EPSG:utm"))] {
+            let name = name(&unknown).to_string();
+            assert!(name.starts_with("\"LOCAL_CS["), "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_as_fine_as_a_tenth_of_a_millimetre() {
+        assert_eq!(rounded(0.052_500_000_000_000_01).to_string(), "0.0525");
+        assert_eq!(rounded(-0.000_01).to_string(), "0");
+    }
 }

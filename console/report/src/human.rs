@@ -60,6 +60,9 @@ fn pre_flight(checks: &[Check]) -> Option<String> {
 
 fn title(run: &Summary) -> String {
     let or_unknown = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".into());
+    if let Some(file) = &run.located {
+        return format!("{}, located from the readings of {file}", or_unknown(&run.scenario));
+    }
     let seed = run.seed.map_or_else(|| "unknown".to_owned(), |seed| seed.to_string());
     let version = run.planner_version.as_ref().map(|version| format!(" {version}")).unwrap_or_default();
     format!("{}, planner {}{version}, seed {seed}", or_unknown(&run.scenario), or_unknown(&run.planner))
@@ -104,7 +107,8 @@ fn warnings(run: &Summary) -> Vec<String> {
             "position error underestimated: true position inside the 95 % ellipse in only {share} of ticks"
         ));
     }
-    if let Some((coverage, truth)) = run.coverage.and_then(|c| Some((c, c.by_truth?)))
+    let to_scan = run.coverage.filter(|coverage| coverage.missed_area_m2.is_some());
+    if let Some((coverage, truth)) = to_scan.and_then(|c| Some((c, c.by_truth?)))
         && coverage.reachable - truth.reachable > 0.02
     {
         let (by_truth, estimated) = (percent(truth.reachable), percent(coverage.reachable));

@@ -1,16 +1,17 @@
 //! Several runs on one floor as if they were one.
 
 use crate::{
-    account::Evidence,
+    account::{Evidence, Solid},
     document::Files,
     fold::Fold,
+    identity::require_one_floor,
     record::Record,
     scanned::Scanned,
     summary::{Logs, Summary},
 };
 use mission::event::RunOpened;
 use std::{borrow::Cow, collections::BTreeSet};
-use world::{Floor, FloorMaker, Obstacle, ObstacleId, Shape};
+use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
 
 /// A past run: its name, its files and what is known of it.
 #[derive(Debug)]
@@ -31,6 +32,13 @@ pub struct PastRun {
     pub record: Record,
 }
 
+impl PastRun {
+    /// Whether it was located from readings and not flown.
+    pub(crate) fn is_located(&self) -> bool {
+        self.fold.run.as_deref().is_some_and(|run| run.measured.is_some())
+    }
+}
+
 /// What several runs on one floor scanned together.
 pub(crate) struct Joined<'a> {
     /// The last of the runs, as it was opened.
@@ -40,29 +48,37 @@ pub(crate) struct Joined<'a> {
 }
 
 /// What several runs scanned together, on the floor as all of them found it.
+///
+/// # Errors
+/// No run; one twice; one that was not to scan; runs of different floors.
 pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
+    match runs.iter().find(|past| past.is_located()) {
+        Some(past) => Err(format!(
+            "run {} scans no floor: it was located from readings; report it with -o FILE",
+            past.name
+        )),
+        None => joined_or_located(runs),
+    }
+}
+
+/// [`joined`], also of runs that were all located from readings.
+pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> {
+    require_one_kind(runs)?;
     let (last, before) = runs.split_last().ok_or("no run to report")?;
+    if let Some(other) = runs.iter().find(|past| !before.is_empty() && !past.fold.has_floor_to_scan()) {
+        return Err(format!("run {} was not there to scan the floor: report it alone", other.name));
+    }
     let mut all = alone(last)?;
+    require_different(runs)?;
+    require_one_floor(runs)?;
     let drawn = all.run.world.obstacles.iter().filter(|obstacle| obstacle.known).map(|obstacle| obstacle.id);
     if !before.is_empty() {
         all.evidence.to_mut().name_found(|name| found_name(name, before.len(), runs.len()));
     }
     let known: BTreeSet<ObstacleId> = all.evidence.found().map(|(id, _)| id).chain(drawn).collect();
     for (index, past) in before.iter().enumerate() {
-        if let Some(other) = runs[index + 1..].iter().find(|other| other.name == past.name) {
-            return Err(format!("run {} is given twice", other.name));
-        }
-        let is_copy = |other: &&PastRun| {
-            past.files.journal_sha256.is_some() && other.files.journal_sha256 == past.files.journal_sha256
-        };
-        if let Some(other) = runs[index + 1..].iter().find(is_copy) {
-            return Err(format!(
-                "runs {} and {} have the same journal: one is a copy of the other, or both are one mission with one seed",
-                past.name, other.name
-            ));
-        }
         let other = alone(past)?;
-        fit_together((&past.name, &other), (&last.name, &all))?;
+        require_aligned((&past.name, &other), (&last.name, &all))?;
         all.scanned.to_mut().join(&other.scanned);
         let mut evidence = other.evidence.into_owned();
         evidence.name_found(|name| found_name(name, index, runs.len()));
@@ -71,10 +87,30 @@ pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
         // What only the other runs found is no floor either.
         let grid = all.scanned.believed().floor();
-        let changes = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m).kinds();
+        let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
+        let changes = updated.into_floor().kinds();
         all.scanned.to_mut().change(&changes);
     }
     Ok(all)
+}
+
+/// Refuses a run that is given twice, under one name or two.
+fn require_different(runs: &[PastRun]) -> Result<(), String> {
+    for (index, past) in runs.iter().enumerate() {
+        let others = &runs[index + 1..];
+        if let Some(other) = others.iter().find(|other| other.name == past.name) {
+            return Err(format!("run {} is given twice", other.name));
+        }
+        let digest = &past.files.journal_sha256;
+        let is_copy = |other: &&PastRun| digest.is_some() && other.files.journal_sha256 == *digest;
+        if let Some(other) = others.iter().find(is_copy) {
+            return Err(format!(
+                "runs {} and {} have the same journal: one is a copy of the other, or both are one mission with one seed",
+                past.name, other.name
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Name of what was found in one of so many runs, each of which counts from 1.
@@ -92,48 +128,46 @@ fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
             scanned: Cow::Borrowed(scanned),
             evidence: Cow::Borrowed(evidence),
         })
-        .ok_or_else(|| {
-            let is_measured = fold.run.as_deref().is_some_and(|run| run.measured.is_some());
-            let why =
-                if is_measured { "it was located from readings" } else { "its task is to reach a goal" };
-            format!("run {name} scans no floor: {why}")
-        })
+        .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
 }
 
-/// Refuses runs of which one contains nothing about the floor of the other.
-fn fit_together(
+/// Refuses runs of which some were flown and others located.
+fn require_one_kind(runs: &[PastRun]) -> Result<(), String> {
+    let located = runs.iter().find(|past| past.is_located());
+    match located.zip(runs.iter().find(|past| !past.is_located())) {
+        Some((located, flown)) => Err(format!(
+            "run {} was located from readings, and run {} was flown; report them apart",
+            located.name, flown.name
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Refuses runs whose cells do not lie on each other.
+fn require_aligned(
     (name, other): (&str, &Joined<'_>),
     (last_name, all): (&str, &Joined<'_>),
 ) -> Result<(), String> {
-    let names = format!("runs {name} and {last_name} are not of one floor");
-    let last = all.run;
-    if other.run.world.boundary != last.world.boundary {
-        return Err(format!("{names}: the tank boundaries differ"));
+    if all.scanned.believed().floor().is_aligned_with(other.scanned.believed().floor()) {
+        return Ok(());
     }
-    let (a, b) = (other.run.floor.cell_m, last.floor.cell_m);
-    if !all.scanned.believed().floor().is_aligned_with(other.scanned.believed().floor()) {
-        return Err(format!("{names}: cells of {a} m and {b} m; run both with the same mission.cell_m"));
-    }
-    let outlines = |run: &RunOpened| -> Vec<Shape> {
-        run.world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect()
-    };
-    if outlines(other.run) != outlines(last) {
-        return Err(format!("{names}: the obstacles differ"));
-    }
-    if other.run.world.zones != last.world.zones {
-        return Err(format!("{names}: the zones differ"));
-    }
-    Ok(())
+    Err(format!("runs {name} and {last_name} have other cells; run both with the same mission.cell_m"))
 }
 
-/// The floor with everything that any of the runs found.
-pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> Floor {
+/// The floor with everything that any of the runs found, and without what any of them forbade.
+pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> FloorMaker {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
     for (id, solid) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
         let (name, shape) = (solid.name.clone(), solid.shape.clone());
         world.obstacles.push(Obstacle { id, name, shape, known: true });
     }
+    let zone = |Solid { name, shape }: &Solid| Zone {
+        name: name.clone(),
+        kind: ZoneKind::NoGo,
+        shape: shape.clone(),
+    };
+    world.zones = evidence.no_go().map(zone).collect();
     let mission = &run.mission;
-    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position).into_floor()
+    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position)
 }

@@ -6,6 +6,7 @@
 
 pub mod account;
 mod accuracy;
+mod difference;
 pub mod document;
 pub mod drawing;
 mod drawn;
@@ -16,6 +17,7 @@ pub mod fold;
 pub mod forecast;
 mod geojson;
 pub mod human;
+mod identity;
 mod joined;
 pub mod leg;
 pub mod merged;
@@ -35,6 +37,7 @@ mod tracking;
 mod turning;
 
 pub use account::Account;
+pub use difference::{Difference, first_difference};
 pub use document::{Document, Inspection};
 pub use drawn::DrawnZone;
 pub use estimate::Estimate;

@@ -9,7 +9,9 @@ use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start}
 use planner_api::Plan;
 use serde::Serialize;
 use world::{
-    Cell, CoverageGrid, Floor, ObstacleMap, Point, Shape, SweptArea, Tool, World, polyline,
+    Cell, CoverageGrid, FloorMaker, ObstacleMap, Point, Shape, SweptArea, Tool, World,
+    coverage::percent_text,
+    polyline,
     tether::{Cable, Certificate},
 };
 
@@ -141,7 +143,8 @@ impl Planned {
 fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<PlannedFloor> {
     let TaskConfig::Cover { .. } = &mission.task else { return None };
     let (start, swath_m) = (mission.start.position, mission.swath_m);
-    let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
+    let maker = FloorMaker::new(drawing, mission.cell_m, mission.room_m(), swath_m, start);
+    let floor = maker.clone().into_floor();
     let area_m2 = |kind: Cell| {
         (0..floor.len()).filter(|index| floor.kind(*index) == kind).count() as f64 * floor.cell_m2()
     };
@@ -152,7 +155,7 @@ fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Op
         area.pass(mission.tool(), from, to);
     });
     let shapes: Vec<Shape> = drawing.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
-    let scanned_exact = area.share_of(cells.floor(), &drawing.boundary, &shapes);
+    let scanned_exact = area.share_of(&maker, &drawing.boundary, &shapes);
     Some(PlannedFloor {
         swath_m,
         reachable_m2,
@@ -198,12 +201,13 @@ fn warnings(planned: &Planned) -> String {
 /// The floor, for people.
 fn floor(floor: &PlannedFloor) -> String {
     let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, scanned, scanned_exact } = floor;
-    let exact =
-        scanned_exact.map(|share| format!(", {:.2} % by exact area", 100.0 * share)).unwrap_or_default();
+    let exact = scanned_exact
+        .map(|share| format!(", {} % by exact area", percent_text(share, 2)))
+        .unwrap_or_default();
     format!(
         "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n\
-         scanned   {:.2} % of it in cells of the report{exact}\n",
-        100.0 * scanned
+         scanned   {} % of it in cells of the report{exact}\n",
+        percent_text(*scanned, 2)
     )
 }
 

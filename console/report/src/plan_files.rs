@@ -2,13 +2,13 @@
 
 use crate::{
     dxf::Drawing,
-    geojson::{Datum, corners, feature, outline},
+    geojson::{Datum, feature, outline, rounded},
     leg::Leg,
     plan::Planned,
 };
 use serde_json::json;
 use std::fmt::Write;
-use world::{Point, Shape, World};
+use world::{Point, World};
 
 /// The layers of the drawing and their colours by the numbers of the format.
 const LAYERS: [(&str, u8); 4] = [("SHELL", 7), ("OBSTACLES", 5), ("PATH", 4), ("CUTS", 1)];
@@ -41,11 +41,7 @@ impl Planned {
         let mut features =
             vec![feature(datum.polygon(&outline(&drawing.boundary)), json!({ "layer": "shell" }))];
         features.extend(drawing.obstacles.iter().map(|obstacle| {
-            let geometry = match &obstacle.shape {
-                Shape::Polyline { points, .. } => datum.line(points),
-                shape => datum.polygon(&corners(shape)),
-            };
-            feature(geometry, json!({ "layer": "obstacles", "name": obstacle.name }))
+            feature(datum.shape(&obstacle.shape), json!({ "layer": "obstacles", "name": obstacle.name }))
         }));
         features.extend(self.lines().map(|(number, leg, line)| {
             feature(datum.line(line), json!({ "layer": "path", "leg": number, "tag": leg.tag }))
@@ -53,8 +49,11 @@ impl Planned {
         features.extend(self.cuts.iter().map(|cut| feature(datum.line(cut), json!({ "layer": "cuts" }))));
         let collection = json!({
             "type": "FeatureCollection",
-            "crs": { "type": "name", "properties": { "name": datum.name } },
-            "properties": { "planner": self.planner, "length_m": self.length_m, "complete": self.complete },
+            "crs": datum.crs(),
+            "properties": {
+                "coordinates": datum.words(), "planner": self.planner, "length_m": rounded(self.length_m),
+                "complete": self.complete,
+            },
             "features": features,
         });
         collection.to_string() + "\n"

@@ -51,7 +51,7 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     let grid = scanned.believed();
     let floor = grid.floor();
     let is_missed = |index: usize| floor.is_reachable(index) && !grid.is_covered(index);
-    let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m());
+    let lanes = updated_floor(run, floor, &evidence, run.mission.lane_m()).into_floor();
     let (swath_m, reasons) = (run.mission.swath_m, evidence.reasons(run));
     let is_asked = |index: usize| is_missed(index) && evidence.is_asked(index);
     let why_missed = |index: usize| reasons.why_missed(floor.center(index), index);

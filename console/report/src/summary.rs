@@ -15,6 +15,9 @@ pub struct Summary {
     pub report_version: Option<u32>,
     /// Name of the scenario.
     pub scenario: Option<String>,
+    /// File of the readings that were located; absent for a run that was flown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub located: Option<String>,
     /// Id of the planner that drove first.
     pub planner: Option<String>,
     /// Version of its plugin.

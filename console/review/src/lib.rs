@@ -2,10 +2,12 @@
 
 mod past;
 mod readings;
+mod register;
 mod rescan;
 mod verify;
 
-pub use past::{combined, inspection, read_all, report_page, report_text, summary};
+pub use past::{combined, inspection, read_all, report_page, report_text, summary, text_of};
 pub use readings::readings;
+pub use register::register;
 pub use rescan::{MIN_AREA_M2, MissedScan, NextScan, doubt, missed_scan, rescan_of};
 pub use verify::{Verified, verdict, verify};

@@ -34,22 +34,29 @@ pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
 /// # Errors
 /// Its journal cannot be read.
 pub fn report_text(folder: &Path) -> anyhow::Result<String> {
-    Ok(human(&summary(&Past::read(folder)?)?))
+    text_of(&Past::read(folder)?)
 }
 
-/// The inspection report of the run in a folder as a page, a draft; `None` for a mission that was not to scan floor.
+/// The report of a run that has been read, for people.
+///
+/// # Errors
+/// The scenario in its journal is refused.
+pub fn text_of(past: &Past) -> anyhow::Result<String> {
+    let recovered = past.run.files.recovered.as_ref();
+    let recovered = recovered.map(|recovered| format!("{:<16} {recovered}\n", "recovered"));
+    Ok(human(&summary(past)?) + &recovered.unwrap_or_default())
+}
+
+/// The inspection report of the run in a folder as a page, a draft.
 ///
 /// # Errors
 /// Its journal, or the list of signed reports on it, cannot be read.
-pub fn report_page(folder: &Path) -> anyhow::Result<Option<String>> {
+pub fn report_page(folder: &Path) -> anyhow::Result<String> {
     let past = Past::read(folder)?;
-    if past.run.summary.floor.is_none() {
-        return Ok(None);
-    }
     let (inspection, revisions) = (inspection(&past)?, signed_list(folder)?);
     let version = env!("CARGO_PKG_VERSION");
     let context = Context { inspection, revisions, version, ..Context::default() };
-    Ok(Some(html(&Document::new(&[past.run], context).map_err(bad_input)?)))
+    Ok(html(&Document::new(&[past.run], context).map_err(bad_input)?))
 }
 
 /// What the scenario of a run says that only people know.

@@ -5,7 +5,7 @@ use anyhow::Context;
 use flight::failure::bad_input;
 use report::{PastRun, Rescan};
 use runs::Past;
-use scenario::Scenario;
+use scenario::{Continued, Scenario};
 use std::path::{Path, PathBuf};
 
 /// Boxes in a scenario for a re-scan; more are joined into coarser ones.
@@ -46,14 +46,22 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
         let text = format!("{why} (`tankops rescan --min-area-m2` sets the limit)\n{out_of_reach}");
         return Ok(NextScan::Nothing(text.trim_end().to_owned()));
     }
-    let names: Vec<&str> = past.iter().map(|run| run.name.as_str()).collect();
+    let runs = past.iter().map(continued).collect::<anyhow::Result<Vec<_>>>()?;
     let last = opened.last().context("there is no run")?;
     let drawn: Vec<_> =
         missed.zones.iter().filter(|zone| !last.world.zones.contains(zone)).cloned().collect();
-    let text = scenario::rescan(last, &names, &missed.boxes, &missed.found, &drawn);
+    let text = scenario::rescan(last, &runs, &missed.boxes, &missed.found, &drawn);
     let text = text.context("reading the scenario again")?;
     let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
     Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))
+}
+
+/// A run as the scenario of its re-scan names it.
+fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
+    let journal_sha256 = run.files.journal_sha256.as_deref();
+    let journal_sha256 =
+        journal_sha256.with_context(|| format!("run {}: its journal has no digest", run.name))?;
+    Ok(Continued { name: &run.name, journal_sha256 })
 }
 
 /// The scenario that scans what past runs missed, for the console.
@@ -83,5 +91,14 @@ pub fn doubt(Past { opened, run, beyond_floor }: &Past) -> anyhow::Result<Option
             run.name
         )));
     }
-    Ok(run.logs.error.as_ref().map(|doubt| format!("note: run {}: {doubt}", run.name)))
+    let doubt = run.logs.error.as_ref().map(|doubt| format!("note: run {}: {doubt}", run.name));
+    let is_open = run.summary.outcome.is_none() && run.files.are_as_reported.is_none();
+    let killed = (is_open && !run.logs.is_open).then(|| {
+        format!(
+            "note: run {name} was killed; only after `tankops recover {name} --by NAME` can it be part of a signed report",
+            name = run.name
+        )
+    });
+    let notes: Vec<String> = doubt.into_iter().chain(killed).collect();
+    Ok((!notes.is_empty()).then(|| notes.join("\n")))
 }

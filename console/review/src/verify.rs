@@ -11,6 +11,7 @@
 
 pub(crate) mod planners;
 
+use crate::register;
 use anyhow::Context;
 use flight::{Flight, failure::bad_input, hosts::host, planners::found};
 use mission::{
@@ -24,8 +25,8 @@ use recording::{
     ahead::{self, Giver},
     journal_of,
 };
-use report::document::{Revision, SignedRun};
-use runs::{Past, RunError, end_is_missing, signed_list};
+use report::document::{Recovered, Revision, SignedRun};
+use runs::{Past, Signatures, end_is_missing, signatures};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
@@ -49,12 +50,16 @@ struct Findings {
     doubt: Option<String>,
     /// Whether a report names the digests of journal and recording.
     is_reported: bool,
+    /// How the run was closed if its writer was killed.
+    recovered: Option<Recovered>,
     /// Why the journal has no end; what it holds up to there is compared.
     no_end: Option<String>,
     /// What the planners did when they were asked again; `None` if they were not.
     planners: Option<Asked>,
-    /// The signed reports on the run, as lines; one that is about other files is a doubt.
+    /// The signed reports on the run, as lines.
     signed: Vec<String>,
+    /// What speaks against them.
+    not_as_signed: Vec<String>,
     /// The planners of the run, by id.
     builds: BTreeMap<String, PlannerInfo>,
     events: usize,
@@ -66,6 +71,8 @@ struct Findings {
 pub struct Verified {
     /// Whether everything was recomputed as it is recorded.
     pub is_equal: bool,
+    /// Whether nothing was flown, so that nothing was recomputed: readings were located.
+    pub is_located: bool,
     /// What was found, in lines for people.
     pub lines: Vec<String>,
 }
@@ -77,8 +84,35 @@ pub struct Verified {
 /// # Errors
 /// Its journal cannot be read, or is of another version.
 pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow::Result<Verified> {
+    if let Some(measured) = Ticks::open(&journal_of(folder))?.opened()?.measured.clone() {
+        return verify_located(folder, &measured);
+    }
     let findings = findings(folder, (!from_journal).then_some(plugins))?;
-    Ok(Verified { is_equal: findings.are_equal(), lines: lines(&findings, plugins) })
+    Ok(Verified { is_equal: findings.are_equal(), is_located: false, lines: lines(&findings, plugins) })
+}
+
+/// Verifies readings that were located: nothing was flown, so that only files and signed reports are compared.
+fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> anyhow::Result<Verified> {
+    let past = Past::read(folder)?.run;
+    let (signed, not_as_signed) = signed(folder, &SignedRun::of(&past));
+    let is_equal = past.files.doubts.is_empty() && not_as_signed.is_empty();
+    let mut lines: Vec<String> =
+        past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
+    if past.files.are_as_reported == Some(true) {
+        lines.push(
+            "equal: journal, recording and report.json are as they were when the readings were located"
+                .into(),
+        );
+    }
+    if past.files.are_as_reported.is_none() {
+        lines.push(
+            "note: no report.json names the digests of journal and recording, so they are not checked".into(),
+        );
+    }
+    lines.push(format!("note: nothing was flown: the readings of {file} were located (SHA-256 {sha256})"));
+    lines.extend(signed);
+    lines.extend(not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
+    Ok(Verified { is_equal, is_located: true, lines })
 }
 
 /// What is found of the run in a folder, in one line.
@@ -86,7 +120,7 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
 /// # Errors
 /// Its journal cannot be read, or the run is different.
 pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
-    let Verified { is_equal, lines } = verify(folder, plugins, false)?;
+    let Verified { is_equal, lines, .. } = verify(folder, plugins, false)?;
     let text = lines.join("; ");
     if is_equal { Ok(text) } else { anyhow::bail!(text) }
 }
@@ -97,22 +131,25 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
         let findings = compare(&journal_of(folder), plugins)?;
         let (now, files) =
             files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
-        let (signed, other) = signatures(folder, &now)?;
+        let (signed, not_as_signed) = signed(folder, &now);
         let missing_end = || findings.no_end.as_ref().and_then(|_| end_is_missing(folder));
-        let doubt = files.doubts.into_iter().next().or_else(missing_end).or(other);
-        Ok(Findings { doubt, signed, is_reported: files.are_as_reported.is_some(), ..findings })
+        let doubt = files.doubts.into_iter().next().or_else(missing_end);
+        let is_reported = files.are_as_reported.is_some();
+        let recovered = files.recovered;
+        Ok(Findings { doubt, signed, not_as_signed, is_reported, recovered, ..findings })
     })
 }
 
-/// The signed reports on a run as lines, and the first thing that speaks against the run being the one that was signed.
-fn signatures(folder: &Path, now: &SignedRun) -> Result<(Vec<String>, Option<String>), RunError> {
-    let revisions = signed_list(folder)?;
-    let other = revisions.iter().find_map(|revision| revision.doubt(now));
+/// The signed reports on a run as lines, and everything that speaks against them or against the run being the one that was
+/// signed.
+fn signed(folder: &Path, now: &SignedRun) -> (Vec<String>, Vec<String>) {
+    let Signatures { revisions, mut doubts } = signatures(folder, &register());
+    doubts.extend(revisions.iter().filter_map(|revision| revision.doubt(now)));
     let line = |revision: &Revision| {
         let (letter, signature) = (&revision.revision, &revision.signature);
         format!("signed: revision {letter} by {}, {} UTC: {}", signature.by, signature.at, revision.file)
     };
-    Ok((revisions.iter().map(line).collect(), other))
+    (revisions.iter().map(line).collect(), doubts)
 }
 
 impl Findings {
@@ -127,6 +164,11 @@ impl Findings {
     }
 
     fn are_equal(&self) -> bool {
+        self.is_run_equal() && self.not_as_signed.is_empty()
+    }
+
+    /// Whether everything but the signed reports is as it was.
+    fn is_run_equal(&self) -> bool {
         self.difference.is_none()
             && self.doubt.is_none()
             && self.other_answer().is_none()
@@ -142,6 +184,9 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
         lines.push(
             "note: no report.json names the digests of journal and recording, so the recording is not checked".into(),
         );
+    }
+    if let Some(recovered) = &findings.recovered {
+        lines.push(format!("note: the run was killed, and recovered {recovered}"));
     }
     if let Some(why) = no_end {
         lines.push(format!("note: the journal has no end ({why}); what it holds before is compared"));
@@ -168,7 +213,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     if difference.is_some() || findings.other_answer().is_some() {
         lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
     }
-    if findings.are_equal() {
+    if findings.is_run_equal() {
         // A report counts the ticks that passed since the first one, which has the number 0.
         let how = if planners.is_some() { "" } else { " from the recorded answers" };
         lines.push(format!(
@@ -177,6 +222,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
         ));
     }
     lines.extend(findings.signed.iter().cloned());
+    lines.extend(findings.not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
     lines
 }
 

@@ -55,6 +55,9 @@ pub enum RunError {
         /// What is wrong, with line and column.
         why: String,
     },
+    /// What is asked for does not suit the run: why, and what to do.
+    #[error("{0}")]
+    Refused(String),
     /// The system refuses something else.
     #[error("{what}: {why}")]
     System {
@@ -74,6 +77,7 @@ impl RunError {
                 | Self::NoRun { .. }
                 | Self::ManyRuns { .. }
                 | Self::Damaged { .. }
+                | Self::Refused(_)
                 | Self::Journal(_)
         )
     }

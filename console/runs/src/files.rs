@@ -14,6 +14,12 @@ pub fn utc(moment: SystemTime) -> String {
     time.strftime("%Y%m%dT%H%M%SZ").to_string()
 }
 
+/// A moment to the minute, as `2026-11-22 04:01`.
+pub fn utc_minute(moment: SystemTime) -> String {
+    let time = Timestamp::try_from(moment.max(SystemTime::UNIX_EPOCH)).unwrap_or(Timestamp::MAX);
+    time.strftime("%Y-%m-%d %H:%M").to_string()
+}
+
 /// A name without anything that a file system or a shell could mind.
 pub(crate) fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()

@@ -8,9 +8,9 @@ use crate::{
     whole::{draft_of, write_whole},
 };
 use recording::{FAILURE_FILE, JOURNAL_FILE, PLAIN_JOURNAL_FILE, RECORDING_FILE, journal_of};
-use report::Summary;
+use report::{Summary, document::Recovered};
 use std::{
-    fs::{self, File},
+    fs::{self, File, TryLockError},
     io,
     path::{Path, PathBuf},
     time::SystemTime,
@@ -45,6 +45,24 @@ impl RunFolder {
         Ok(Self { path, _lock: lock })
     }
 
+    /// Takes the folder of a run whose writer is gone.
+    ///
+    /// # Errors
+    /// Somebody is writing to it.
+    pub(crate) fn take(path: &Path) -> Result<Self, RunError> {
+        let locking = || format!("locking the folder of the run: {}", path.display());
+        let open = File::options().create(true).append(true).open(path.join(LOCK_FILE));
+        let lock = open.map_err(RunError::during(locking()))?;
+        match lock.try_lock() {
+            Ok(()) => Ok(Self { path: path.to_owned(), _lock: lock }),
+            Err(TryLockError::WouldBlock) => Err(RunError::Refused(format!(
+                "the run is still being written; end it, or end the process that writes it, first: {}",
+                path.display()
+            ))),
+            Err(TryLockError::Error(error)) => Err(RunError::during(locking())(error)),
+        }
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -55,11 +73,20 @@ impl RunFolder {
     /// # Errors
     /// The system refuses.
     pub fn write_report(&self, summary: &Summary) -> Result<(), RunError> {
+        self.write_report_of(summary, None)
+    }
+
+    /// [`RunFolder::write_report`]; `recovered`, if its writer was killed.
+    pub(crate) fn write_report_of(
+        &self,
+        summary: &Summary,
+        recovered: Option<&Recovered>,
+    ) -> Result<(), RunError> {
         let bytes = |file: &str| fs::metadata(self.path.join(file)).ok().map(|file| file.len());
-        let (journal_bytes, recording_bytes) = (bytes(JOURNAL_FILE), bytes(RECORDING_FILE));
+        let lengths = [JOURNAL_FILE, RECORDING_FILE].map(bytes);
         let file = self.path.join(REPORT_FILE);
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        let text = ReportFile::text(&name, summary, journal_bytes, recording_bytes).map_err(io::Error::from);
+        let text = ReportFile::text(&name, summary, lengths, recovered).map_err(io::Error::from);
         text.and_then(|text| write_whole(&file, text.as_bytes()))
             .map_err(RunError::during(format!("writing {}", file.display())))
     }

@@ -45,7 +45,7 @@ impl Reading {
             self.is_partial = true;
             JournalReader::open_end(journal)?.try_for_each(|event| {
                 self.take(&event?);
-                Ok(())
+                Ok::<_, JournalError>(())
             })?;
         }
         Ok(())

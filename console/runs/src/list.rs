@@ -6,11 +6,13 @@ use crate::{
     folder::past_runs,
     glance::Glance,
     notes::read_notes,
+    register::Register,
     report_file::{Now, Reported},
-    standing::{Standing, standing_within},
+    signed::signatures,
+    standing::{Standing, held, standing_within},
 };
 use recording::journal_of;
-use report::{Summary, notes::Notes};
+use report::{Summary, document::Recovered, notes::Notes};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +21,7 @@ use std::path::{Path, PathBuf};
 pub struct Listed {
     /// Name of its folder.
     pub name: String,
-    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
+    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECOVERED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
     /// Name of its scenario.
     pub scenario: Option<String>,
@@ -43,15 +45,19 @@ pub struct Listed {
 }
 
 /// The past runs in a folder, oldest first; also those that have lost their journal. Of long journals without a report only the
-/// beginning and the end are read.
+/// beginning and the end are read. What speaks against the signed reports of a run is in its note.
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn list(logs: &Path) -> Result<Vec<Listed>, RunError> {
+pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
     let budget = Budget::of_a_list();
+    let look = |folder: &PathBuf| {
+        let listed = look_at(folder, &budget);
+        let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
+        Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
+    };
     // The newest ones are what is looked for.
-    let mut listed: Vec<Listed> =
-        past_runs(logs)?.iter().rev().map(|folder| look_at(folder, &budget)).collect();
+    let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
     listed.reverse();
     Ok(listed)
 }
@@ -91,9 +97,17 @@ fn look_at(folder: &Path, budget: &Budget) -> Listed {
     match standing_within(folder, budget) {
         Standing::Ended(summary) => {
             let note = summary.logs.as_ref().and_then(|logs| logs.error.clone());
-            let reported = || Reported::read(folder).ok().flatten();
-            let note = note.or_else(|| reported()?.recording_doubt(folder, Now::Within(budget)));
-            listed(folder, word(&summary), Some(&summary), note)
+            let reported = Reported::read(folder).ok().flatten();
+            let recovered = reported.as_ref().and_then(Reported::recovered);
+            let closed = recovered.map(|Recovered { by, at, .. }| {
+                format!("killed, recovered by {by}, {at} UTC; {}", held(&summary))
+            });
+            let doubt =
+                reported.as_ref().and_then(|reported| reported.recording_doubt(folder, Now::Within(budget)));
+            let note =
+                closed.or(note).into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
+            let is_cut = recovered.is_some() && summary.outcome.is_none();
+            listed(folder, if is_cut { "RECOVERED" } else { word(&summary) }, Some(&summary), note)
         }
         Standing::NotRecorded(summary, why) => {
             let note = format!("outcome {}, but not kept: {why}", word(&summary));
@@ -152,12 +166,4 @@ fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budge
             listed(folder, "CRASHED", Some(&summary), with(&format!("killed; {}", held(&summary))))
         }
     }
-}
-
-/// Up to when a journal that stops early goes.
-fn held(summary: &Summary) -> String {
-    summary.mission_time_s.map_or_else(
-        || "the journal is empty".into(),
-        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
-    )
 }

@@ -145,6 +145,7 @@ fn files(
         scenario_sha256: Some(sha256_of(opened.scenario_toml.as_bytes())),
         are_as_reported: reported.as_ref().is_some_and(Reported::names_digests).then_some(doubts.is_empty()),
         closed_as: reported.as_ref().and_then(Reported::closed_as).map(str::to_owned),
+        recovered: reported.as_ref().and_then(Reported::recovered).cloned(),
         journal_sha256,
         recording_sha256,
         doubts,

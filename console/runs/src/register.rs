@@ -31,12 +31,11 @@ impl Register {
             .map_err(RunError::during(format!("writing the register of signatures: {}", file.display())))
     }
 
-    /// What speaks against the list of signed reports of a run: those of the register that it has not, or not any more as they
-    /// were signed.
+    /// The signed reports of a run, which has one of these names.
     ///
     /// # Errors
     /// The register cannot be read.
-    pub fn doubts(&self, run: &str, listed: &[Revision]) -> Result<Vec<String>, RunError> {
+    pub(crate) fn of(&self, names: &[String]) -> Result<Vec<Revision>, RunError> {
         let Some(file) = &self.0 else { return Ok(Vec::new()) };
         let text = match read_regular(file) {
             Ok(text) => text,
@@ -48,29 +47,23 @@ impl Register {
                 ))(error));
             }
         };
-        let mut doubts = Vec::new();
+        let mut found = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
             let signed: Revision = serde_json::from_str(line).map_err(|error| RunError::Damaged {
                 file: file.clone(),
                 why: format!("line {number}: {error}"),
             })?;
-            if signed.runs.iter().any(|of| of.run == run) && !listed.contains(&signed) {
-                doubts.push(lost(&signed, run, file));
+            if signed.runs.iter().any(|of| names.contains(&of.run)) {
+                found.push(signed);
             }
         }
-        Ok(doubts)
+        Ok(found)
     }
-}
 
-fn lost(signed: &Revision, run: &str, register: &Path) -> String {
-    format!(
-        "run {run} was signed as revision {} by {} at {} UTC (SHA-256 {}), as {} says, but its signed.json does not list that",
-        signed.revision,
-        signed.signature.by,
-        signed.signature.at,
-        signed.sha256,
-        register.display()
-    )
+    /// Its file, for people.
+    pub(crate) fn shown(&self) -> String {
+        self.0.as_ref().map(|file| file.display().to_string()).unwrap_or_default()
+    }
 }
 
 /// Adds a line and puts it on the disk.
@@ -103,26 +96,22 @@ mod tests {
     }
 
     #[test]
-    fn a_list_that_has_lost_a_signature_or_has_another_digest_is_noticed() {
+    fn the_signed_reports_of_a_run_are_found_by_any_of_its_names() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("state/signatures");
         let register = Register::at(Some(file.clone()));
-        assert_eq!(register.doubts("a", &[]).unwrap(), Vec::<String>::new());
+        let of = |names: &[&str]| register.of(&names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>());
+        assert_eq!(of(&["a"]).unwrap(), []);
         let (of_a, of_b) = (signed("a", "5a"), signed("b", "5b"));
         register.add(&of_a).unwrap();
         register.add(&of_b).unwrap();
-        assert_eq!(register.doubts("a", std::slice::from_ref(&of_a)).unwrap(), Vec::<String>::new());
-        for listed in [vec![], vec![signed("a", "forged")], vec![of_b]] {
-            let [lost] = &register.doubts("a", &listed).unwrap()[..] else { panic!("{listed:?}") };
-            assert!(lost.starts_with(
-                "run a was signed as revision A by L. Kern at 2026-11-22 04:01 UTC (SHA-256 5a)"
-            ));
-        }
-        assert_eq!(register.doubts("c", &[]).unwrap(), Vec::<String>::new());
+        assert_eq!(of(&["a"]).unwrap(), [of_a.clone()]);
+        assert_eq!(of(&["renamed", "b"]).unwrap(), [of_b]);
+        assert_eq!(of(&["c"]).unwrap(), []);
         fs::write(&file, "{}\n").unwrap();
-        let damaged = register.doubts("a", &[]).unwrap_err().to_string();
+        let damaged = of(&["a"]).unwrap_err().to_string();
         assert!(damaged.contains("signatures is damaged: line 1: missing field"), "{damaged}");
-        assert_eq!(Register::at(None).doubts("a", &[]).unwrap(), Vec::<String>::new());
+        assert_eq!(Register::at(None).of(&["a".to_owned()]).unwrap(), []);
         Register::at(None).add(&of_a).unwrap();
     }
 }

@@ -6,7 +6,7 @@ use crate::{budget::Budget, files::REPORT_FILE};
 use foreign::{plain_json, read_json};
 use mission::{Event, EventKind};
 use recording::{RECORDING_FILE, journal_of, read_ending, sha256_of};
-use report::Summary;
+use report::{Summary, document::Recovered};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::{
@@ -27,22 +27,26 @@ pub(crate) struct ReportFile<'a> {
     pub journal_bytes: Option<u64>,
     /// Absent if there is no recording any more.
     pub recording_bytes: Option<u64>,
+    /// How the run was closed if its writer was killed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recovered: Option<&'a Recovered>,
     /// SHA-256 of all other lines of the file.
     report_sha256: String,
 }
 
 impl<'a> ReportFile<'a> {
-    /// The report on a run of this name with files of these lengths, bytes, as text.
+    /// The report on a run of this name with files of these lengths, bytes, as text; `recovered`, if its writer was killed.
     ///
     /// # Errors
     /// It cannot be written as JSON.
     pub(crate) fn text(
         run: &'a str,
         summary: &'a Summary,
-        journal_bytes: Option<u64>,
-        recording_bytes: Option<u64>,
+        [journal_bytes, recording_bytes]: [Option<u64>; 2],
+        recovered: Option<&'a Recovered>,
     ) -> serde_json::Result<String> {
-        let unsealed = Self { run, summary, journal_bytes, recording_bytes, report_sha256: String::new() };
+        let report_sha256 = String::new();
+        let unsealed = Self { run, summary, journal_bytes, recording_bytes, recovered, report_sha256 };
         let text = |report: &Self| -> serde_json::Result<String> {
             Ok(plain_json(&serde_json::to_string_pretty(report)?).into_owned() + "\n")
         };
@@ -69,6 +73,8 @@ struct Source {
     recording_sha256: Option<String>,
     #[serde(default)]
     recording_bytes: Option<u64>,
+    #[serde(default)]
+    recovered: Option<Recovered>,
     #[serde(default)]
     report_sha256: Option<String>,
 }
@@ -137,6 +143,7 @@ impl Reported {
         }
         match read_ending(&path).map_err(no_journal)? {
             Some(ending) if agrees(&summary, &ending) => Ok(summary),
+            None if self.recovered().is_some() && summary.outcome.is_none() => Ok(summary),
             _ => Err(format!("{REPORT_FILE} was changed: it does not end as the journal does")),
         }
     }
@@ -144,6 +151,11 @@ impl Reported {
     /// Name of the run's folder when the run was closed; older reports do not say.
     pub(crate) fn closed_as(&self) -> Option<&str> {
         self.source.run.as_deref()
+    }
+
+    /// How the run was closed if its writer was killed.
+    pub(crate) fn recovered(&self) -> Option<&Recovered> {
+        self.source.recovered.as_ref()
     }
 
     /// Whether it names the digests of journal and recording.

@@ -1,9 +1,9 @@
 //! Signed reports of a run: which there are, and that none is changed.
 
-use crate::{error::RunError, register::Register, whole::write_whole};
+use crate::{error::RunError, register::Register, report_file::Reported, whole::write_whole};
 use foreign::read_json;
 use recording::sha256;
-use report::document::Revision;
+use report::{Difference, document::Revision, first_difference};
 use std::{
     io,
     path::{Path, PathBuf},
@@ -29,27 +29,99 @@ pub fn signed_list(folder: &Path) -> Result<Vec<Revision>, RunError> {
     serde_json::from_str(&text).map_err(|error| RunError::Damaged { file: path, why: error.to_string() })
 }
 
-/// The signed reports of the run in a folder, in their order, and what speaks against them: a file that has another digest than
-/// when it was signed, or is not where it was written any more.
-///
-/// # Errors
-/// The list cannot be read.
-pub fn signed_reports(folder: &Path) -> Result<(Vec<Revision>, Vec<String>), RunError> {
-    let revisions = signed_list(folder)?;
-    let doubt = |revision: &Revision| {
-        let Revision { revision: letter, file, sha256: then, .. } = revision;
-        match sha256(&PathBuf::from(file)) {
-            Ok(now) if now == *then => None,
-            Ok(now) => Some(format!(
-                "signed revision {letter} was changed after it was signed: {file}: expected SHA-256 {then}, found {now}"
-            )),
-            Err(error) => Some(format!(
-                "signed revision {letter} cannot be read: {file}: {error}; expected a file with SHA-256 {then}"
-            )),
+/// The signed reports of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Signatures {
+    /// As they are listed, in their order.
+    pub revisions: Vec<Revision>,
+    /// What speaks against them, as sentences that name the file.
+    pub doubts: Vec<String>,
+}
+
+/// The signed reports of the run in a folder, and what speaks against them: a file that has another digest than when it was
+/// signed, or is not where it was written any more, and a list that is missing, damaged, or other than the register has it.
+pub fn signatures(folder: &Path, register: &Register) -> Signatures {
+    let mut found = Signatures::default();
+    match signed_list(folder) {
+        Ok(revisions) => found.revisions = revisions,
+        Err(why) => found.doubts.push(why.to_string()),
+    }
+    let registered = register.of(&names_of(folder)).unwrap_or_else(|why| {
+        found.doubts.push(why.to_string());
+        Vec::new()
+    });
+    let entry = |revision: &Revision| registered.iter().find(|entry| is_same_report(entry, revision));
+    let changed = |revision| list_change(revision, entry(revision)?, register);
+    found.doubts.extend(found.revisions.iter().filter_map(changed));
+    found.doubts.extend(found.revisions.iter().filter_map(|revision| file_doubt(revision, entry(revision))));
+    let is_listed =
+        |entry: &&Revision| found.revisions.iter().any(|revision| is_same_report(entry, revision));
+    let lost = registered.iter().filter(|entry| !is_listed(entry)).map(|entry| lost(entry, folder, register));
+    let lost: Vec<String> = lost.collect();
+    found.doubts.extend(lost);
+    found
+}
+
+/// The names of a run: of its folder, and what that was called when the run was closed.
+fn names_of(folder: &Path) -> Vec<String> {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let closed_as =
+        Reported::read(folder).ok().flatten().and_then(|read| read.closed_as().map(str::to_owned));
+    std::iter::once(name).chain(closed_as).collect()
+}
+
+fn is_same_report(one: &Revision, other: &Revision) -> bool {
+    (&one.number, &one.revision) == (&other.number, &other.revision)
+}
+
+/// Where a list says something else of a signed report than the register, which is never changed.
+fn list_change(listed: &Revision, entry: &Revision, register: &Register) -> Option<String> {
+    let [now, then] = [listed, entry].map(|revision| serde_json::to_value(revision).ok());
+    let Difference { key, one, other } = first_difference(&now?, &then?)?;
+    Some(format!(
+        "{SIGNED_FILE} was changed: {key} of revision {} is {one}, and {} has {other}",
+        listed.revision,
+        register.shown()
+    ))
+}
+
+/// What speaks against the file of a signed report. `entry`: what the register has of it, if it has anything.
+fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
+    let Revision { revision: letter, file, sha256: then, .. } = entry.unwrap_or(listed);
+    match sha256(&PathBuf::from(file)) {
+        Ok(now) if now == *then => None,
+        Ok(now) => {
+            let or_list = match entry {
+                Some(_) => String::new(),
+                None => format!(
+                    ", or {SIGNED_FILE} was; the register of {}, who signed, shows which",
+                    listed.signature.by
+                ),
+            };
+            Some(format!(
+                "signed revision {letter} was changed after it was signed{or_list}: {file}: expected SHA-256 {then}, found {now}"
+            ))
         }
-    };
-    let doubts = revisions.iter().filter_map(doubt).collect();
-    Ok((revisions, doubts))
+        Err(error) => Some(format!(
+            "signed revision {letter} cannot be read: {file}: {error}; expected a file with SHA-256 {then}"
+        )),
+    }
+}
+
+/// A report of the register that the list of a run does not have.
+fn lost(entry: &Revision, folder: &Path, register: &Register) -> String {
+    let list = folder.join(SIGNED_FILE);
+    let why = if list.exists() { "does not list that" } else { "is missing" };
+    format!(
+        "run {} was signed as revision {} by {} at {} UTC (SHA-256 {}), as {} says, but its {SIGNED_FILE} {why}: {}",
+        names_of(folder)[0],
+        entry.revision,
+        entry.signature.by,
+        entry.signature.at,
+        entry.sha256,
+        register.shown(),
+        list.display()
+    )
 }
 
 /// Adds a signed report to the lists of all runs that it is about and to the register, or to none of them.
@@ -88,39 +160,130 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use report::document::Signature;
+    use recording::sha256_of;
+    use report::document::{Signature, SignedRun};
     use std::fs;
 
-    #[test]
-    fn signed_reports_are_listed_and_one_that_was_changed_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("a.html");
-        fs::write(&file, "signed").unwrap();
-        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![], vec![]));
-        let signature = Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() };
-        let (name, digest) = (file.display().to_string(), sha256(&file).unwrap());
-        let (number, letter) = ("1-1".to_owned(), "A".to_owned());
-        let revision =
-            Revision { number, revision: letter, signature, file: name, sha256: digest, runs: vec![] };
-        let (folders, register) = ([folder.path().to_owned()], Register::at(None));
-        add_signed(&folders, &register, &revision).unwrap();
-        assert_eq!(signed_reports(folder.path()).unwrap(), (vec![revision.clone()], vec![]));
-        fs::write(&file, "forged").unwrap();
-        let (_, doubts) = signed_reports(folder.path()).unwrap();
-        assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A was changed"), "{doubts:?}");
-        assert!(doubts[0].contains("expected SHA-256"), "{doubts:?}");
-        fs::remove_file(&file).unwrap();
-        let (_, doubts) = signed_reports(folder.path()).unwrap();
-        assert!(doubts.len() == 1 && doubts[0].starts_with("signed revision A cannot be read"), "{doubts:?}");
-        fs::write(folder.path().join(SIGNED_FILE), "[{").unwrap();
-        let other = tempfile::tempdir().unwrap();
-        let both = [other.path().to_owned(), folder.path().to_owned()];
-        let unwritable = Register::at(Some("/proc/self/none/signatures".into()));
-        for (folders, register) in [(&both[..], &register), (&both[..1], &unwritable)] {
-            assert!(add_signed(folders, register, &revision).is_err());
-            assert_eq!(signed_reports(other.path()).unwrap(), (vec![], vec![]), "in all lists or in none");
+    /// A run with one signed report, which the register has, too.
+    struct Signed {
+        folder: tempfile::TempDir,
+        file: PathBuf,
+        register: Register,
+    }
+
+    impl Signed {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            let file = folder.path().join("a.html");
+            fs::write(&file, "signed").unwrap();
+            let register = Register::at(Some(folder.path().join("signatures")));
+            let signed = Self { folder, file, register };
+            add_signed(&[signed.run()], &signed.register, &signed.revision()).unwrap();
+            signed
         }
-        let error = signed_reports(folder.path()).unwrap_err().to_string();
-        assert!(error.contains("signed.json is damaged: ") && error.contains("line 1"), "{error}");
+
+        fn run(&self) -> PathBuf {
+            self.folder.path().to_owned()
+        }
+
+        fn revision(&self) -> Revision {
+            let run = self.run().file_name().unwrap().to_string_lossy().into_owned();
+            Revision {
+                number: "1-1".into(),
+                revision: "A".into(),
+                signature: Signature { by: "L. Kern".into(), at: "2026-11-22 04:01".into() },
+                file: self.file.display().to_string(),
+                sha256: sha256_of(b"signed"),
+                runs: vec![SignedRun { run, journal_sha256: None, recording_sha256: None }],
+            }
+        }
+
+        /// The only doubt, by the register or without one.
+        fn doubt(&self, register: &Register) -> String {
+            let Signatures { doubts, .. } = signatures(&self.run(), register);
+            let [doubt] = &doubts[..] else { panic!("{doubts:?}") };
+            doubt.clone()
+        }
+
+        fn change_list(&self, from: &str, to: &str) {
+            let list = self.run().join(SIGNED_FILE);
+            let text = fs::read_to_string(&list).unwrap();
+            assert!(text.contains(from));
+            fs::write(list, text.replace(from, to)).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_signed_report_that_was_changed_or_moved_is_named() {
+        let (signed, none) = (Signed::new(), Register::at(None));
+        let clean = Signatures { revisions: vec![signed.revision()], doubts: vec![] };
+        for register in [&signed.register, &none] {
+            assert_eq!(signatures(&signed.run(), register), clean);
+        }
+        fs::write(&signed.file, "forged").unwrap();
+        let doubt = signed.doubt(&signed.register);
+        assert!(doubt.starts_with("signed revision A was changed after it was signed: "), "{doubt}");
+        assert!(doubt.contains("expected SHA-256") && doubt.contains("a.html"), "{doubt}");
+        assert!(signed.doubt(&none).contains("signed, or signed.json was; the register of L. Kern"));
+        fs::remove_file(&signed.file).unwrap();
+        let doubt = signed.doubt(&signed.register);
+        assert!(doubt.starts_with("signed revision A cannot be read"), "{doubt}");
+    }
+
+    #[test]
+    fn a_list_that_was_changed_is_blamed_where_the_register_shows_that_it_was() {
+        let signed = Signed::new();
+        let digest = sha256_of(b"signed");
+        let other = digest.replace(&digest[..1], "x");
+        signed.change_list(&digest, &other);
+        let doubt = signed.doubt(&signed.register);
+        let wanted = format!("signed.json was changed: sha256 of revision A is \"{other}\"");
+        assert!(doubt.starts_with(&wanted) && doubt.contains("signatures has"), "{doubt}");
+        signed.change_list(&other, &digest);
+        signed.change_list("L. Kern", "A. Other");
+        assert!(signed.doubt(&signed.register).starts_with("signed.json was changed: by of revision A"));
+        // Both changed, so that they agree with each other.
+        signed.change_list("A. Other", "L. Kern");
+        signed.change_list(&digest, &sha256_of(b"forged"));
+        fs::write(&signed.file, "forged").unwrap();
+        let Signatures { doubts, .. } = signatures(&signed.run(), &signed.register);
+        assert!(doubts.len() == 2 && doubts[1].starts_with("signed revision A was changed"), "{doubts:?}");
+    }
+
+    #[test]
+    fn a_list_that_is_missing_short_or_damaged_is_named() {
+        let signed = Signed::new();
+        let list = signed.run().join(SIGNED_FILE);
+        fs::write(&list, "[]").unwrap();
+        assert!(signed.doubt(&signed.register).contains("its signed.json does not list that"));
+        fs::remove_file(&list).unwrap();
+        let doubt = signed.doubt(&signed.register);
+        assert!(
+            doubt.contains("was signed as revision A by L. Kern") && doubt.contains("signed.json is missing")
+        );
+        fs::write(&list, "[{").unwrap();
+        let Signatures { doubts, .. } = signatures(&signed.run(), &signed.register);
+        assert!(doubts[0].contains("signed.json is damaged: ") && doubts[0].contains("line 1"), "{doubts:?}");
+        // What the run was called when it was closed counts, whatever its folder is called now.
+        fs::remove_file(&list).unwrap();
+        let [then] = &names_of(&signed.run())[..] else { panic!("no report names it") };
+        let renamed = tempfile::tempdir().unwrap();
+        let report = format!("{{\"run\": \"{then}\", \"events_sha256\": null}}");
+        fs::write(renamed.path().join("report.json"), report).unwrap();
+        let Signatures { doubts, .. } = signatures(renamed.path(), &signed.register);
+        assert!(doubts.len() == 1 && doubts[0].contains("signed.json is missing"), "{doubts:?}");
+    }
+
+    #[test]
+    fn a_report_is_in_all_lists_or_in_none() {
+        let (one, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        fs::write(one.path().join(SIGNED_FILE), "[{").unwrap();
+        let (signed, none) = (Signed::new(), Register::at(None));
+        let both = [other.path().to_owned(), one.path().to_owned()];
+        let unwritable = Register::at(Some("/proc/self/none/signatures".into()));
+        for (folders, register) in [(&both[..], &none), (&both[..1], &unwritable)] {
+            assert!(add_signed(folders, register, &signed.revision()).is_err());
+            assert_eq!(signatures(other.path(), &none), Signatures::default());
+        }
     }
 }

@@ -62,3 +62,11 @@ pub(crate) fn is_locked(folder: &Path) -> bool {
         .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     locked.unwrap_or(false)
 }
+
+/// Up to when a journal that stops early goes.
+pub(crate) fn held(summary: &Summary) -> String {
+    summary.mission_time_s.map_or_else(
+        || "the journal is empty".into(),
+        |until_s| format!("the journal holds everything up to T+{until_s:.1} s"),
+    )
+}

@@ -66,6 +66,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let name = root.slug("name");
     let about = if root.has("about") { root.text("about") } else { Some(String::new()) };
     let seed = root.whole("seed").map(|seed| seed as u64);
+    check_continued(root);
     let sections = Sections {
         root,
         robot: root.table_or_empty("robot"),
@@ -151,6 +152,18 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         expect: expect?,
         inspection: inspection?,
     })
+}
+
+/// The runs that a re-scan continues are named by digests; only reports read them.
+fn check_continued(root: &Section<'_>) {
+    let digests = if root.has("continues_sha256") { root.texts("continues_sha256") } else { None };
+    let is_digest = |text: &String| {
+        text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    if digests.is_some_and(|digests| !digests.iter().all(is_digest)) {
+        let wanted = "SHA-256 of journals, 64 hexadecimal digits each, as `tankops rescan` writes them";
+        root.complain("continues_sha256", Complaint::OutOfRange(wanted.to_owned()));
+    }
 }
 
 impl Floor {

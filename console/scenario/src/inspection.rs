@@ -7,14 +7,14 @@ use super::{
     source::Source,
     syntax_error,
 };
-use report::Inspection;
+use report::{
+    Inspection,
+    document::{Date, is_placeholder},
+};
 use toml::de::DeTable;
 
 /// Longest fact, characters: more than a sheet of paper.
 const MOST_LETTERS: usize = 4000;
-
-/// What people write where they do not know yet, in small letters.
-const PLACEHOLDERS: [&str; 6] = ["fixme", "lorem ipsum", "tba", "tbc", "tbd", "todo"];
 
 /// Reads `[inspection]`; nothing is known if it is not there.
 pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
@@ -31,6 +31,7 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
         code: text("code"),
         inspector: text("inspector"),
         inspector_certificate: text("inspector_certificate"),
+        inspector_certificate_expires: day(&section, "inspector_certificate_expires"),
         operator: text("operator"),
         approver: text("approver"),
         robot: text("robot"),
@@ -41,6 +42,9 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
         sound_speed: text("sound_speed"),
         indications: text("indications"),
         events_reviewed_by: text("events_reviewed_by"),
+        inspected_on: day(&section, "inspected_on"),
+        coverage_waiver: text("coverage_waiver"),
+        identity_corrected: text("identity_corrected"),
         plates_waiver: text("plates_waiver"),
         partial_scope_accepted: text("partial_scope_accepted"),
         critical_zone_accepted: text("critical_zone_accepted"),
@@ -66,14 +70,14 @@ fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     Some(text)
 }
 
-/// Whether a text stands for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`.
-fn is_placeholder(text: &str) -> bool {
-    let text = text.to_lowercase();
-    let is_marked = PLACEHOLDERS.iter().any(|word| {
-        text.trim_start().strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
-    });
-    let letters = || text.chars().filter(|letter| letter.is_alphanumeric());
-    is_marked || letters().all(|letter| letter == 'x')
+/// A day as a text.
+fn day(section: &Section<'_>, key: &str) -> Option<String> {
+    let text = fact(section, key)?;
+    if Date::read(&text).is_none() {
+        let wanted = "a day that there is, as \"2027-03-31\", or the last one of a month, as \"2027-03\"";
+        section.complain(key, Complaint::OutOfRange(wanted.to_owned()));
+    }
+    Some(text)
 }
 
 /// Reads a file with `[inspection]`: what is known only after the run.
@@ -107,6 +111,19 @@ mod tests {
         for text in ["none", "A", "7", "Todor Ivanov", "X-12", "Tbcom Ltd"] {
             let read = inspection(&format!("[inspection]\nclient = \"{text}\"\n"), "facts.toml");
             assert_eq!(read.unwrap().client.as_deref(), Some(text));
+        }
+    }
+
+    #[test]
+    fn a_day_is_one_of_the_calendar() {
+        let read = |day: &str| {
+            inspection(&format!("[inspection]\ninspector_certificate_expires = \"{day}\"\n"), "facts.toml")
+        };
+        assert_eq!(read("2027-03").unwrap().inspector_certificate_expires.as_deref(), Some("2027-03"));
+        for day in ["2027-02-30", "31.3.2027", "next year", "2027"] {
+            let error = read(day).unwrap_err().render();
+            assert!(error.contains("facts.toml:2:33: inspection.inspector_certificate_expires"), "{error}");
+            assert!(error.contains("2027-03-31"), "{error}");
         }
     }
 

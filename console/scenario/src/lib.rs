@@ -32,7 +32,7 @@ mod tether;
 pub use inspection::inspection;
 pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use renamed::with_todays_keys;
-pub use rescan::rescan;
+pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 
 pub use import::Foreign;

@@ -6,14 +6,23 @@ use std::collections::BTreeSet;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
 use world::{ObstacleId, Point, Shape, Zone};
 
+/// A run that a re-scan continues.
+#[derive(Debug, Clone, Copy)]
+pub struct Continued<'a> {
+    /// Name of its folder.
+    pub name: &'a str,
+    /// SHA-256 of its journal, hexadecimal: by it a report knows that both are of one floor.
+    pub journal_sha256: &'a str,
+}
+
 /// The scenario of a past run, changed into a mission that scans some boxes, from south west to north east, metres; obstacles
-/// that were found and zones that were drawn under way are on the drawing now. `names` are the runs that missed what is in the boxes.
+/// that were found and zones that were drawn under way are on the drawing now. `runs` missed what is in the boxes.
 ///
 /// # Errors
 /// The scenario of the run cannot be parsed: its journal was changed.
 pub fn rescan(
     opened: &RunOpened,
-    names: &[&str],
+    runs: &[Continued<'_>],
     boxes: &[[Point; 2]],
     found: &BTreeSet<ObstacleId>,
     drawn: &[Zone],
@@ -23,7 +32,9 @@ pub fn rescan(
     let mut document: DocumentMut = foreign::plain_lines(&text).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
+    let names: Vec<&str> = runs.iter().map(|run| run.name).collect();
     document["about"] = value(format!("What {} missed", names.join(" and ")));
+    document["continues_sha256"] = value(runs.iter().map(|run| run.journal_sha256).collect::<Array>());
     document.remove("expect");
     let start = opened.mission.start;
     if document.get("robot").is_none() {

@@ -39,7 +39,8 @@ impl<'a> Scan<'a> {
         let share = self.swept.coverage_of(&self.swept.floor.clone().within(scope.regions));
         let is_enough = share >= COMPLETE_WITH_SLIVERS;
         if !is_enough {
-            let scanned = format!("the plan scans {:.1} % of the floor that is to be scanned", 100.0 * share);
+            let scanned =
+                format!("the plan scans {} % of the floor that is to be scanned", percent_text(share, 1));
             ctx.log(
                 LogLevel::Warn,
                 &format!("{scanned}: the rest lies beside its lanes; choose tether-safe"),

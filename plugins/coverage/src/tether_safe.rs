@@ -24,7 +24,7 @@ use planner_api::{
     Caps, Code, Command, Config, Ctx, Layer, LogLevel, ParamSpec, Plan, PlanRequest, Planner, PlannerError,
     Result, Sensed, Site,
 };
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// Plans in the slit domain.
 pub struct TetherSafe {
@@ -172,16 +172,16 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
 /// Warns of what is wrong with a plan. The last warning is the reason why it is not complete, if it is not.
 fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enough: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
-    let (share, has_reel) = (100.0 * worth.coverage, scope.reel_length_m.is_finite());
+    let (share, has_reel) = (percent_text(worth.coverage, 1), scope.reel_length_m.is_finite());
     if !scans_enough && !has_reel {
-        warn(&format!("the plan scans {share:.1} % of the floor that is to be scanned"));
+        warn(&format!("the plan scans {share} % of the floor that is to be scanned"));
     }
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
     } else if !worth.meets(preferences) {
         warn("no candidate keeps the cable as short and straight as the parameters ask");
     }
-    let scanned = format!("the plan scans {share:.1} % of the floor in reach");
+    let scanned = format!("the plan scans {share} % of the floor in reach");
     match (scans_enough, has_reel) {
         (true, _) => {}
         (false, true) => {

@@ -21,6 +21,9 @@ pub(crate) struct LocateArgs {
     /// Find out from the readings themselves; repeatable.
     #[arg(long, value_name = "WHAT")]
     pub find: Vec<FindArg>,
+    /// When the tool was on, as CSV with `from_s` and `to_s` by the clock of the readings, if they have no column `tool_on`.
+    #[arg(long, value_name = "FILE")]
+    pub tool_on: Option<PathBuf>,
     /// Leave bad rows out instead of refusing the file.
     #[arg(long)]
     pub skip_bad_rows: bool,

@@ -43,6 +43,7 @@ pub(super) fn human(
 ) -> String {
     let mut text = Lines::default();
     of_file(&mut text, survey, shown);
+    text.line("tool", tool(survey));
     of_sound(&mut text, args, scenario, survey, (tally, doubts));
     text.lines("residuals", residuals(args, scenario, survey));
     text.lines("repetitions", repetitions(scenario, survey));
@@ -228,6 +229,21 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// When the tool was on.
+fn tool(survey: &Survey) -> String {
+    let Some(stretches) = &survey.tool_on_s else {
+        return "not known when it was on, so that no coverage is stated (column tool_on, or --tool-on FILE)"
+            .into();
+    };
+    let on_s: f64 = stretches.iter().map(|[from_s, to_s]| to_s - from_s).sum();
+    let heading = if survey.has_motion {
+        ""
+    } else {
+        "; without measured motion the heading is not known, so that no floor counts"
+    };
+    format!("on for {on_s:.1} s in {} stretches{heading}", stretches.len())
 }
 
 /// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong and the robot

@@ -3,6 +3,7 @@
 use mission::Phase;
 use std::fmt;
 use tui::Model;
+use world::coverage::percent_text;
 
 /// What can be waited for and demanded.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +79,9 @@ impl Condition {
         match &self.what {
             What::Phase(_) => format!("the phase is {}", phase(model.live.run.phase())),
             What::Screen(_) => format!("the screen is {}", model.ui.screen.name().to_lowercase()),
-            What::Coverage(_) => format!("coverage is {:.1} %", coverage_percent(model)),
+            What::Coverage(_) => {
+                format!("coverage is {} %", percent_text(coverage_percent(model) / 100.0, 1))
+            }
             What::Alarm(_) => match model.live.run.alarms.worst() {
                 Some(alarm) => format!("the most severe alarm is: {}", alarm.text),
                 None => "there are no alarms".into(),

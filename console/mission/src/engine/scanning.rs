@@ -3,7 +3,7 @@
 use super::Mission;
 use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
 use planner_api::Reason;
-use world::{Cell, CellRun, Pose, Readings, Shape, tether::Reach};
+use world::{Cell, CellRun, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
@@ -108,11 +108,12 @@ impl Mission {
         match &self.task {
             Task::Goto(_) | Task::Follow { .. } => "task complete".into(),
             Task::Cover(_) => {
-                let share = 100.0 * self.floor.coverage.fraction_reachable();
+                let share = percent_text(self.floor.coverage.fraction_reachable(), 1);
+                let place = if self.config.tether.is_some() { "anchor" } else { "start" };
                 let base_m2 =
                     self.floor.coverage.counts().reachable as f64 * self.floor.coverage.floor().cell_m2();
                 let scanned = format!(
-                    "back at the anchor, {share:.1} % of the {base_m2:.1} m² of reachable floor scanned"
+                    "back at the {place}, {share} % of the {base_m2:.1} m² of reachable floor scanned"
                 );
                 let asked = if self.task.is_in_part() {
                     let n_left = self.task.floor_left(&self.floor.coverage).len();

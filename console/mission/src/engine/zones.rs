@@ -34,7 +34,8 @@ impl Mission {
             return Err(format!("the robot stands in the zone or beside it: {must_keep}"));
         }
         let end = match &self.config.task {
-            TaskConfig::Cover { .. } => "anchor",
+            TaskConfig::Cover { .. } if self.config.tether.is_some() => "anchor",
+            TaskConfig::Cover { .. } => "start",
             TaskConfig::Goto { .. } => "goal",
             TaskConfig::Follow { .. } => "end of the path",
         };

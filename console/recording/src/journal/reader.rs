@@ -4,7 +4,9 @@ use super::{
     JournalError, fast,
     follow::Follow,
     frames,
+    limits::{self, MOST_LINE_BYTES, Pace},
     lines::{Lines, is_packed},
+    plain,
     unpacker::FrameStart,
     upgrade,
 };

@@ -40,7 +40,7 @@ pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     let ends_here =
         matches!(&run.mission.task, TaskConfig::Cover { anchor, .. } if (anchor - at).norm() < LABEL_M);
     let start = rr::Points2D::new([flat(at)]).with_colors([style::color(style::WALL)]);
-    let label = if ends_here { "start and anchor" } else { "start" };
+    let label = if ends_here && run.mission.tether.is_some() { "start and anchor" } else { "start" };
     stream.always(paths::START, &start.with_radii([style::on_screen(3.0)]).with_labels([label]))?;
     style_moving(stream, run)
 }

@@ -4,8 +4,8 @@ use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
 use mission::{TaskConfig, event::RunOpened};
 use world::{
-    Boundary, Cell, CellRun, Floor, KindRun, Obstacle, ObstacleId, Point, Pose, Shape, ShellStretch,
-    ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
+    Boundary, Cell, CellRun, Floor, FloorMaker, KindRun, Obstacle, ObstacleId, Point, Pose, Shape,
+    ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
 /// Plans are laid out on the floor in pieces no longer than this, metres.
@@ -141,9 +141,14 @@ impl Evidence {
     }
 
     /// The scanned share of the reachable floor by the area that the tool passed, 0 to 1; `None` if there is no such floor.
-    pub(crate) fn exact_share(&self, floor: &Floor) -> Option<f64> {
+    pub(crate) fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
         let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
         self.area.share_of(floor, &self.boundary, &shapes)
+    }
+
+    /// The zones that the robot must not enter.
+    pub(crate) fn no_go(&self) -> impl Iterator<Item = &Solid> {
+        self.no_go.iter()
     }
 
     /// Everything solid on the floor as it is known.
@@ -271,6 +276,7 @@ impl Evidence {
         Reasons {
             evidence: self,
             reach,
+            has_tether: mission.tether.is_some(),
             lane_m: mission.lane_m(),
             room_m: mission.room_m(),
             limit_m: mission.scan_limit_m(),
@@ -283,7 +289,7 @@ impl Evidence {
     }
 
     /// Name and distance of the nearest solid thing, the shell included, metres.
-    pub(super) fn nearest_solid(&self, place: Point) -> (&str, f64) {
+    pub(crate) fn nearest_solid(&self, place: Point) -> (&str, f64) {
         let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
         let shell = ("the shell", self.boundary.wall_distance_m(place));
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
@@ -320,6 +326,11 @@ impl Evidence {
     /// Whether a plan led to a cell and was flown past there.
     pub(super) fn is_passed(&self, index: usize) -> bool {
         self.passed[index] || self.plan.is_past(self.plan.due_m[index])
+    }
+
+    /// Whether there ever was a plan.
+    pub(super) fn has_plan(&self) -> bool {
+        self.plan.length_m > 0.0 || self.plan.flown_m > 0.0 || self.passed.contains(&true)
     }
 
     /// Whether the plan leads to a cell further on than it was flown.

@@ -22,6 +22,8 @@ pub enum MissReason {
     Wrap,
     /// No plan led there.
     NotPlanned,
+    /// The run had no plan.
+    NoPlan,
     /// No plan led there, because the cable does not.
     BeyondReel,
     /// A plan led there, but the mission ended before.
@@ -76,6 +78,7 @@ impl Explained for MissReason {
             }
             Self::Wrap => format!("not planned: {value_m:.2} m from a line that keeps the tether unwound"),
             Self::NotPlanned => format!("not planned: {value_m:.2} m beside lanes of {limit_m:.2} m"),
+            Self::NoPlan => self.plainly().to_owned(),
             Self::BeyondReel => {
                 format!(
                     "not planned: {value_m:.1} m beyond the reel, lanes within {limit_m:.1} m of the anchor"
@@ -98,6 +101,7 @@ impl MissReason {
             Self::Clearance => "not planned, clearance",
             Self::Wrap => "not planned, tether",
             Self::NotPlanned => "not planned",
+            Self::NoPlan => "the run had no plan",
             Self::BeyondReel => "not planned, beyond the reel",
             Self::NotReached => "the mission ended first",
             Self::PassedBeside => "the robot passed to one side",
@@ -114,6 +118,7 @@ impl MissReason {
             Self::Clearance => "not planned, hull and clearance",
             Self::Wrap => "not planned, along a line that keeps the tether unwound",
             Self::NotPlanned => "not planned",
+            Self::NoPlan => "the run had no plan when it ended",
             Self::BeyondReel => "not planned, beyond the reel",
             Self::NotReached => "planned, but the mission ended first",
             Self::PassedBeside => "planned, but the robot passed to one side",

@@ -23,6 +23,8 @@ pub struct Reasons<'a> {
     pub(super) evidence: &'a Evidence,
     /// Where the cable leads; `None` if no plan left floor out because of it.
     pub(super) reach: Option<Reach>,
+    /// Whether the robot drags a tether.
+    pub(super) has_tether: bool,
     /// Width of lanes: the swath less the overlap, metres.
     pub(super) lane_m: f64,
     /// Hull and clearance, metres.
@@ -61,11 +63,13 @@ impl Reasons<'_> {
     /// Why no plan led to a place.
     fn why_not_planned(&self, place: Point) -> MissReason {
         let (_, solid_m) = self.evidence.nearest_kept_from(place);
-        if self.beyond_lanes_m(place) > 0.0 {
+        if !self.evidence.has_plan() {
+            MissReason::NoPlan
+        } else if self.beyond_lanes_m(place) > 0.0 {
             MissReason::Narrow
         } else if solid_m < self.room_m {
             MissReason::Clearance
-        } else if self.cut_m(place).is_some_and(|cut_m| cut_m <= self.lane_m) {
+        } else if self.has_tether && self.cut_m(place).is_some_and(|cut_m| cut_m <= self.lane_m) {
             MissReason::Wrap
         } else {
             MissReason::NotPlanned
@@ -105,6 +109,7 @@ impl Reasons<'_> {
             MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),
             MissReason::NotPlanned => depth(&|cell| evidence.is_passed(cell) || evidence.is_ahead(cell))
                 .map(|m| Measure::of(m).against(self.lane_m)),
+            MissReason::NoPlan => None,
             MissReason::BeyondReel => {
                 let reach = self.reach.as_ref()?;
                 most(&|cell| reach.beyond_m(floor.center(cell)))

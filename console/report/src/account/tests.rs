@@ -134,15 +134,20 @@ fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
     }
 }
 
-#[test]
-fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_the_plan_left_it_out() {
-    let mut run = round_tank(0.05);
-    run.mission.tether = Some(mission::TetherConfig {
+/// A tether made fast in the south, of which 6.6 m are on the reel.
+fn tether() -> mission::TetherConfig {
+    mission::TetherConfig {
         anchor: Point::new(0.0, -4.5),
         limits: world::tether::Limits { reel_length_m: 6.6, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 },
         friction: 0.3,
         allow_uncertified: false,
-    });
+    }
+}
+
+#[test]
+fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_the_plan_left_it_out() {
+    let mut run = round_tank(0.05);
+    run.mission.tether = Some(tether());
     for (is_whole, north) in [(true, MissReason::NotPlanned), (false, MissReason::BeyondReel)] {
         let mut evidence = Evidence::new(&run);
         evidence.plan(&lanes()[..16], &[], is_whole);
@@ -165,6 +170,7 @@ fn why(run: &RunOpened, evidence: &Evidence, is_missed: impl Fn(Point) -> bool) 
 fn every_gap_has_a_cause_with_its_number() {
     let mut run = round_tank(0.05);
     run.mission.scan.overlap_m = 0.2;
+    run.mission.tether = Some(tether());
     let mut evidence = Evidence::new(&run);
     let cut = [Point::new(-1.0, 0.0), Point::new(1.0, 0.0)];
     evidence.plan(&lanes()[..2], &[cut.to_vec()], true);
@@ -176,6 +182,10 @@ fn every_gap_has_a_cause_with_its_number() {
     );
     says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance 0.45 m");
     says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
+    let untethered =
+        RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };
+    says(why(&untethered, &evidence, square(0.0, 0.2)), "m beside lanes of 0.40 m");
+    says(why(&run, &Evidence::new(&run), square(0.0, 0.2)), "the run had no plan when it ended");
     says(why(&run, &evidence, square(0.0, -1.0)), "m beside lanes of 0.40 m");
     says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended up to");
     evidence.fly(1e3);
@@ -403,6 +413,7 @@ fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
     let run = round_tank(0.05);
     let mut evidence = Evidence::new(&run);
     let zone = rectangle((1.0, -1.0), (2.5, 0.5));
+    evidence.plan(&lanes()[..2], &[], true);
     evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), &zone);
     assert_eq!(why_missed(&evidence, &run, 0.72, 0.0), MissReason::Clearance);
     assert_eq!(why_missed(&evidence, &run, -2.0, 0.0), MissReason::NotPlanned);

@@ -15,7 +15,7 @@ const LEAST_RIM_M: f64 = 0.005;
 const ARC_M: f64 = 0.1;
 
 /// The zone along the shell, where the floor plate meets it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CriticalZone {
     /// Its width, metres.
     pub width_m: f64,

@@ -7,7 +7,7 @@ use crate::{
     drawing::{sheet::colour, trace::thinned},
     record::{Incident, Record, Span},
 };
-use mission::RunOpened;
+use mission::{RunOpened, TaskConfig};
 use std::fmt::Write;
 use world::{Boundary, Point, ShellStretch};
 
@@ -178,7 +178,9 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
     draw_marks(&mut chart, marks);
     let scanned: Vec<(f64, f64)> = record.progress.iter().map(|(t_s, share)| (*t_s, 100.0 * share)).collect();
     let top = Limit { value: 100.0, text: "100".into(), colour: colour::SOFT, dash: "" };
-    chart.panel(("Scanned", "% of reachable"), 14.0, 100.0, &[(&scanned, colour::TRACK, 0.4)], &[top]);
+    if matches!(run.mission.task, TaskConfig::Cover { .. }) {
+        chart.panel(("Scanned", "% of reachable"), 14.0, 100.0, &[(&scanned, colour::TRACK, 0.4)], &[top]);
+    }
     position_panel(&mut chart, run, record);
     if let Some(tether) = &record.tether {
         let curve = |of: fn(&crate::record::TetherPoint) -> f32| -> Vec<(f64, f64)> {

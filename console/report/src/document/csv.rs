@@ -3,6 +3,7 @@
 use super::Document;
 use crate::{
     account::{Shares, ZoneArc},
+    geojson::rounded,
     joined::PastRun,
 };
 use csv::Writer;
@@ -35,19 +36,31 @@ pub fn cell(text: &str) -> String {
 }
 
 fn plates(document: &Document) -> String {
+    if let Some(task) = &document.task {
+        let row = |(name, value): (&str, f64)| vec![name.to_owned(), rounded(value).to_string()];
+        return table(&["figure", "value"], task.figures(document).into_iter().map(row));
+    }
     let floor = &document.floor;
+    let is_located = document.located.is_some();
+    let is_known = document.located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
     let row = |name: &str, kind: &str, shares: &Shares, error_m: Option<f64>| {
         let p = &shares.percent;
         let mut row = vec![name.to_owned(), kind.to_owned(), format!("{:.4}", shares.area_m2)];
         let guaranteed = p.guaranteed.unwrap_or(0.0);
-        row.extend(
-            [p.scanned, guaranteed, p.missed, p.unreachable, p.margin].map(|value| format!("{value:.1}")),
-        );
+        let of_mission = [p.missed, p.unreachable, p.margin].map(|value| (value, !is_located));
+        let of_tool = [p.scanned, guaranteed].map(|value| (value, is_known));
+        // What is not known is empty, not zero.
+        let cell =
+            |(value, is_stated): (f64, bool)| if is_stated { format!("{value:.1}") } else { String::new() };
+        row.extend(of_tool.into_iter().chain(of_mission).map(cell));
         row.push(error_m.map(|m| format!("{m:.3}")).unwrap_or_default());
         row
     };
     let bases = [("whole floor", &floor.whole), ("reachable floor", &floor.reachable)];
-    let bases = bases.map(|(name, shares)| row(name, "base", shares, None));
+    let bases = bases
+        .into_iter()
+        .take(if is_located { 1 } else { 2 })
+        .map(|(name, shares)| row(name, "base", shares, None));
     let plates = floor.plates.iter().map(|plate| {
         row(&plate.name, &format!("{:?}", plate.kind).to_lowercase(), &plate.shares, plate.error_p95_m)
     });
@@ -121,14 +134,17 @@ fn obstacles(past: &[PastRun]) -> String {
 
 fn indications(document: &Document) -> String {
     let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let fixed = |value: Option<f64>, decimals: usize| {
+        value.map(|value| format!("{value:.decimals$}")).unwrap_or_default()
+    };
     let rows = document.indications.iter().map(|found| {
         vec![
             found.number.to_string(),
-            found.run.clone(),
-            format!("{:.1}", found.t_s),
+            found.run.clone().unwrap_or_default(),
+            fixed(found.t_s, 1),
             format!("{:.3}", found.at.x),
             format!("{:.3}", found.at.y),
-            format!("{:.3}", found.error_m),
+            fixed(found.error_m, 3),
             found.plate.clone().unwrap_or_default(),
             found.kind.clone(),
             optional(found.size_mm),

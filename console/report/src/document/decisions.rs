@@ -1,9 +1,11 @@
 //! What the inspector must decide before signing: each decision is a key of `[inspection]` with the reason.
 
-use super::Document;
+use super::{Document, located};
 use crate::human::text::counted;
 use mission::Outcome;
 
+/// Item of the gate on the tank.
+pub(super) const TANK: usize = 1;
 /// Item of the gate on the scope.
 pub(super) const SCOPE: usize = 2;
 /// Item of the gate on missed areas.
@@ -27,6 +29,19 @@ pub(super) struct Decision {
 pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     let (floor, zone, facts) = (&document.floor, &document.floor.critical_zone, &document.inspection);
     let mut decisions = Vec::new();
+    if let Some(contradiction) = &document.contradiction {
+        decisions.push(Decision {
+            what: format!("The facts say something else about the floor than the scenario that was flown: {contradiction}."),
+            section: 1,
+            key: "identity_corrected",
+            item: TANK,
+            answer: facts.identity_corrected.clone(),
+        });
+    }
+    if let Some(located) = &document.located {
+        decisions.extend(located::decisions(document, located));
+        return decisions;
+    }
     if !is_complete(document) {
         decisions.push(Decision {
             what: "Mission incomplete: accept what was scanned, or let another run join this report (tankops rescan).".into(),
@@ -36,7 +51,7 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
             answer: facts.partial_scope_accepted.clone(),
         });
     }
-    if !zone.done {
+    if document.is_to_scan && !zone.done {
         let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
         decisions.push(Decision {
             what: format!("Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the whole {width_mm:.0} mm."),

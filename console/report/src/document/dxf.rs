@@ -1,20 +1,21 @@
-//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS.
+//! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS,
+//! and NO_GO_ZONES, ZONES and STATIONS.
 //!
 //! `tankops import` reads the floor back: seams end at each other and at the shell, each plate has its name on their layer, and
 //! pipes have their width.
 
-use super::Document;
+use super::{Document, shapes::zones};
 use crate::{
     account::plate_map,
-    drawing::{plates::PlateLines, trace::thinned},
+    drawing::{plates::PlateLines, polygons::Polygon, trace::thinned},
     dxf::Drawing,
     joined::{PastRun, found_name},
 };
 use mission::RunOpened;
-use world::{PlateLayout, Point, Shape};
+use world::{PlateLayout, Point, Shape, ZoneKind};
 
 /// The layers and their colours by the numbers of the format.
-const LAYERS: [(&str, u8); 7] = [
+const LAYERS: [(&str, u8); 10] = [
     ("SHELL", 7),
     ("PLATES", 8),
     ("OBSTACLES", 5),
@@ -22,6 +23,9 @@ const LAYERS: [(&str, u8); 7] = [
     ("MISSED", 1),
     ("TRACK", 4),
     ("INDICATIONS", 6),
+    ("NO_GO_ZONES", 30),
+    ("ZONES", 9),
+    ("STATIONS", 3),
 ];
 /// Points of the track nearer to the rest of it than this are left out, metres.
 const TRACK_M: f64 = 0.01;
@@ -41,10 +45,15 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
             }
         }
     }
-    for (number, area) in (1..).zip(&document.floor.missed) {
+    if let Some(run) = past.last().and_then(|past| past.fold.run.as_deref()) {
+        zones_and_stations(&mut drawing, run, past);
+    }
+    for (number, (area, polygons)) in (1..).zip(document.floor.missed.iter().zip(&document.shapes.missed)) {
         let number: usize = number;
-        drawing.polyline("MISSED", &world::shape::rectangle(area.low, area.high), true);
-        drawing.text("MISSED", area.high, &number.to_string());
+        for ring in polygons.iter().flat_map(Polygon::rings) {
+            drawing.polyline("MISSED", ring, true);
+        }
+        drawing.text("MISSED", area.at, &number.to_string());
     }
     for past in past {
         let places: Vec<Point> =
@@ -52,10 +61,14 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
         drawing.polyline("TRACK", &thinned(&places, TRACK_M), false);
     }
     for found in &document.indications {
-        drawing.shape("INDICATIONS", &Shape::Disc { center: found.at, radius_m: found.error_m });
-        let run = past.iter().position(|past| past.name == found.run).unwrap_or(0);
+        match found.error_m {
+            Some(radius_m) => drawing.shape("INDICATIONS", &Shape::Disc { center: found.at, radius_m }),
+            None => drawing.point("INDICATIONS", found.at),
+        }
+        let run = past.iter().position(|past| Some(&past.name) == found.run.as_ref());
         let name = format!("I{} {}", found.number, found.kind);
-        drawing.text("INDICATIONS", found.at, &found_name(&name, run, past.len()));
+        let name = run.map_or_else(|| name.clone(), |run| found_name(&name, run, past.len()));
+        drawing.text("INDICATIONS", found.at, &name);
     }
     drawing.finish()
 }
@@ -82,5 +95,18 @@ fn plates(drawing: &mut Drawing, run: &RunOpened) {
     }
     for (name, at) in PlateLines::new(layout, &run.world.boundary, &run.floor, &map).names() {
         drawing.text("PLATES", at, name);
+    }
+}
+
+/// What is special about parts of the floor, and where the stations are.
+fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) {
+    for zone in zones(past) {
+        let layer = if zone.kind == ZoneKind::NoGo { "NO_GO_ZONES" } else { "ZONES" };
+        drawing.shape(layer, &zone.shape);
+        drawing.text(layer, zone.shape.center(), &zone.name);
+    }
+    for station in &run.world.stations {
+        drawing.point("STATIONS", station.position);
+        drawing.text("STATIONS", station.position, &station.name);
     }
 }

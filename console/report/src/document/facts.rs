@@ -26,6 +26,8 @@ pub struct Inspection {
     pub inspector: Option<String>,
     /// Number and validity of the inspector's certificate.
     pub inspector_certificate: Option<String>,
+    /// Last day on which that certificate is valid, as `2027-03-31` or `2027-03`.
+    pub inspector_certificate_expires: Option<String>,
     /// Who operated the robot.
     pub operator: Option<String>,
     /// Who approves the report.
@@ -40,12 +42,18 @@ pub struct Inspection {
     pub calibration_after: Option<String>,
     /// Survey and pulse test of the stations: when, result, by whom.
     pub station_check: Option<String>,
-    /// Speed of sound, product and temperature.
+    /// Speed of sound in metres per second, and how it was determined: product and temperature, or measured.
     pub sound_speed: Option<String>,
     /// A statement that there are no indications, or where they are reported.
     pub indications: Option<String>,
     /// Who has reviewed alarms, holds and faults.
     pub events_reviewed_by: Option<String>,
+    /// Day of the inspection, as `2026-11-24`, for readings that were located: the names of their runs say when that was done.
+    pub inspected_on: Option<String>,
+    /// Why no coverage is stated, for readings that do not say when the tool was on.
+    pub coverage_waiver: Option<String>,
+    /// Why the facts say something else about the floor than the scenario that was flown.
+    pub identity_corrected: Option<String>,
     /// Why coverage is not stated plate by plate, if the layout of the plates is not known.
     pub plates_waiver: Option<String>,
     /// Why the record of a mission that did not end complete is accepted.
@@ -79,6 +87,9 @@ impl Inspection {
             code: later.code.or(self.code),
             inspector: later.inspector.or(self.inspector),
             inspector_certificate: later.inspector_certificate.or(self.inspector_certificate),
+            inspector_certificate_expires: later
+                .inspector_certificate_expires
+                .or(self.inspector_certificate_expires),
             operator: later.operator.or(self.operator),
             approver: later.approver.or(self.approver),
             robot: later.robot.or(self.robot),
@@ -89,6 +100,9 @@ impl Inspection {
             sound_speed: later.sound_speed.or(self.sound_speed),
             indications: later.indications.or(self.indications),
             events_reviewed_by: later.events_reviewed_by.or(self.events_reviewed_by),
+            inspected_on: later.inspected_on.or(self.inspected_on),
+            coverage_waiver: later.coverage_waiver.or(self.coverage_waiver),
+            identity_corrected: later.identity_corrected.or(self.identity_corrected),
             plates_waiver: later.plates_waiver.or(self.plates_waiver),
             partial_scope_accepted: later.partial_scope_accepted.or(self.partial_scope_accepted),
             critical_zone_accepted: later.critical_zone_accepted.or(self.critical_zone_accepted),

@@ -1,8 +1,11 @@
 //! What must be answered before a report can be signed.
 
 use super::{
-    Document, RunPart,
-    decisions::{MISSED, SCOPE, decisions, is_complete},
+    Document, RunPart, certificate,
+    decisions::{MISSED, SCOPE, TANK, decisions, is_complete},
+    located,
+    sections::number_of,
+    words::says_nothing,
 };
 use crate::{clock, human::text::counted, record::Incident};
 use mission::RunOpened;
@@ -33,7 +36,7 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
         ("Tank: number, size, plates, nominal thickness, drawing", tank(document)),
         ("Scope of the inspection", scope(document)),
         ("Equipment, planner, versions, seed, parameters", equipment(document)),
-        ("Calibration before and after", calibration(document)),
+        ("Calibration before and after, stations, speed of sound", calibration(document)),
         ("Coverage of every plate", plates(document)),
         ("Missed areas, each with a reason", missed(document)),
         ("Unreachable floor, each area with a reason", unreachable(document)),
@@ -55,10 +58,23 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
     numbered.map(item).collect()
 }
 
-/// The keys whose facts are missing.
-fn missing(facts: &[(&str, bool)]) -> Vec<String> {
-    let absent = facts.iter().filter(|(_, is_there)| !is_there);
-    absent.map(|(key, _)| format!("inspection.{key}")).collect()
+/// What is wrong with facts that are asked for: the keys that are missing, and those that say nothing.
+fn asked(facts: &[(&str, &Option<String>)]) -> Vec<String> {
+    let lack = |(key, fact): &(&str, &Option<String>)| match fact {
+        Some(text) => empty(key, text),
+        None => Some(format!("inspection.{key}")),
+    };
+    facts.iter().filter_map(lack).collect()
+}
+
+/// What is wrong with facts that nobody has to give: those that say nothing.
+fn given(facts: &[(&str, &Option<String>)]) -> Vec<String> {
+    facts.iter().filter_map(|(key, fact)| empty(key, fact.as_ref()?)).collect()
+}
+
+/// A fact that says nothing.
+fn empty(key: &str, text: &str) -> Option<String> {
+    says_nothing(text).then(|| format!("inspection.{key} says nothing: `{}`", text.trim()))
 }
 
 /// Adds the decisions of an item to its answer, and those not made to what it lacks.
@@ -66,6 +82,7 @@ fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> A
     let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
         match decision.answer {
+            Some(why) if says_nothing(&why) => lacks.extend(empty(decision.key, &why)),
             Some(why) => answers.push(format!("{}: {why}", decision.key.replace('_', " "))),
             None => lacks.push(format!("inspection.{}", decision.key)),
         }
@@ -91,31 +108,37 @@ fn tank(document: &Document) -> Answered {
         0 => "layout of the plates not given".to_owned(),
         n => format!("{n} plates"),
     };
-    let lacks = missing(&[
-        ("tank_id", facts.tank_id.is_some()),
-        ("drawing", facts.drawing.is_some()),
-        ("nominal_thickness_mm", facts.nominal_thickness_mm.is_some()),
-    ]);
-    (format!("{}, {plates}", document.size), lacks)
+    let mut lacks = asked(&[("tank_id", &facts.tank_id), ("drawing", &facts.drawing)]);
+    lacks.extend(facts.nominal_thickness_mm.is_none().then(|| "inspection.nominal_thickness_mm".to_owned()));
+    lacks.extend(given(&[("client", &facts.client), ("site", &facts.site), ("datum_crs", &facts.datum_crs)]));
+    decided(document, TANK, (format!("{}, {plates}", document.size), lacks))
 }
 
 fn scope(document: &Document) -> Answered {
+    if let Some(located) = &document.located {
+        let facts = &document.inspection;
+        let lacks = asked(&[("order", &facts.order), ("procedure", &facts.procedure), ("code", &facts.code)]);
+        return decided(document, SCOPE, (located::scope(located), lacks));
+    }
     let what = if document.is_whole_floor { "whole floor" } else { "part of the floor" };
     let facts = &document.inspection;
-    let lacks = missing(&[
-        ("order", facts.order.is_some()),
-        ("procedure", facts.procedure.is_some()),
-        ("code", facts.code.is_some()),
-    ]);
+    let lacks = asked(&[("order", &facts.order), ("procedure", &facts.procedure), ("code", &facts.code)]);
     let early = if is_complete(document) { "" } else { ", ended early" };
     let zone_mm = 1000.0 * document.floor.critical_zone.width_m;
-    let answer = format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell");
+    let answer = match &document.task {
+        Some(task) => format!("{}{early}; no scan of the floor", task.words()),
+        None => format!("{what}{early}, and the critical zone, {zone_mm:.0} mm along the shell"),
+    };
     decided(document, SCOPE, (answer, lacks))
 }
 
 fn equipment(document: &Document) -> Answered {
     let facts = &document.inspection;
-    let lacks = missing(&[("robot", facts.robot.is_some()), ("instrument", facts.instrument.is_some())]);
+    let mut lacks = asked(&[("robot", &facts.robot), ("instrument", &facts.instrument)]);
+    lacks.extend(given(&[("operator", &facts.operator)]));
+    if let Some(located) = &document.located {
+        return (located::equipment(document, located), lacks);
+    }
     let flown = |run: &RunPart| {
         let drivers: Vec<&str> = run.drivers.iter().map(|driver| driver.name.as_str()).collect();
         format!("tankops {}, {}, seed {}", run.tankops_version, drivers.join(", "), run.seed)
@@ -125,21 +148,48 @@ fn equipment(document: &Document) -> Answered {
 
 fn calibration(document: &Document) -> Answered {
     let facts = &document.inspection;
-    let lacks = missing(&[
-        ("calibration_before", facts.calibration_before.is_some()),
-        ("calibration_after", facts.calibration_after.is_some()),
-        ("station_check", facts.station_check.is_some()),
+    let mut lacks = asked(&[
+        ("calibration_before", &facts.calibration_before),
+        ("calibration_after", &facts.calibration_after),
+        ("station_check", &facts.station_check),
+        ("sound_speed", &facts.sound_speed),
     ]);
-    (if lacks.is_empty() { "stated in section 8".into() } else { String::new() }, lacks)
+    let sound = facts.sound_speed.as_ref().filter(|text| !says_nothing(text));
+    lacks.extend(sound.filter(|text| !is_determined(text)).map(|text| {
+        format!(
+            "inspection.sound_speed does not say both how many m/s and how that was determined: `{}`",
+            text.trim()
+        )
+    }));
+    let section = number_of(document.is_to_scan, 8);
+    (if lacks.is_empty() { format!("stated in section {section}") } else { String::new() }, lacks)
+}
+
+/// The answer of a report on a run that was not there to scan, to what is asked of scans.
+fn no_scan() -> Answered {
+    ("the mission was not there to scan the floor".to_owned(), Vec::new())
+}
+
+/// Whether a text gives a number, and says more than it and its unit.
+fn is_determined(text: &str) -> bool {
+    let has_number = text.contains(|letter: char| letter.is_ascii_digit());
+    let words = text.split(|letter: char| !letter.is_alphabetic());
+    has_number && words.into_iter().any(|word| word.chars().count() > 2)
 }
 
 fn plates(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let plates = &document.floor.plates;
     if plates.is_empty() {
         let waiver = document.inspection.plates_waiver.clone();
-        let lacks = missing(&[("plates_waiver", waiver.is_some())]);
+        let lacks = asked(&[("plates_waiver", &waiver)]);
         let waived = waiver.map(|why| format!(": {why}")).unwrap_or_default();
         return (format!("layout of the plates not given{waived}"), lacks);
+    }
+    if document.located.as_ref().is_some_and(|located| located.tool_on_s.is_none()) {
+        return located::plates(document);
     }
     // A plate of which nothing could be scanned needs no accuracy.
     let has_figure = |plate: &&crate::account::PlateAccount| {
@@ -152,7 +202,13 @@ fn plates(document: &Document) -> Answered {
 }
 
 fn missed(document: &Document) -> Answered {
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let floor = &document.floor;
+    if let Some(located) = &document.located {
+        return decided(document, MISSED, located::missed(located));
+    }
     let without = floor.missed.iter().filter(|area| area.causes.iter().any(|cause| cause.text.is_empty()));
     let lacks =
         without.map(|area| format!("reason of the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
@@ -166,6 +222,12 @@ fn missed(document: &Document) -> Answered {
 }
 
 fn unreachable(document: &Document) -> Answered {
+    if document.located.is_some() {
+        return located::unreachable();
+    }
+    if !document.is_to_scan {
+        return no_scan();
+    }
     let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(
@@ -197,11 +259,15 @@ fn indications(document: &Document) -> Answered {
         let lacks = vec!["inspection.indications, or a file with --indications".to_owned()];
         return (String::new(), lacks);
     }
+    let lacks = given(&[("indications", &stated)]);
     let placed = (placed > 0).then(|| format!("{placed} with their places"));
-    (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), Vec::new())
+    (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), lacks)
 }
 
 fn tether(document: &Document) -> Answered {
+    if document.located.is_some() {
+        return located::tether();
+    }
     let text = |run: &RunPart| {
         run.tether.as_ref().map_or_else(
             || "no tether".to_owned(),
@@ -217,7 +283,8 @@ fn incidents(document: &Document) -> Answered {
     let all = document.runs.iter().flat_map(|run| &run.incidents);
     let count = all.filter(|incident| Incident::needs_review(incident)).count();
     let by = &document.inspection.events_reviewed_by;
-    let lacks = if count == 0 { Vec::new() } else { missing(&[("events_reviewed_by", by.is_some())]) };
+    let reviewers = [("events_reviewed_by", by)];
+    let lacks = if count == 0 { given(&reviewers) } else { asked(&reviewers) };
     let reviewed = by.as_ref().map(|name| format!(", reviewed by {name}")).unwrap_or_default();
     let early = |incident: &&Incident| incident.kind == "end" && incident.needs_review();
     let ends = document.runs.iter().flat_map(|run| &run.incidents).filter(early);
@@ -229,11 +296,13 @@ fn incidents(document: &Document) -> Answered {
 fn remarks(document: &Document) -> Answered {
     let facts = &document.inspection;
     let remarks = facts.remarks.clone();
-    let lacks = missing(&[
-        ("remarks", remarks.is_some()),
-        ("inspector", facts.inspector.is_some()),
-        ("inspector_certificate", facts.inspector_certificate.is_some()),
+    let mut lacks = asked(&[
+        ("remarks", &remarks),
+        ("inspector", &facts.inspector),
+        ("inspector_certificate", &facts.inspector_certificate),
     ]);
+    lacks.extend(given(&[("approver", &facts.approver)]));
+    lacks.extend(certificate::doubts(document));
     (remarks.unwrap_or_default(), lacks)
 }
 
@@ -246,8 +315,13 @@ fn hashes(document: &Document) -> Answered {
             lacks.push(format!("{}: its folder was renamed; call it {then} again", run.run));
         }
         if files.are_as_reported.is_none() {
+            let close = if run.outcome.is_none() {
+                format!("; if it was killed, `tankops recover {}` closes it", run.run)
+            } else {
+                String::new()
+            };
             lacks.push(format!(
-                "{}: no report of the end of the run that the files could be checked against",
+                "{}: no report of the end of the run that the files could be checked against{close}",
                 run.run
             ));
         }
@@ -255,10 +329,15 @@ fn hashes(document: &Document) -> Answered {
             lacks.push(format!("{}: the recording is missing", run.run));
         }
     }
-    let text = if lacks.is_empty() {
-        "SHA-256 of journal and recording as at the end of the run; report.json agrees with the journal"
-    } else {
-        ""
+    if !lacks.is_empty() {
+        return (String::new(), lacks);
+    }
+    let recovered = |run: &RunPart| {
+        let recovered = run.files.recovered.as_ref()?;
+        Some(format!("{} was killed, and closed {recovered}", run.run))
     };
-    (text.to_owned(), lacks)
+    let bound =
+        "SHA-256 of journal and recording as when the run was closed; report.json agrees with the journal";
+    let recovered = document.runs.iter().filter_map(recovered);
+    (std::iter::once(bound.to_owned()).chain(recovered).collect::<Vec<_>>().join("; "), lacks)
 }

@@ -1,72 +1,133 @@
-//! The report as `GeoJSON`: track, missed areas, obstacles, shell, indications.
+//! The report as `GeoJSON`: track, missed areas, plates, obstacles, zones, stations, shell, indications.
 
-use super::Document;
+use super::{Document, located, shapes::zones};
 use crate::{
     account::Solid,
     drawing::trace::thinned,
-    geojson::{Datum, corners, feature, outline},
+    geojson::{Datum, feature, outline, rounded},
     joined::{PastRun, found_name},
 };
-use serde_json::json;
-use world::{Point, Shape};
+use mission::RunOpened;
+use serde_json::{Value, json};
+use world::{Point, ZoneKind};
 
 /// Points of the track nearer to the rest of it than this are left out, metres.
 const TRACK_M: f64 = 0.01;
 
 /// One feature collection. With a datum in `[inspection]` its coordinates are those of that system, east and north in metres,
-/// and the collection names it; without one they are those of the tank frame.
+/// and the collection names it; without one they are those of the tank frame, named as a local system that no program takes for
+/// degrees.
 pub fn geojson(document: &Document, past: &[PastRun]) -> String {
-    let facts = &document.inspection;
-    let datum = Datum::of(facts);
-    let at = |p: Point| datum.at(p);
-    let polygon = |points: &[Point]| datum.polygon(points);
-    let line = |points: &[Point]| datum.line(points);
-    let mut features = Vec::new();
-    for past in past {
-        let places: Vec<Point> =
-            past.record.track.iter().map(super::super::record::TrackPoint::position).collect();
-        features
-            .push(feature(line(&thinned(&places, TRACK_M)), json!({ "layer": "track", "run": past.name })));
+    let datum = Datum::of(&document.inspection);
+    let mut features = tracks(&datum, past);
+    if let Some(run) = past.last().and_then(|past| past.fold.run.as_deref()) {
+        features.extend(tank(&datum, run, past));
     }
-    if let Some(run) = past.last().and_then(|past| past.fold.run.as_ref()) {
-        features.push(feature(polygon(&outline(&run.world.boundary)), json!({ "layer": "shell" })));
-        let drawn = run.world.obstacles.iter().filter(|obstacle| obstacle.known);
-        let drawn = drawn.map(|obstacle| (obstacle.name.clone(), obstacle.shape.clone(), "drawing"));
-        let of_run = |(index, run): (usize, &'_ PastRun)| -> Vec<_> {
-            let name = |solid: &Solid| found_name(&solid.name, index, past.len());
-            run.fold.found().map(|solid| (name(solid), solid.shape.clone(), "found")).collect()
-        };
-        let found = past.iter().enumerate().flat_map(of_run);
-        for (name, shape, source) in drawn.chain(found) {
-            let geometry = match &shape {
-                Shape::Polyline { points, .. } => line(points),
-                shape => polygon(&corners(shape)),
-            };
-            features.push(feature(geometry, json!({ "layer": "obstacles", "name": name, "source": source })));
-        }
+    if document.located.is_some() {
+        features.extend(located::positions(past).map(|(place, properties)| {
+            feature(json!({ "type": "Point", "coordinates": datum.at(place) }), properties)
+        }));
     }
-    for (number, area) in (1..).zip(&document.floor.missed) {
-        let number: usize = number;
-        let properties = json!({
-            "layer": "missed", "number": number, "area_m2": area.area_m2, "plates": area.plates, "reason": area.why(),
-        });
-        features.push(feature(polygon(&world::shape::rectangle(area.low, area.high)), properties));
+    features.extend(plates(&datum, document));
+    features.extend(missed(&datum, document));
+    features.extend(indications(&datum, document));
+    let mut properties = json!({
+        "document": document.number, "revision": document.revision, "scenario": document.scenario,
+        "coordinates": datum.words(),
+    });
+    // Of readings nothing is reachable or missed, and unknown is not zero.
+    if let Some(located) = &document.located {
+        let percent = document.floor.whole.percent;
+        let passed = json!({ "scanned": percent.scanned, "guaranteed": percent.guaranteed });
+        properties["whole_floor"] = if located.tool_on_s.is_some() { passed } else { json!(null) };
+        properties["reachable_floor"] = json!(null);
+        properties["located_from"] = json!(located);
+    } else if document.is_to_scan {
+        properties["whole_floor"] = json!(document.floor.whole.percent);
+        properties["reachable_floor"] = json!(document.floor.reachable.percent);
     }
-    for found in &document.indications {
-        let properties = json!({
-            "layer": "indications", "number": found.number, "run": found.run, "t_s": found.t_s, "error_95_m": found.error_m, "kind": found.kind,
-            "size_mm": found.size_mm, "depth_mm": found.depth_mm, "plate": found.plate, "note": found.note,
-        });
-        features.push(feature(json!({ "type": "Point", "coordinates": at(found.at) }), properties));
+    if let Some(task) = &document.task {
+        properties["task"] = task
+            .figures(document)
+            .into_iter()
+            .map(|(name, m)| (name.to_owned(), json!(rounded(m))))
+            .collect();
     }
     let collection = json!({
         "type": "FeatureCollection",
-        "crs": { "type": "name", "properties": { "name": datum.name } },
-        "properties": {
-            "document": document.number, "revision": document.revision, "scenario": document.scenario,
-            "whole_floor": document.floor.whole.percent, "reachable_floor": document.floor.reachable.percent,
-        },
+        "crs": datum.crs(),
+        "properties": properties,
         "features": features,
     });
     collection.to_string() + "\n"
+}
+
+fn tracks(datum: &Datum<'_>, past: &[PastRun]) -> Vec<Value> {
+    let track = |past: &PastRun| {
+        let places: Vec<Point> = past.record.track.iter().map(crate::record::TrackPoint::position).collect();
+        feature(datum.line(&thinned(&places, TRACK_M)), json!({ "layer": "track", "run": past.name }))
+    };
+    past.iter().map(track).collect()
+}
+
+/// Shell, obstacles, zones and stations.
+fn tank(datum: &Datum<'_>, run: &RunOpened, past: &[PastRun]) -> Vec<Value> {
+    let mut features =
+        vec![feature(datum.polygon(&outline(&run.world.boundary)), json!({ "layer": "shell" }))];
+    let drawn = run.world.obstacles.iter().filter(|obstacle| obstacle.known);
+    let drawn = drawn.map(|obstacle| (obstacle.name.clone(), obstacle.shape.clone(), "drawing"));
+    let of_run = |(index, run): (usize, &'_ PastRun)| -> Vec<_> {
+        let name = |solid: &Solid| found_name(&solid.name, index, past.len());
+        run.fold.found().map(|solid| (name(solid), solid.shape.clone(), "found")).collect()
+    };
+    let found = past.iter().enumerate().flat_map(of_run);
+    features.extend(drawn.chain(found).map(|(name, shape, source)| {
+        feature(datum.shape(&shape), json!({ "layer": "obstacles", "name": name, "source": source }))
+    }));
+    features.extend(zones(past).into_iter().map(|zone| {
+        let layer = if zone.kind == ZoneKind::NoGo { "no_go_zones" } else { "zones" };
+        feature(datum.shape(&zone.shape), json!({ "layer": layer, "name": zone.name, "kind": zone.kind }))
+    }));
+    features.extend(run.world.stations.iter().map(|station| {
+        feature(datum.point(station.position), json!({ "layer": "stations", "name": station.name }))
+    }));
+    features
+}
+
+/// Every plate with its shares in per cent.
+fn plates(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
+    let plate = |shape: &super::shapes::PlateShape| {
+        let account = document.floor.plates.iter().find(|plate| plate.name == shape.name);
+        let mut properties = json!({ "layer": "plates", "name": shape.name, "kind": shape.kind });
+        if let Some(plate) = account {
+            properties["area_m2"] = json!(rounded(plate.shares.area_m2));
+            properties["percent"] = json!(plate.shares.percent);
+        }
+        feature(datum.polygons(&shape.polygons), properties)
+    };
+    document.shapes.plates.iter().map(plate).collect()
+}
+
+fn missed(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
+    let areas = (1..).zip(document.floor.missed.iter().zip(&document.shapes.missed));
+    let area = |(number, (area, polygons)): (usize, (&crate::account::Area<_>, &Vec<_>))| {
+        let properties = json!({
+            "layer": "missed", "number": number, "area_m2": rounded(area.area_m2), "plates": area.plates,
+            "reason": area.why(),
+        });
+        feature(datum.polygons(polygons), properties)
+    };
+    areas.map(area).collect()
+}
+
+fn indications(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
+    let indication = |found: &super::Indication| {
+        let properties = json!({
+            "layer": "indications", "number": found.number, "run": found.run, "t_s": found.t_s.map(rounded),
+            "error_95_m": found.error_m.map(rounded), "kind": found.kind, "size_mm": found.size_mm, "depth_mm": found.depth_mm,
+            "plate": found.plate, "note": found.note,
+        });
+        feature(datum.point(found.at), properties)
+    };
+    document.indications.iter().map(indication).collect()
 }

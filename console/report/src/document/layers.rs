@@ -6,7 +6,7 @@ use crate::{
     scanned::Scanned,
 };
 use mission::{RunOpened, TaskConfig};
-use world::{Cell, Floor, PlateMap, Point, ShellStretch};
+use world::{Cell, Floor, Plate, PlateMap, Point, ShellStretch};
 
 /// Smallest missed area with a number, square metres.
 const LEAST_M2: f64 = 0.01;
@@ -23,6 +23,8 @@ pub(crate) struct Layers<'a> {
     /// Missed areas that are listed, the largest first: a place in each, and its cells.
     pub(crate) gaps: Vec<(Point, Vec<usize>)>,
     plate_map: Option<PlateMap>,
+    /// Whether the runs were there to scan the floor.
+    pub(crate) is_to_scan: bool,
     /// What each cell counts as.
     classes: Vec<Class>,
 }
@@ -31,6 +33,8 @@ pub(crate) struct Layers<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Class {
     Outside,
+    /// Not scanned, and not to be.
+    Free,
     /// Once.
     Scanned,
     /// More than once.
@@ -70,9 +74,24 @@ impl<'a> Layers<'a> {
             .map(|(layout, map)| PlateLines::new(layout, &run.world.boundary, floor, map));
         let classes = (0..floor.len()).map(|cell| Class::of(scanned, cell)).collect();
         let (gaps, plate_map) = (Vec::new(), map);
-        let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, classes };
+        let is_to_scan = true;
+        let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, is_to_scan, classes };
         layers.gaps = layers.gaps_at(places);
         layers
+    }
+
+    /// The same; unless the runs were there to scan, nothing of the floor was missed or left out.
+    pub(super) fn of_scan(mut self, is_to_scan: bool) -> Self {
+        self.is_to_scan = is_to_scan;
+        if !is_to_scan {
+            self.gaps.clear();
+            for class in &mut self.classes {
+                if matches!(class, Class::Missed | Class::Margin | Class::Unreachable) {
+                    *class = Class::Free;
+                }
+            }
+        }
+        self
     }
 
     fn gaps_at(&self, places: &[Point]) -> Vec<(Point, Vec<usize>)> {
@@ -122,6 +141,20 @@ impl<'a> Layers<'a> {
             zones: &world.zones,
             anchor: Some(anchor),
         }
+    }
+
+    /// The plates that have floor, each with its cells in order of their index; none if the layout is not known.
+    pub(crate) fn plate_cells(&self) -> Vec<(&Plate, Vec<usize>)> {
+        let Some(map) = &self.plate_map else { return Vec::new() };
+        let mut plates: Vec<(&Plate, Vec<usize>)> =
+            map.plates.iter().map(|plate| (plate, Vec::new())).collect();
+        for cell in 0..self.floor().len() {
+            if let Some(plate) = map.plate_of(cell) {
+                plates[plate].1.push(cell);
+            }
+        }
+        plates.retain(|(_, cells)| !cells.is_empty());
+        plates
     }
 
     /// The plate of a place, if the layout is known.

@@ -1,6 +1,6 @@
 //! The maps of a report.
 
-use super::{Indication, layers::Layers, marks};
+use super::{Indication, layers::Layers, marks, sections::number_of};
 use crate::{
     drawing::{
         badges::{self, Numbered},
@@ -10,12 +10,13 @@ use crate::{
     human::text::counted,
     record::{Lay, Record},
 };
+use mission::MissionConfig;
 use serde::Serialize;
 use std::fmt::Write;
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// Widths of maps on paper, millimetres.
-const FULL_MM: f64 = 180.0;
+pub(super) const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
 /// Badges at most.
 const MOST_BADGES: usize = 60;
@@ -44,17 +45,17 @@ pub struct Legend {
     pub value: String,
 }
 
-fn swatch(inside: &str) -> String {
+pub(super) fn swatch(inside: &str) -> String {
     format!(r#"<svg class="sw" viewBox="0 0 7 4" aria-hidden="true">{inside}</svg>"#)
 }
 
-fn filled(fill: &str) -> String {
+pub(super) fn filled(fill: &str) -> String {
     swatch(&format!(
         r##"<rect x=".2" y=".2" width="6.6" height="3.6" fill="{fill}" stroke="#7D8A93" stroke-width=".2"/>"##
     ))
 }
 
-fn legend(swatch: String, text: &str, value: String) -> Legend {
+pub(super) fn legend(swatch: String, text: &str, value: String) -> Legend {
     Legend { swatch, text: text.to_owned(), value }
 }
 
@@ -114,8 +115,11 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         legend(dot(&format!(r#"fill="{solid}""#)), "obstacle on the drawing", String::new()),
         legend(dot(&found), "obstacle found during the run", String::new()),
         legend(swatch(station), "station of the position system", String::new()),
-        legend(swatch(anchor), "start and anchor", String::new()),
+        legend(swatch(anchor), anchor_words(&layers.run.mission), String::new()),
     ];
+    if !layers.is_to_scan {
+        entries.retain(|entry| !["missed", "shell margin", "unreachable"].contains(&entry.text.as_str()));
+    }
     if !layers.run.world.zones.is_empty() {
         let zone = dot(&format!(r#"fill="none" stroke="{solid}" stroke-width=".3" stroke-dasharray="1 .7""#));
         entries.push(legend(zone, "zone", String::new()));
@@ -131,13 +135,31 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     }
     if marks.unnumbered > 0 {
         let unnumbered = counted(marks.unnumbered, "indication");
-        let _ = write!(note, " {unnumbered} have no room for their numbers: their places are in section 7.");
+        let section = number_of(layers.is_to_scan, 7);
+        let _ = write!(
+            note,
+            " {unnumbered} have no room for their numbers: their places are in section {section}."
+        );
     }
-    let overlap = 100.0 * again as f64 / (once + again).max(1) as f64;
+    let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
+    let missed = if layers.is_to_scan {
+        " Missed cells have an outline of 0.25 mm so that they stay visible."
+    } else {
+        ""
+    };
     let caption = format!(
-        "What was scanned, by the estimated position; {overlap:.1} % of the scanned floor more than once. Missed cells have an outline of 0.25 mm so that they stay visible.{note}"
+        "What was scanned, by the estimated position; {overlap} % of the scanned floor more than once.{missed}{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
+}
+
+/// What the mark of the anchor means; without a tether it is that of the start.
+fn anchor_words(mission: &MissionConfig) -> &'static str {
+    match &mission.tether {
+        None => "start",
+        Some(tether) if (tether.anchor - mission.start.position).norm() < 1.0 => "start and anchor",
+        Some(_) => "anchor",
+    }
 }
 
 /// How well the position was known where the floor was scanned.
@@ -222,14 +244,9 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     sheet.define_patterns(layers.floor().cell_m);
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);
     sheet.plates(layers.plates.as_ref());
-    let places: Vec<Point> = record.track.iter().map(|point| sheet.at(point.position())).collect();
-    let end = *places.last()?;
-    let line = thinned(&places, 0.06);
-    let mut path = String::new();
-    for (index, point) in line.iter().enumerate() {
-        // Writing to a String cannot fail.
-        let _ = write!(path, "{}{:.2} {:.2}", if index == 0 { "M" } else { "L" }, point.x, point.y);
-    }
+    let line = track_line(&sheet, record);
+    let end = *line.last()?;
+    let path = path_of(&line);
     sheet.draw(format_args!(
         r#"<path d="{path}" fill="none" stroke="{}" stroke-width=".22" stroke-linejoin="round"/>"#,
         colour::TRACK
@@ -245,6 +262,27 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     ));
     let caption = "Track by the estimated position; dot: end".into();
     Some(Figure { caption, svg: sheet.svg("Track of the robot", "half"), legend: Vec::new() })
+}
+
+/// The track on a sheet.
+fn track_line(sheet: &Sheet, record: &Record) -> Vec<Point> {
+    let places: Vec<Point> = record.track.iter().map(|point| sheet.at(point.position())).collect();
+    thinned(&places, 0.06)
+}
+
+/// A line on the paper as a path.
+fn path_of(line: &[Point]) -> String {
+    let mut path = String::new();
+    for (index, point) in line.iter().enumerate() {
+        // Writing to a String cannot fail.
+        let _ = write!(path, "{}{:.2} {:.2}", if index == 0 { "M" } else { "L" }, point.x, point.y);
+    }
+    path
+}
+
+/// The track on a sheet as a path.
+pub(super) fn drawn_track(sheet: &Sheet, record: &Record) -> String {
+    path_of(&track_line(sheet, record))
 }
 
 /// Heads of arrows along a line on the paper, evenly.

@@ -59,7 +59,9 @@ pub(super) struct Verdict {
 
 /// A large figure.
 pub(super) struct Share {
-    pub(super) percent: String,
+    pub(super) value: String,
+    /// Unit of the figure.
+    pub(super) unit: &'static str,
     pub(super) of: &'static str,
     pub(super) about: String,
 }
@@ -175,6 +177,10 @@ pub(super) struct Section {
 /// The whole page.
 pub(super) struct Page {
     pub(super) title: String,
+    /// The title on the page.
+    pub(super) heading: &'static str,
+    /// What must be known before anything else, if it is no simulation.
+    pub(super) banner: String,
     pub(super) css: &'static str,
     pub(super) head: String,
     pub(super) mark: &'static str,
@@ -187,7 +193,7 @@ pub(super) struct Page {
     pub(super) fields: Vec<Field>,
     pub(super) verdict: Verdict,
     pub(super) shares: Vec<Share>,
-    pub(super) bases: Table,
+    pub(super) bases: Option<Table>,
     pub(super) todo: Vec<Todo>,
     pub(super) sections: Vec<Section>,
 }

@@ -6,7 +6,25 @@ use crate::{
     summary::{Accuracy, Positioning, Summary, Tether},
 };
 use mission::Outcome;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How a run was closed whose writer was killed: what was there was fixed by digests.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recovered {
+    /// Who did it.
+    pub by: String,
+    /// When, UTC, as `2026-11-22 04:01`.
+    pub at: String,
+    /// What is missing, each as a phrase.
+    pub missing: Vec<String>,
+}
+
+impl fmt::Display for Recovered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "by {}, {} UTC; missing: {}", self.by, self.at, self.missing.join("; "))
+    }
+}
 
 /// The files of a run and their digests.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
@@ -27,6 +45,9 @@ pub struct Files {
     pub doubts: Vec<String>,
     /// Name of the run's folder when the run was closed; absent if nothing says it.
     pub closed_as: Option<String>,
+    /// How the run was closed if its writer was killed; absent for a run that was closed at its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recovered: Option<Recovered>,
 }
 
 /// A planner that drove.
@@ -126,6 +147,8 @@ impl RunPart {
             sha256: info.sha256.clone(),
         };
         let parameters = summary.parameters.iter().flatten();
+        // Where something was located, and nothing of what moved it.
+        let is_flown = run.measured.is_none();
         Some(Self {
             run: past.name.clone(),
             began: past.began.clone(),
@@ -137,7 +160,7 @@ impl RunPart {
             reason: summary.reason.clone(),
             mission_time_s: summary.mission_time_s.unwrap_or(0.0),
             path_length_m: summary.path_length_m,
-            clearance_min_m: summary.clearance_min_m,
+            clearance_min_m: summary.clearance_min_m.filter(|_| is_flown),
             clearance_m: run.mission.clearance_m,
             collisions: summary.collisions,
             parameters: parameters.map(|(key, value)| format!("{key} {}", plainly(value))).collect(),

@@ -1,20 +1,29 @@
 //! What stands in which section of the page.
 
-mod closing;
-mod floor;
+pub(super) mod closing;
+pub(super) mod floor;
 mod front;
 mod missed;
-mod runs;
+pub(super) mod runs;
+mod task;
 
 use super::{
     Document,
     maps::Figure,
     page::{Block, Page, Picture, Section},
 };
-use crate::{drawing::sheet::escaped, human::text::counted};
+use crate::drawing::sheet::escaped;
+pub(super) use crate::human::text::counted;
 
 /// The page of a document.
 pub(super) fn sections(document: &Document) -> Page {
+    if let Some(located) = &document.located {
+        let page = front::page(document, numbered(super::located::sections(document, located)));
+        return super::located::as_located(document, located, page);
+    }
+    if let Some(task) = &document.task {
+        return front::page(document, numbered(task::sections(document, task)));
+    }
     let sections = [
         section("Scope", front::scope(document)),
         Section { is_new_sheet: true, ..section("Coverage map", floor::map(document)) },
@@ -29,28 +38,40 @@ pub(super) fn sections(document: &Document) -> Page {
         section("Signatures and revisions", closing::signatures(document)),
         section("Provenance", closing::provenance(document)),
     ];
-    let numbered = (1..).zip(sections).map(|(number, section)| Section { number, ..section });
-    front::page(document, numbered.collect())
+    front::page(document, numbered(sections))
 }
 
-fn section(title: &'static str, blocks: Vec<Block>) -> Section {
+/// The sections of the report on a run that was not there to scan, by their numbers in that on one that was.
+const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
+
+/// The number of a section, from that which it has in the report on a run that was there to scan.
+pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
+    let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
+    if is_to_scan { section } else { place }
+}
+
+fn numbered(sections: impl IntoIterator<Item = Section>) -> Vec<Section> {
+    (1..).zip(sections).map(|(number, section)| Section { number, ..section }).collect()
+}
+
+pub(super) fn section(title: &'static str, blocks: Vec<Block>) -> Section {
     Section { number: 0, title, is_new_sheet: false, blocks }
 }
 
 /// A figure, to be numbered.
-fn picture(figure: &Figure) -> Picture {
+pub(super) fn picture(figure: &Figure) -> Picture {
     let Figure { caption, svg, legend } = figure;
     Picture { number: 0, caption: caption.clone(), svg: svg.clone(), legend: legend.clone() }
 }
 
 /// A number with some decimals and its sign, zero without one.
-fn number(value: f64, decimals: usize) -> String {
+pub(super) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let is_zero = text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.');
     if is_zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "\u{2212}") }
 }
 
 /// Centimetres of metres.
-fn cm(value_m: f64) -> String {
+pub(super) fn cm(value_m: f64) -> String {
     number(100.0 * value_m, 1)
 }

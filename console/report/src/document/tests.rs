@@ -8,7 +8,7 @@ use crate::{
     fold::{Fold, tests::round_tank},
     summary::Logs,
 };
-use mission::{Event, EventKind};
+use mission::{Event, EventKind, RunOpened, TaskConfig};
 use world::{Floor, Obstacle, ObstacleId, Shape};
 
 /// A run that scanned everything but two cells out of the middle.
@@ -16,9 +16,17 @@ fn past() -> PastRun {
     past_without(&[Point::new(1.0, -1.0), Point::new(1.1, -1.0)])
 }
 
-/// A run that scanned everything but the cells at some places.
+/// A run that scanned everything but the cells at some places, where its plan does not lead.
 fn past_without(missed: &[Point]) -> PastRun {
-    let run = round_tank(0.1);
+    let mut past = past_of(round_tank(0.1), missed);
+    let plan = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
+    past.fold.evidence.as_mut().unwrap().plan(&plan, &[], true);
+    past.summary = past.fold.summary();
+    past
+}
+
+/// The same of some run, without a plan.
+fn past_of(run: RunOpened, missed: &[Point]) -> PastRun {
     let missed: Vec<usize> = missed.iter().map(|place| run.floor.cell_at(*place).unwrap()).collect();
     let runs = world::coverage::runs_of((0..run.floor.len()).filter(|cell| !missed.contains(cell)));
     let covered = EventKind::Covered { runs };
@@ -319,4 +327,127 @@ fn a_run_that_is_not_the_signed_one_any_more_is_named() {
         lost.as_deref(),
         Some("signed revision B is about another recording: expected SHA-256 rec, found none")
     );
+}
+
+/// A ring of missed cells with an island of missed cells in it.
+fn ring_with_island() -> Vec<Point> {
+    let far = |k: i32| k.abs() == 3;
+    let all = (-3..=3).flat_map(|x| (-3..=3).map(move |y| (x, y)));
+    let is_missed = |(x, y): &(i32, i32)| far(*x) || far(*y) || (x.abs() <= 1 && y.abs() <= 1);
+    all.filter(is_missed)
+        .map(|(x, y)| Point::new(1.05 + 0.1 * f64::from(x), 0.55 + 0.1 * f64::from(y)))
+        .collect()
+}
+
+fn area_m2(ring: &serde_json::Value) -> f64 {
+    let at = |p: &serde_json::Value| (p[0].as_f64().unwrap(), p[1].as_f64().unwrap());
+    let places: Vec<(f64, f64)> = ring.as_array().unwrap().iter().map(at).collect();
+    places.windows(2).map(|pair| pair[0].0 * pair[1].1 - pair[1].0 * pair[0].1).sum::<f64>() / 2.0
+}
+
+#[test]
+fn missed_areas_are_their_outlines_with_holes_in_geojson_and_dxf() {
+    let runs = [past_without(&ring_with_island())];
+    let document = Document::new(&runs, Context::default()).unwrap();
+    let map: serde_json::Value = serde_json::from_str(&geojson::geojson(&document, &runs)).unwrap();
+    let missed: Vec<&serde_json::Value> =
+        map["features"].as_array().unwrap().iter().filter(|f| f["properties"]["layer"] == "missed").collect();
+    assert_eq!(missed.len(), 2, "the ring and the island");
+    for (area, feature) in document.floor.missed.iter().zip(&missed) {
+        let rings = feature["geometry"]["coordinates"].as_array().unwrap();
+        let outlined_m2: f64 = rings.iter().map(area_m2).sum();
+        assert!((outlined_m2 - area.area_m2).abs() < 1e-6, "{outlined_m2} {feature}");
+        assert!(area.area_m2 < 0.25, "less than the box around it");
+    }
+    assert_eq!(missed[0]["geometry"]["coordinates"].as_array().unwrap().len(), 2, "an outline and a hole");
+    assert_eq!(missed[0]["properties"]["area_m2"].to_string(), "0.24");
+    let drawing = dxf::dxf(&document, &runs);
+    assert_eq!(drawing.matches("POLYLINE\n8\nMISSED\n").count(), 3, "two outlines and a hole");
+}
+
+#[test]
+fn zones_stations_and_plates_are_in_the_files_for_other_programs() {
+    let mut run = round_tank(0.1);
+    let shape = Shape::Disc { center: Point::new(-2.0, 1.0), radius_m: 0.4 };
+    run.world.zones.push(world::Zone { name: "sump".into(), kind: world::ZoneKind::NoGo, shape });
+    let position = Point::new(4.9, 0.5);
+    run.world.stations.push(world::Station { id: world::StationId(3), name: "S3".into(), position });
+    let runs = [past_of(run, &[])];
+    let document = Document::new(&runs, Context::default()).unwrap();
+    let map: serde_json::Value = serde_json::from_str(&geojson::geojson(&document, &runs)).unwrap();
+    let named = |layer: &str, name: &str| {
+        let is_it =
+            |f: &&serde_json::Value| f["properties"]["layer"] == layer && f["properties"]["name"] == name;
+        map["features"].as_array().unwrap().iter().find(is_it).unwrap()["geometry"]["type"].clone()
+    };
+    let types = [named("no_go_zones", "sump"), named("stations", "S3"), named("plates", "A-01")];
+    assert_eq!(types, ["Polygon", "Point", "Polygon"]);
+    assert!(map["crs"]["properties"]["name"].as_str().unwrap().starts_with("LOCAL_CS[\"tank frame"));
+    let drawing = dxf::dxf(&document, &runs);
+    assert!(drawing.contains("CIRCLE\n8\nNO_GO_ZONES\n") && drawing.contains("POINT\n8\nSTATIONS\n"));
+    assert!(drawing.contains("\n1\nsump\n") && drawing.contains("\n1\nS3\n"), "names");
+}
+
+#[test]
+fn a_run_that_was_not_there_to_scan_missed_no_floor_in_any_format() {
+    let path = vec![Point::new(-1.75, 0.0), Point::new(1.75, 0.0)];
+    let follow = TaskConfig::Follow { path, tolerance_m: 0.2 };
+    let goto = TaskConfig::Goto { goal: Point::new(1.0, 1.0), tolerance_m: 0.1 };
+    for (task, figures) in [
+        (follow, ["preset path of 2 points, 3.5 m", "preset_path_m,3.5"]),
+        (goto, ["goal at 1.00, 1.00 m", "straight_to_goal_m,2.926"]),
+    ] {
+        let mut run = round_tank(0.1);
+        run.mission.task = task;
+        let missed: Vec<Point> = ring_with_island();
+        let runs = [past_of(run, &missed)];
+        let document = Document::new(&runs, Context::default()).unwrap();
+        let page = html(&document);
+        let json = serde_json::to_string(&document).unwrap();
+        let tables = csv::tables(&document, &runs);
+        let texts = [geojson::geojson(&document, &runs), dxf::dxf(&document, &runs), json.clone()];
+        assert!(page.contains(figures[0]) && tables[0].contains(figures[1]), "{}", tables[0]);
+        assert!(tables[1].lines().count() == 1 && tables[2].lines().count() == 1, "{tables:?}");
+        assert!(
+            texts.iter().all(|text| !text.contains("\"missed\"") && !text.contains("POLYLINE\n8\nMISSED"))
+        );
+        assert!(!json.contains("missed_area_m2\":0") && !json.contains("critical_zone\":"), "{json}");
+        assert!(!page.contains("% of the reachable floor was scanned") && !page.contains(">missed<"), "page");
+        let asked: Vec<&String> = document.gate.iter().flat_map(|item| &item.missing).collect();
+        let unwanted =
+            ["inspection.missed_accepted", "inspection.critical_zone_accepted", "inspection.plates_waiver"];
+        assert!(asked.iter().all(|key| !unwanted.contains(&key.as_str())), "{asked:?}");
+        for section in 1..=9 {
+            assert!(page.contains(&format!(r#"<h2 id="s{section}">"#)), "section {section}");
+        }
+        assert!(!page.contains(r#"<h2 id="s10">"#) && !page.contains("href=\"#s10\""), "links");
+    }
+}
+
+#[test]
+fn a_run_that_was_not_there_to_scan_is_reported_alone() {
+    let mut run = round_tank(0.1);
+    run.mission.task = TaskConfig::Goto { goal: Point::new(1.0, 1.0), tolerance_m: 0.1 };
+    let mut goto = past_of(run, &[]);
+    goto.name = "other".into();
+    let refused = Document::new(&[past(), goto], Context::default()).unwrap_err();
+    assert_eq!(refused, "run other was not there to scan the floor: report it alone");
+}
+
+#[test]
+fn a_run_without_a_plan_and_without_a_tether_speaks_of_neither() {
+    let document =
+        Document::new(&[past_of(round_tank(0.1), &ring_with_island())], Context::default()).unwrap();
+    let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
+    assert!(reasons.contains("the run had no plan") && !reasons.contains("lanes"), "{reasons}");
+    let mut cut = past_without(&ring_with_island());
+    let plan = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
+    cut.fold.evidence.as_mut().unwrap().plan(
+        &plan,
+        &[vec![Point::new(1.0, 5.0), Point::new(1.0, -5.0)]],
+        true,
+    );
+    cut.summary = cut.fold.summary();
+    let page = html(&Document::new(&[cut], Context::default()).unwrap());
+    assert!(!page.contains("unwound") && !page.contains("start and anchor"), "no tether");
 }

@@ -5,13 +5,13 @@ use std::fmt::Write;
 use world::{Floor, Point};
 
 /// A corner of cells: column and row from the south-west corner of the grid.
-type Corner = (i32, i32);
+pub(super) type Corner = (i32, i32);
 
 /// The outlines of the cells that are asked for, as path data in units of cells: x to the right, y up from the south-west
 /// corner of the grid. Points nearer than `tolerance` cells to the simplified outline are left out; 0 keeps every corner.
 pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: f64) -> String {
     let mut path = String::new();
-    for ring in rings(floor, is_in) {
+    for ring in rings((floor.width, floor.height), is_in) {
         write_ring(&mut path, &simplified(&ring, tolerance));
     }
     path
@@ -27,8 +27,7 @@ struct Edges {
 }
 
 impl Edges {
-    fn of(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Self {
-        let (width, height) = (floor.width, floor.height);
+    fn of((width, height): (usize, usize), is_in: impl Fn(usize) -> bool) -> Self {
         let rows = height + 1;
         let mut ways = vec![0; (width + 1) * rows];
         // Cell by cell, with what lies west and south of it; beyond the grid is outside.
@@ -74,9 +73,10 @@ impl Edges {
     }
 }
 
-/// Closed rings around the cells, counter-clockwise about cells and clockwise about holes.
-fn rings(floor: &Floor, is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
-    let mut edges = Edges::of(floor, is_in);
+/// Closed rings around cells of a grid of some width and height, counter-clockwise about cells and clockwise about holes; every
+/// corner on their way.
+pub(super) fn rings(size: (usize, usize), is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
+    let mut edges = Edges::of(size, is_in);
     let mut rings = Vec::new();
     for index in 0..edges.ways.len() {
         let first = ((index / edges.rows) as i32, (index % edges.rows) as i32);
@@ -102,7 +102,7 @@ fn take_ring(edges: &mut Edges, first: Corner) -> Vec<Corner> {
     ring
 }
 
-fn simplified(ring: &[Corner], tolerance: f64) -> Vec<Corner> {
+pub(super) fn simplified(ring: &[Corner], tolerance: f64) -> Vec<Corner> {
     if tolerance <= 0.0 || ring.len() < 5 {
         let n = ring.len();
         let turns = |k: &usize| {

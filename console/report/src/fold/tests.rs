@@ -80,6 +80,7 @@ pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
     };
     let plates = world::RegularPlates { annular_m: 0.6, n_annular: 6, length_m: 3.0, width_m: 1.5 };
     let mission = &mut run["mission"];
+    mission["task"] = json!({ "cover": { "anchor": [-1.75, 0.0], "regions": [], "tolerance_m": 0.2 } });
     mission["limits"]["motion"] = json!("unicycle");
     (mission["limits"]["radius_m"], mission["clearance_m"]) = (json!(0.25), json!(0.2));
     (mission["swath_m"], mission["cell_m"]) = (json!(0.6), json!(cell_m));

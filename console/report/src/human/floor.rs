@@ -2,6 +2,7 @@
 
 use super::text::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
+use world::coverage::percent_text;
 
 /// Areas out of reach that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
@@ -66,7 +67,7 @@ fn shares(shares: &Shares) -> String {
 }
 
 fn exact(share: f64) -> String {
-    format!("reachable floor by exact area instead of cells: {:.2} % scanned", 100.0 * share)
+    format!("reachable floor by exact area instead of cells: {} % scanned", percent_text(share, 2))
 }
 
 fn critical_zone(account: &Account) -> String {

@@ -4,7 +4,7 @@ use crate::tanks::{CLEARANCE_M, HULL_M, SWATH_M, Tank};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{
-    Boundary, CoverageGrid, Floor, Point, Shape, ShellZone, SweptArea, Tool, Vector,
+    Boundary, CoverageGrid, FloorMaker, Point, Shape, ShellZone, SweptArea, Tool, Vector,
     geometry::unit_vector,
     polyline,
     tether::{Case, Certificate, Limits, TetherError, certify},
@@ -55,7 +55,8 @@ impl Tank {
     pub fn score(&self, path: &[Point], cuts: &[Vec<Point>], cell_m: f64) -> Result<Scan, TetherError> {
         let world = self.world();
         let room_m = HULL_M + CLEARANCE_M;
-        let mut grid = CoverageGrid::new(Floor::new(&world, cell_m, room_m, SWATH_M, self.anchor));
+        let floor = FloorMaker::new(&world, cell_m, room_m, SWATH_M, self.anchor);
+        let mut grid = CoverageGrid::new(floor.clone().into_floor());
         let (mut area, mut zone) =
             (SweptArea::new(&self.boundary), ShellZone::new(&self.boundary, CRITICAL_ZONE_M));
         Tool::along(path, |from, to| {
@@ -88,7 +89,7 @@ impl Tank {
         let turns: Vec<f64> = polyline::turns_rad(path).collect();
         Ok(Scan {
             coverage_reachable: grid.fraction_reachable(),
-            coverage_exact: area.share_of(grid.floor(), &self.boundary, &shapes).unwrap_or(0.0),
+            coverage_exact: area.share_of(&floor, &self.boundary, &shapes).unwrap_or(0.0),
             coverage_whole: grid.fraction_whole(),
             critical_zone: scanned(&zone),
             critical_zone_possible: scanned(&self.zone_in_reach(&shapes)),

@@ -181,7 +181,7 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     );
     // Whoever changes a figure may change the digest, too.
     let other = Summary { holds: 1, ..summary.clone() };
-    let text = ReportFile::text("a", &other, None, None).unwrap();
+    let text = ReportFile::text("a", &other, [None; 2], None).unwrap();
     fs::write(folder.join(REPORT_FILE), text).unwrap();
     assert!(figures(&summary).is_some() && figures(&other).is_none() && doubt_with(None).is_none());
 }
@@ -217,7 +217,7 @@ fn a_pipe_in_place_of_a_report_is_named_and_not_waited_for() {
 
 #[test]
 fn the_digest_of_a_report_is_that_of_its_other_lines() {
-    let text = ReportFile::text("a", &Summary::default(), None, None).unwrap();
+    let text = ReportFile::text("a", &Summary::default(), [None; 2], None).unwrap();
     let (others, own): (Vec<&str>, Vec<&str>) =
         text.split_inclusive('\n').partition(|line| !line.contains("\"report_sha256\""));
     assert_eq!(own, [format!("  \"report_sha256\": \"{}\"\n", sha256_of(others.concat().as_bytes()))]);

@@ -36,7 +36,7 @@ pub struct PastRun {
     pub scenario: String,
     /// Id of the planner that drove first; empty if it is not known.
     pub planner: String,
-    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECORDING FAILED` or `UNREADABLE`.
+    /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECOVERED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
     /// Mission time that passed, seconds.
     pub mission_time_s: Option<f64>,

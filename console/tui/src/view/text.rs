@@ -4,11 +4,11 @@ pub(super) use crate::model::log::clock;
 
 use crate::model::Speed;
 use ratatui::text::Span;
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// A share as a percentage without its sign.
 pub(super) fn percent(share: f64) -> String {
-    number(share * 100.0, 1)
+    if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
 }
 
 /// A number with some decimals; a dash for what is no number.

@@ -275,6 +275,22 @@ impl Floor {
         neighbours(index, self.width, self.cells.len())
     }
 
+    /// Whether the cell under a place and those around it that are floor are all reachable; `None` if only some of them are: the
+    /// border of what is reachable runs there.
+    pub(super) fn are_all_reachable_about(&self, place: Point) -> Option<bool> {
+        let cell = self.cell_at(place)?;
+        let (column, row) = (cell % self.width, cell / self.width);
+        let rows = row.saturating_sub(1)..=(row + 1).min(self.height - 1);
+        let columns = column.saturating_sub(1)..=(column + 1).min(self.width - 1);
+        let about = rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column));
+        let (mut all, mut any) = (true, false);
+        for cell in about.filter(|cell| self.is_floor(*cell)) {
+            all &= self.is_reachable(cell);
+            any |= self.is_reachable(cell);
+        }
+        (all == any).then_some(any)
+    }
+
     /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
     ///
     /// ```

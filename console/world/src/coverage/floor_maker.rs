@@ -1,15 +1,16 @@
 //! Which cells are floor, and which of them the tool can reach.
 
-use super::floor::{Cell, Floor, KindRun, kind_runs};
+use super::{
+    floor::{Cell, Floor, KindRun, kind_runs},
+    room::{Connected, Room, TIE_M},
+};
 use crate::{
     obstacles::ObstacleMap,
     tank::{World, ZoneKind},
 };
-use geometry::{Point, Shape, Vector};
-use std::{collections::VecDeque, sync::Arc};
+use geometry::{Boundary, Point, Shape, Vector};
+use std::sync::Arc;
 
-/// Difference of distances up to which the wall counts as nearer than an obstacle, metres.
-const ROUNDING_M: f64 = 1e-6;
 /// Cells along each side of the blocks that are asked for their distance first.
 const BLOCK: usize = 8;
 
@@ -21,6 +22,13 @@ pub struct FloorMaker {
     clearance_m: Vec<f32>,
     /// Whether a zone forbids the robot's centre in a cell.
     forbidden: Vec<bool>,
+    /// The outlines of the zones that forbid.
+    zones: Vec<Shape>,
+    /// Where the robot would have room if the tank were empty.
+    empty: Room,
+    /// Where it has room, and which of these places are connected.
+    room: Room,
+    connected: Connected,
     room_m: f64,
     swath_m: f64,
     start: Point,
@@ -30,7 +38,8 @@ impl Floor {
     /// The floor of a tank for a robot whose centre keeps `room_m` (hull radius and clearance) from everything solid, with
     /// a tool of some swath, driving from `start`; all in metres and the tank frame.
     ///
-    /// Costs one distance query per block of 64 cells, one per cell of the blocks near something solid, and a flood fill.
+    /// Costs one distance query per block of 64 cells, one per cell of the blocks near something solid, a flood fill, and some
+    /// queries per cell along the rim of what the tool reaches.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -76,13 +85,41 @@ impl FloorMaker {
     pub fn of(grid: &Floor, world: &World, room_m: f64, swath_m: f64, start: Point) -> Self {
         let map = ObstacleMap::new(&world.boundary, &world.obstacles);
         let clearance_m = clearances_m(grid, &map, room_m);
+        let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+        let zones: Vec<Shape> = zones.map(|zone| zone.shape.clone()).collect();
         let mut forbidden = vec![false; grid.len()];
-        for zone in world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo) {
-            forbid(grid, &zone.shape, room_m, &mut forbidden);
+        for zone in &zones {
+            forbid(grid, zone, room_m, &mut forbidden);
         }
-        let mut maker = Self { floor: grid.clone(), clearance_m, forbidden, room_m, swath_m, start };
+        let empty = room_beside(&world.boundary, std::iter::empty(), room_m, swath_m);
+        let (room, connected) = (empty.clone(), Connected::nowhere(grid));
+        let floor = grid.clone();
+        let mut maker =
+            Self { floor, clearance_m, forbidden, zones, empty, room, connected, room_m, swath_m, start };
         maker.classify(world);
         maker
+    }
+
+    /// Whether the tool can reach a place on the floor from where the robot can drive: exact, and not cell by cell.
+    ///
+    /// ```
+    /// use world::{Boundary, FloorMaker, Point, World};
+    /// let boundary = Boundary::Circle { radius_m: 5.0 };
+    /// let tank = World { boundary, obstacles: vec![], stations: vec![], zones: vec![] };
+    /// let maker = FloorMaker::new(&tank, 0.1, 0.5, 0.6, Point::origin());
+    /// assert!(maker.reaches(Point::new(4.799, 0.0)) && !maker.reaches(Point::new(4.801, 0.0)));
+    /// ```
+    pub fn reaches(&self, place: Point) -> bool {
+        let reach_m = self.reach_m();
+        let is_home = |cell: usize| {
+            self.connected.is_home(cell) && (self.floor.center(cell) - place).norm() <= reach_m + TIE_M
+        };
+        if let Some(is_reached) = self.floor.are_all_reachable_about(place) {
+            return is_reached;
+        }
+        self.room.places_near(place, reach_m).any(|near| self.leads_to(near))
+            || (self.room.has(place) && self.leads_to(place))
+            || self.floor.cells_near(place, place, reach_m).into_iter().any(is_home)
     }
 
     /// The floor as it is now.
@@ -112,6 +149,7 @@ impl FloorMaker {
     /// ```
     pub fn forbid(&mut self, world: &World, outline: &Shape) -> Vec<KindRun> {
         forbid(&self.floor, outline, self.room_m, &mut self.forbidden);
+        self.zones.push(outline.clone());
         self.classified(world)
     }
 
@@ -153,71 +191,95 @@ impl FloorMaker {
         for (cell, clearance) in Arc::make_mut(&mut self.floor.cells).iter_mut().zip(&self.clearance_m) {
             *cell = if *clearance >= 0.0 { Cell::Beside } else { Cell::Outside };
         }
-        let room_m = self.room_m as f32;
-        let is_free = |(clearance, forbidden): (&f32, &bool)| *clearance >= room_m && !forbidden;
-        let free: Vec<bool> = self.clearance_m.iter().zip(&self.forbidden).map(is_free).collect();
-        let drivable = self.drivable(&free);
-        self.reach(&drivable, Cell::Reachable);
-        let cut_off: Vec<bool> =
-            free.iter().zip(&drivable).map(|(free, drivable)| *free && !drivable).collect();
-        self.reach(&cut_off, Cell::Unreachable);
+        let room_m = (self.room_m - TIE_M) as f32;
+        let has_room = |(clearance, forbidden): (&f32, &bool)| *clearance >= room_m && !forbidden;
+        let free: Vec<bool> = self.clearance_m.iter().zip(&self.forbidden).map(has_room).collect();
+        let solids = world.obstacles.iter().map(|obstacle| &obstacle.shape);
+        self.room = room_beside(&world.boundary, solids.chain(&self.zones), self.room_m, self.swath_m);
+        self.connected = Connected::new(&self.room, &self.floor, &free, self.start);
+        self.reach_from_cells(&free);
+        self.reach_from_corners();
         for index in 0..self.floor.len() {
             if self.floor.cells[index] == Cell::Beside {
-                let kind = self.why_not(index, world);
+                let kind = self.kind_beside(index, free[index]);
                 self.floor.set(index, kind);
             }
         }
     }
 
+    /// Cells that the tool reaches from the middle of a cell are reachable.
+    fn reach_from_cells(&mut self, free: &[bool]) {
+        let home: Vec<bool> = (0..free.len()).map(|cell| self.connected.is_home(cell)).collect();
+        // Of these cells the one that is nearest to any other cell has a neighbour that is not one of them.
+        let is_at_edge = |index: usize| self.floor.neighbours(index).any(|next| !home[next]);
+        let edge: Vec<usize> = (0..home.len()).filter(|cell| home[*cell] && is_at_edge(*cell)).collect();
+        for cell in (0..home.len()).filter(|cell| home[*cell]) {
+            self.floor.set(cell, Cell::Reachable);
+        }
+        for cell in edge {
+            self.reach_around(self.floor.center(cell));
+        }
+    }
+
+    /// Cells that the tool reaches from a corner of the floor on which the robot has room are reachable.
+    fn reach_from_corners(&mut self) {
+        let corners: Vec<Point> = self.room.corners().filter(|corner| self.leads_to(*corner)).collect();
+        corners.into_iter().for_each(|corner| self.reach_around(corner));
+    }
+
+    fn reach_around(&mut self, place: Point) {
+        for near in self.floor.cells_near(place, place, self.reach_m() + TIE_M) {
+            if self.floor.cells[near] == Cell::Beside {
+                self.floor.set(near, Cell::Reachable);
+            }
+        }
+    }
+
+    /// What a cell of floor is that the tool reaches neither from a cell nor from a corner.
+    fn kind_beside(&self, index: usize, is_free: bool) -> Cell {
+        let center = self.floor.center(index);
+        if is_free {
+            return Cell::Unreachable;
+        }
+        let is_near = f64::from(self.clearance_m[index]) >= self.room_m - self.reach_m() - TIE_M;
+        let mut is_cut_off = false;
+        for place in self.room.places_near(center, self.reach_m()).filter(|_| is_near) {
+            if self.leads_to(place) {
+                return Cell::Reachable;
+            }
+            is_cut_off = true;
+        }
+        if is_cut_off { Cell::Unreachable } else { self.why_not(index) }
+    }
+
     /// Why the tool cannot reach a cell that is not merely cut off.
-    fn why_not(&self, index: usize, world: &World) -> Cell {
+    fn why_not(&self, index: usize) -> Cell {
         let center = self.floor.center(index);
         if self.forbidden[index] && f64::from(self.clearance_m[index]) >= self.room_m {
             return Cell::NoGo;
         }
-        let wall_m = world.boundary.wall_distance_m(center);
-        // Up to this distance from the shell the tool cannot reach in an empty tank; beyond, an obstacle is the cause.
-        let margin_m = (self.room_m - self.swath_m / 2.0).max(0.0) + self.floor.cell_m;
-        let is_wall_nearest = wall_m <= f64::from(self.clearance_m[index]) + ROUNDING_M;
-        if is_wall_nearest && wall_m <= margin_m { Cell::Margin } else { Cell::Beside }
+        let is_reached_in_empty_tank =
+            self.empty.has(center) || self.empty.places_near(center, self.reach_m()).next().is_some();
+        if is_reached_in_empty_tank { Cell::Beside } else { Cell::Margin }
     }
 
-    /// Cells to which the robot's centre can drive from the start: a flood fill over cells with room for it, from the one
-    /// nearest to the start. (The start itself may touch the wall, where no cell has its centre.)
-    fn drivable(&self, free: &[bool]) -> Vec<bool> {
-        let distance_m = |index: &usize| (self.floor.center(*index) - self.start).norm();
-        let first =
-            (0..free.len()).filter(|i| free[*i]).min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
-        let mut queue: VecDeque<usize> = first.into_iter().collect();
-        let mut found = vec![false; free.len()];
-        while let Some(index) = queue.pop_front() {
-            if !std::mem::replace(&mut found[index], true) {
-                queue.extend(self.floor.neighbours(index).filter(|next| free[*next] && !found[*next]));
-            }
-        }
-        found
+    fn leads_to(&self, place: Point) -> bool {
+        self.connected.leads_to(&self.room, &self.floor, place)
     }
 
-    /// Sets the kind of the floor that the tool reaches from some cells and that has no kind yet.
-    fn reach(&mut self, from: &[bool], kind: Cell) {
-        // Of these cells the one that is nearest to any other cell has a neighbour that is not one of them.
-        let at_edge = |index: &usize| self.floor.neighbours(*index).any(|next| !from[next]);
-        let cells: Vec<usize> = (0..from.len()).filter(|index| from[*index]).collect();
-        let edge: Vec<usize> = cells.iter().copied().filter(at_edge).collect();
-        for index in cells {
-            if self.floor.cells[index] == Cell::Beside {
-                self.floor.set(index, kind);
-            }
-        }
-        for index in edge {
-            let center = self.floor.center(index);
-            for near in self.floor.cells_near(center, center, self.swath_m / 2.0) {
-                if self.floor.cells[near] == Cell::Beside {
-                    self.floor.set(near, kind);
-                }
-            }
-        }
+    /// How far the tool reaches to each side of the robot's middle, metres.
+    fn reach_m(&self) -> f64 {
+        self.swath_m / 2.0
     }
+}
+
+fn room_beside<'a>(
+    boundary: &Boundary,
+    solids: impl Iterator<Item = &'a Shape>,
+    room_m: f64,
+    swath_m: f64,
+) -> Room {
+    Room::new(boundary, solids, room_m, swath_m / 2.0)
 }
 
 /// The distance from the centre of every cell to the nearest solid, metres. Where the distance in the middle of a block shows
@@ -261,93 +323,4 @@ fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = u
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Boundary, Obstacle, ObstacleId, Zone};
-
-    fn tank(discs: &[(f64, f64, f64)]) -> World {
-        let obstacle = |(i, (x, y, r)): (usize, &(f64, f64, f64))| Obstacle {
-            id: ObstacleId(i as u32),
-            name: String::new(),
-            shape: Shape::Disc { center: Point::new(*x, *y), radius_m: *r },
-            known: true,
-        };
-        let obstacles = discs.iter().enumerate().map(obstacle).collect();
-        World { boundary: Boundary::Circle { radius_m: 5.0 }, obstacles, stations: vec![], zones: vec![] }
-    }
-
-    fn kind(floor: &Floor, x: f64, y: f64) -> Cell {
-        floor.kind(floor.cell_at(Point::new(x, y)).expect("in the grid"))
-    }
-
-    #[test]
-    fn floor_that_the_tool_cannot_reach_says_why() {
-        let mut world = tank(&[(2.0, 0.0, 0.3)]);
-        let shape = Shape::Disc { center: Point::new(-2.0, 0.0), radius_m: 1.0 };
-        world.zones.push(Zone { name: "sump".into(), kind: ZoneKind::NoGo, shape });
-        let floor = Floor::new(&world, 0.05, 0.5, 0.6, Point::origin());
-        assert_eq!(kind(&floor, 4.9, 0.0), Cell::Margin);
-        assert_eq!(kind(&floor, 4.7, 0.0), Cell::Reachable);
-        assert_eq!(kind(&floor, 2.0, 0.4), Cell::Beside);
-        assert_eq!(kind(&floor, 2.0, 0.0), Cell::Outside);
-        assert_eq!(kind(&floor, -2.0, 0.0), Cell::NoGo);
-        assert_eq!(kind(&floor, 0.0, 0.0), Cell::Reachable);
-    }
-
-    #[test]
-    fn a_gap_at_the_shell_that_is_too_narrow_is_beside_the_column_and_no_margin() {
-        let floor = Floor::new(&tank(&[(4.1, 0.0, 0.3)]), 0.05, 0.5, 0.6, Point::origin());
-        assert_eq!(kind(&floor, 4.72, 0.02), Cell::Beside);
-        assert_eq!(kind(&floor, 4.92, 0.02), Cell::Margin);
-        assert_eq!(kind(&floor, -4.72, 0.02), Cell::Reachable);
-    }
-
-    #[test]
-    fn asking_blocks_first_gives_the_same_floor_as_asking_every_cell() {
-        let world = tank(&[(2.0, 0.0, 0.3), (2.9, 0.1, 0.2), (-1.0, 3.0, 0.5), (-4.6, 0.0, 0.2)]);
-        for (cell_m, room_m) in [(0.05, 0.35), (0.1, 0.2), (0.03, 0.6)] {
-            let mut maker = FloorMaker::new(&world, cell_m, room_m, 0.5, Point::origin());
-            let map = ObstacleMap::new(&world.boundary, &world.obstacles);
-            let clearance_m = |cell| map.clearance_m(maker.floor.center(cell)) as f32;
-            let exact: Vec<f32> = (0..maker.floor.len()).map(clearance_m).collect();
-            let n_asked =
-                exact.iter().zip(&maker.clearance_m).filter(|(a, b)| a.to_bits() == b.to_bits()).count();
-            assert!(n_asked < exact.len() / 2, "{n_asked} of {}", exact.len());
-            let floor = maker.clone().into_floor();
-            maker.clearance_m = exact;
-            maker.classify(&world);
-            assert_eq!(maker.into_floor(), floor, "cells of {cell_m} m, room of {room_m} m");
-        }
-    }
-
-    #[test]
-    fn blocks_whose_middle_lies_on_the_side_of_a_box_are_asked_cell_by_cell() {
-        let corner = |x: f64, y: f64| Point::new(1.4 + 0.6 * x, -1.4 + 0.4 * y);
-        let vertices = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        let mut world = tank(&[]);
-        world.boundary = Boundary::Polygon {
-            vertices: [(-4.8, -2.8), (4.8, -2.8), (4.8, 2.8), (-4.8, 2.8)]
-                .map(|(x, y)| Point::new(x, y))
-                .to_vec(),
-        };
-        let shape = Shape::Polygon { vertices };
-        world.obstacles.push(Obstacle { id: ObstacleId(0), name: String::new(), shape, known: true });
-        let floor = Floor::new(&world, 0.05, 0.3, 0.6, Point::origin());
-        let solid = (0..floor.len()).filter(|cell| floor.kind(*cell) == Cell::Outside).count();
-        assert_eq!(solid, 24 * 16, "cells of a box of 1.2 m by 0.8 m");
-    }
-
-    #[test]
-    fn a_found_obstacle_gives_the_floor_that_it_would_have_given_from_the_start() {
-        let (before, after) = (tank(&[(2.0, 0.0, 0.3)]), tank(&[(2.0, 0.0, 0.3), (-1.0, 2.0, 0.4)]));
-        let make = |world: &World| FloorMaker::new(world, 0.05, 0.35, 0.5, Point::origin());
-        let mut maker = make(&before);
-        let mut updated = Floor::new(&before, 0.05, 0.35, 0.5, Point::origin());
-        let map = ObstacleMap::new(&after.boundary, &after.obstacles);
-        let changes = maker.update(&after, &map, &[after.obstacles[1].shape.clone()]);
-        updated.change(&changes);
-        let rebuilt = make(&after).into_floor();
-        assert_eq!((&maker.into_floor(), &updated), (&rebuilt, &rebuilt));
-        assert!(!changes.is_empty() && changes.len() < 200);
-    }
-}
+mod tests;

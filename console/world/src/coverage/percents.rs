@@ -36,6 +36,24 @@ pub fn percent(share: f64) -> f64 {
     percents([share, 1.0 - share])[0]
 }
 
+/// A share as text in per cent with so many decimals, never 100 unless it is all.
+///
+/// ```
+/// use world::coverage::percent_text;
+/// assert_eq!(percent_text(0.999_96, 2), "99.99");
+/// assert_eq!(percent_text(0.999_96, 1), "99.9");
+/// assert_eq!([percent_text(0.996, 0), percent_text(1.0, 0), percent_text(0.125, 1)], ["99", "100", "12.5"]);
+/// ```
+pub fn percent_text(share: f64, decimals: usize) -> String {
+    let rounded = format!("{:.decimals$}", 100.0 * share);
+    let is_all = share >= 1.0 - 1e-12;
+    if is_all || rounded.parse::<f64>().is_ok_and(|percent| percent < 100.0) {
+        return rounded;
+    }
+    let finest = 10_f64.powi(-(decimals.min(12) as i32));
+    format!("{:.decimals$}", 100.0 - finest)
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::float_cmp, reason = "tenths are exact")]

@@ -1,7 +1,7 @@
 //! Which part of a floor a tool swept, by area: the check of what is counted in cells.
 
 use super::{
-    floor::{Cell, Floor},
+    floor_maker::FloorMaker,
     span::{Capsule, Span, crossings, polygon_span},
     tool::Tool,
 };
@@ -17,11 +17,12 @@ const ASKEW_RAD: f64 = 0.345;
 const ROW_M: f64 = 0.02;
 /// Most rows of a floor.
 const MOST_ROWS: f64 = 5_000.0;
+/// How exactly the border of the floor in reach is found along a row, metres.
+const EDGE_M: f64 = 1e-5;
 /// Spans of a row that are nearer than this are one, metres.
 const SEAM_M: f64 = 1e-9;
 
-/// What a tool swept, as spans of rows across a floor: exact along each row. Of the floor only its outline and what stands on
-/// it are taken exactly, too; the border of floor beyond the reach of the tool is that of its cells.
+/// What a tool swept, as spans of rows across a floor: exact along each row, as is the floor.
 ///
 /// ```
 /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -114,19 +115,20 @@ impl SweptArea {
         self.rows.iter().flatten().map(|(from, to)| to - from).sum::<f64>() * self.row_m
     }
 
-    /// The swept share of the floor that the tool can reach, 0 to 1; `None` if there is no such floor.
+    /// The swept share of the floor that the tool can reach, 0 to 1, within a wall and beside what stands on it; `None` if there
+    /// is no such floor.
     ///
     /// ```
-    /// use world::{Boundary, Floor, Point, Pose, SweptArea, Tool, World};
+    /// use world::{Boundary, FloorMaker, Point, Pose, SweptArea, Tool, World};
     /// # let boundary = Boundary::Circle { radius_m: 5.0 };
     /// # let tank = World { boundary: boundary.clone(), obstacles: vec![], stations: vec![], zones: vec![] };
-    /// let floor = Floor::new(&tank, 0.1, 0.3, 0.6, Point::origin());
+    /// let floor = FloorMaker::new(&tank, 0.1, 0.3, 0.6, Point::origin());
     /// let mut area = SweptArea::new(&boundary);
     /// area.pass(Tool::Bar { swath_m: 0.6 }, Pose::new(-2.0, 0.0, 0.0), Pose::new(2.0, 0.0, 0.0));
     /// let share = area.share_of(&floor, &boundary, &[]).unwrap();
     /// assert!((share - 2.4 / 78.54).abs() < 1e-3);
     /// ```
-    pub fn share_of(&self, floor: &Floor, boundary: &Boundary, solids: &[Shape]) -> Option<f64> {
+    pub fn share_of(&self, floor: &FloorMaker, boundary: &Boundary, solids: &[Shape]) -> Option<f64> {
         let turn = Isometry2::from_parts(nalgebra::Translation2::identity(), self.askew.into());
         let solids: Vec<(Span, Part)> = solids
             .iter()
@@ -184,34 +186,38 @@ impl SweptArea {
     }
 
     /// The parts of some spans in which the tool can reach the floor.
-    fn reachable(&self, spans: &[Span], floor: &Floor, y: f64) -> Vec<Span> {
+    fn reachable(&self, spans: &[Span], floor: &FloorMaker, y: f64) -> Vec<Span> {
+        let is_reached = |x: f64| floor.reaches(self.askew.inverse() * Point::new(x, y));
         let mut reachable: Vec<Span> = Vec::new();
         for (from, to) in spans {
-            let count = ((to - from) / floor.cell_m).ceil().max(1.0);
-            let at = |k: f64| from + (to - from) * (k / count);
-            for k in 0..count as usize {
-                let (a, b) = (at(k as f64), at(k as f64 + 1.0));
-                let middle = self.askew.inverse() * Point::new(f64::midpoint(a, b), y);
-                match reachable.last_mut() {
-                    _ if !is_reachable_about(floor, middle) => {}
-                    Some(last) if a - last.1 <= SEAM_M => last.1 = b,
-                    _ => reachable.push((a, b)),
+            let count = ((to - from) / self.row_m).ceil().max(1.0);
+            let at = |k: usize| from + (to - from) * (k as f64 / count);
+            let (mut before_m, mut was_reached) = (*from, false);
+            for k in 0..=count as usize {
+                // The very end of a span lies on what ends it.
+                let here_m = at(k).clamp(from + EDGE_M, (to - EDGE_M).max(from + EDGE_M));
+                let now_reached = is_reached(here_m);
+                let edge_m = || if k == 0 { *from } else { border_m(before_m, here_m, &is_reached) };
+                match (was_reached, now_reached, reachable.last_mut()) {
+                    (false, true, _) => reachable.push((edge_m(), *to)),
+                    (true, false, Some(last)) => last.1 = edge_m(),
+                    _ => {}
                 }
+                (before_m, was_reached) = (here_m, now_reached);
             }
         }
         reachable
     }
 }
 
-/// Whether floor is in reach. Floor in a cell whose centre is none counts as the nearest cell of floor does.
-fn is_reachable_about(floor: &Floor, at: Point) -> bool {
-    let Some(cell) = floor.cell_at(at) else { return false };
-    if floor.is_floor(cell) {
-        return floor.is_reachable(cell);
+/// Where reach begins or ends between two places on a row, of which one is reached and one is not, metres.
+fn border_m(mut low_m: f64, mut high_m: f64, is_reached: impl Fn(f64) -> bool) -> f64 {
+    let at_low = is_reached(low_m);
+    while high_m - low_m > EDGE_M {
+        let middle_m = f64::midpoint(low_m, high_m);
+        if is_reached(middle_m) == at_low { low_m = middle_m } else { high_m = middle_m }
     }
-    let off_m = |cell: &usize| (floor.center(*cell) - at).norm();
-    let near = floor.cells_near(at, at, 2.0 * floor.cell_m).into_iter().filter(|cell| floor.is_floor(*cell));
-    near.min_by(|a, b| off_m(a).total_cmp(&off_m(b))).is_some_and(|cell| floor.kind(cell) == Cell::Reachable)
+    f64::midpoint(low_m, high_m)
 }
 
 /// The four triangles that a bar sweeps between two poses that are close together.
@@ -321,8 +327,9 @@ mod tests {
     fn a_seam_too_narrow_for_cells_is_seen() {
         let corners = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.202), (0.0, 1.202)];
         let boundary = Boundary::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() };
-        let floor = Floor::new(&world(boundary.clone(), vec![]), 0.1, 0.1, 0.6, Point::new(1.0, 0.6));
-        let (mut cells, mut area) = (CoverageGrid::new(floor.clone()), SweptArea::new(&boundary));
+        let floor = FloorMaker::new(&world(boundary.clone(), vec![]), 0.1, 0.1, 0.6, Point::new(1.0, 0.6));
+        let (mut cells, mut area) =
+            (CoverageGrid::new(floor.clone().into_floor()), SweptArea::new(&boundary));
         for y in [0.3, 0.902] {
             for (a, b) in [(0.0, 3.0), (3.0, 6.0)] {
                 let (a, b) = (Pose::new(a, y, 0.0), Pose::new(b, y, 0.0));
@@ -341,7 +348,7 @@ mod tests {
         let world = world(boundary.clone(), vec![column(1.0, 0.5, 1.2)]);
         let shapes: Vec<Shape> = world.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
         // Hull and clearance are small, so that everything is in reach.
-        let floor = Floor::new(&world, 0.05, 0.05, 0.6, Point::new(-3.0, 0.0));
+        let floor = FloorMaker::new(&world, 0.05, 0.05, 0.6, Point::new(-3.0, 0.0));
         let mut area = SweptArea::new(&boundary);
         area.pass(Tool::Bar { swath_m: 12.0 }, Pose::new(-6.0, 0.0, 0.0), Pose::new(-0.5, 0.0, 0.0));
         let west_m2 = PI * 25.0 / 2.0 - (0.5 * (25.0_f64 - 0.25).sqrt() + 25.0 * 0.1_f64.asin());

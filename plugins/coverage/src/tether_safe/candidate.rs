@@ -16,7 +16,7 @@ use crate::workspace::Workspace;
 use planner_api::Site;
 use std::f64::consts::PI;
 use world::tether::{Cable, Certificate, Strain};
-use world::{Boundary, polyline, shape::ring_area_m2};
+use world::{Boundary, coverage::percent_text, polyline, shape::ring_area_m2};
 
 /// One way to make a plan.
 pub(super) struct Candidate {
@@ -187,11 +187,11 @@ impl Worth {
     pub(super) fn summary(&self, name: &str) -> String {
         let c = &self.certificate;
         format!(
-            "{name}: {:.1} m, {:.0} turns, {:.2} % of the floor in reach, cable {:.2} m ({:.3} of the least), wrap \
+            "{name}: {:.1} m, {:.0} turns, {} % of the floor in reach, cable {:.2} m ({:.3} of the least), wrap \
              {:.0} / {:.0} deg{}",
             self.length_m,
             self.turns,
-            100.0 * self.coverage,
+            percent_text(self.coverage, 2),
             c.tether_length_max_m,
             Strain::from(c).cable_share(),
             c.wrap_max_rad.to_degrees(),

@@ -6,7 +6,7 @@ use crate::{
     task::{StuckWatch, Task},
 };
 use planner_api::Reason;
-use world::Point;
+use world::{Point, coverage::percent_text};
 
 /// Watches the progress of the task.
 #[derive(Clone)]
@@ -44,8 +44,8 @@ impl StuckRule {
 
 /// An operator may know a way on; without one the mission is over.
 fn give_up(seen: &Seen<'_>) -> Verdict {
-    let (here, done) = (seen.here, seen.task.done() * 100.0);
-    let message = format!("no progress at {:.2}, {:.2} m, {done:.0} % done", here.x, here.y);
+    let (here, done) = (seen.here, percent_text(seen.task.done(), 0));
+    let message = format!("no progress at {:.2}, {:.2} m, {done} % done", here.x, here.y);
     if seen.config.attended {
         Verdict::Hold(Hold { by: HoldReason::Stuck { message }, resumes: Resumes::Never })
     } else {

@@ -1,12 +1,15 @@
 //! The last sections: equipment, limitations, gate, signatures, provenance.
 
 use super::{
-    super::page::{Block, SignatureBlock, Table, Value},
+    super::{
+        Readings, RunPart,
+        page::{Block, SignatureBlock, Table, Value},
+    },
     Document, cm, number,
 };
 
 /// Equipment, calibration and what the run says of the stations.
-pub(super) fn equipment(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let floor = &document.floor;
     let thickness = facts.nominal_thickness_mm.map(|mm| format!("{mm} mm"));
@@ -56,7 +59,7 @@ pub(super) fn equipment(document: &Document) -> Vec<Block> {
 }
 
 /// What the report does not say.
-pub(super) fn limitations(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut items = Vec::new();
     if document.is_simulation {
@@ -65,7 +68,7 @@ pub(super) fn limitations(document: &Document) -> Vec<Block> {
                 .to_owned(),
         );
     }
-    items.extend([
+    let of_scans = [
         "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does not say that a defect would have \
          been detected; that rests on the instrument, its calibration and the surface."
             .to_owned(),
@@ -77,16 +80,20 @@ pub(super) fn limitations(document: &Document) -> Vec<Block> {
         "\u{201c}Guaranteed\u{201d} holds for the position error by the covariance: errors of the heading, of the survey of the stations and \
          of the speed of sound, and the offset of the tool on the robot are not in it."
             .to_owned(),
-        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
         "The critical zone is evaluated in 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
-        "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
+    ];
+    items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
+    items.extend([
+        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the code that applies."
+            .to_owned(),
     ]);
     let code = Value::fact(document.inspection.code.as_ref(), "code");
     vec![Block::List(items), Block::Facts(vec![("Code and edition", code)])]
 }
 
 /// The thirteen items.
-pub(super) fn gate(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn gate(document: &Document) -> Vec<Block> {
     let mut table = Table::new(
         "The gate: a report is signed when every item is answered",
         &[("", "", "r"), ("State", "", "nw"), ("Item", "", ""), ("Answer", "", "")],
@@ -104,7 +111,7 @@ pub(super) fn gate(document: &Document) -> Vec<Block> {
 }
 
 /// Who signs, and what was signed before.
-pub(super) fn signatures(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     let mut blocks = Vec::new();
@@ -182,18 +189,29 @@ pub(super) fn signatures(document: &Document) -> Vec<Block> {
 }
 
 /// Everything that proves where the figures come from.
-pub(super) fn provenance(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     for run in &document.runs {
         let files = &run.files;
         let bytes =
             |bytes: Option<u64>| bytes.map(|n| format!("{:.1} MB", n as f64 / 1e6)).unwrap_or_default();
         let state = match files.are_as_reported {
+            Some(true) if files.recovered.is_some() => {
+                "equal to the digests when the run was recovered".to_owned()
+            }
             Some(true) => "equal to the digests at the end of the run".to_owned(),
             Some(false) => format!("DIFFERENT: {}", files.doubts.join("; ")),
             None => "there is no report of the end of the run".to_owned(),
         };
-        blocks.push(Block::Facts(vec![
+        if let Some(readings) = located_as(document, &run.run) {
+            blocks.extend(of_readings(
+                run,
+                readings,
+                format!("{}, {}; {state}", bytes(files.journal_bytes), bytes(files.recording_bytes)),
+            ));
+            continue;
+        }
+        let mut facts = vec![
             ("Run", run.run.clone().into()),
             (
                 "Program",
@@ -213,7 +231,9 @@ pub(super) fn provenance(document: &Document) -> Vec<Block> {
                 "To repeat",
                 format!("tankops verify {} computes the run again and compares every event", run.run).into(),
             ),
-        ]));
+        ];
+        facts.extend(files.recovered.as_ref().map(|how| ("Killed, recovered", how.to_string().into())));
+        blocks.push(Block::Facts(facts));
         let hashes = [
             ("Journal SHA-256", &files.journal_sha256),
             ("Recording SHA-256", &files.recording_sha256),
@@ -226,6 +246,35 @@ pub(super) fn provenance(document: &Document) -> Vec<Block> {
         blocks.push(Block::Hashes(stated.chain(planners).collect()));
     }
     blocks
+}
+
+/// The readings of a run that was located.
+fn located_as<'a>(document: &'a Document, run: &str) -> Option<&'a Readings> {
+    document.located.as_ref()?.readings.iter().find(|readings| readings.run == run)
+}
+
+/// Where the figures of readings come from.
+fn of_readings(run: &RunPart, readings: &Readings, journal: String) -> [Block; 2] {
+    let facts = Block::Facts(vec![
+        ("Run", run.run.clone().into()),
+        ("Readings", readings.file.clone().into()),
+        (
+            "Program",
+            format!("tankops {}, journal version {}", run.tankops_version, run.journal_version).into(),
+        ),
+        ("Scenario", run.scenario.clone().into()),
+        ("Journal, recording", journal.into()),
+        ("To repeat", "tankops locate, with the same readings and scenario".into()),
+    ]);
+    let files = &run.files;
+    let hashes = [
+        ("Readings SHA-256", Some(&readings.sha256)),
+        ("Journal SHA-256", files.journal_sha256.as_ref()),
+        ("Recording SHA-256", files.recording_sha256.as_ref()),
+        ("Scenario SHA-256", files.scenario_sha256.as_ref()),
+    ];
+    let stated = hashes.into_iter().filter_map(|(label, hash)| Some((label.to_owned(), grouped(hash?))));
+    [facts, Block::Hashes(stated.collect())]
 }
 
 /// A digest in groups of eight.

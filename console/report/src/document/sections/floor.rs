@@ -2,11 +2,13 @@
 
 use super::{
     super::{
+        located::accuracy_how,
         maps::{plate_bar, plate_legend},
         page::{Block, Row, Table, Value, per_cent},
     },
     Document, cm, number, picture,
 };
+use world::coverage::percent_text;
 
 /// Arcs of the critical zone that are listed.
 const MOST_ARCS: usize = 8;
@@ -17,16 +19,16 @@ const MOST_NUMBERS: usize = 3;
 pub(super) fn map(document: &Document) -> Vec<Block> {
     let exact = document.floor.exact.map(|share| {
         Block::Text(format!(
-            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {:.2} %.",
+            "Counted in cells, {} % of the reachable floor was scanned; by exact area, without cells, {} %.",
             per_cent(document.floor.reachable.scanned),
-            100.0 * share
+            percent_text(share, 2)
         ))
     });
     std::iter::once(Block::Wide(picture(&document.pictures.coverage))).chain(exact).collect()
 }
 
 /// The critical zone: unrolled, its longest arcs, and plate by plate.
-pub(super) fn zone(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     let zone = &document.floor.critical_zone;
     let state = if zone.done { "Done" } else { "Not done" };
     let scanned = zone.scanned.map_or_else(|| "none".to_owned(), |share| format!("{} %", per_cent(share)));
@@ -98,9 +100,8 @@ pub(super) fn zone(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// Accuracy and guaranteed coverage.
-pub(super) fn accuracy(document: &Document) -> Vec<Block> {
-    let pictures = &document.pictures;
+/// How good the position was, run by run.
+pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
     let mut table = Table::new(
         "Accuracy statement",
         &[
@@ -132,11 +133,15 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             ]);
         }
         if let Some(p) = &run.positioning {
-            let how = format!(
-                "simulation only; truth within the 95 % ellipse in {} % of the ticks; lost for {:.1} s",
-                per_cent(p.in_95_ellipse),
-                p.position_lost_s
-            );
+            let inside = per_cent(p.in_95_ellipse);
+            let how = if document.located.is_some() {
+                accuracy_how(&inside)
+            } else {
+                format!(
+                    "simulation only; truth within the 95 % ellipse in {inside} % of the ticks; lost for {:.1} s",
+                    p.position_lost_s
+                )
+            };
             table.row(vec![
                 format!("true error{of}").into(),
                 cm(p.mean_error_m).into(),
@@ -146,6 +151,12 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             ]);
         }
     }
+    table
+}
+
+/// Accuracy and guaranteed coverage.
+pub(super) fn accuracy(document: &Document) -> Vec<Block> {
+    let pictures = &document.pictures;
     let truth = document.coverage.by_truth.and_then(|truth| truth.scanned_truly.zip(truth.guaranteed_truly));
     let truth = truth.map(|(scanned, sure)| {
         Block::Text(format!(
@@ -154,6 +165,10 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
             per_cent(sure)
         ))
     });
+    if !document.is_to_scan {
+        let what = "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations).";
+        return vec![Block::Text(what.into()), Block::Table(table)];
+    }
     let mut blocks = vec![
         Block::Text(
             "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations). A cell is \
@@ -163,14 +178,14 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
-        Block::Table(table),
+        Block::Table(accuracy_statement(document)),
     ];
     blocks.extend(truth);
     blocks
 }
 
 /// Every plate.
-pub(super) fn plates(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     if floor.plates.is_empty() {
         let waiver = Value::fact(document.inspection.plates_waiver.as_ref(), "plates_waiver");

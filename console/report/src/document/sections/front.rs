@@ -6,7 +6,7 @@ use super::{
         decisions::{Decision, decisions, is_complete},
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
     },
-    Document, counted, escaped, number,
+    Document, counted, escaped, number, number_of, task,
 };
 use crate::account::Shares;
 use mission::Outcome;
@@ -28,6 +28,8 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let is_end = |letter: char| letter.is_control() || matches!(letter, '\\' | '"');
     let css = |text: String| escaped(&text).replace(is_end, " ");
     Page {
+        heading: "Tank floor inspection: coverage and position record",
+        banner: String::new(),
         title: format!("Inspection report {tank} revision {}", document.revision),
         css: "",
         head: css(format!(
@@ -42,9 +44,12 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
         answered,
         items: document.gate.len(),
         fields: fields(document),
-        verdict: verdict(document),
-        shares: shares(document),
-        bases: bases(document),
+        verdict: document
+            .task
+            .as_ref()
+            .map_or_else(|| verdict(document), |task| task::verdict(document, task)),
+        shares: document.task.as_ref().map_or_else(|| shares(document), |task| task::shares(document, task)),
+        bases: document.is_to_scan.then(|| bases(document)),
         todo: todo(document),
         sections,
     }
@@ -127,7 +132,9 @@ fn verdict(document: &Document) -> Verdict {
         Some(Outcome::Aborted) => "the mission was ended early".to_owned(),
         Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
     };
-    let reason = last.and_then(|run| run.reason.clone());
+    let recovered = last.and_then(|run| run.files.recovered.as_ref());
+    let recovered = recovered.map(|how| format!("the run was killed, and closed {how}"));
+    let reason = last.and_then(|run| run.reason.clone()).or(recovered);
     Verdict {
         class: "bad",
         lead: format!(
@@ -144,7 +151,8 @@ fn shares(document: &Document) -> Vec<Share> {
     let sure = reachable.guaranteed.unwrap_or(0.0);
     vec![
         Share {
-            percent: format!("{:.1}", whole.percent.scanned),
+            value: format!("{:.1}", whole.percent.scanned),
+            unit: "%",
             of: "of the whole floor",
             about: format!(
                 "{} of {:.1} m² of floor within the shell, excluding the footprint of obstacles",
@@ -153,7 +161,8 @@ fn shares(document: &Document) -> Vec<Share> {
             ),
         },
         Share {
-            percent: format!("{:.1}", reachable.percent.scanned),
+            value: format!("{:.1}", reachable.percent.scanned),
+            unit: "%",
             of: "of the reachable floor",
             about: format!(
                 "{} of {:.1} m² that the tool can reach while hull and clearance are kept",
@@ -162,7 +171,8 @@ fn shares(document: &Document) -> Vec<Share> {
             ),
         },
         Share {
-            percent: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
+            value: format!("{:.1}", reachable.percent.guaranteed.unwrap_or(0.0)),
+            unit: "%",
             of: "of the reachable floor, guaranteed",
             about: format!(
                 "{} m² under the tool wherever the robot stood within its 95 % position error; {:.1} % of the whole floor",
@@ -209,13 +219,13 @@ fn bases(document: &Document) -> Table {
 fn todo(document: &Document) -> Vec<Todo> {
     let decision = |decision: Decision| {
         let value = Value::fact(decision.answer.as_ref(), decision.key);
-        Todo { text: decision.what, value, section: decision.section }
+        Todo { text: decision.what, value, section: number_of(document.is_to_scan, decision.section) }
     };
     let mut todo: Vec<Todo> = decisions(document).into_iter().map(decision).collect();
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     if !open.is_empty() {
         let text = format!("Open items of the gate: {}.", open.join(", "));
-        todo.push(Todo { text, value: Value::default(), section: 10 });
+        todo.push(Todo { text, value: Value::default(), section: number_of(document.is_to_scan, 10) });
     }
     todo
 }

@@ -118,10 +118,13 @@ fn balance(document: &Document) -> String {
     // The rest of what is printed, so that the line adds up to its last digit.
     let [all, unreachable, margin, scanned] =
         [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
+    let beyond = format!(
+        " + {scanned:.3} m² scanned although not counted as reachable: the robot came closer to the shell or to an obstacle than hull \
+         and clearance allow, or the floor was reachable before an obstacle was found"
+    );
     format!(
-        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin + {scanned:.3} m² \
-         scanned although not counted as reachable: the robot came closer to the shell or to an obstacle than hull and clearance allow, \
-         or the floor was reachable before an obstacle was found."
+        "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin{}.",
+        if scanned > 0.0 { beyond } else { String::new() }
     )
 }
 

@@ -10,12 +10,13 @@ use super::{
 };
 use crate::clock;
 use mission::Severity;
+use world::coverage::percent_text;
 
 /// Incidents that are listed for a run; plans and orders are left out first.
 const MOST_INCIDENTS: usize = 120;
 
 /// Every run, then the indications.
-pub(super) fn runs(document: &Document) -> Vec<Block> {
+pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     for ((number, run), figures) in (1..).zip(&document.runs).zip(&document.pictures.runs) {
         let number: usize = number;
@@ -64,7 +65,7 @@ fn tether_table(tether: &TetherPart) -> Table {
             let decimals = usize::from(unit == " m");
             let text = |value: f64| format!("{}{unit}", number(value, decimals));
             let share = limit.map(|limit| {
-                if value > limit { "over".into() } else { format!("{:.0} %", 100.0 * value / limit) }
+                if value > limit { "over".into() } else { format!("{} %", percent_text(value / limit, 0)) }
             });
             table.row(vec![
                 name.into(),
@@ -172,7 +173,7 @@ fn indications(document: &Document) -> Vec<Block> {
         return vec![Block::Heading("Indications".into()), Block::Facts(vec![("Statement", stated)])];
     }
     let mut table = Table::new(
-        "Indications of the instrument, placed by time on the track",
+        "Indications of the instrument, placed by time on the track, or where the instrument says",
         &[
             ("No.", "", "r"),
             (if document.runs.len() > 1 { "Run" } else { "" }, "", "c"),
@@ -196,11 +197,11 @@ fn indications(document: &Document) -> Vec<Block> {
     for found in &document.indications {
         table.row(vec![
             format!("I{}", found.number).into(),
-            run_of(&found.run).into(),
-            clock(found.t_s).into(),
+            found.run.as_deref().map(run_of).unwrap_or_default().into(),
+            found.t_s.map_or_else(|| "\u{2013}".to_owned(), clock).into(),
             number(found.at.x, 2).into(),
             number(found.at.y, 2).into(),
-            number(found.error_m, 2).into(),
+            found.error_m.map_or_else(|| "\u{2013}".to_owned(), |m| number(m, 2)).into(),
             found.plate.clone().unwrap_or_default().into(),
             found.kind.clone().into(),
             optional(found.size_mm).into(),

@@ -9,6 +9,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use report::Summary;
+use world::coverage::percent;
 
 /// A figure of a report.
 struct Figure {
@@ -29,7 +30,7 @@ const fn figure(
 
 /// The figures, those that matter most first.
 const FIGURES: [Figure; 15] = [
-    figure("scanned", "% reach.", 1, |s| s.coverage.as_ref().map(|c| 100.0 * c.reachable)),
+    figure("scanned", "% reach.", 1, |s| s.coverage.as_ref().map(|c| percent(c.reachable))),
     figure("missed", "m²", 2, |s| s.coverage.as_ref()?.missed_area_m2),
     figure("time", "s", 0, |s| s.mission_time_s),
     figure("path", "m", 1, |s| s.path_length_m),

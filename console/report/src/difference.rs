@@ -1,0 +1,48 @@
+//! The first place in which two values differ.
+
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+
+/// Where two values differ, and both as text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// The place, as `floor.missed.3.area_m2`.
+    pub key: String,
+    /// What the one has there.
+    pub one: String,
+    /// What the other has.
+    pub other: String,
+}
+
+/// The first place in which two values differ; none if they are equal.
+///
+/// ```
+/// let [one, other] = [4, 5].map(|n| serde_json::json!({ "a": 1, "b": [2, n] }));
+/// let difference = report::first_difference(&one, &other).unwrap();
+/// assert_eq!((&*difference.key, &*difference.one, &*difference.other), ("b.1", "4", "5"));
+/// ```
+pub fn first_difference(one: &Value, other: &Value) -> Option<Difference> {
+    below(String::new(), one, other)
+}
+
+fn below(key: String, one: &Value, other: &Value) -> Option<Difference> {
+    let at = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+    match (one, other) {
+        (one, other) if one == other => None,
+        (Value::Object(ones), Value::Object(others)) => {
+            let value = |map: &Map<String, Value>, name: &str| map.get(name).cloned().unwrap_or_default();
+            let names: BTreeSet<&String> = ones.keys().chain(others.keys()).collect();
+            names.into_iter().find_map(|name| below(at(name), &value(ones, name), &value(others, name)))
+        }
+        (Value::Array(ones), Value::Array(others)) if ones.len() == others.len() => {
+            let mut pairs = ones.iter().zip(others).enumerate();
+            pairs.find_map(|(index, (one, other))| below(at(&index.to_string()), one, other))
+        }
+        (Value::Array(ones), Value::Array(others)) => Some(Difference {
+            one: format!("a list of {}", ones.len()),
+            other: format!("one of {}", others.len()),
+            key,
+        }),
+        _ => Some(Difference { key, one: one.to_string(), other: other.to_string() }),
+    }
+}

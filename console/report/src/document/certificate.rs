@@ -1,0 +1,53 @@
+//! Whether the inspector's certificate was valid on the day of the inspection.
+
+use super::{Document, dates::Date};
+
+/// Words of a certificate that is not valid any more.
+const ENDED: [&str; 7] = ["expired", "lapsed", "invalid", "revoked", "suspended", "withdrawn", "abgelaufen"];
+
+/// What speaks against the certificate: the day on which it expires is missing or past, or its text says that it has ended.
+pub(super) fn doubts(document: &Document) -> Vec<String> {
+    let facts = &document.inspection;
+    let mut doubts = Vec::new();
+    let inspected = inspected(document);
+    let is_past = |end: Date| inspected.filter(|day| *day > end);
+    match facts.inspector_certificate_expires.as_ref().map(|text| (text, Date::read(text))) {
+        None => doubts.push("inspection.inspector_certificate_expires".to_owned()),
+        Some((text, None)) => {
+            doubts.push(format!("inspection.inspector_certificate_expires is no day, as 2027-03-31: `{text}`"));
+        }
+        Some((_, Some(end))) => doubts.extend(is_past(end).map(|day| {
+            format!("inspection.inspector_certificate_expires: it expired on {end}, before the inspection on {day}")
+        })),
+    }
+    if inspected.is_none() {
+        let is_located = document.located.is_some();
+        let lack = if is_located {
+            "inspection.inspected_on"
+        } else {
+            "the day of the inspection: the name of the run's folder does not say it"
+        };
+        doubts.push(lack.to_owned());
+    }
+    let Some(text) = &facts.inspector_certificate else { return doubts };
+    let lower = text.to_lowercase();
+    let words = || lower.split(|letter: char| !letter.is_alphabetic());
+    if let Some(word) = ENDED.into_iter().find(|ended| words().any(|word| word == *ended)) {
+        doubts.push(format!("inspection.inspector_certificate says that it is {word}: `{}`", text.trim()));
+    } else if let Some(day) = Date::until(text).and_then(is_past) {
+        doubts.push(format!(
+            "inspection.inspector_certificate ends before the inspection on {day}: `{}`",
+            text.trim()
+        ));
+    }
+    doubts
+}
+
+/// The day of the inspection: that on which its last run began, or, of readings, the one that is stated.
+fn inspected(document: &Document) -> Option<Date> {
+    if document.located.is_some() {
+        return Date::read(document.inspection.inspected_on.as_ref()?);
+    }
+    let began = document.runs.iter().filter_map(|run| run.began.as_deref());
+    began.filter_map(|began| Date::read(began.get(..10)?)).max()
+}

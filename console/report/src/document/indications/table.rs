@@ -1,0 +1,129 @@
+//! Rows of cells under a line of names.
+
+use std::fmt;
+
+/// Something wrong in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    /// The line, from 1.
+    pub(super) line: u64,
+    /// Name of the column, if it is about one cell.
+    pub(super) column: Option<String>,
+    /// What is wrong, and what would be right.
+    pub(super) what: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let column = self.column.as_ref().map(|name| format!(", {name}")).unwrap_or_default();
+        write!(f, "line {}{column}: {}", self.line, self.what)
+    }
+}
+
+/// Cells of a row with its line.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Cells {
+    pub(super) line: u64,
+    cells: csv::StringRecord,
+}
+
+/// A table as it was read.
+#[derive(Debug)]
+pub(super) struct Table {
+    names: Vec<String>,
+    pub(super) rows: Vec<Cells>,
+    /// What is wrong with rows that could not be read at all.
+    pub(super) broken: Vec<Fault>,
+}
+
+impl Table {
+    /// Reads a text whose cells are separated by commas, semicolons or tabs, as its first line shows.
+    pub(super) fn read(text: &str) -> Result<Self, Fault> {
+        // The reader counts a line when it has come to its end.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end().to_owned() + "\n";
+        let first =
+            text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
+        let delimiter =
+            [b';', b'\t'].into_iter().find(|mark| first.as_bytes().contains(mark)).unwrap_or(b',');
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let at_line = |line: u64, what: String| Fault { line, column: None, what };
+        let header = reader.headers().map_err(|error| at_line(1, error.to_string()))?;
+        let names: Vec<String> = header.iter().map(str::to_lowercase).collect();
+        for (index, name) in names.iter().enumerate() {
+            if !super::row::COLUMNS.contains(&name.as_str()) {
+                let known = super::row::COLUMNS.join(", ");
+                return Err(at_line(1, format!("unknown column `{name}`; there are {known}")));
+            }
+            if names[..index].contains(name) {
+                return Err(at_line(1, format!("column `{name}` is there twice")));
+            }
+        }
+        let (mut rows, mut broken) = (Vec::new(), Vec::new());
+        loop {
+            let mut cells = csv::StringRecord::new();
+            let read = reader.read_record(&mut cells);
+            // Where a record begins is not kept behind comments and empty lines.
+            let within = cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64;
+            let line = reader.position().line().saturating_sub(1 + within);
+            match read {
+                Ok(true) => rows.push(Cells { line, cells }),
+                Ok(false) => break,
+                Err(error) => broken.push(unequal(line, &error)),
+            }
+        }
+        let table = Self { names, rows, broken };
+        match (table.has("t_s").or(table.has("time")), table.has("x_m").zip(table.has("y_m"))) {
+            (None, None) => Err(at_line(1, "no column says where: add t_s or time, or x_m and y_m".into())),
+            _ if table.has("x_m").is_some() != table.has("y_m").is_some() => {
+                Err(at_line(1, "x_m and y_m belong together".into()))
+            }
+            _ if table.has("t_s").is_some() && table.has("time").is_some() => {
+                Err(at_line(1, "t_s and time both say when: keep one".into()))
+            }
+            _ => Ok(table),
+        }
+    }
+
+    /// Where a column stands, if there is one.
+    pub(super) fn has(&self, name: &str) -> Option<usize> {
+        let alias = match name {
+            "x_m" => "x",
+            "y_m" => "y",
+            other => other,
+        };
+        self.names.iter().position(|known| known == name || known == alias)
+    }
+
+    /// What a row has in a column; empty if there is no such column.
+    pub(super) fn cell<'a>(&self, cells: &'a Cells, name: &str) -> &'a str {
+        self.has(name).and_then(|index| cells.cells.get(index)).unwrap_or_default()
+    }
+
+    /// A file in which some numbers have a decimal comma and others a decimal point: which is which nobody can tell.
+    pub(super) fn mixed_marks(&self) -> Option<Fault> {
+        let marked = |mark: char| {
+            let has =
+                |cells: &&Cells| super::row::NUMBERS.iter().any(|name| self.cell(cells, name).contains(mark));
+            self.rows.iter().find(has).map(|cells| cells.line)
+        };
+        let (comma, point) = (marked(',')?, marked('.')?);
+        let what = format!(
+            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep to one"
+        );
+        Some(Fault { line: comma.min(point), column: None, what })
+    }
+}
+
+fn unequal(line: u64, error: &csv::Error) -> Fault {
+    let what = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => format!(
+            "{len} cells, and the first line has {expected_len}; a decimal comma needs cells that are separated by semicolons or tabs"
+        ),
+        _ => error.to_string(),
+    };
+    Fault { line, column: None, what }
+}

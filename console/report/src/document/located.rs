@@ -1,0 +1,161 @@
+//! A report on readings that were located: where something was, with its errors, and what its tool passed if the readings say
+//! when it was on. It was no mission: no floor was to be scanned, and none was missed.
+
+mod front;
+mod gate;
+mod map;
+mod sections;
+
+pub(super) use front::as_located;
+pub(super) use gate::{accuracy_how, decisions, equipment, missed, plates, scope, tether, unreachable};
+pub(super) use map::map;
+pub(super) use sections::sections;
+
+use super::Document;
+use crate::{account::Account, joined::PastRun};
+use serde::Serialize;
+use serde_json::{Value, json};
+use world::Point;
+
+/// Positions in `GeoJSON` are this far apart at least, metres.
+const POSITIONS_M: f64 = 0.25;
+
+/// Readings of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Readings {
+    /// Name of the run's folder.
+    pub run: String,
+    /// Their file.
+    pub file: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// What was located in the place of a mission.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Located {
+    /// The readings of each run.
+    pub readings: Vec<Readings>,
+    /// From the first reading to the last, seconds, of all runs together.
+    pub time_s: f64,
+    /// For how long the tool was on, seconds, of all runs together; absent if the readings of any of them do not say it, and then
+    /// no coverage is stated.
+    pub tool_on_s: Option<f64>,
+    /// Moments at which the position was estimated.
+    pub positions: usize,
+}
+
+impl Located {
+    /// What was located in some runs; none if they were flown.
+    pub(super) fn of(past: &[PastRun]) -> Option<Self> {
+        let measured = |past: &PastRun| past.fold.run.as_ref()?.measured.clone();
+        let all: Vec<_> = past.iter().map(measured).collect::<Option<_>>()?;
+        let of_run = |(past, measured): (&PastRun, &mission::event::Measured)| Readings {
+            run: past.name.clone(),
+            file: measured.file.clone(),
+            sha256: measured.sha256.clone(),
+        };
+        Some(Self {
+            readings: past.iter().zip(&all).map(of_run).collect(),
+            time_s: past.iter().filter_map(|past| past.summary.mission_time_s).sum(),
+            tool_on_s: all.iter().map(mission::event::Measured::on_for_s).sum(),
+            positions: past.iter().map(|past| past.record.track.len()).sum(),
+        })
+    }
+
+    /// The files of the readings, for people.
+    pub(super) fn files(&self) -> String {
+        self.readings.iter().map(|readings| readings.file.as_str()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The account of a floor that nobody was to scan: without what was missed and what is out of reach.
+pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
+    let mut critical_zone = floor.critical_zone;
+    let mut plates = floor.plates;
+    if !tool_is_known {
+        critical_zone.arcs.clear();
+        critical_zone.plates.clear();
+        plates.iter_mut().for_each(|plate| plate.error_p95_m = None);
+    }
+    Account {
+        critical_zone,
+        plates,
+        exact: None,
+        missed: Vec::new(),
+        slivers: Default::default(),
+        unreachable: Vec::new(),
+        unreachable_slivers: Default::default(),
+        ..floor
+    }
+}
+
+/// A report on readings as JSON: without what only a mission has. What the readings do not say is `null`, never zero.
+///
+/// # Errors
+/// A number that JSON cannot have.
+pub fn located_json(document: &Document) -> serde_json::Result<Value> {
+    let mut all = serde_json::to_value(document)?;
+    let is_known = document.located.as_ref().is_some_and(|located| located.tool_on_s.is_some());
+    let floor = &document.floor;
+    all["floor"] = json!({
+        "cell_m": floor.cell_m,
+        "swath_m": floor.swath_m,
+        "position_limit_m": floor.position_limit_m,
+        "critical_zone": if is_known { serde_json::to_value(&floor.critical_zone)? } else { Value::Null },
+        "whole": passed(&floor.whole, is_known),
+        "plates": floor.plates.iter().map(|plate| {
+            let mut row = passed(&plate.shares, is_known);
+            row["name"] = json!(plate.name);
+            row["kind"] = json!(plate.kind);
+            row["error_p95_m"] = json!(plate.error_p95_m);
+            row
+        }).collect::<Vec<_>>(),
+    });
+    all["coverage"] = if is_known {
+        json!({ "whole": document.coverage.whole, "overlap": document.coverage.overlap })
+    } else {
+        Value::Null
+    };
+    if let Some(object) = all.as_object_mut() {
+        object.remove("is_whole_floor");
+    }
+    for run in all["runs"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        for of_mission in
+            ["seed", "parameters", "drivers", "clearance_m", "clearance_min_m", "collisions", "tether"]
+        {
+            run.remove(of_mission);
+        }
+    }
+    Ok(all)
+}
+
+/// How much of some floor the tool passed.
+fn passed(shares: &crate::account::Shares, is_known: bool) -> Value {
+    json!({
+        "area_m2": shares.area_m2,
+        "scanned": is_known.then_some(shares.scanned),
+        "guaranteed": shares.guaranteed.filter(|_| is_known),
+        "scanned_percent": is_known.then_some(shares.percent.scanned),
+        "guaranteed_percent": shares.percent.guaranteed.filter(|_| is_known),
+    })
+}
+
+/// Where something was located, with the 95 % error: place, run, time, error; thinned to a distance.
+pub(super) fn positions(past: &[PastRun]) -> impl Iterator<Item = (Point, Value)> {
+    past.iter().flat_map(|past| {
+        let mut last: Option<Point> = None;
+        past.record.track.iter().filter_map(move |point| {
+            let here = point.position();
+            if last.is_some_and(|last| (here - last).norm() < POSITIONS_M) {
+                return None;
+            }
+            last = Some(here);
+            let thousandths = |value: f32| (1000.0 * f64::from(value)).round() / 1000.0;
+            let properties = json!({
+                "layer": "positions", "run": past.name, "t_s": thousandths(point.t_s), "error_95_m": thousandths(point.error_m),
+            });
+            Some((here, properties))
+        })
+    })
+}

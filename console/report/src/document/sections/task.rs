@@ -1,0 +1,187 @@
+//! The report on a run that was not there to scan: what it was to do, and how it did it.
+
+use super::{
+    super::{
+        TaskPart,
+        page::{Block, Section, Share, Table, Value, Verdict, per_cent},
+    },
+    Document, closing, floor, number, picture, runs, section,
+};
+use crate::{clock, summary::Tracking};
+use mission::Outcome;
+
+/// The sections in their order; their numbers are in [`super::number_of`].
+pub(super) fn sections(document: &Document, task: &TaskPart) -> Vec<Section> {
+    vec![
+        section("Scope", scope(document, task)),
+        Section { is_new_sheet: true, ..section("Task", figures(document, task)) },
+        section("Position accuracy", floor::accuracy(document)),
+        section("Track, tether and record", runs::runs(document)),
+        section("Equipment and calibration", closing::equipment(document)),
+        section("Limitations", closing::limitations(document)),
+        section("Gate before signing", closing::gate(document)),
+        section("Signatures and revisions", closing::signatures(document)),
+        section("Provenance", closing::provenance(document)),
+    ]
+}
+
+/// What is said in one sentence.
+pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
+    let run = document.runs.last();
+    let outcome = run.and_then(|run| run.outcome);
+    let what = task.words();
+    let lead = match outcome {
+        Some(Outcome::Complete) => format!("The task is complete: {what}."),
+        Some(other) => {
+            format!("Not complete: {what}. The mission ended ({}).", other.word().replace('_', " "))
+        }
+        None => format!("Not complete: {what}. The recording stops before the end of the mission."),
+    };
+    let is_complete = outcome == Some(Outcome::Complete);
+    let reason = run.and_then(|run| run.reason.clone()).filter(|_| !is_complete);
+    Verdict {
+        class: if is_complete { "" } else { "bad" },
+        lead: lead + " It was not there to scan the floor: no floor was missed.",
+        cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
+    }
+}
+
+/// The large figures.
+pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
+    let figure =
+        |value: String, unit: &'static str, of: &'static str, about: String| Share { value, unit, of, about };
+    match task {
+        TaskPart::Follow { tracking: Some(tracking), .. } => {
+            let near_m = Tracking::NEAR_M;
+            vec![
+                figure(
+                    per_cent(tracking.precision),
+                    "%",
+                    "precision",
+                    format!("of the driven path within {near_m} m of the preset path"),
+                ),
+                figure(
+                    per_cent(tracking.recall),
+                    "%",
+                    "recall",
+                    format!("of the preset points within {near_m} m of the driven path"),
+                ),
+                figure(
+                    number(tracking.cross_track_rmse_m, 3),
+                    "m",
+                    "RMS error",
+                    "cross-track: from the preset path to the driven path".into(),
+                ),
+            ]
+        }
+        TaskPart::Follow { .. } => Vec::new(),
+        TaskPart::Goto { left_m, left_true_m, tolerance_m, .. } => {
+            let run = document.runs.last();
+            let by = if left_true_m.is_some() { "by the true position" } else { "by the estimated position" };
+            let left = left_true_m.or(*left_m).map(|m| {
+                figure(
+                    number(m, 2),
+                    "m",
+                    "to the goal at the end",
+                    format!("{by}; reached within {tolerance_m} m"),
+                )
+            });
+            let path = run
+                .and_then(|run| run.path_length_m)
+                .map(|m| figure(number(m, 1), "m", "path", "driven, by the true position".into()));
+            let time = run.map(|run| {
+                figure(number(run.mission_time_s, 1), "s", "mission time", clock(run.mission_time_s))
+            });
+            left.into_iter().chain(path).chain(time).collect()
+        }
+    }
+}
+
+/// What the run was to do, and what the words mean.
+fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
+    let run = document.runs.first().map_or("", |run| run.run.as_str());
+    vec![Block::Text(format!(
+        "Scenario {}: {}. From 1 run: {run}. The mission was not there to scan the floor, so nothing of the floor counts as \
+         missed, and no coverage is claimed.",
+        document.scenario,
+        task.words()
+    ))]
+}
+
+/// The figures of the task, and the map.
+fn figures(document: &Document, task: &TaskPart) -> Vec<Block> {
+    let mut table =
+        Table::new("Figures of the task", &[("Figure", "", ""), ("Value", "", "r nw"), ("", "", "full")]);
+    for (name, value, note) in rows(document, task) {
+        table.row(vec![name.into(), value.into(), Value::from(note)]);
+    }
+    vec![Block::Table(table), Block::Wide(picture(&document.pictures.coverage))]
+}
+
+fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, String)> {
+    let metres = |m: f64, decimals: usize| format!("{} m", number(m, decimals));
+    let none = String::new;
+    let mut rows = match task {
+        TaskPart::Goto { goal, tolerance_m, straight_m, left_m, left_true_m } => vec![
+            (
+                "Goal",
+                format!("{}, {} m", number(goal.x, 2), number(goal.y, 2)),
+                format!("reached within {tolerance_m} m"),
+            ),
+            ("Straight from start to goal", metres(*straight_m, 2), none()),
+            (
+                "Distance to the goal at the end",
+                left_m.map_or_else(none, |m| metres(m, 3)),
+                "by the estimated position".into(),
+            ),
+            (
+                "Distance to the goal at the end",
+                left_true_m.map_or_else(none, |m| metres(m, 3)),
+                "by the true position; simulation only".into(),
+            ),
+        ],
+        TaskPart::Follow { preset_m, points, tracking } => {
+            let mut rows = vec![("Preset path", metres(*preset_m, 2), format!("{points} points"))];
+            if let Some(tracking) = tracking {
+                let near_m = Tracking::NEAR_M;
+                rows.push((
+                    "Precision",
+                    format!("{} %", per_cent(tracking.precision)),
+                    format!("of the driven path within {near_m} m of the preset path"),
+                ));
+                rows.push((
+                    "Recall",
+                    format!("{} %", per_cent(tracking.recall)),
+                    format!("of the preset points within {near_m} m of the driven path"),
+                ));
+                rows.push((
+                    "RMS error, cross-track",
+                    metres(tracking.cross_track_rmse_m, 3),
+                    "from the preset path".into(),
+                ));
+                rows.extend(tracking.rmse_m.map(|m| {
+                    ("RMS error", metres(m, 3), "from the preset points, in their order".to_owned())
+                }));
+            }
+            rows
+        }
+    };
+    if let Some(run) = document.runs.last() {
+        rows.extend(
+            run.path_length_m
+                .map(|m| ("Path", metres(m, 2), "by the true position; simulation only".to_owned())),
+        );
+        rows.push((
+            "Mission time",
+            format!("{} s", number(run.mission_time_s, 1)),
+            clock(run.mission_time_s),
+        ));
+        rows.extend(
+            run.clearance_min_m
+                .map(|m| ("Least clearance", metres(m, 3), format!("required: {} m", run.clearance_m))),
+        );
+        rows.extend(run.collisions.map(|n| ("Collisions", n.to_string(), none())));
+    }
+    rows.retain(|(_, value, _)| !value.is_empty());
+    rows
+}

@@ -1,0 +1,56 @@
+//! Outlines of what is listed in a report, for maps of other programs.
+
+use super::layers::Layers;
+use crate::{
+    account::{Area, MissReason},
+    drawing::polygons::{Polygon, polygons},
+    joined::PastRun,
+};
+use world::{PlateKind, Zone};
+
+/// The outlines of the missed areas and of the plates, as their cells make them.
+#[derive(Debug, Default)]
+pub(crate) struct Shapes {
+    /// Of each missed area, in the order of the account.
+    pub(crate) missed: Vec<Vec<Polygon>>,
+    /// Of each plate, in the order of the account.
+    pub(crate) plates: Vec<PlateShape>,
+}
+
+/// A plate on a map.
+#[derive(Debug)]
+pub(crate) struct PlateShape {
+    /// Its name.
+    pub(crate) name: String,
+    /// What kind of plate.
+    pub(crate) kind: PlateKind,
+    /// Its outline.
+    pub(crate) polygons: Vec<Polygon>,
+}
+
+impl Shapes {
+    pub(super) fn of(layers: &Layers<'_>, missed: &[Area<MissReason>]) -> Self {
+        let floor = layers.floor();
+        let outline = |area: &Area<MissReason>| {
+            let cells = layers.gaps.iter().find(|(place, _)| *place == area.at).map(|(_, cells)| cells);
+            cells.map_or_else(Vec::new, |cells| polygons(floor, cells))
+        };
+        let plates = layers.plate_cells().into_iter().map(|(plate, cells)| PlateShape {
+            name: plate.name.clone(),
+            kind: plate.kind,
+            polygons: polygons(floor, &cells),
+        });
+        Self { missed: missed.iter().map(outline).collect(), plates: plates.collect() }
+    }
+}
+
+/// The zones of some runs, each once: those of their scenarios, and those drawn under way.
+pub(super) fn zones(past: &[PastRun]) -> Vec<&Zone> {
+    let mut zones: Vec<&Zone> = Vec::new();
+    for zone in past.iter().flat_map(|past| &past.fold.run).flat_map(|run| &run.world.zones) {
+        if !zones.contains(&zone) {
+            zones.push(zone);
+        }
+    }
+    zones
+}

@@ -1,0 +1,216 @@
+//! What makes the floor of a run the one that it is, so that no report counts two floors as one.
+
+use crate::{difference::first_difference, document::Inspection, joined::PastRun};
+use mission::RunOpened;
+use serde::{Deserialize, Serialize};
+use world::{Boundary, PlateLayout, Shape, Zone};
+
+/// What a scenario says beside the mission.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Stated {
+    /// What only people know.
+    pub(crate) inspection: Inspection,
+    /// SHA-256 of the journals of the runs that a re-scan continues, hexadecimal; empty for any other run.
+    pub(crate) continues_sha256: Vec<String>,
+}
+
+impl Stated {
+    /// What the scenario of a run says.
+    ///
+    /// # Errors
+    /// It is no TOML: its journal was changed.
+    pub(crate) fn by(run: &RunOpened) -> Result<Self, String> {
+        toml::from_str(&run.scenario_toml)
+            .map_err(|error| format!("the scenario in its journal cannot be read: {}", error.message()))
+    }
+}
+
+/// The facts that say which floor it is; every difference counts.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub(crate) struct FloorFacts {
+    tank_id: Option<String>,
+    site: Option<String>,
+    drawing: Option<String>,
+    nominal_thickness_mm: Option<f64>,
+    datum_crs: Option<String>,
+    datum_m: Option<[f64; 2]>,
+    datum_north_deg: Option<f64>,
+}
+
+impl FloorFacts {
+    pub(crate) fn of(facts: &Inspection) -> Self {
+        let text = |fact: &Option<String>| fact.as_deref().map(str::trim).map(str::to_owned);
+        Self {
+            tank_id: text(&facts.tank_id),
+            site: text(&facts.site),
+            drawing: text(&facts.drawing),
+            nominal_thickness_mm: facts.nominal_thickness_mm,
+            datum_crs: text(&facts.datum_crs),
+            datum_m: facts.datum_m,
+            datum_north_deg: facts.datum_north_deg,
+        }
+    }
+
+    /// The same, with what is not stated here as others state it.
+    fn or(self, others: &Self) -> Self {
+        let others = others.clone();
+        Self {
+            tank_id: self.tank_id.or(others.tank_id),
+            site: self.site.or(others.site),
+            drawing: self.drawing.or(others.drawing),
+            nominal_thickness_mm: self.nominal_thickness_mm.or(others.nominal_thickness_mm),
+            datum_crs: self.datum_crs.or(others.datum_crs),
+            datum_m: self.datum_m.or(others.datum_m),
+            datum_north_deg: self.datum_north_deg.or(others.datum_north_deg),
+        }
+    }
+}
+
+/// Where facts of people say something else about the floor than the scenario that was flown, as a sentence; what only one of
+/// them states is no contradiction.
+pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
+    let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
+    let flown = flown.or(&facts);
+    let [facts, flown] = [facts.or(&flown), flown].map(|side| serde_json::to_value(side).ok());
+    let found = first_difference(&facts?, &flown?)?;
+    Some(format!("{} is {}, in the scenario of the run {}", found.key, found.one, found.other))
+}
+
+/// Everything that identifies a floor, as messages name it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Identity {
+    inspection: FloorFacts,
+    tank: Boundary,
+    obstacles: Vec<Outline>,
+    zones: Vec<Zone>,
+    plates: Option<PlateLayout>,
+    #[serde(rename = "mission.cell_m")]
+    cell_m: f64,
+}
+
+/// An obstacle, whether the robot knew it or had to find it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Outline {
+    name: String,
+    shape: Shape,
+}
+
+impl Identity {
+    fn of(run: &RunOpened, stated: &Stated) -> Self {
+        let outline = |obstacle: &world::Obstacle| Outline {
+            name: obstacle.name.clone(),
+            shape: obstacle.shape.clone(),
+        };
+        Self {
+            inspection: FloorFacts::of(&stated.inspection),
+            tank: run.world.boundary.clone(),
+            obstacles: run.world.obstacles.iter().map(outline).collect(),
+            zones: run.world.zones.clone(),
+            plates: run.plates.clone(),
+            cell_m: run.floor.cell_m,
+        }
+    }
+
+    /// Where another floor differs, as a sentence about the runs of these names.
+    fn difference(&self, name: &str, other: &Self, other_name: &str) -> Option<String> {
+        let [one, two] = [self, other].map(|side| serde_json::to_value(side).ok());
+        let found = first_difference(&one?, &two?)?;
+        Some(format!("{} is {} in {name} and {} in {other_name}", found.key, found.one, found.other))
+    }
+}
+
+/// A run among others.
+struct Candidate<'a> {
+    name: &'a str,
+    scenario: &'a str,
+    journal_sha256: Option<&'a str>,
+    stated: Stated,
+    identity: Identity,
+}
+
+impl<'a> Candidate<'a> {
+    fn of(past: &'a PastRun) -> Result<Option<Self>, String> {
+        let Some(run) = past.fold.run.as_deref() else { return Ok(None) };
+        let stated = Stated::by(run).map_err(|why| format!("run {}: {why}", past.name))?;
+        Ok(Some(Self {
+            name: &past.name,
+            scenario: &run.scenario,
+            journal_sha256: past.files.journal_sha256.as_deref(),
+            identity: Identity::of(run, &stated),
+            stated,
+        }))
+    }
+
+    fn continues(&self, other: &Self) -> bool {
+        other.journal_sha256.is_some_and(|sha256| self.stated.continues_sha256.iter().any(|of| of == sha256))
+    }
+
+    /// Whether one run says of the other that it is of the same floor: it continues it, or both fly one scenario.
+    fn is_linked(&self, other: &Self) -> bool {
+        let is_same =
+            self.scenario == other.scenario && self.stated.continues_sha256 == other.stated.continues_sha256;
+        is_same || self.continues(other) || other.continues(self)
+    }
+}
+
+/// Refuses runs that are not all of one floor: the first thing that differs, with both values. A run of another scenario
+/// must be a re-scan that names the journal of one of the others.
+pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
+    let all: Vec<Candidate<'_>> =
+        runs.iter().map(Candidate::of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    let Some((first, others)) = all.split_first() else { return Ok(()) };
+    let refused = |other: &Candidate<'_>, why: &str| {
+        format!("runs {} and {} are not of one floor: {why}", first.name, other.name)
+    };
+    for other in others {
+        if let Some(why) = first.identity.difference(first.name, &other.identity, other.name) {
+            return Err(refused(other, &why));
+        }
+    }
+    match unlinked(&all) {
+        Some(other) => Err(refused(other, &no_link(first, other))),
+        None => Ok(()),
+    }
+}
+
+/// The first run that nothing links to the others.
+fn unlinked<'a, 'b>(all: &'b [Candidate<'a>]) -> Option<&'b Candidate<'a>> {
+    let (mut linked, mut rest): (Vec<&Candidate<'_>>, Vec<&Candidate<'_>>) =
+        (all.iter().take(1).collect(), all.iter().skip(1).collect());
+    loop {
+        let is_linked = |run: &&Candidate<'_>| linked.iter().any(|other| run.is_linked(other));
+        let (more, left): (Vec<_>, Vec<_>) = rest.into_iter().partition(is_linked);
+        if more.is_empty() {
+            return left.first().copied();
+        }
+        linked.extend(more);
+        rest = left;
+    }
+}
+
+/// Why nothing links two runs.
+fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
+    let digest = |run: &Candidate<'_>| run.journal_sha256.unwrap_or("no digest").to_owned();
+    let continuing = [first, other].into_iter().find(|run| !run.stated.continues_sha256.is_empty());
+    match continuing {
+        Some(run) => {
+            let beside = if std::ptr::eq(run, first) { other } else { first };
+            format!(
+                "continues_sha256 of {} is {}, and the journal of {} has the SHA-256 {}; give the run that it continues as well",
+                run.name,
+                run.stated.continues_sha256.join(" and "),
+                beside.name,
+                digest(beside)
+            )
+        }
+        None => format!(
+            "name is {} in {} and {} in {}, and neither is a re-scan that names the journal of the other (continues_sha256, \
+             which `tankops rescan` writes)",
+            first.scenario, first.name, other.scenario, other.name
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests;

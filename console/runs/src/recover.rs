@@ -1,0 +1,86 @@
+//! Closing a run whose writer was killed: what is there is fixed by digests, and the report says who did it, when, and what is
+//! missing. Neither journal nor recording is changed.
+
+use crate::{
+    error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
+};
+use recording::{JournalError, recorded_failure, remove_reserve};
+use report::{Logs, Summary, document::Recovered};
+use std::{path::Path, time::SystemTime};
+
+/// What the process that was killed would have added at the end.
+const BY_THE_CLOCK: &str = "the figures by the wall clock: computing time, calls of planners, stops";
+/// What a recording lacks that nobody has closed.
+const OF_RECORDING: &str = "the index of the recording, and what it had not written yet: up to 5 s";
+
+/// Closes the run in a folder that was killed.
+///
+/// # Errors
+/// Somebody is writing to it; it was closed already; its journal holds nothing, or cannot be read; the system refuses.
+pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
+    let run = RunFolder::take(folder)?;
+    refuse_closed(folder)?;
+    let past = Past::read(folder).map_err(|error| explained(error, folder))?;
+    let recovered =
+        Recovered { by: by.to_owned(), at: utc_minute(SystemTime::now()), missing: missing(folder, &past) };
+    let files = &past.run.files;
+    let summary = Summary {
+        events_sha256: files.journal_sha256.clone(),
+        recording_sha256: files.recording_sha256.clone(),
+        // Nobody but this process has locked it.
+        logs: Some(Logs { is_open: false, ..past.run.logs.clone() }),
+        ..past.run.summary.clone()
+    };
+    // The draft that the writer left is used up.
+    run.write_report_of(&summary, Some(&recovered))?;
+    remove_reserve(folder);
+    Ok(recovered)
+}
+
+/// Refuses a run that has a report.
+fn refuse_closed(folder: &Path) -> Result<(), RunError> {
+    let refused = |why: String| Err(RunError::Refused(format!("{why}: {}", folder.display())));
+    match Reported::read(folder) {
+        Ok(None) => Ok(()),
+        Ok(Some(report)) => refused(match report.recovered() {
+            Some(Recovered { by, at, .. }) => {
+                format!("the run was recovered already, by {by}, {at} UTC; nothing was changed")
+            }
+            None => {
+                "the run has a report, so it was closed when it ended; there is nothing to recover".into()
+            }
+        }),
+        Err(why) => refused(format!("the run was closed when it ended, and {why}; put the file back")),
+    }
+}
+
+/// Why nothing can be recovered of a journal.
+fn explained(error: RunError, folder: &Path) -> RunError {
+    match error {
+        RunError::Journal(JournalError::NotOpened { .. }) => RunError::Refused(format!(
+            "the run was killed before its journal held anything; there is nothing to recover, and the folder can be removed: {}",
+            folder.display()
+        )),
+        error => error,
+    }
+}
+
+/// What a run lacks.
+fn missing(folder: &Path, past: &Past) -> Vec<String> {
+    let run = &past.run;
+    let mut missing = Vec::new();
+    if run.summary.outcome.is_none() {
+        let torn = run.logs.error.as_ref().map(|why| format!(" ({why})")).unwrap_or_default();
+        missing.push(format!("the end of the mission: {}{torn}", held(&run.summary)));
+    }
+    missing.push(match run.files.recording_sha256 {
+        Some(_) => OF_RECORDING.to_owned(),
+        None => "the recording".to_owned(),
+    });
+    missing.push(BY_THE_CLOCK.to_owned());
+    missing.extend(recorded_failure(folder).map(|why| format!("what could not be written: {why}")));
+    missing
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,170 @@
+//! Where the robot's middle has room, exactly and without cells: at some distance from everything that is solid or forbidden.
+//!
+//! The rim of that floor is made of arcs and straight pieces at the distance from each solid. The place on it that is nearest
+//! to a point is either the foot of the perpendicular on one of these pieces or a corner, where two of them cross. Both are
+//! tried, and each place that has room from everything is one from which the tool may reach the point.
+
+mod passages;
+mod rim;
+
+pub(super) use passages::Connected;
+
+use crate::obstacles::{Boxes, ObstacleMap};
+use crate::tank::{Obstacle, ObstacleId};
+use geometry::{Boundary, Point, Shape, Vector, polyline::nearest_on_segment, polyline::segments_cross};
+use rim::{Core, Rim};
+use std::collections::BTreeMap;
+
+/// A distance that falls short by no more than this is kept, metres: what fits exactly, fits.
+pub(super) const TIE_M: f64 = 1e-6;
+
+/// Where the middle of the robot has room, tank frame.
+#[derive(Clone)]
+pub(super) struct Room {
+    map: ObstacleMap,
+    boundary: Boundary,
+    cores: Vec<Core>,
+    boxes: Boxes,
+    room_m: f64,
+    /// Corners of the rim, in squares of `square_m`.
+    corners: BTreeMap<(i64, i64), Vec<Point>>,
+    square_m: f64,
+}
+
+impl Room {
+    /// Where the robot has `room_m` from a wall and some shapes, for a tool that reaches `reach_m` to each side.
+    pub(super) fn new<'a>(
+        boundary: &Boundary,
+        shapes: impl Iterator<Item = &'a Shape>,
+        room_m: f64,
+        reach_m: f64,
+    ) -> Self {
+        let solids: Vec<Obstacle> = (0..)
+            .zip(shapes)
+            .map(|(id, shape)| Obstacle {
+                id: ObstacleId(id),
+                name: String::new(),
+                shape: shape.clone(),
+                known: true,
+            })
+            .collect();
+        let mut cores = Core::of_wall(boundary);
+        cores.extend(solids.iter().flat_map(|solid| Core::of_shape(&solid.shape)));
+        let mut room = Self {
+            map: ObstacleMap::new(boundary, &solids),
+            boundary: boundary.clone(),
+            boxes: Boxes::new(cores.iter().map(Core::bounds)),
+            cores,
+            room_m,
+            corners: BTreeMap::new(),
+            square_m: reach_m.max(room_m).max(TIE_M),
+        };
+        for corner in room.all_corners() {
+            room.corners.entry(room.square(corner)).or_default().push(corner);
+        }
+        room
+    }
+
+    /// Whether the robot has room at a place.
+    pub(super) fn has(&self, at: Point) -> bool {
+        self.map.clearance_m(at) >= self.room_m - TIE_M
+    }
+
+    /// Whether the robot has room on all of a straight way between two places where it has room.
+    pub(super) fn is_way(&self, a: Point, b: Point) -> bool {
+        let keeps = |core: &Core| core.way_m((a, b)) >= self.room_m - TIE_M;
+        self.boxes.near(a, b, self.room_m).all(|index| keeps(&self.cores[index]))
+    }
+
+    /// Every corner of the rim.
+    pub(super) fn corners(&self) -> impl Iterator<Item = Point> + '_ {
+        self.corners.values().flatten().copied()
+    }
+
+    /// Places with room within `reach_m` of a point without room, among them the nearest one of every region.
+    pub(super) fn places_near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = Point> + '_ {
+        let within_m = reach_m + TIE_M;
+        let feet = self.feet(at).into_iter().filter(move |foot| (foot - at).norm() <= within_m);
+        self.corners_near(at, within_m).chain(feet.filter(|foot| self.has(*foot)))
+    }
+
+    /// The corners of the rim within a distance of a place.
+    pub(super) fn corners_near(&self, at: Point, within_m: f64) -> impl Iterator<Item = Point> + '_ {
+        let (column, row) = self.square(at);
+        let squares = (-1..=1).flat_map(move |y| (-1..=1).map(move |x| (column + x, row + y)));
+        squares
+            .filter_map(|square| self.corners.get(&square))
+            .flatten()
+            .copied()
+            .filter(move |corner| (corner - at).norm() <= within_m)
+    }
+
+    /// The nearest place at the right distance from each solid that is too near.
+    fn feet(&self, at: Point) -> Vec<Point> {
+        let near = self.boxes.near(at, at, self.room_m).map(|index| &self.cores[index]);
+        let mut feet: Vec<Point> = near.flat_map(|core| core.feet(at, self.room_m)).collect();
+        if let Boundary::Circle { radius_m } = self.boundary {
+            let (off_m, inner_m) = (at.coords.norm(), radius_m - self.room_m);
+            if off_m > inner_m && inner_m >= 0.0 {
+                feet.push(Point::from(at.coords * (inner_m / off_m)));
+            }
+        }
+        feet
+    }
+
+    fn all_corners(&self) -> Vec<Point> {
+        let mut rims = Core::rims(&self.cores, self.room_m);
+        if let Boundary::Circle { radius_m } = self.boundary {
+            rims.push(Rim::Arc { center: Point::origin(), radius_m: (radius_m - self.room_m).max(0.0) });
+        }
+        let boxes = Boxes::new(rims.iter().map(|rim| {
+            let (a, b, around_m) = rim.around();
+            let margin = Vector::new(around_m, around_m);
+            (a.inf(&b) - margin, a.sup(&b) + margin)
+        }));
+        let mut corners = Vec::new();
+        for (index, rim) in rims.iter().enumerate() {
+            let (a, b, around_m) = rim.around();
+            for other in boxes.near(a, b, around_m).filter(|other| *other > index) {
+                corners.extend(rim.crossings(&rims[other]).into_iter().filter(|at| self.has(*at)));
+            }
+        }
+        corners
+    }
+
+    fn square(&self, at: Point) -> (i64, i64) {
+        ((at.x / self.square_m).floor() as i64, (at.y / self.square_m).floor() as i64)
+    }
+}
+
+impl Core {
+    fn bounds(&self) -> (Point, Point) {
+        let margin = Vector::new(self.radius_m, self.radius_m);
+        (self.a.inf(&self.b) - margin, self.a.sup(&self.b) + margin)
+    }
+
+    /// The place at `room_m` from it in the direction of a place that is nearer; on both sides of one on the line itself.
+    fn feet(&self, at: Point, room_m: f64) -> Vec<Point> {
+        let nearest = nearest_on_segment(self.a, self.b, at);
+        let away = at - nearest;
+        let off_m = self.radius_m + room_m;
+        if away.norm() >= off_m {
+            return Vec::new();
+        }
+        let along = self.b - self.a;
+        let aside = Vector::new(-along.y, along.x);
+        let ways = if away.norm() > TIE_M { vec![away] } else { vec![aside, -aside] };
+        let ways = ways.into_iter().filter_map(|way| way.try_normalize(0.0));
+        ways.map(|way| nearest + way * off_m).collect()
+    }
+
+    /// Its distance from a segment, metres.
+    fn way_m(&self, (a, b): (Point, Point)) -> f64 {
+        if segments_cross(self.a, self.b, a, b) {
+            return -self.radius_m;
+        }
+        let off_m = |from: Point, to: Point, at: Point| (at - nearest_on_segment(from, to, at)).norm();
+        let ends_m = off_m(self.a, self.b, a).min(off_m(self.a, self.b, b));
+        ends_m.min(off_m(a, b, self.a)).min(off_m(a, b, self.b)) - self.radius_m
+    }
+}
