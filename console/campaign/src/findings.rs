@@ -309,7 +309,12 @@ impl Texts {
             |column: &[Option<String>]| column.get(row).cloned().flatten().filter(|text| !text.is_empty());
         let head = text(&self.outcome).or_else(|| columns.status[row].clone()).unwrap_or_default();
         let faults = columns.faults(row);
-        let faulty = || (columns.success[row] && faults > 0).then(|| format!("{faults} faults of planners"));
+        let faulty = || {
+            (columns.success[row] && faults > 0).then(|| match faults {
+                1 => "1 fault of a planner".to_owned(),
+                _ => format!("{faults} faults of planners"),
+            })
+        };
         let why = text(&self.error).or_else(|| text(&self.violations)).or_else(faulty);
         (head, why.or_else(|| text(&self.reason)).unwrap_or_default())
     }
@@ -409,7 +414,7 @@ pub(crate) mod tests {
         assert!(worst[0].starts_with("aborted, mission_time_s 0.10: no plan after"), "{worst:?}");
         assert!(worst[0].ends_with(" (18 more like it)"), "{worst:?}");
         assert!(
-            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 faults"),
+            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 fault of a planner"),
             "{worst:?}"
         );
     }

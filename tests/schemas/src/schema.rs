@@ -310,6 +310,8 @@ impl<'a> Document<'a> {
             ("BTreeMap" | "HashMap", [_, inner]) => {
                 json!({ "type": "object", "additionalProperties": self.of_type(at, inner) })
             }
+            // Its own `Serialize`.
+            ("PlanId", _) => json!({ "type": "string", "description": "SHA-256, hexadecimal" }),
             ("Point" | "Vector" | "Point2" | "Vector2", _) => json!({
                 "type": "array",
                 "description": "x and y, metres unless it says otherwise",

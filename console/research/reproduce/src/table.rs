@@ -15,7 +15,7 @@ pub fn table(rows: &[Row]) -> String {
         let _ = writeln!(text, "{}  {}", block[0].case, block[0].method);
         let _ = writeln!(
             text,
-            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  {:<25}",
+            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  {}",
             "", "paper", "ours", "", "n", "difference", "95 % interval"
         );
         for row in block {
@@ -70,6 +70,7 @@ fn account(rows: &[Row]) -> String {
     let blocks = without_seed(rows);
     if !blocks.is_empty() {
         let n: usize = blocks.iter().map(|(_, n)| n).sum();
+        let rows = if n == 1 { "row" } else { "rows" };
         let named: Vec<&str> = blocks.iter().take(MOST_NAMED).map(|(name, _)| name.as_str()).collect();
         let more = match blocks.len().saturating_sub(MOST_NAMED) {
             0 => String::new(),
@@ -77,7 +78,7 @@ fn account(rows: &[Row]) -> String {
         };
         let _ = writeln!(
             text,
-            "--first-seed has no effect on {n} rows, of which nothing is drawn: {}{more}",
+            "--first-seed has no effect on {n} {rows}, of which nothing is drawn: {}{more}",
             named.join("; ")
         );
     }
