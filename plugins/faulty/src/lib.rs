@@ -9,8 +9,8 @@ mod faults;
 use faults::{FAULTS, commit, happens_once};
 use nalgebra::Vector2;
 use planner_api::{
-    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Reason, Result, Sensed, Site, Status, Task,
-    choice, export_planners, int,
+    Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Reason, Result, Sensed, Site, Status,
+    Task, choice, export_planners, int,
 };
 
 /// Drives to the target until it is time to fail.
