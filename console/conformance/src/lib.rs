@@ -105,7 +105,7 @@ impl Trial {
     /// The tanks in which it did not complete its mission.
     pub fn lost(&self) -> Vec<Lost> {
         let lost = self.rows.first().into_iter().flat_map(Row::lost);
-        let named = |tank: &row::InTank| Lost {
+        let named = |tank: &InTank| Lost {
             name: format!("{}-{}-{}", self.planner, self.task, tank.seed),
             scenario: tank::text(self.task, tank.seed, &self.planner),
         };
@@ -121,7 +121,7 @@ impl Trial {
             "\n{}, {}, in {n} random tanks from seed {} on:\n",
             self.planner, self.task, self.first_seed
         );
-        let lost = self.rows.first().into_iter().flat_map(Row::lost).map(row::InTank::line);
+        let lost = self.rows.first().into_iter().flat_map(Row::lost).map(InTank::line);
         checks.chain([title, Row::HEADINGS.to_owned()]).chain(rows).chain(lost).collect()
     }
 }

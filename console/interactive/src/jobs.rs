@@ -15,7 +15,6 @@ use tui::{Job, Msg};
 
 /// Names of the reports in the folder of their run: of a scan of floor, and of other missions.
 const PAGE: &str = "report.html";
-const TEXT: &str = "report.txt";
 
 /// Begins a job; its end is reported to the screen.
 pub(super) fn begin(job: Job, tools: &Tools) {
