@@ -45,7 +45,9 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
         Some(Command::Check { .. }) => missions(0),
         Some(Command::Verify { .. }) => each::VERIFY,
         Some(Command::Report(args)) if args.sign.is_some() => each::VERIFY,
-        Some(Command::Report(_) | Command::Rescan(_) | Command::Runs { .. }) => each::PAST_RUN,
+        Some(Command::Report(_) | Command::Rescan(_) | Command::Recover { .. } | Command::Runs { .. }) => {
+            each::PAST_RUN
+        }
         Some(Command::Export(args)) if args.to.rrd.is_none() && args.to.ranges.is_none() => each::PAST_RUN,
         Some(Command::Export(_)) => each::RECORDING,
         Some(Command::Locate(_)) => each::RUN + each::SIGNAL,

@@ -13,7 +13,7 @@ use std::{
 };
 use tui::{Job, Msg};
 
-/// Names of the reports in the folder of their run: of a scan of floor, and of other missions.
+/// Name of the report in the folder of its run.
 const PAGE: &str = "report.html";
 
 /// Begins a job; its end is reported to the screen.

@@ -6,7 +6,7 @@ use crate::slit_domain::SlitDomain;
 use crate::tuning::lanes::COMPLETE_WITH_SLIVERS;
 use crate::unreachable;
 use planner_api::{Ctx, Leg, LegTag, LogLevel, Plan};
-use world::{Point, polyline};
+use world::{Point, coverage::percent_text, polyline};
 
 /// A piece of a path.
 pub(crate) struct Piece {

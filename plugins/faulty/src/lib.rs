@@ -44,7 +44,7 @@ impl Planner for Faulty {
         if let Some(kind) = self.fault.strip_prefix("plan_") {
             commit(kind, ctx)?;
         }
-        if let Some(kind) = self.fault.strip_prefix("replan_").filter(|_| request.reason != Reason::Start) {
+        if let Some(kind) = self.fault.strip_prefix("replan_").filter(|_| *request.reason != Reason::Start) {
             commit(kind, ctx)?;
         }
         let mut path = vec![request.start.position];

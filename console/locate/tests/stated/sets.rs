@@ -15,7 +15,7 @@ const SENTINELS: [&str; 8] = ["7132.146", "0", "-1", "9999", "65535", "nan", "0.
 
 /// What is special about a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     Sound,
     SoundDifferences,
     NoOdometry,
@@ -35,7 +35,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Sound,
         Self::SoundDifferences,
         Self::NoOdometry,
@@ -55,7 +55,7 @@ impl Kind {
     ];
 
     /// Whether nothing is wrong with the readings that the scenario does not say.
-    pub fn is_sound(self) -> bool {
+    pub(crate) fn is_sound(self) -> bool {
         use Kind::{Jitter, NoOdometry, Quantised, QuantisedDifferences, Sound, SoundDifferences};
         matches!(self, Sound | SoundDifferences | NoOdometry | Jitter | Quantised | QuantisedDifferences)
     }
@@ -67,7 +67,7 @@ impl Kind {
 }
 
 /// A scenario and its readings.
-pub struct Set {
+pub(crate) struct Set {
     pub scenario: String,
     pub readings: String,
     pub sound_speed_m_s: Option<f64>,
@@ -174,7 +174,7 @@ impl Draw {
 
 impl Set {
     /// The set of a kind and a seed.
-    pub fn new(kind: Kind, seed: u64) -> Self {
+    pub(crate) fn new(kind: Kind, seed: u64) -> Self {
         if kind == Kind::NoOdometry {
             return Self::outage_of(seed, [10, 1][(seed % 2) as usize], 12.0);
         }
@@ -272,7 +272,7 @@ impl Set {
     }
 
     /// Ranges each second and nothing else, with an outage of 40 s, in rows that come at this rate.
-    pub fn outage(seed: u64, rate_hz: u32) -> Self {
+    pub(crate) fn outage(seed: u64, rate_hz: u32) -> Self {
         Self::outage_of(seed, rate_hz, 40.0)
     }
 
