@@ -54,7 +54,7 @@ impl Foreign {
             return of_whole(if encoding == UTF_16LE { "UTF-16LE" } else { "UTF-16BE" });
         }
         let at = std::str::from_utf8(bytes).err()?.valid_up_to();
-        let line = bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = bytes[..at].split(|byte| *byte == b'\n').count();
         let is_control = |byte: &u8| *byte < 0x20 && !b"\t\r\n\x0c".contains(byte);
         let encoding = match bytes {
             _ if bytes.iter().any(is_control) => None,

@@ -102,7 +102,9 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
         if one != other {
             let Joined { lines, gaps } =
                 std::mem::replace(&mut groups[other], Joined { lines: Vec::new(), gaps: Vec::new() });
-            lines.iter().for_each(|line| group_of[*line] = one);
+            for line in &lines {
+                group_of[*line] = one;
+            }
             groups[one].lines.extend(lines);
             groups[one].gaps.extend(gaps);
             continue;
