@@ -101,7 +101,13 @@ fn on_stations_on_a_line_the_start_decides_or_nothing_does() {
     assert_eq!((tally.fixes.get("ok"), doubts.sides_by_track), (Some(&28), 28));
     assert!(tally.fix_error_m.unwrap()[1] < 0.05);
     let Located { tally, doubts, .. } = located(&wrong, &text);
-    assert_eq!((tally.fixes.get("ok"), doubts.sides_open), (None, 28), "{:?} {:?} {doubts:?}", tally.fixes, tally.failed);
+    assert_eq!(
+        (tally.fixes.get("ok"), doubts.sides_open),
+        (None, 28),
+        "{:?} {:?} {doubts:?}",
+        tally.fixes,
+        tally.failed
+    );
     assert!(doubts.contradicts_start);
     // The track holds both sides.
     assert!(tally.error_95_m.unwrap()[0] > 3.0);
