@@ -203,7 +203,7 @@ fn cell_under(floor: &Floor, place: Point) -> (i64, i64) {
 
 /// The cells about the narrow places of passages; all of them, if the robot needs hardly any room.
 fn doubtful(floor: &Floor, room: &Room, necks: &[Neck]) -> Vec<bool> {
-    let mut doubtful = vec![room.room_m < floor.cell_m; floor.len()];
+    let mut doubtful = vec![room.keep_m < floor.cell_m; floor.len()];
     for neck in necks {
         for cell in floor.cells_near(neck.at, neck.at, WIDE_CELLS * floor.cell_m) {
             doubtful[cell] = true;
@@ -250,7 +250,7 @@ fn place(from: Point, length_m: f64, angle_rad: f64) -> Point {
 impl Room {
     /// The narrowest places of the passages that are up to `more_m` narrower or wider than the robot needs.
     fn necks(&self, more_m: f64) -> Vec<Neck> {
-        let needs_m = 2.0 * self.room_m;
+        let needs_m = 2.0 * self.keep_m;
         let mut necks = Vec::new();
         let mut add = |from: Point, to: Point| {
             let across = to - from;
