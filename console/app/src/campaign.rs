@@ -160,7 +160,9 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         (None, None) => (0..=last).collect(),
     };
     let (missing, damaged) = folder.missing(&campaign);
-    damaged.iter().for_each(|why| warn_line(why));
+    for why in &damaged {
+        warn_line(why);
+    }
     let blocks: Vec<u64> = blocks.into_iter().filter(|block| missing.contains(block)).collect();
     if blocks.is_empty() {
         return Ok(ExitCode::from(COMPLETE));

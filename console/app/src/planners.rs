@@ -64,7 +64,9 @@ fn parameter_listing(info: &ParamInfo) -> String {
 
 /// Warns of planners of a scenario that more than one plugin has.
 pub(crate) fn warn_of_shadowed(scenario: &Scenario, plugins: &PluginDirs) {
-    planners::shadowed(scenario, plugins).iter().for_each(|sentence| warn_line(sentence));
+    for sentence in &planners::shadowed(scenario, plugins) {
+        warn_line(sentence);
+    }
 }
 
 /// `tankops check`.

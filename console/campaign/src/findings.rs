@@ -76,7 +76,7 @@ pub struct Faults {
     /// Missions with faults.
     pub missions: u64,
     /// Faults in them.
-    pub faults: u64,
+    pub count: u64,
     /// The command that flies the first of these missions again.
     pub command: String,
 }
@@ -173,7 +173,7 @@ fn faults(campaign: &Campaign, columns: &Columns, of_arm: &[Vec<usize>]) -> Vec<
         Some(Faults {
             arm: campaign.arm_name(at),
             missions: faulty.len() as u64,
-            faults: faulty.iter().map(|row| columns.faults(*row)).sum(),
+            count: faulty.iter().map(|row| columns.faults(*row)).sum(),
             command: campaign.command(&campaign.case(columns.cases[*faulty.first()?])),
         })
     };
@@ -407,7 +407,7 @@ pub(crate) mod tests {
         let findings = with_one_that_aborts();
         assert_eq!(findings.with_faults, 2);
         let [faults] = &findings.faults[..] else { panic!("{:?}", findings.faults) };
-        assert_eq!((&*faults.arm, faults.missions, faults.faults), ("r", 2, 2));
+        assert_eq!((&*faults.arm, faults.missions, faults.count), ("r", 2, 2));
         assert!(faults.command.contains("--planner r"), "{}", faults.command);
         let worst: Vec<&str> = findings.worst.iter().map(|worst| worst.what.as_str()).collect();
         assert_eq!(worst.len(), 2, "{worst:?}");

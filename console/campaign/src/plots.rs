@@ -203,9 +203,10 @@ pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     for (at, x, y) in front.iter().chain(&unranked).take(12) {
         let (place, anchor) = if across.at(*x) > WIDTH / 2.0 { (-8.0, "end") } else { (8.0, "start") };
         let arm = &findings.arms[*at];
-        let name = match ranked[*at] {
-            true => arm.name.clone(),
-            false => format!("{}, completes {} of {}", arm.name, arm.complete.hits, arm.complete.n),
+        let name = if ranked[*at] {
+            arm.name.clone()
+        } else {
+            format!("{}, completes {} of {}", arm.name, arm.complete.hits, arm.complete.n)
         };
         plot.text(across.at(*x) + place, up.at(*y) - 6.0, anchor, &name);
     }

@@ -96,7 +96,7 @@ impl fmt::Display for Findings {
                 f,
                 "    {}: {} faults in {} missions",
                 short(&faults.arm),
-                faults.faults,
+                faults.count,
                 faults.missions
             )?;
         }

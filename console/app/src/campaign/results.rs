@@ -23,7 +23,9 @@ pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Ve
     if enough.is_some() {
         return Ok(Vec::new());
     }
-    damaged.iter().for_each(|why| warn_line(why));
+    for why in &damaged {
+        warn_line(why);
+    }
     Ok(missing)
 }
 

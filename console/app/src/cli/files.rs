@@ -6,6 +6,7 @@ use import::drawing::Role;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub(crate) struct LocateArgs {
     /// Readings as CSV, or as MCAP with JSON messages of the same names: `t_s`, `station`, and `range_m`, `arrival_s` (with or
     /// without `emitted_s`) or `tdoa_s`; also in mm, ms and us. `-` reads standard input.

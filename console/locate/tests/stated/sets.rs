@@ -96,7 +96,7 @@ impl Draw {
             let along = Vector::new(turn.cos(), turn.sin());
             let across = Vector::new(-along.y, along.x);
             // From exactly on a line to a hundredth of the radius beside it.
-            let off = if seed % 2 == 0 { 0.0 } else { 0.01 * radius_m };
+            let off = if seed.is_multiple_of(2) { 0.0 } else { 0.01 * radius_m };
             (0..4)
                 .map(|k| {
                     along * (radius_m * (f64::from(k) / 1.5 - 1.0) * 0.98)

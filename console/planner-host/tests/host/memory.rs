@@ -117,7 +117,7 @@ fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
     let (_folder, dirs) =
         folder_with("hostile", &format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
     // On a busy machine the attack may take long, and it is its memory that is to end it.
-    let patient = Duration::from_secs(60);
+    let patient = Duration::from_mins(1);
     let config = HostConfig {
         memory_limit_bytes: LIMIT,
         configure_deadline: patient,

@@ -32,13 +32,19 @@ type Answered = (String, Vec<String>);
 
 /// The thirteen items of a document.
 pub(super) fn gate(document: &Document) -> Vec<GateItem> {
+    // Readings were located by no planner, and had no floor to miss.
+    let [of_equipment, of_missed] = if document.located.is_some() {
+        ["Equipment, version, readings", "Floor that the tool did not pass"]
+    } else {
+        ["Equipment, planner, versions, seed, parameters", "Missed areas, each with a reason"]
+    };
     let items: [(&'static str, Answered); 13] = [
         ("Tank: number, size, plates, nominal thickness, drawing", tank(document)),
         ("Scope of the inspection", scope(document)),
-        ("Equipment, planner, versions, seed, parameters", equipment(document)),
+        (of_equipment, equipment(document)),
         ("Calibration before and after, stations, speed of sound", calibration(document)),
         ("Coverage of every plate", plates(document)),
-        ("Missed areas, each with a reason", missed(document)),
+        (of_missed, missed(document)),
         ("Unreachable floor, each area with a reason", unreachable(document)),
         ("Position accuracy", accuracy(document)),
         ("Indications", indications(document)),

@@ -268,13 +268,17 @@ fn the_balance_of_the_floor_adds_up_to_its_last_digit() {
 
 #[test]
 fn a_report_of_a_scan_and_its_rescan_is_called_after_the_scan_and_a_copy_of_a_run_is_refused() {
-    let [first, mut second] = two_runs();
-    second.fold.run.as_mut().unwrap().scenario = "tiny-rescan".into();
+    let [mut first, mut second] = two_runs();
+    let digest = "a1".repeat(32);
+    first.files.journal_sha256 = Some(digest.clone());
+    let opened = second.fold.run.as_mut().unwrap();
+    opened.scenario = "tiny-rescan".into();
+    opened.scenario_toml = format!("continues_sha256 = [\"{digest}\"]\n{}", opened.scenario_toml);
     let scenario = first.fold.run.as_ref().unwrap().scenario.clone();
     let mut runs = [first, second];
     assert_eq!(Document::new(&runs, Context::default()).unwrap().scenario, scenario);
     for run in &mut runs {
-        run.files.journal_sha256 = Some("a1".repeat(32));
+        run.files.journal_sha256 = Some(digest.clone());
     }
     let refused = Document::new(&runs, Context::default()).unwrap_err();
     assert!(refused.contains("have the same journal"), "{refused}");

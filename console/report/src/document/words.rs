@@ -110,6 +110,7 @@ pub fn is_placeholder(text: &str) -> bool {
 pub fn says_nothing(text: &str) -> bool {
     let words = words(text);
     let joined = words.join(" ");
+    let joined = joined.strip_prefix("still ").unwrap_or(&joined);
     let is_announced = ANNOUNCED
         .iter()
         .any(|begin| joined.strip_prefix(begin).is_some_and(|rest| rest.is_empty() || rest.starts_with(' ')));

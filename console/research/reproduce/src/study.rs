@@ -77,7 +77,7 @@ impl Study {
             )));
         }
         let has_drawn = job.has_drawn.load(Ordering::Relaxed);
-        Ok(rows.into_iter().map(|row| verdict::judged(row, has_drawn)).collect())
+        Ok(rows.into_iter().map(|row| judged(row, has_drawn)).collect())
     }
 }
 

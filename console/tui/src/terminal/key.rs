@@ -80,6 +80,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::disallowed_methods, reason = "any time will do")]
     fn a_press_knows_how_long_after_the_same_key_it_came() {
         let (mut keyboard, began) = (Keyboard::default(), Instant::now());
         let mut since = |letter, kind, at_ms| {

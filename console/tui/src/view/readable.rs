@@ -25,6 +25,9 @@ mod tests {
             cell.set_symbol(symbol);
         }
         make(&mut buffer);
-        assert_eq!(buffer.content.iter().map(|cell| cell.symbol()).collect::<String>(), "a�u\u{308}");
+        assert_eq!(
+            buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect::<String>(),
+            "a�u\u{308}"
+        );
     }
 }

@@ -608,7 +608,7 @@ impl Screen {
 
     /// Carries out an action without its key.
     pub(crate) fn act(&mut self, id: tui::actions::ActionId) -> Vec<tui::Effect> {
-        let effects = tui::update::act(&mut self.model, id);
+        let effects = update::act(&mut self.model, id);
         self.write_notes(&effects);
         effects
     }
