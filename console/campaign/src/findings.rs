@@ -374,7 +374,7 @@ pub(crate) mod tests {
             let is_complete = planner != 1 || seed == 0;
             let summary = Summary {
                 outcome: Some(if is_complete { Outcome::Complete } else { Outcome::Aborted }),
-                reason: (!is_complete).then(|| format!("no plan after {}.5 s", seed)),
+                reason: (!is_complete).then(|| format!("no plan after {seed}.5 s")),
                 mission_time_s: Some(if planner == 1 { 0.1 } else { 100.0 + seed as f64 }),
                 path_length_m: Some(if planner == 1 { 0.0 } else { 30.0 }),
                 planner_faults: u64::from(planner == 2 && seed < 2),

@@ -3,7 +3,7 @@
 //!
 //! The full study, 200 sets of each kind: `cargo test --release -p locate --test stated -- --ignored --nocapture`.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests, and a study that prints its figures")]
 
 #[path = "stated/sets.rs"]
 mod sets;

@@ -105,7 +105,7 @@ mod tests {
         let (of_a, of_b) = (signed("a", "5a"), signed("b", "5b"));
         register.add(&of_a).unwrap();
         register.add(&of_b).unwrap();
-        assert_eq!(of(&["a"]).unwrap(), [of_a.clone()]);
+        assert_eq!(of(&["a"]).unwrap(), std::slice::from_ref(&of_a));
         assert_eq!(of(&["renamed", "b"]).unwrap(), [of_b]);
         assert_eq!(of(&["c"]).unwrap(), []);
         fs::write(&file, "{}\n").unwrap();

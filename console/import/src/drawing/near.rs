@@ -158,7 +158,7 @@ mod tests {
         let small = line(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.01, 1.02)]);
         let large =
             [line(&[(0.0, 0.0), (9.98, 0.0)]), line(&[(10.0, 0.0), (10.0, 8.0), (0.0, 8.0), (0.0, 0.005)])];
-        let miss = nearest(&[&[small.clone()], &large[..]].concat()).unwrap();
+        let miss = nearest(&[std::slice::from_ref(&small), &large[..]].concat()).unwrap();
         assert_eq!(
             miss.told(0.001),
             "an outline of 10.000 m across is nearly closed: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \

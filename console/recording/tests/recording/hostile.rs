@@ -80,7 +80,8 @@ fn a_line_without_end_and_one_of_a_million_lists_are_refused() {
     let path = folder.path().join(PLAIN_JOURNAL_FILE);
     let mut file = BufWriter::new(File::create(&path).expect("a file"));
     write!(file, "{head}{begin}").expect("room on the disk");
-    (0..41).for_each(|_| file.write_all(&[b'a'; 1 << 20]).expect("room on the disk"));
+    let much = vec![b'a'; 1 << 20];
+    (0..41).for_each(|_| file.write_all(&much).expect("room on the disk"));
     drop(file);
     assert_eq!(refused(&path, "longer than 40 MB"), 1);
     let of_lists = |key: &str| {

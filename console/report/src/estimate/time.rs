@@ -152,7 +152,7 @@ mod tests {
                 .collect()
         };
         let mission = with_acceleration(0.05);
-        let length_m = |radius_m: f64| 6.28 * radius_m;
+        let length_m = |radius_m: f64| std::f64::consts::TAU * radius_m;
         let wide = time_of(&mission, &ring(9.6)) / length_m(9.6);
         let inner = time_of(&mission, &ring(7.0)) / length_m(7.0);
         assert!(wide > 1.2 * inner, "{wide} {inner} s/m");

@@ -97,7 +97,7 @@ fn change(run: &mut RunOpened, which: usize, by: f64, word: &str) -> &'static st
                 n_annular: 6,
                 length_m: 3.0,
                 width_m: 1.5,
-            }))
+            }));
         }
         _ => run.floor.cell_m += by,
     }

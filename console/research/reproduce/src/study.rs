@@ -20,9 +20,7 @@ pub use row::Row;
 pub use runner::Runner;
 pub(crate) use sample::Sample;
 pub use verdict::Verdict;
-#[cfg(test)]
-pub(crate) use verdict::judged;
-pub(crate) use verdict::{without_seed, wrong_signs};
+pub(crate) use verdict::{judged, without_seed, wrong_signs};
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
