@@ -703,9 +703,10 @@ fn every_command_can_be_run_by_its_name() {
 }
 
 #[test]
+#[allow(clippy::large_stack_arrays, reason = "three screens, for a test")]
 fn what_is_refused_says_why() {
     let mut refused = 0;
-    for mut screen in vec![Screen::idle(), Screen::running(), Screen::held()] {
+    for mut screen in [Screen::idle(), Screen::running(), Screen::held()] {
         for action in tui::actions::ACTIONS.iter().filter(|action| action.is_command()) {
             screen.model.console.notice = None;
             let before = screen.model.clone();

@@ -196,9 +196,10 @@ fn a_fault_while_only_an_order_ends_the_hold_does_not_hand_over_to_the_fallback(
 }
 
 #[test]
+#[allow(clippy::large_stack_arrays, reason = "two missions, for a test")]
 fn a_planner_chosen_under_a_hold_that_ends_by_itself_waits_for_an_order() {
     for (name, mut flight) in
-        vec![("fallback opening", fallback_under_way()), ("planner silent", silent_planner())]
+        [("fallback opening", fallback_under_way()), ("planner silent", silent_planner())]
     {
         let before = flight.pose;
         flight.tick(&[swap_to("other")]);
