@@ -62,6 +62,8 @@ struct Straight {
     scans_less_from_plan: Option<usize>,
     /// It has a live parameter `gain` that it cannot change under way.
     has_stiff_gain: bool,
+    /// It ends with a lap along the wall.
+    drives_a_lap: bool,
     /// It proves that no way leads to the goal.
     sees_no_way: bool,
 }
@@ -144,7 +146,7 @@ impl Straight {
             if self.leads_nowhere {
                 return Plan { path: vec![*anchor], ..Plan::default() };
             }
-            let lanes = covering::lanes(request, *anchor);
+            let lanes = covering::lanes(request, *anchor, self.drives_a_lap);
             let lanes = if self.plans <= self.wasteful_plans { covering::wasteful(&lanes) } else { lanes };
             let scans_less = self.scans_less_from_plan.is_some_and(|first| self.plans >= first);
             let lanes = if scans_less { covering::without_last_lane(lanes) } else { lanes };
@@ -600,7 +602,7 @@ fn a_planner_that_sees_no_way_has_not_failed() {
         if attended {
             assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
         } else {
-            assert_eq!(flight.ended(), Some(Outcome::Stuck));
+            assert_eq!(flight.ended(), Some(Outcome::Stuck), "{:?}", (flight.mission.phase(), flight.mission.active.prepare));
         }
     }
 }

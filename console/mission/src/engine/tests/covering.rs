@@ -4,33 +4,56 @@ use super::*;
 use planner_api::{Leg, LegTag};
 use world::ObstacleMap;
 
-/// Straight lanes over the regions, or over everything; round obstacles they leave a gap and pass it to the north.
-pub(super) fn lanes(request: &PlanAsk, anchor: Point) -> Plan {
-    let room_m = request.site.limits.radius_m + request.site.clearance_m;
+/// Straight lanes over the regions, or over everything, from one to the next along the wall; round what stands in the way they
+/// go on its nearer side. With a lap along the wall at the end, which lanes reach with their ends only.
+pub(super) fn lanes(request: &PlanAsk, anchor: Point, has_lap: bool) -> Plan {
+    let wall_m = 5.0 - request.site.limits.radius_m - request.site.clearance_m;
     let mut path = vec![request.start.position];
     let mut legs = Vec::new();
-    let n_lanes = (2.0 * (5.0 - room_m) / request.site.swath_m).ceil() as usize;
-    for lane in 0..n_lanes {
-        let y = -5.0 + room_m + request.site.swath_m * lane as f64;
-        let half_m = ((5.0 - room_m).powi(2) - y * y).max(0.0).sqrt();
-        let mut points: Vec<Point> = (0..=100)
-            .map(|k| Point::new(-half_m + 2.0 * half_m * f64::from(k) / 100.0, y))
-            .filter(|p| is_wanted(request, *p))
-            .map(|p| beside(request, p, room_m))
-            .collect();
-        if points.is_empty() {
-            continue;
-        }
+    let n_lanes = (2.0 * wall_m / request.site.swath_m).ceil() as usize;
+    let lane = |lane: usize| -> Vec<Point> {
+        let y = -wall_m + request.site.swath_m * lane as f64;
+        let half_m = (wall_m.powi(2) - y * y).max(0.0).sqrt();
+        let mut points: Vec<Point> =
+            (0..=100).map(|k| Point::new(-half_m + 2.0 * half_m * f64::from(k) / 100.0, y)).collect();
         if lane % 2 == 1 {
             points.reverse();
         }
-        legs.push(Leg { tag: LegTag::Connector, first: path.len() - 1, last: path.len() });
-        legs.push(Leg { tag: LegTag::Swath, first: path.len(), last: path.len() + points.len() - 1 });
-        path.extend(points);
+        points
+    };
+    let lap = |k| Point::new(f64::sin(f64::from(k) / 20.0), f64::cos(f64::from(k) / 20.0)) * wall_m;
+    let lap = has_lap.then(|| (0..=126).map(lap).collect());
+    for points in (0..n_lanes).map(lane).chain(lap) {
+        let points: Vec<Point> =
+            points.into_iter().filter(|p| is_wanted(request, *p)).map(|p| beside(request, p)).collect();
+        let Some(begin) = points.first() else { continue };
+        leg(&mut path, &mut legs, LegTag::Connector, |path| go_on(path, request, *begin));
+        leg(&mut path, &mut legs, LegTag::Swath, |path| {
+            points.iter().for_each(|to| go_on(path, request, *to));
+        });
     }
-    legs.push(Leg { tag: LegTag::Travel, first: path.len() - 1, last: path.len() });
-    path.push(anchor);
+    leg(&mut path, &mut legs, LegTag::Travel, |path| go_on(path, request, anchor));
     Plan { path, complete: true, legs, ..Plan::default() }
+}
+
+/// One leg more of a path.
+fn leg(path: &mut Vec<Point>, legs: &mut Vec<Leg>, tag: LegTag, extend: impl FnOnce(&mut Vec<Point>)) {
+    let first = path.len() - 1;
+    extend(path);
+    legs.push(Leg { tag, first, last: path.len() - 1 });
+}
+
+/// Goes on to a place, along the wall between places at it, and round what stands in the way.
+fn go_on(path: &mut Vec<Point>, request: &PlanAsk, to: Point) {
+    let from = path[path.len() - 1];
+    let n = ((to - from).norm() / 0.1).ceil().max(1.0) as u32;
+    let between = (1..n).map(|k| from + (to - from) * (f64::from(k) / f64::from(n)));
+    let wall_m = 5.0 - request.site.limits.radius_m - request.site.clearance_m;
+    if n < 20 && [from, to].iter().all(|p| p.coords.norm() > wall_m - 1e-6) {
+        path.extend(between.clone().map(|p| Point::from(p.coords.normalize() * wall_m)));
+    }
+    path.extend(between.filter_map(|p| Some(beside(request, p)).filter(|aside| *aside != p)));
+    path.push(to);
 }
 
 /// The same lanes, each of them driven there, back and there again.
@@ -66,15 +89,22 @@ fn is_wanted(request: &PlanAsk, point: Point) -> bool {
     regions.is_empty() || regions.iter().any(is_near)
 }
 
-fn beside(request: &PlanAsk, point: Point, room_m: f64) -> Point {
-    for obstacle in &request.site.obstacles {
-        let Shape::Disc { center, radius_m } = obstacle.shape else { continue };
-        let (off_m, reach_m) = (point.x - center.x, radius_m + room_m + 0.05);
-        if (point - center).norm() < reach_m {
-            return Point::new(point.x, center.y + (reach_m * reach_m - off_m * off_m).sqrt());
-        }
-    }
-    point
+/// Circles round what stands in the way, wide enough for the hull.
+fn kept_clear(request: &PlanAsk) -> impl Iterator<Item = (Point, f64)> {
+    let room_m = request.site.limits.radius_m + request.site.clearance_m + 0.05;
+    let drawn = request.site.obstacles.iter().map(|obstacle| &obstacle.shape);
+    drawn.chain(request.site.zones.iter().map(|zone| &zone.shape)).map(move |shape| {
+        let (low, high) = shape.bounds();
+        let radius_m =
+            if let Shape::Disc { radius_m, .. } = shape { *radius_m } else { (high - low).norm() / 2.0 };
+        (low + (high - low) / 2.0, radius_m + room_m)
+    })
+}
+
+/// The place, or the nearest to it that is far enough from what stands there.
+fn beside(request: &PlanAsk, point: Point) -> Point {
+    let blocking = kept_clear(request).find(|(center, reach_m)| (point - center).norm() < *reach_m);
+    blocking.map_or(point, |(center, reach_m)| center + (point - center).normalize() * reach_m)
 }
 
 pub(super) fn covering() -> MissionConfig {
@@ -106,6 +136,7 @@ fn reasons(flight: &Flight) -> Vec<Reason> {
 #[test]
 fn a_coverage_mission_scans_the_floor_and_ends_back_at_the_anchor() {
     let mut flight = Flight::new(covering());
+    flight.planner.drives_a_lap = true;
     flight.tick(&[Order::Start]);
     flight.fly(6000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));
@@ -169,6 +200,7 @@ fn an_area_without_floor_in_reach_is_named_when_the_rest_is_done() {
 #[test]
 fn another_planner_goes_on_with_what_is_left() {
     let mut flight = Flight::new(covering());
+    flight.planner.drives_a_lap = true;
     flight.tick(&[Order::Start]);
     flight.fly(1500);
     let before = covered(&flight);

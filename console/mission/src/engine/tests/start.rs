@@ -42,6 +42,7 @@ fn a_start_is_refused_until_there_is_a_plan_and_then_names_it() {
         flight.tick(&[]);
     }
     let plan = ready(&flight).expect("a plan");
+    flight.delay = Box::new(|_, _| 0);
     let unnamed = flight.tick(&[Order::Start]);
     assert!(refusal(&unnamed).is_some_and(|why| why.starts_with("a start must name the plan")));
     assert_eq!(flight.mission.phase(), &Phase::Waiting);

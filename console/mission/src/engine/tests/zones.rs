@@ -69,7 +69,7 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let around = |p: Point| zone((p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
     let orders = [
         (around(here), "robot stands"),
-        (around(covering().start.position), "anchor"),
+        (around(covering().start.position), "the start lies in the zone"),
         (zone((1.0, 1.0), (1.0, 2.0)), "enclose"),
         (zone((1.0, 1.0), (1e308, 1e308)), "at most 10000 m"),
         (zone((15.0, 15.0), (16.0, 16.0)), "outside the tank"),
