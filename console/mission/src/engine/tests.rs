@@ -598,7 +598,7 @@ fn a_planner_that_sees_no_way_has_not_failed() {
         let mut flight = Flight::new(MissionConfig { attended, ..config() });
         flight.planner.sees_no_way = true;
         flight.tick(&[Order::Start]);
-        flight.fly(3);
+        flight.fly(10);
         if attended {
             assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
         } else {
