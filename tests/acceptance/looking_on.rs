@@ -12,13 +12,13 @@ use std::{
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A console in sentences.
-struct Console {
+pub(crate) struct Console {
     child: Child,
     said: Receiver<String>,
 }
 
 impl Console {
-    fn open(mut command: Command, arguments: &[&str]) -> Self {
+    pub(crate) fn open(mut command: Command, arguments: &[&str]) -> Self {
         command.args(["console", "--plain"]).args(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let lines = BufReader::new(child.stdout.take().unwrap()).lines();
@@ -27,11 +27,11 @@ impl Console {
         Self { child, said }
     }
 
-    fn order(&mut self, lines: &str) {
+    pub(crate) fn order(&mut self, lines: &str) {
         self.child.stdin.as_mut().unwrap().write_all(lines.as_bytes()).unwrap();
     }
 
-    fn hear(&self, words: &str) {
+    pub(crate) fn hear(&self, words: &str) {
         let mut heard = Vec::new();
         while let Ok(line) = self.said.recv_timeout(PATIENCE) {
             if line.contains(words) {
@@ -42,8 +42,13 @@ impl Console {
         panic!("no {words:?} in {heard:#?}");
     }
 
-    fn leave(mut self) -> Option<i32> {
+    /// Ends its stdin: it carries out what it was told and leaves.
+    pub(crate) fn close(&mut self) {
         drop(self.child.stdin.take());
+    }
+
+    pub(crate) fn leave(mut self) -> Option<i32> {
+        self.close();
         self.child.wait().unwrap().code()
     }
 }

@@ -1,10 +1,7 @@
 //! The console without a terminal: scripts, plain sentences, configuration files, completions and manual pages.
 
 use crate::bench::{Bench, Ended, scenario};
-use std::{
-    io::Write,
-    process::{Command, Stdio},
-};
+use crate::looking_on::Console;
 
 fn scripted(bench: &Bench, script: &str) -> Ended {
     let file = bench.file("mission.txt", script);
@@ -142,21 +139,16 @@ fn a_command_that_the_mission_refuses_fails_at_its_line() {
 #[test]
 fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
     let bench = Bench::new();
-    let mut command: Command = bench.command();
-    command.args(["console", "--plain", "--speed", "max"]);
-    let mut child =
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut orders = child.stdin.take().unwrap();
+    let mut console = Console::open(bench.command(), &["--speed", "max"]);
+    console.hear("Screen 2: Plan.");
+    console.hear("Press S to start");
     // The end of stdin leaves; the commands before it are carried out.
-    orders.write_all(b"speeed 2\ngoto home\ngoto plan\nstart\nno\n").unwrap();
-    drop(orders);
-    let ended = Ended::from(child.wait_with_output().unwrap());
-    assert_eq!(ended.code, Some(0), "{ended:?}");
-    for line in
-        ["Screen 2: Plan.", "Refused: no command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."]
-    {
-        assert!(ended.out.contains(line), "{line}: {ended:?}");
+    console.order("speeed 2\ngoto home\ngoto plan\nstart\nno\n");
+    console.close();
+    for line in ["Refused: no command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."] {
+        console.hear(line);
     }
+    assert_eq!(console.leave(), Some(0));
     assert_eq!(bench.runs().len(), 0, "nothing was started");
 }
 

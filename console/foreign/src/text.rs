@@ -61,9 +61,10 @@ pub fn seen(name: &str) -> String {
 /// A text of several lines: line feeds and tabs stay, everything else that is not plain is `�`.
 pub fn plain_lines(text: &str) -> Cow<'_, str> {
     let instead = |c| if matches!(c, '\n' | '\t') { c } else { INSTEAD };
-    match text.contains("\r\n") {
-        true => replaced(&text.replace("\r\n", "\n"), instead).into_owned().into(),
-        false => replaced(text, instead),
+    if text.contains("\r\n") {
+        replaced(&text.replace("\r\n", "\n"), instead).into_owned().into()
+    } else {
+        replaced(text, instead)
     }
 }
 

@@ -208,7 +208,7 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
 ///
 /// ```
 /// use geometry::{Vector, motion::at_most};
-/// assert_eq!(at_most(Vector::new(3.0, 4.0), 1.0), Vector::new(0.6, 0.8));
+/// assert_eq!(at_most(Vector::new(3.0, 4.0), 2.5), Vector::new(1.5, 2.0));
 /// ```
 pub fn at_most(velocity: Vector, speed_m_per_s: f64) -> Vector {
     let speed = velocity.norm();

@@ -67,7 +67,7 @@ type Row = (u64, Named);
 fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<Wrong>> {
     if let Some(at) = text.find('\0') {
         let line = text[..at].lines().count().max(1) as u64;
-        return Err(vec![Wrong::new(line, "", "no text: a byte 0; save the list as CSV")]);
+        return Err(vec![Wrong::new(line, "", "not a text: it holds a byte 0; save the list as CSV")]);
     }
     let delimiter = delimiter(text);
     let mut reader = csv::ReaderBuilder::new()

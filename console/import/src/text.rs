@@ -54,7 +54,7 @@ impl Foreign {
             return of_whole(if encoding == UTF_16LE { "UTF-16LE" } else { "UTF-16BE" });
         }
         let at = std::str::from_utf8(bytes).err()?.valid_up_to();
-        let line = bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = bytes[..at].split(|byte| *byte == b'\n').count();
         let is_control = |byte: &u8| *byte < 0x20 && !b"\t\r\n\x0c".contains(byte);
         let encoding = match bytes {
             _ if bytes.iter().any(is_control) => None,
@@ -69,7 +69,7 @@ impl Foreign {
     pub fn remedy(&self) -> String {
         match self.encoding {
             Some(encoding) => format!("save it as UTF-8: `iconv -f {encoding} -t UTF-8 FILE > NEW`"),
-            None => "it is no text; is this the right file?".into(),
+            None => "the file does not seem to be a text; is this the right file?".into(),
         }
     }
 }
@@ -79,7 +79,7 @@ impl std::fmt::Display for Foreign {
         match (self.encoding, self.line) {
             (Some(encoding), 1) => write!(f, "not UTF-8 but {encoding}, by its first line"),
             (Some(encoding), line) => write!(f, "not UTF-8 but {encoding}, by line {line}"),
-            (None, line) => write!(f, "no text: line {line} is not UTF-8"),
+            (None, line) => write!(f, "not a text: line {line} is not UTF-8"),
         }
     }
 }
@@ -143,6 +143,6 @@ mod tests {
             assert_eq!(foreign.to_string(), format!("not UTF-8 but {name}, by its first line"));
             assert_eq!(foreign.remedy(), format!("save it as UTF-8: `iconv -f {name} -t UTF-8 FILE > NEW`"));
         }
-        assert_eq!(told(b"\x7fELF\x01\n\xfe\xff").unwrap(), "no text: line 2 is not UTF-8");
+        assert_eq!(told(b"\x7fELF\x01\n\xfe\xff").unwrap(), "not a text: line 2 is not UTF-8");
     }
 }

@@ -33,9 +33,8 @@ pub enum Again {
 pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let path = journal_of(folder);
     let mut reader = JournalReader::open(&path)?;
-    let opened = match reader.next_line()?.map(|line| line.event.kind) {
-        Some(EventKind::RunOpened(opened)) => opened,
-        _ => return Err(reader.not_opened().into()),
+    let Some(EventKind::RunOpened(opened)) = reader.next_line()?.map(|line| line.event.kind) else {
+        return Err(reader.not_opened().into());
     };
     let measured = opened.measured.context("the run was flown and not located")?;
     if opened.journal_version != JOURNAL_VERSION {

@@ -35,7 +35,7 @@ impl<W: Write> MeasuredWriter<W> {
             let name = self.stations.iter().find(|s| s.id == *station).map_or("", |s| s.name.as_str());
             let name = quoted(&cell(name));
             for range_m in ranges_m {
-                writeln!(self.out, "{t_s},{},{range_m},,,,,,", name)?;
+                writeln!(self.out, "{t_s},{name},{range_m},,,,,,")?;
             }
         }
         Ok(())

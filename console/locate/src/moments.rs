@@ -120,12 +120,11 @@ impl Moments {
 
     /// Counts a row that is earlier than what came before; the first of them stands for all.
     fn went_back(&mut self, place: Place) {
-        match &mut self.back {
-            Some(back) => (back.last_line, back.rows) = (place.line, back.rows + 1),
-            None => {
-                let before = self.last.unwrap_or(place);
-                self.back = Some(Back { first: place, before, last_line: place.line, rows: 1 });
-            }
+        if let Some(back) = &mut self.back {
+            (back.last_line, back.rows) = (place.line, back.rows + 1);
+        } else {
+            let before = self.last.unwrap_or(place);
+            self.back = Some(Back { first: place, before, last_line: place.line, rows: 1 });
         }
     }
 

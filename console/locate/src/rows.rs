@@ -19,6 +19,7 @@ use text::Text;
 const MCAP: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// A file that gives rows.
+#[allow(clippy::large_enum_variant, reason = "there is one, for the whole of a file")]
 pub(crate) enum Rows {
     /// Text with a line of names first.
     Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool, file: PathBuf },

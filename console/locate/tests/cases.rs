@@ -101,7 +101,13 @@ fn on_stations_on_a_line_the_start_decides_or_nothing_does() {
     assert_eq!((tally.fixes.get("ok"), doubts.sides_by_track), (Some(&28), 28));
     assert!(tally.fix_error_m.unwrap()[1] < 0.05);
     let Located { tally, doubts, .. } = located(&wrong, &text);
-    assert_eq!((tally.fixes.get("ok"), doubts.sides_open), (None, 28), "{:?}", tally.fixes);
+    assert_eq!(
+        (tally.fixes.get("ok"), doubts.sides_open),
+        (None, 28),
+        "{:?} {:?} {doubts:?}",
+        tally.fixes,
+        tally.failed
+    );
     assert!(doubts.contradicts_start);
     // The track holds both sides.
     assert!(tally.error_95_m.unwrap()[0] > 3.0);
@@ -114,7 +120,7 @@ fn on_stations_on_a_line_the_wall_decides_where_the_image_lies_behind_it() {
     let text = ranges(&scenario, Point::new(-1.0, 2.0), [0.1, 0.0], 10);
     let Located { tally, doubts, .. } = located(&scenario, &text);
     assert_eq!(doubts.sides_by_walls, 10, "{doubts:?}");
-    assert!(tally.fixes["ok"] >= 8 && tally.fix_error_m.unwrap()[1] < 0.05, "{:?}", tally.fixes);
+    assert!(tally.fixes["ok"] >= 8 && tally.fix_error_m.unwrap()[1] < 0.05, "{tally:?} {doubts:?}");
 }
 
 #[test]

@@ -52,7 +52,8 @@ impl PlanId {
 
     /// Its first eight digits, hexadecimal, for people.
     pub fn short(&self) -> String {
-        self.0[..4].iter().map(|byte| format!("{byte:02x}")).collect()
+        let first = u32::from_be_bytes([self.0[0], self.0[1], self.0[2], self.0[3]]);
+        format!("{first:08x}")
     }
 }
 

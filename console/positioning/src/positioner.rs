@@ -22,6 +22,11 @@ const PATIENCE: u32 = 3;
 const MIRROR_SIGMA_M: f64 = 0.01;
 /// A range that cannot be is shown up to this length, metres.
 const MOST_SHOWN_M: f64 = 1e9;
+
+/// A range as it is shown: a number within bounds, also where it was none.
+fn shown_m(range_m: f64) -> f64 {
+    if range_m.is_nan() { -MOST_SHOWN_M } else { range_m.clamp(-MOST_SHOWN_M, MOST_SHOWN_M) }
+}
 /// Doubt about the heading after the filter was proved wrong, radians.
 const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 
@@ -216,8 +221,7 @@ impl Positioner {
         let why = |id| {
             let found = impossible.iter().find(|range| range.station == id);
             found.map_or(Exclusion::Silent, |range| Exclusion::Impossible {
-                // `max` also turns what is no number into a number.
-                range_m: range.range_m.max(-MOST_SHOWN_M).min(MOST_SHOWN_M),
+                range_m: shown_m(range.range_m),
                 most_m: range.most_m,
             })
         };

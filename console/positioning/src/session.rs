@@ -252,7 +252,7 @@ mod tests {
             let found = verdict.scale.unwrap();
             // With ranges that err by a share, stations all round hold a fix in its place.
             assert!(found.is_proven || !is_free, "{verdict:?}");
-            assert!(found.value.abs() > 10.0 * found.sigma, "{verdict:?}");
+            assert!(found.value.abs() > SIGNIFICANT * found.sigma, "{verdict:?}");
             assert!(
                 (found.value - scale).abs() < 4.0 * found.sigma + 0.1 * scale.abs(),
                 "{scale}: {found:?}"

@@ -136,7 +136,7 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
         let doubt = files.doubts.into_iter().next().or_else(missing_end);
         let is_reported = files.are_as_reported.is_some();
         let recovered = files.recovered;
-        Ok(Findings { doubt, signed, not_as_signed, is_reported, recovered, ..findings })
+        Ok(Findings { doubt, is_reported, recovered, signed, not_as_signed, ..findings })
     })
 }
 

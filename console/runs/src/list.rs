@@ -103,7 +103,7 @@ fn look_at(folder: &Path, budget: &Budget) -> Listed {
                 format!("killed, recovered by {by}, {at} UTC; {}", held(&summary))
             });
             let doubt =
-                reported.as_ref().and_then(|reported| reported.recording_doubt(folder, Now::Within(budget)));
+                reported.as_ref().and_then(|reported| reported.recording_doubt(folder, &Now::Within(budget)));
             let note =
                 closed.or(note).into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
             let is_cut = recovered.is_some() && summary.outcome.is_none();

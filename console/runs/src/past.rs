@@ -133,7 +133,7 @@ fn files(
     let doubts_of = |reported: &Reported| {
         [
             reported.journal_doubt(journal_sha256.as_deref()),
-            reported.recording_doubt(folder, Now::Is(recording_sha256.as_deref())),
+            reported.recording_doubt(folder, &Now::Is(recording_sha256.as_deref())),
             reported.figures_doubt(is_todays.then_some(summary)),
         ]
     };

@@ -170,13 +170,13 @@ impl Reported {
     }
 
     /// What speaks against the recording. A recording that is not there any more can be made again, and is no doubt.
-    pub(crate) fn recording_doubt(&self, folder: &Path, now: Now<'_>) -> Option<String> {
+    pub(crate) fn recording_doubt(&self, folder: &Path, now: &Now<'_>) -> Option<String> {
         let (then, path) = (self.source.recording_sha256.as_deref()?, folder.join(RECORDING_FILE));
         if !path.exists() {
             return None;
         }
         let budget = match now {
-            Now::Is(now) => return (now != Some(then)).then(|| NOT_THE_RECORDING.to_owned()),
+            Now::Is(now) => return (*now != Some(then)).then(|| NOT_THE_RECORDING.to_owned()),
             Now::Within(budget) => budget,
         };
         if is_untouched(&path, self.source.recording_bytes, folder).unwrap_or(false) {

@@ -4,6 +4,7 @@ use syn::{Attribute, Expr, Lit, Meta, Token, punctuated::Punctuated};
 
 /// The serde attributes that change what is written.
 #[derive(Debug, Clone, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each is an attribute of its own")]
 pub(crate) struct Serde {
     pub default: bool,
     pub skip: bool,

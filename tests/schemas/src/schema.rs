@@ -80,6 +80,7 @@ impl<'a> Document<'a> {
         reference
     }
 
+    #[allow(clippy::needless_pass_by_value, reason = "callers make the name")]
     fn defined_as(&mut self, at: &Defined, name: String) -> Value {
         if !self.definitions.contains_key(&name) {
             // So that a type may hold itself.
@@ -335,10 +336,12 @@ fn short(schema: &Value) -> String {
     reference.or(schema["type"].as_str()).unwrap_or("any").to_owned()
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "callers make the schema")]
 fn list(items: Value) -> Value {
     json!({ "type": "array", "items": items })
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "callers make the schemas")]
 fn tuple(items: Vec<Value>) -> Value {
     let n = items.len();
     json!({ "type": "array", "prefixItems": items, "minItems": n, "maxItems": n })

@@ -1,5 +1,7 @@
 //! The schemas in `console/docs` are those of the types.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use schemas::{Document, Root, Sources};
 use std::{
     fs,

@@ -12,8 +12,6 @@ const MOST_SIDES: usize = 5_000;
 /// An outline that would be closed but for gaps.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NearMiss {
-    /// Lines that it consists of.
-    pub n_lines: usize,
     /// Its larger extent, metres.
     pub across_m: f64,
     /// How many gaps it has,
@@ -31,9 +29,7 @@ impl NearMiss {
             n => format!("{n} gaps, the widest"),
         };
         format!(
-            "{} {} nearly an outline of {:.3} m across: {gap} of {:.1} mm, from {} to {} in the drawing",
-            self.n_lines,
-            if self.n_lines == 1 { "line is" } else { "lines are" },
+            "an outline of {:.3} m across is nearly closed: {gap} of {:.1} mm, from {} to {} in the drawing",
             self.across_m,
             (b - a).norm() * 1000.0,
             place(a, unit_m),
@@ -98,13 +94,17 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
             continue;
         }
         (is_used[a], is_used[b]) = (true, true);
-        let gap = [ends[a].at, ends[b].at];
+        // From left to right, whichever line was drawn first.
+        let mut gap = [ends[a].at, ends[b].at];
+        gap.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         let (one, other) = (group_of[ends[a].line], group_of[ends[b].line]);
         groups[one].gaps.push(gap);
         if one != other {
             let Joined { lines, gaps } =
                 std::mem::replace(&mut groups[other], Joined { lines: Vec::new(), gaps: Vec::new() });
-            lines.iter().for_each(|line| group_of[*line] = one);
+            for line in &lines {
+                group_of[*line] = one;
+            }
             groups[one].lines.extend(lines);
             groups[one].gaps.extend(gaps);
             continue;
@@ -123,7 +123,7 @@ fn miss(joined: &Joined, across_m: f64) -> Option<NearMiss> {
     // Ends that are joined are those of neighbours.
     let n_gaps = joined.gaps.iter().filter(|gap| width_m(gap) > super::rings::SAME_M).count().max(1);
     let is_near = width_m(&widest) <= WIDEST_SHARE * across_m;
-    is_near.then_some(NearMiss { n_lines: joined.lines.len(), across_m, n_gaps, widest })
+    is_near.then_some(NearMiss { across_m, n_gaps, widest })
 }
 
 /// Where a closed outline crosses itself, if it does and has no more sides than are looked at.
@@ -161,14 +161,14 @@ mod tests {
         let miss = nearest(&[&[small.clone()], &large[..]].concat()).unwrap();
         assert_eq!(
             miss.told(0.001),
-            "2 lines are nearly an outline of 10.000 m across: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \
+            "an outline of 10.000 m across is nearly closed: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \
              (10000, 0) in the drawing"
         );
         assert!(
             nearest(&[small])
                 .unwrap()
                 .told(1.0)
-                .contains("1 line is nearly an outline of 1.000 m across: one gap of")
+                .contains("an outline of 1.000 m across is nearly closed: one gap of")
         );
         assert_eq!(nearest(&[line(&[(0.0, 0.0), (5.0, 0.0)])]), None, "a line is no outline");
         assert_eq!(nearest(&[]), None);

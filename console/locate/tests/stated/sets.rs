@@ -144,7 +144,7 @@ impl Draw {
             self.radius_m,
             start.position.x,
             start.position.y,
-            start.heading_rad.to_degrees(),
+            start.heading_rad.to_degrees().rem_euclid(360.0),
             self.noise,
             self.ratio
         )

@@ -26,6 +26,7 @@ pub struct LogLine {
 impl Event {
     /// The event as a line for people, in the screen's log, the recording and on the command line alike; `None` for
     /// what happens every tick. Stations have the names that the opened run gives them.
+    #[allow(clippy::too_many_lines, reason = "one line for each kind of event")]
     pub fn log_line(&self, stations: &[Station]) -> Option<LogLine> {
         Some(match &self.kind {
             EventKind::RunOpened(run) => line(

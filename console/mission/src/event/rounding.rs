@@ -170,7 +170,7 @@ fn round_fix(fix: &mut Fix) {
         match why {
             Exclusion::Residual { residual_m: one, gate_m: other }
             | Exclusion::Impossible { range_m: one, most_m: other } => {
-                [one, other].into_iter().for_each(round)
+                [one, other].into_iter().for_each(round);
             }
             Exclusion::Silent | Exclusion::ByOrder => {}
         }

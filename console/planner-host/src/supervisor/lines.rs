@@ -81,7 +81,7 @@ mod tests {
         lines.extend(b"one\ntw\x1b[31mo");
         assert_eq!(lines.take(), ["one"]);
         lines.extend(b"\nthr");
-        assert_eq!(lines.take(), ["tw [31mo"]);
+        assert_eq!(lines.take(), ["tw\u{fffd}[31mo"]);
         assert_eq!((lines.take_rest(), lines.take_rest()), (vec!["thr".to_owned()], vec![]));
     }
 

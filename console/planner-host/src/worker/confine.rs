@@ -125,8 +125,10 @@ fn own_memory() -> (u64, u64) {
     (bytes_at(0), bytes_at(5))
 }
 
+/// Lowers a limit. It is never raised: the guard page that names an overflow of the stack was placed by the limit of the start.
 fn limit(resource: Resource, most: u64) {
-    let most = getrlimit(resource).maximum.map_or(most, |allowed| allowed.min(most));
+    let before = getrlimit(resource);
+    let most = before.current.into_iter().chain(before.maximum).fold(most, u64::min);
     let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
 }
 

@@ -6,6 +6,7 @@ use crate::stand::{config, folder_with};
 use mission::planner::Parameters;
 use mission::{Cause, Fault, Given};
 use planner_host::HostConfig;
+use std::time::Duration;
 
 const HOSTILE: &str = include_str!("../../../../plugins/faulty/hostile.c");
 const MB: u64 = 1 << 20;
@@ -115,7 +116,14 @@ fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
     let source = HOSTILE.replacen("static void attack", HELPERS, 1);
     let (_folder, dirs) =
         folder_with("hostile", &format!("#define {moment}\n#define ATTACK {attack}\n{source}"));
-    let config = HostConfig { memory_limit_bytes: LIMIT, ..config() };
+    // On a busy machine the attack may take long, and it is its memory that is to end it.
+    let patient = Duration::from_secs(60);
+    let config = HostConfig {
+        memory_limit_bytes: LIMIT,
+        configure_deadline: patient,
+        step_deadline: patient,
+        ..config()
+    };
     let mut desk = Desk::new(&dirs, config);
     desk.ask(ONE, opening("hostile", &Parameters::new(), None))?;
     for tick in 0..5 {

@@ -65,7 +65,7 @@ fn a_planner_in_c_reports_the_progress_of_its_plan() {
     choose(&mut host, "counter", &Parameters::new()).unwrap();
     plan(&mut host).unwrap();
     let progress = |share, what: &str| Progress { share, what: what.to_owned() };
-    let all = [progress(0.25, "one [31m"), progress(1.0, &"x".repeat(80)), progress(0.0, "")];
+    let all = [progress(0.25, "one\u{fffd}[31m"), progress(1.0, &"x".repeat(80)), progress(0.0, "")];
     assert_eq!(*received.lock().unwrap(), all);
     plan(&mut host).unwrap();
     assert_eq!(received.lock().unwrap().len(), 6, "progress of the next plan is reported as well");

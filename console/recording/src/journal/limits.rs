@@ -31,7 +31,7 @@ pub(super) fn check_expansion(packed: u64, lines: u64) -> io::Result<()> {
 
 /// What is said of a line that has no end.
 pub(super) fn too_long() -> String {
-    format!("the line is longer than {} MB, which no event is", MOST_LINE_BYTES >> 20)
+    format!("the line is longer than {} MB, and no event is", MOST_LINE_BYTES >> 20)
 }
 
 /// Memory that a line may take when it is read by way of any value, bytes.

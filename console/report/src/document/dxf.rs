@@ -1,5 +1,5 @@
 //! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS,
-//! and NO_GO_ZONES, ZONES and STATIONS.
+//! and `NO_GO_ZONES`, ZONES and STATIONS.
 //!
 //! `tankops import` reads the floor back: seams end at each other and at the shell, each plate has its name on their layer, and
 //! pipes have their width.
@@ -103,7 +103,9 @@ fn plates(drawing: &mut Drawing, run: &RunOpened) {
         }
         PlateLayout::Regular(_) => {
             let seams = layout.seams(&run.world.boundary);
-            seams.iter().for_each(|seam| drawing.polyline("PLATES", seam, false));
+            for seam in &seams {
+                drawing.polyline("PLATES", seam, false);
+            }
         }
     }
     for (name, at) in PlateLines::new(layout, &run.world.boundary, &run.floor, &map).names() {

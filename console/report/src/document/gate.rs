@@ -191,9 +191,11 @@ fn plates(document: &Document) -> Answered {
     if document.located.as_ref().is_some_and(|located| located.tool_on_s.is_none()) {
         return located::plates(document);
     }
-    // A plate of which nothing could be scanned needs no accuracy.
+    // A plate of which nothing could be scanned needs no accuracy. Readings were to scan none: what the tool did not pass is accepted
+    // as missed.
     let has_figure = |plate: &&crate::account::PlateAccount| {
-        plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && plate.shares.missed <= 0.0
+        let could_be_scanned = plate.shares.missed > 0.0 && document.located.is_none();
+        plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && !could_be_scanned
     };
     let without: Vec<&str> =
         plates.iter().filter(|plate| !has_figure(plate)).map(|plate| &*plate.name).collect();

@@ -12,7 +12,10 @@ pub(super) use map::map;
 pub(super) use sections::sections;
 
 use super::Document;
-use crate::{account::Account, joined::PastRun};
+use crate::{
+    account::{Account, Slivers},
+    joined::PastRun,
+};
 use serde::Serialize;
 use serde_json::{Value, json};
 use world::Point;
@@ -76,16 +79,18 @@ pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
     if !tool_is_known {
         critical_zone.arcs.clear();
         critical_zone.plates.clear();
-        plates.iter_mut().for_each(|plate| plate.error_p95_m = None);
+        for plate in &mut plates {
+            plate.error_p95_m = None;
+        }
     }
     Account {
         critical_zone,
         plates,
         exact: None,
         missed: Vec::new(),
-        slivers: Default::default(),
+        slivers: Slivers::default(),
         unreachable: Vec::new(),
-        unreachable_slivers: Default::default(),
+        unreachable_slivers: Slivers::default(),
         ..floor
     }
 }

@@ -126,7 +126,7 @@ fn words(text: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for word in text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()) {
         match words.last_mut() {
-            Some(last) if last == "n" && matches!(word, "a" | "k") => *last = "na".to_owned(),
+            Some(last) if last == "n" && matches!(word, "a" | "k") => "na".clone_into(last),
             _ => words.push(word.to_owned()),
         }
     }

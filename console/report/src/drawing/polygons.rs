@@ -60,9 +60,9 @@ fn simple(ring: &[Corner]) -> Vec<Vec<Corner>> {
     for corner in ring {
         if let Some(first) = place_of.get(corner).copied() {
             let round = way.split_off(first);
-            round.iter().for_each(|corner| {
+            for corner in &round {
                 place_of.remove(corner);
-            });
+            }
             simple.push(round);
         }
         place_of.insert(*corner, way.len());

@@ -60,7 +60,7 @@ fn straight_s(mission: &MissionConfig, map: &ObstacleMap, stretch: &[Point]) -> 
         return 0.0;
     }
     let squares = squared_speeds(mission, map, &places, &ways);
-    let pairs = squares.windows(2).map(|pair| (pair[0].sqrt() + pair[1].sqrt()) / 2.0);
+    let pairs = squares.windows(2).map(|pair| f64::midpoint(pair[0].sqrt(), pair[1].sqrt()));
     let slowest = (mission.limits.acceleration_m_per_s2 * STEP_M).sqrt() / 2.0;
     ways.iter()
         .zip(pairs)

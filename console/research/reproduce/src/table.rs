@@ -15,8 +15,8 @@ pub fn table(rows: &[Row]) -> String {
         let _ = writeln!(text, "{}  {}", block[0].case, block[0].method);
         let _ = writeln!(
             text,
-            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  {}",
-            "", "paper", "ours", "", "n", "difference", "95 % interval"
+            "  {:<32} {:>12} {:>12}  {:<8} {:>6} {:>12}  95 % interval",
+            "", "paper", "ours", "", "n", "difference"
         );
         for row in block {
             let line = line(row);

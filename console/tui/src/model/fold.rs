@@ -19,6 +19,7 @@ const FORECAST_CELLS: f64 = 100.0;
 
 impl Run {
     /// Takes in one event. What only the simulator can know is left out.
+    #[allow(clippy::too_many_lines, reason = "one arm for each kind of event")]
     pub fn fold(&mut self, event: &Event) -> Change {
         let mut change = Change::default();
         if matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {

@@ -130,13 +130,18 @@ fn idle(model: &Model) -> Clauses {
     if model.live.preflight.is_starting {
         return (Role::Title, vec!["Checking before the start...".into()]);
     }
-    let is_preparing = model.live.run.standing.standing().readiness == Readiness::Preparing;
+    let is_opened = model.planner().is_some() || model.live.run.planning.fault.is_some();
+    let is_preparing = match model.live.run.standing.standing().readiness {
+        Readiness::Preparing => true,
+        // The plan is asked for as soon as the run is open.
+        Readiness::NoPlan => !is_opened,
+        _ => false,
+    };
     if model.live.busy.is_some() || is_preparing {
         return (Role::Title, vec!["Start when the plan is ready.".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
     // A planner that is still being opened blocks nothing yet.
-    let is_opened = model.planner().is_some() || model.live.run.planning.fault.is_some();
     if let Some(failed) = model.blocking_check().filter(|_| is_opened) {
         let (what, why) =
             (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));

@@ -100,9 +100,12 @@ fn the_selected_alarm_is_acknowledged_then_the_worst_then_all_of_them() {
     screen.type_text("a");
     assert_eq!(notice(&screen), "acknowledged: ranges contradict each other");
     assert!(!unacknowledged(&screen).contains(&Cause::Contradiction));
-    screen.type_text("a");
-    assert_eq!(unacknowledged(&screen), [Cause::Map, Cause::Tether("reel".into())]);
-    screen.type_text("*");
+    assert_eq!(screen.type_text("a"), []);
+    assert_eq!(notice(&screen), "the selected alarm needs no acknowledgement; select another");
+    assert_eq!(unacknowledged(&screen).len(), 3, "no other alarm is taken instead");
+    screen.type_text("3a");
+    assert_eq!(unacknowledged(&screen), [Cause::Map, Cause::Tether("reel".into())], "elsewhere the worst");
+    screen.type_text("4*");
     assert_eq!(unacknowledged(&screen), []);
     screen.type_text("*");
     assert_eq!(notice(&screen), "no unacknowledged alarms");

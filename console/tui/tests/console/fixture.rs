@@ -602,13 +602,24 @@ impl Screen {
     /// Sends a message to the model. What the operator does about alarms is written down by the mission in the same tick.
     pub(crate) fn send(&mut self, msg: Msg) -> Vec<tui::Effect> {
         let effects = update(&mut self.model, msg);
-        for effect in &effects {
+        self.write_notes(&effects);
+        effects
+    }
+
+    /// Carries out an action without its key.
+    pub(crate) fn act(&mut self, id: tui::actions::ActionId) -> Vec<tui::Effect> {
+        let effects = tui::update::act(&mut self.model, id);
+        self.write_notes(&effects);
+        effects
+    }
+
+    fn write_notes(&mut self, effects: &[tui::Effect]) {
+        for effect in effects {
             if let tui::Effect::Order(order @ Order::Note(_)) = effect {
                 let written = self.mission.now(EventKind::Ordered { order: order.clone() });
                 update(&mut self.model, of_run(RunMsg::Events(vec![written])));
             }
         }
-        effects
     }
 
     /// Sends news of the run that is open to the model.

@@ -37,8 +37,14 @@ fn hold_down(screen: &mut Screen, key: Key, first_ms: u64) -> Vec<Effect> {
 }
 
 fn moves(effects: &[Effect]) -> Vec<&Order> {
-    let order = |effect| if let Effect::Order(order) = effect { Some(order) } else { None };
-    effects.iter().filter_map(order).filter(|order| !matches!(order, Order::Note(_))).collect()
+    effects
+        .iter()
+        .filter_map(|effect| match effect {
+            Effect::Order(Order::Note(_)) => None,
+            Effect::Order(order) => Some(order),
+            _ => None,
+        })
+        .collect()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What is said to the operator covers neither the state nor a question.
 
-use crate::fixture::{PLAIN, Screen, drawn, text};
+use crate::fixture::{PLAIN, Screen};
+use crate::screens::{drawn, text};
 use mission::{EventKind, HoldReason, Order, Resumes};
 use tui::{Key, Msg, RunMsg};
 

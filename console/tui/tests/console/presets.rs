@@ -2,7 +2,7 @@
 
 use crate::fixture::{RICH, Screen, choice};
 use crate::screens::{drawn, text};
-use mission::{Order, ParamValue, PlannerChoice};
+use mission::{Note, Noted, Order, ParamValue, PlannerChoice};
 use tui::model::{Overlay, Preset};
 use tui::{Effect, Key, Msg, RunMsg};
 
@@ -36,10 +36,12 @@ fn notice(screen: &Screen) -> &str {
 #[test]
 fn a_preset_is_taken_after_a_look_at_what_it_changes() {
     let taken = with("rpf", &[("rpf_gain", ParamValue::Float(0.8))]);
+    let what = Noted::PresetTaken { preset: "soft".into(), planner: "rpf".into() };
+    let note = Effect::Order(Order::Note(Note { what, by: None }));
     let order = Effect::Order(Order::ChoosePlanner(taken));
     for (mut screen, effects) in [
-        (offered(Screen::held()), vec![order.clone()]),
-        (offered(Screen::idle()), vec![order, Effect::Order(Order::Plan)]),
+        (offered(Screen::held()), vec![note.clone(), order.clone()]),
+        (offered(Screen::idle()), vec![note, order, Effect::Order(Order::Plan)]),
     ] {
         assert_eq!(run(&mut screen, "preset-load soft"), []);
         let shown = text(&drawn(&screen.model, RICH, (80, 24)));

@@ -66,12 +66,12 @@ fn the_mission_starts_only_after_the_operator_agreed() {
     assert!(matches!(screen.press([Key::Enter])[..], [Effect::Check { .. }]));
     assert!(screen.model.live.may_move(), "it may be started by what is found");
     let effects = screen.hear(RunMsg::Checked(Vec::new()));
-    let [Effect::Order(Order::NoteChecks(checks)), Effect::Order(Order::StartPlan(_))] = &effects[..] else {
+    let [Effect::Order(Order::NoteChecks(checks)), Effect::Order(start @ Order::StartPlan(_))] = &effects[..]
+    else {
         panic!("{effects:?}")
     };
     assert!(checks.iter().all(|check| check.outcome < CheckOutcome::Failed), "{checks:?}");
-    let events = screen.mission.start();
-    screen.hear(RunMsg::Events(events));
+    obeyed(&mut screen, start.clone());
     assert_eq!(*screen.model.live.run.phase(), Phase::Running(Gait::Steady));
     assert_eq!(screen.model.live.asked, None);
 }
@@ -93,9 +93,9 @@ fn the_start_waits_for_every_tick_by_hand_and_the_ticks_are_written_down() {
     let mut screen = Screen::idle();
     screen.model.live.run.about.as_mut().unwrap().checklist = vec!["manway clear".into(), "permit".into()];
     screen.model.console.preferences.operator = Some("lk".into());
-    assert_eq!(screen.start(), []);
-    assert_eq!(notice(&screen), "start blocked: manway clear: not ticked");
-    screen.press([Key::End, SPACE, Key::Up, SPACE, SPACE, SPACE, Key::Esc]);
+    assert_eq!(screen.type_text("S"), []);
+    assert_eq!(notice(&screen), "start blocked: manway clear: not ticked; A: pre-flight check");
+    screen.press([Key::Char('A'), Key::End, SPACE, Key::Up, SPACE, SPACE, SPACE, Key::Esc]);
     let effects = screen.start();
     let Some(Effect::Order(Order::NoteChecks(checks))) = effects.first() else { panic!("{effects:?}") };
     let ticked: Vec<(&str, &str)> = checks
@@ -235,8 +235,8 @@ fn a_planner_that_covers_no_floor_is_marked_and_not_asked_to() {
 fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
     let mut screen = Screen::idle();
     screen.start();
-    let started = screen.mission.now(EventKind::Ordered { order: Order::Start });
-    screen.hear(RunMsg::Events(vec![started]));
+    let start = screen.model.live.asked.clone().expect("a start");
+    obeyed(&mut screen, start);
     screen.hear(RunMsg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
     assert!(screen.model.wakes_at_mono_s().is_some(), "the seconds keep counting");
     for _ in 0..7 {
@@ -260,7 +260,7 @@ fn planning_is_shown_with_the_time_it_has_taken_while_ticks_go_on() {
 fn work_on_a_planner_that_is_only_prepared_offers_what_can_be_done() {
     let mut screen = Screen::idle();
     screen.hear(RunMsg::Busy(Some(("Loading planner (rpf)".into(), None))));
-    let line = "Loading planner (rpf). Press S to start (planner rpf).";
+    let line = "Loading planner (rpf). Start when the plan is ready.";
     assert!(shown(&screen).contains(line), "{}", shown(&screen));
     assert!(!shown(&screen).contains("space: HOLD"), "there is nothing to hold");
 }
@@ -601,7 +601,7 @@ fn a_run_that_ends_shows_its_result_and_what_comes_next() {
     assert_eq!(screen.type_text("v"), [Effect::Do(Job::Verify(run()))]);
     let failed = Err("different from tick 3 on".to_owned());
     screen.send(Msg::Done(Job::Verify(run()), failed));
-    assert_eq!(notice(&screen), "verifying the run failed: different from tick 3 on");
+    assert_eq!(notice(&screen), format!("verifying {} failed: different from tick 3 on", run()));
     assert_eq!(screen.type_text("r"), []);
     assert!(notice(&screen).starts_with("planner rpf does not support coverage missions"));
     screen.model.live.run.planning.info.iter_mut().for_each(|planner| planner.covers = true);
@@ -696,7 +696,7 @@ fn every_command_can_be_run_by_its_name() {
         by_name.send(Msg::Paste(action.name.into()));
         let named = by_name.press([Key::Enter]);
         let mut by_id = Screen::held();
-        let direct = tui::update::act(&mut by_id.model, action.id);
+        let direct = by_id.act(action.id);
         by_id.model.console.history.clone_from(&by_name.model.console.history);
         assert_eq!((named, by_name.model), (direct, by_id.model), "{}", action.name);
     }

@@ -1,6 +1,7 @@
 //! A start belongs to the plan that is shown.
 
-use crate::fixture::{PLAIN, Screen, choice, drawn, tether, text};
+use crate::fixture::{PLAIN, Screen, choice, tether};
+use crate::screens::{drawn, text};
 use mission::{CheckOutcome, EventKind, Order, ParamValue};
 use tui::{Effect, Key, Msg, RunMsg, actions::ActionId, model::Overlay, update::offered};
 

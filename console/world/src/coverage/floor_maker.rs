@@ -199,9 +199,9 @@ impl FloorMaker {
         self.connected = Connected::new(&self.room, &self.floor, &free, self.start);
         self.reach_from_cells(&free);
         self.reach_from_corners();
-        for index in 0..self.floor.len() {
+        for (index, is_free) in free.iter().enumerate() {
             if self.floor.cells[index] == Cell::Beside {
-                let kind = self.kind_beside(index, free[index]);
+                let kind = self.kind_beside(index, *is_free);
                 self.floor.set(index, kind);
             }
         }
@@ -224,7 +224,9 @@ impl FloorMaker {
     /// Cells that the tool reaches from a corner of the floor on which the robot has room are reachable.
     fn reach_from_corners(&mut self) {
         let corners: Vec<Point> = self.room.corners().filter(|corner| self.leads_to(*corner)).collect();
-        corners.into_iter().for_each(|corner| self.reach_around(corner));
+        for corner in corners {
+            self.reach_around(corner);
+        }
     }
 
     fn reach_around(&mut self, place: Point) {

@@ -25,7 +25,7 @@ pub(super) struct Room {
     boundary: Boundary,
     cores: Vec<Core>,
     boxes: Boxes,
-    room_m: f64,
+    keep_m: f64,
     /// Corners of the rim, in squares of `square_m`.
     corners: BTreeMap<(i64, i64), Vec<Point>>,
     square_m: f64,
@@ -55,7 +55,7 @@ impl Room {
             boundary: boundary.clone(),
             boxes: Boxes::new(cores.iter().map(Core::bounds)),
             cores,
-            room_m,
+            keep_m: room_m,
             corners: BTreeMap::new(),
             square_m: reach_m.max(room_m).max(TIE_M),
         };
@@ -67,13 +67,13 @@ impl Room {
 
     /// Whether the robot has room at a place.
     pub(super) fn has(&self, at: Point) -> bool {
-        self.map.clearance_m(at) >= self.room_m - TIE_M
+        self.map.clearance_m(at) >= self.keep_m - TIE_M
     }
 
     /// Whether the robot has room on all of a straight way between two places where it has room.
     pub(super) fn is_way(&self, a: Point, b: Point) -> bool {
-        let keeps = |core: &Core| core.way_m((a, b)) >= self.room_m - TIE_M;
-        self.boxes.near(a, b, self.room_m).all(|index| keeps(&self.cores[index]))
+        let keeps = |core: &Core| core.way_m((a, b)) >= self.keep_m - TIE_M;
+        self.boxes.near(a, b, self.keep_m).all(|index| keeps(&self.cores[index]))
     }
 
     /// Every corner of the rim.
@@ -101,10 +101,10 @@ impl Room {
 
     /// The nearest place at the right distance from each solid that is too near.
     fn feet(&self, at: Point) -> Vec<Point> {
-        let near = self.boxes.near(at, at, self.room_m).map(|index| &self.cores[index]);
-        let mut feet: Vec<Point> = near.flat_map(|core| core.feet(at, self.room_m)).collect();
+        let near = self.boxes.near(at, at, self.keep_m).map(|index| &self.cores[index]);
+        let mut feet: Vec<Point> = near.flat_map(|core| core.feet(at, self.keep_m)).collect();
         if let Boundary::Circle { radius_m } = self.boundary {
-            let (off_m, inner_m) = (at.coords.norm(), radius_m - self.room_m);
+            let (off_m, inner_m) = (at.coords.norm(), radius_m - self.keep_m);
             if off_m > inner_m && inner_m >= 0.0 {
                 feet.push(Point::from(at.coords * (inner_m / off_m)));
             }
@@ -113,9 +113,9 @@ impl Room {
     }
 
     fn all_corners(&self) -> Vec<Point> {
-        let mut rims = Core::rims(&self.cores, self.room_m);
+        let mut rims = Core::rims(&self.cores, self.keep_m);
         if let Boundary::Circle { radius_m } = self.boundary {
-            rims.push(Rim::Arc { center: Point::origin(), radius_m: (radius_m - self.room_m).max(0.0) });
+            rims.push(Rim::Arc { center: Point::origin(), radius_m: (radius_m - self.keep_m).max(0.0) });
         }
         let boxes = Boxes::new(rims.iter().map(|rim| {
             let (a, b, around_m) = rim.around();

@@ -197,7 +197,7 @@ impl SweptArea {
                 // The very end of a span lies on what ends it.
                 let here_m = at(k).clamp(from + EDGE_M, (to - EDGE_M).max(from + EDGE_M));
                 let now_reached = is_reached(here_m);
-                let edge_m = || if k == 0 { *from } else { border_m(before_m, here_m, &is_reached) };
+                let edge_m = || if k == 0 { *from } else { border_m(before_m, here_m, is_reached) };
                 match (was_reached, now_reached, reachable.last_mut()) {
                     (false, true, _) => reachable.push((edge_m(), *to)),
                     (true, false, Some(last)) => last.1 = edge_m(),

@@ -181,7 +181,7 @@ proptest! {
             let shown = folded.ready_plan();
             for event in flight.tick(&now) {
                 if let EventKind::Ordered { order } = &event && order.is_start() {
-                    prop_assert_eq!(Some(order), shown.map(Order::StartPlan).as_ref());
+                    prop_assert_eq!(Some(order.clone()), shown.map(Order::StartPlan));
                     prop_assert_eq!(shown, folded.ready_plan());
                 }
                 folded.apply(&event);

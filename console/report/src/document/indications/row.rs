@@ -84,7 +84,6 @@ impl<'a> Row<'a> {
                 "x_m",
                 "the row says both when it was found and where it lies: leave one of them empty",
             )),
-            (Some(_), Some(_), false) | (None, None, true) => None,
             (Some(_), None, _) if !is_bad("y_m") => Some(("y_m", "empty; x_m and y_m belong together")),
             (None, Some(_), _) if !is_bad("x_m") => Some(("x_m", "empty; x_m and y_m belong together")),
             (None, None, false) if !["t_s", "time", "x_m", "y_m"].into_iter().any(is_bad) => {
