@@ -293,5 +293,5 @@ fn a_campaign_of_which_a_value_was_changed_is_refused() {
     assert_ne!(changed, text);
     std::fs::write(&file, changed).unwrap();
     let refused = campaign(&bench, "status", &[Path::new("out")]);
-    assert!(refused.code == Some(2) && refused.err.contains("its SHA-256 is another one"), "{refused:?}");
+    assert!(refused.code == Some(2) && refused.err.contains("is not the text of its SHA-256"), "{refused:?}");
 }

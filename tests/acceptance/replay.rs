@@ -32,12 +32,16 @@ fn a_changed_journal_is_reported_from_its_first_difference_on() {
     bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
     let run = bench.runs().remove(0);
     let text = journal_text(&run);
-    let tick = journal(&run)[200]["tick"].as_u64().unwrap();
-    let changed: Vec<String> = text
-        .lines()
-        .enumerate()
-        .map(|(i, line)| if i == 200 { line.replacen("\"t_s\":", "\"t_s\":9", 1) } else { line.into() })
-        .collect();
+    let events = journal(&run);
+    let at = (200..events.len()).find(|i| events[*i]["event"] == "truth").unwrap();
+    let tick = events[at]["tick"].as_u64().unwrap();
+    let changed: Vec<String> =
+        text.lines()
+            .enumerate()
+            .map(|(i, line)| {
+                if i == at { line.replacen("\"clearance_m\":", "\"clearance_m\":9", 1) } else { line.into() }
+            })
+            .collect();
     change_journal(&run, &(changed.join("\n") + "\n"));
     let verified = bench.tankops(&["verify", run.to_str().unwrap()]);
     assert_eq!(verified.code, Some(1), "{verified:?}");

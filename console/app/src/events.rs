@@ -3,6 +3,7 @@
 use crate::cli::EventsArgs;
 use flight::failure::COMPLETE;
 use foreign::plain_json;
+use mission::EventKind;
 use recording::{JournalLine, JournalReader, journal_of};
 use report::print::warn_line;
 use runs::find;
@@ -25,10 +26,15 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
     let mut out = BufWriter::new(io::stdout().lock());
     let mut is_opened = false;
+    // A journal can also stop between two events.
+    let mut stops_in = None;
     while let Some(line) = reader.next_line()? {
         is_opened = true;
         let t_s = line.event.t_s;
+        let is_end = matches!(line.event.kind, EventKind::Ended { .. });
+        stops_in = (!is_end).then_some(line.event.tick);
         if args.to.is_some_and(|to_s| t_s > to_s) {
+            stops_in = None;
             break;
         }
         if t_s < from_s || !is_wanted(&line, &args.kind) {
@@ -46,7 +52,8 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     if !is_opened {
         return Err(reader.not_opened().into());
     }
-    if let Some(why) = reader.truncated() {
+    let stop = || stops_in.map(|tick| format!("it stops in tick {tick}"));
+    if let Some(why) = reader.truncated().map(str::to_owned).or_else(stop) {
         warn_line(&format!("note: the journal has no end: {why}"));
     }
     Ok(ExitCode::from(COMPLETE))

@@ -8,16 +8,20 @@ const ADDRESS_SPACE: u64 = 1 << 30;
 /// Stack of the first thread, bytes.
 const STACK: u64 = 1 << 20;
 
-/// Makes sure that the limits of the machine leave room for a command.
+/// Makes sure that the machine leaves room for the stack; to be asked before the command line is read, which takes stack, too.
 ///
 /// # Errors
-/// One does not; the sentence names it.
+/// It does not; the sentence names the limit.
+pub(crate) fn check_stack() -> anyhow::Result<()> {
+    enough(getrlimit(Resource::Stack).current, STACK, "stack", 's').map_err(|why| anyhow!(why))
+}
+
+/// Makes sure that the machine leaves address space for a command.
+///
+/// # Errors
+/// It does not; the sentence names the limit.
 pub(crate) fn check() -> anyhow::Result<()> {
-    let limits =
-        [(Resource::As, ADDRESS_SPACE, "address space", 'v'), (Resource::Stack, STACK, "stack", 's')];
-    limits.into_iter().try_for_each(|(resource, needed, of_what, option)| {
-        enough(getrlimit(resource).current, needed, of_what, option).map_err(|why| anyhow!(why))
-    })
+    enough(getrlimit(Resource::As).current, ADDRESS_SPACE, "address space", 'v').map_err(|why| anyhow!(why))
 }
 
 fn enough(limit: Option<u64>, needed: u64, of_what: &str, option: char) -> Result<(), String> {

@@ -44,6 +44,9 @@ use scenario::Settings;
 use std::{io::IsTerminal, process::ExitCode, sync::Arc};
 
 fn main() -> ExitCode {
+    if let Err(error) = machine::check_stack() {
+        return fail(&error);
+    }
     let cli = Cli::parse();
     if matches!(cli.command, Some(Command::Worker)) {
         return planner_host::worker_main();

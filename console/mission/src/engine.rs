@@ -31,7 +31,7 @@ use crate::{
     event::{Event, EventKind, TetherAlarm},
     locate::Locator,
     order::Order,
-    phase::Phase,
+    phase::{HoldReason, Phase},
     standing::{PositionTrust, Standing},
     task::Task,
     tether::Tether,
@@ -273,7 +273,9 @@ impl Mission {
             // A robot that stands for its planner is kept from no corner.
             Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.task.wait(self.config.tick_s * self.briskness()),
-            Phase::Held(hold) if hold.by.blames_planner() => self.replace_failed_planner(),
+            Phase::Held(hold) if hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. }) => {
+                self.replace_failed_planner();
+            }
             Phase::Waiting | Phase::Held(_) | Phase::Ended(_) => {}
         }
     }
