@@ -602,7 +602,12 @@ fn a_planner_that_sees_no_way_has_not_failed() {
         if attended {
             assert!(matches!(flight.held_by(), Some(HoldReason::Stuck { .. })));
         } else {
-            assert_eq!(flight.ended(), Some(Outcome::Stuck), "{:?}", (flight.mission.phase(), flight.mission.active.prepare));
+            assert_eq!(
+                flight.ended(),
+                Some(Outcome::Stuck),
+                "{:?}",
+                (flight.mission.phase(), flight.mission.active.prepare)
+            );
         }
     }
 }

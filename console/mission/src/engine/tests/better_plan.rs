@@ -219,7 +219,8 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
 fn another_find_drops_what_is_being_made_and_after_its_repair_one_is_made_anew() {
     let mut flight = while_it_is_made(wasteful(BetterPlan::Take));
     flight.delay = Box::new(|_, _| 0);
-    let ahead = flight.mission.task.targets_ahead(4.0).last().copied().unwrap();
+    // On a lane to come, with room for the hull on all sides.
+    let ahead = Point::new(-1.5, -3.3);
     fly_past(&mut flight, &[COLUMN, ahead], 1000);
     assert_eq!(texts(&flight)[0], "no better plan of straight: the map has changed");
     let kept: Vec<bool> = flight.planner.kept.iter().map(Option::is_some).collect();

@@ -93,7 +93,7 @@ fn scan_round_unseen_column(seen_m: f64) -> Flight {
     let mut flight = Flight::new(MissionConfig { tether: Some(config), attended: false, ..covering() });
     flight.reel = cable(anchor, &[UNSEEN]);
     flight.tick(&[Order::Start]);
-    for _ in 0..9000 {
+    for _ in 0..10_000 {
         let is_seen = !snags(&flight).is_empty() && UNSEEN.distance_m(flight.pose.position) < seen_m;
         let shape_in_robot = UNSEEN.transformed(&flight.pose.tank_from_robot().inverse());
         flight.sightings =
