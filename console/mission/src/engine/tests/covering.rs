@@ -29,7 +29,9 @@ pub(super) fn lanes(request: &PlanAsk, anchor: Point, has_lap: bool) -> Plan {
         let Some(begin) = points.first() else { continue };
         leg(&mut path, &mut legs, LegTag::Connector, |path| go_on(path, request, *begin));
         leg(&mut path, &mut legs, LegTag::Swath, |path| {
-            points.iter().for_each(|to| go_on(path, request, *to));
+            for to in &points {
+                go_on(path, request, *to);
+            }
         });
     }
     leg(&mut path, &mut legs, LegTag::Travel, |path| go_on(path, request, anchor));
