@@ -115,7 +115,7 @@ fn a_planner_that_uses_a_clock_or_crashes_fails_its_checks() {
     };
     let crashes = with("if (in->tick == 7) abort();");
     assert!(
-        crashes.code == Some(1) && crashes.out.contains("FAIL  answers soundly in every tank"),
+        crashes.code == Some(1) && crashes.out.contains("FAIL  gives valid answers in every tank"),
         "{crashes:?}"
     );
     let clock = "static double noise; noise += (double)(size_t)in / 1e18; host->scalar(host->ctx, (tp_str)TP_STR(\"n\"), \

@@ -47,7 +47,7 @@ impl Bench {
         let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
-        // What the developer has set up is none of the tests' business.
+        // The developer's own settings do not matter to the tests.
         command.env("XDG_CONFIG_HOME", self.path()).env("XDG_STATE_HOME", self.path());
         command.env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"));
         command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));

@@ -123,7 +123,7 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
         let why = match ::locate::again(folder)? {
             Again::Equal(_) => continue,
             Again::Different { line, .. } => {
-                format!("other positions come out of them from line {line} of its journal on")
+                format!("they give other positions from line {line} of its journal on")
             }
             Again::NoReadings(why) => format!("put them back where they were: {why}"),
         };

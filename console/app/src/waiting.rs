@@ -43,7 +43,7 @@ fn wait(file: &Path) -> Option<File> {
         OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(file).ok()?;
     let has_come = |within| poll(&mut [PollFd::new(&pipe, PollFlags::IN)], within).is_ok_and(|n| n > 0);
     if !has_come(Some(&SOON)) {
-        warn_line(&format!("note: waiting for what is written to the pipe {}", file.display()));
+        warn_line(&format!("note: waiting for data from the pipe {}", file.display()));
         has_come(None);
     }
     Some(pipe)

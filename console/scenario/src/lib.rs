@@ -35,7 +35,6 @@ pub use renamed::with_todays_keys;
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 
-pub use import::Foreign;
 use mission::MissionConfig;
 use report::{Expect, Inspection};
 use sim::SimConfig;
@@ -44,7 +43,7 @@ use std::{fs::File, io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
 
-/// A larger file is no scenario, kilobytes; a large map written out takes some two thousand.
+/// A larger file is not a scenario, kilobytes; a large map written out takes some two thousand.
 const LIMIT_KB: usize = 8000;
 
 /// A scenario, checked.
@@ -156,7 +155,7 @@ fn read_text(path: &Path) -> Result<String, Complaint> {
     if bytes.len() > LIMIT_KB * 1000 {
         return Err(Complaint::TooLarge { limit_kb: LIMIT_KB });
     }
-    match Foreign::of(&bytes) {
+    match foreign::NotUtf8::of(&bytes) {
         Some(foreign) => Err(Complaint::NotText(foreign)),
         None => Ok(String::from_utf8_lossy(&bytes).into_owned()),
     }
