@@ -45,7 +45,7 @@ impl Chain {
 
     /// Adds what speaks against runs that are not those that were signed.
     pub(crate) fn compare(&mut self, past: &[PastRun]) {
-        let now: Vec<SignedRun> = past.iter().map(SignedRun::of).collect();
+        let now: Vec<SignedRun> = past.iter().flat_map(SignedRun::names_of).collect();
         let doubts =
             self.revisions.iter().flat_map(|revision| now.iter().filter_map(|run| revision.doubt(run)));
         let doubts = doubts.collect();

@@ -1,15 +1,15 @@
 //! Short texts that people write: scripts, plans, facts, lists.
 
 use crate::failure::bad_input;
-use foreign::{MOST_TEXT_BYTES, text_of};
-use std::{fs::File, io, path::Path};
+use foreign::{MOST_TEXT_BYTES, open_waiting, text_of};
+use std::{io, path::Path};
 
 /// The text of a file, which may be a pipe.
 ///
 /// # Errors
 /// It cannot be read or is not UTF-8: what it is instead, and what to do about it.
 pub fn read(file: &Path) -> anyhow::Result<String> {
-    named(file, File::open(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
+    named(file, open_waiting(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
 }
 
 /// The text of a regular file.

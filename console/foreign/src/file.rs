@@ -1,11 +1,15 @@
 //! Files read within limits.
 
 use crate::NotUtf8;
-use rustix::fs::{OFlags, SeekFrom, seek};
+use rustix::{
+    event::{PollFd, PollFlags, poll},
+    fs::{OFlags, SeekFrom, fcntl_getfl, fcntl_setfl, seek},
+    io::Errno,
+};
 use std::{
     fs::{File, OpenOptions},
     io::{self, ErrorKind, Read},
-    os::unix::fs::OpenOptionsExt,
+    os::unix::fs::{FileTypeExt, OpenOptionsExt},
     path::Path,
 };
 
@@ -31,6 +35,22 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
             about.len()
         )));
     }
+    Ok(file)
+}
+
+/// Opens a file that may be a pipe; then waits until its other end has written something or is closed.
+///
+/// Who wrote and left already is not missed, as long as somebody else keeps the pipe open.
+///
+/// # Errors
+/// It cannot be opened.
+pub fn open_waiting(path: &Path) -> io::Result<File> {
+    let file =
+        OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(path)?;
+    if file.metadata()?.file_type().is_fifo() {
+        while poll(&mut [PollFd::new(&file, PollFlags::IN)], None) == Err(Errno::INTR) {}
+    }
+    fcntl_setfl(&file, fcntl_getfl(&file)? - OFlags::NONBLOCK)?;
     Ok(file)
 }
 
@@ -120,6 +140,28 @@ mod tests {
             let refused = open_regular(path).unwrap_err().to_string();
             assert_eq!(refused, "it is not a regular file", "{}", path.display());
         }
+    }
+
+    #[test]
+    fn a_pipe_is_waited_for_and_what_was_written_before_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let late = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::write(pipe, "late").unwrap()
+        });
+        assert_eq!(text_of(open_waiting(&pipe).unwrap(), 100).unwrap(), "late");
+        late.join().unwrap();
+
+        // Kept open by somebody, as whoever waits for it does.
+        let kept =
+            OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(&pipe).unwrap();
+        fs::write(&pipe, "early").unwrap();
+        assert_eq!(text_of(open_waiting(&pipe).unwrap(), 100).unwrap(), "early");
+        drop(kept);
+        fs::write(folder.path().join("file"), "regular").unwrap();
+        assert_eq!(text_of(open_waiting(&folder.path().join("file")).unwrap(), 100).unwrap(), "regular");
     }
 
     #[test]

@@ -9,5 +9,7 @@ mod file;
 mod text;
 
 pub use encoding::{NotUtf8, wide};
-pub use file::{MOST_TEXT_BYTES, json_weight, open_regular, read_at_most, read_json, read_regular, text_of};
+pub use file::{
+    MOST_TEXT_BYTES, json_weight, open_regular, open_waiting, read_at_most, read_json, read_regular, text_of,
+};
 pub use text::{is_plain, plain, plain_json, plain_lines, seen, unplain};

@@ -39,7 +39,7 @@ use mission::MissionConfig;
 use report::{Expect, Inspection};
 use sim::SimConfig;
 use source::Source;
-use std::{fs::File, io::Read, path::Path};
+use std::{io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
 
@@ -150,7 +150,11 @@ fn read_text(path: &Path) -> Result<String, Complaint> {
     if is_stdin(path) {
         std::io::stdin().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
     } else {
-        File::open(path).map_err(unreadable)?.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+        foreign::open_waiting(path)
+            .map_err(unreadable)?
+            .take(limit)
+            .read_to_end(&mut bytes)
+            .map_err(unreadable)?;
     }
     if bytes.len() > LIMIT_KB * 1000 {
         return Err(Complaint::TooLarge { limit_kb: LIMIT_KB });
