@@ -75,7 +75,7 @@ fn is_worker(pid: i32) -> bool {
 }
 
 fn signal_it(worker: i32, signal: Signal) {
-    assert!(worker > 1 && is_worker(worker), "{worker} is no worker");
+    assert!(worker > 1 && is_worker(worker), "{worker} is not a worker");
     kill_process(Pid::from_raw(worker).unwrap(), signal).unwrap();
 }
 

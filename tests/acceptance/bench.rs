@@ -44,13 +44,17 @@ impl Bench {
 
     /// `tankops` in this folder; test-only plugins lie in `deps` beside it.
     pub(crate) fn command(&self) -> Command {
-        let program = Path::new(env!("CARGO_BIN_EXE_tankops"));
+        self.command_of(Path::new(env!("CARGO_BIN_EXE_tankops")))
+    }
+
+    /// The same with another build of it.
+    pub(crate) fn command_of(&self, program: &Path) -> Command {
         let mut command = Command::new(program);
         command.current_dir(self.path()).env_remove("TANKOPS_PLUGIN_PATH");
-        // What the developer has set up is none of the tests' business.
+        // The developer's own settings do not matter to the tests.
         command.env("XDG_CONFIG_HOME", self.path()).env("XDG_STATE_HOME", self.path());
         command.env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"));
-        command.arg("--plugin-dir").arg(program.parent().unwrap().join("deps"));
+        command.arg("--plugin-dir").arg(Path::new(env!("CARGO_BIN_EXE_tankops")).with_file_name("deps"));
         command
     }
 

@@ -132,7 +132,11 @@ fn check_warns_of_a_clearance_within_the_position_error() {
         let file = bench.file("scan.toml", scan.replace("clearance_m = 0.1", clearance));
         let checked = bench.tankops(&["check", file.to_str().unwrap()]);
         assert_eq!(checked.code, Some(0), "{checked:?}");
-        assert_eq!(checked.err.contains("mission.clearance_m is 0.02 m"), is_warned, "{checked:?}");
+        assert_eq!(
+            checked.err.contains("the hull keeps 0.05 m from solids (mission.clearance_m"),
+            is_warned,
+            "{checked:?}"
+        );
     }
 }
 
@@ -206,5 +210,5 @@ fn a_pipe_in_the_place_of_a_plan_or_a_configuration_is_refused_and_not_waited_fo
     bench.file("plan.toml", [b'#', 0xff, 0xfe]);
     let ended = bench.tankops(&["campaign", "run", "plan.toml"]);
     assert_eq!(ended.code, Some(2), "{ended:?}");
-    assert!(ended.err.contains("plan.toml: no text: byte 2 is not UTF-8"), "{ended:?}");
+    assert!(ended.err.contains("plan.toml: not UTF-8 but "), "{ended:?}");
 }

@@ -211,10 +211,7 @@ fn a_scenario_out_of_a_pipe_is_waited_for_and_the_user_is_told() {
         command.arg("check").arg(&pipe).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut said = String::new();
     BufReader::new(waiting.stderr.as_mut().unwrap()).read_line(&mut said).unwrap();
-    assert!(
-        said.contains("note: waiting for what is written to the pipe") && said.contains("pipe.toml"),
-        "{said}"
-    );
+    assert!(said.contains("note: waiting for data from the pipe") && said.contains("pipe.toml"), "{said}");
     write(&pipe, &fs::read(scenario("demo.toml")).unwrap());
     let ended = Ended::from(waiting.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(0), "{ended:?}");

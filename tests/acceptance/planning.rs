@@ -170,7 +170,7 @@ fn a_terminated_console_does_not_wait_for_the_plan() {
 fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
     let mut session = faulty("plan_long");
     session.see("Planning (faulty)");
-    session.press("S\r");
+    session.press("S");
     session.see("start when the plan is ready");
     session.start();
     session.see("▶ RUN");

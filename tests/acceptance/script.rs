@@ -87,7 +87,7 @@ fn what_is_done_about_alarms_stations_and_presets_is_in_journal_and_report() {
     bench.prove(run);
     let (run, events) = (run.to_str().unwrap(), bench.tankops(&["events", run.to_str().unwrap()]));
     let page = bench.path().join("report.html");
-    let written = bench.tankops(&["report", run, "--draft", "-o", page.to_str().unwrap()]);
+    let written = bench.tankops(&["report", run, "-o", page.to_str().unwrap()]);
     assert_eq!(written.code, Some(0), "{written:?}");
     let page = std::fs::read_to_string(page).unwrap();
     for line in

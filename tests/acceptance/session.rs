@@ -158,6 +158,8 @@ impl Session {
         self.press_until("P", "coverage is kept");
         self.choose(id);
         self.see(&format!("Change planner to {id}?"));
+        // Enter right after Enter would be a key that is held down.
+        std::thread::sleep(Duration::from_millis(400));
         self.press("\r");
     }
 

@@ -141,7 +141,7 @@ fn twin_tanks_never_become_one_report_and_a_rescan_names_the_run_that_it_continu
         assert_eq!(together(&again).code, Some(0), "another scan of the same tank: {:?}", together(&again));
     }
     std::fs::remove_file(bench.path().join("s.toml")).unwrap();
-    // A re-scan of the one is none of the other.
+    // A re-scan of the one is not a re-scan of the other.
     assert_eq!(bench.tankops(&["rescan", &one, "-o", "again.toml"]).code, Some(0));
     let rescan = fly(&bench.path().join("again.toml"), &[]);
     assert_eq!(bench.tankops(&["report", &one, &rescan]).code, Some(0));
@@ -220,7 +220,7 @@ fn empty_words_an_expired_certificate_and_sound_of_unknown_origin_are_not_signed
     let calibration = "2026-11-22 03:10, plate K1, passed, L. Kern";
     for words in ["n.a.", "none", "to be done", "unknown"] {
         let why = open(calibration, words);
-        assert!(why.contains(&format!("inspection.calibration_before says nothing: `{words}`")), "{why}");
+        assert!(why.contains(&format!("inspection.calibration_before has no content: `{words}`")), "{why}");
     }
     let why = open("\"2099-05\"", "\"2019-05\"");
     assert!(why.contains("it expired on 2019-05-31, before the inspection on 20"), "{why}");

@@ -64,7 +64,7 @@ fn is_wanted(JournalLine { raw, .. }: &JournalLine, kinds: &[String]) -> bool {
     kinds.is_empty() || serde_json::from_slice(raw).is_ok_and(is_one)
 }
 
-/// A reader that has gone away, as `head` does, is no fault.
+/// A reader that has gone away, as `head` does, is not a fault.
 fn ended(error: &io::Error) -> anyhow::Result<ExitCode> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(ExitCode::from(COMPLETE)),

@@ -67,7 +67,10 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
 fn no_scenario(errors: &ScenarioErrors) -> String {
     let told = errors.problems.iter().take(LISTED).map(|problem| {
         let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();
-        format!("{}: makes no scenario, and nothing was written: {problem}{help}", errors.shown_name)
+        format!(
+            "{}: no scenario can be made of it, and nothing was written: {problem}{help}",
+            errors.shown_name
+        )
     });
     told.collect::<Vec<_>>().join("\n")
 }

@@ -95,7 +95,7 @@ struct Sides {
 struct Impossible<'a> {
     station: &'a str,
     count: u64,
-    /// Metres; absent if it is no number.
+    /// Metres; absent if it is not a number.
     first_m: Option<f64>,
     most_m: f64,
     /// Mission time, seconds.

@@ -12,7 +12,7 @@ use std::{
 /// How often the time that has passed is drawn again.
 const EVERY: Duration = Duration::from_millis(250);
 
-/// Shows what is going on, for how long already and its limit; nothing where stderr is no terminal.
+/// Shows what is going on, for how long already and its limit; nothing where stderr is not a terminal.
 pub(crate) fn spinner(work: &str, limit: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

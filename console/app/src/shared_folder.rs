@@ -2,7 +2,7 @@
 //! claims that say who works on what.
 
 use anyhow::Context;
-use recording::{open_regular, read_regular};
+use foreign::{open_regular, read_regular};
 use runs::write_by_draft;
 use rustix::fs::{Timespec, Timestamps, UTIME_NOW, futimens};
 use std::{

@@ -45,7 +45,7 @@ impl Chain {
 
     /// Adds what speaks against runs that are not those that were signed.
     pub(crate) fn compare(&mut self, past: &[PastRun]) {
-        let now: Vec<SignedRun> = past.iter().map(SignedRun::of).collect();
+        let now: Vec<SignedRun> = past.iter().flat_map(SignedRun::names_of).collect();
         let doubts =
             self.revisions.iter().flat_map(|revision| now.iter().filter_map(|run| revision.doubt(run)));
         let doubts = doubts.collect();
@@ -123,7 +123,7 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
         let why = match ::locate::again(folder)? {
             Again::Equal(_) => continue,
             Again::Different { line, .. } => {
-                format!("other positions come out of them from line {line} of its journal on")
+                format!("they give other positions from line {line} of its journal on")
             }
             Again::NoReadings(why) => format!("put them back where they were: {why}"),
         };

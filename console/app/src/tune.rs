@@ -88,7 +88,7 @@ fn start(set: &[String]) -> Result<Parameters, String> {
     set.iter().map(pair).collect()
 }
 
-/// What is no TOML value is a word.
+/// What is not a TOML value is a word.
 fn value(written: &str) -> ParamValue {
     match written.parse() {
         Ok(Value::Boolean(flag)) => ParamValue::Flag(flag.into_value()),

@@ -1,6 +1,6 @@
 //! A scenario that comes through a pipe: whoever writes it may take their time, and the user is told what is waited for.
 
-use crate::cli::{CampaignCommand, Command};
+use crate::cli::Command;
 use report::print::warn_line;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
@@ -29,8 +29,6 @@ fn files(command: Option<&Command>) -> Vec<PathBuf> {
         Some(Command::Locate(args)) => vec![args.scenario.clone()],
         Some(Command::Console(args)) => args.scenario.iter().cloned().collect(),
         Some(Command::Check { files, .. }) => files.clone(),
-        Some(Command::Campaign(CampaignCommand::Prepare(args))) => vec![args.plan.clone()],
-        Some(Command::Campaign(CampaignCommand::Run(args))) => vec![args.out.plan.clone()],
         _ => Vec::new(),
     }
 }
@@ -43,7 +41,7 @@ fn wait(file: &Path) -> Option<File> {
         OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(file).ok()?;
     let has_come = |within| poll(&mut [PollFd::new(&pipe, PollFlags::IN)], within).is_ok_and(|n| n > 0);
     if !has_come(Some(&SOON)) {
-        warn_line(&format!("note: waiting for what is written to the pipe {}", file.display()));
+        warn_line(&format!("note: waiting for data from the pipe {}", file.display()));
         has_come(None);
     }
     Some(pipe)

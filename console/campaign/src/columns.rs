@@ -19,8 +19,8 @@ const MEANINGS: [(&str, &str); 56] = [
     ("parameters", "parameters of the planner, defaults included, as JSON"),
     ("ticks", "ticks that passed"),
     ("mission_time_s", "mission time until the end, whatever the outcome"),
-    ("path_length_m", "way that the robot truly went"),
-    ("turns", "changes of heading above 30 degrees within half a metre of way"),
+    ("path_length_m", "distance that the robot truly travelled"),
+    ("turns", "changes of heading above 30 degrees within half a metre"),
     ("rotation_turns", "sum of the true heading changes, in whole turns"),
     ("clearance_min_m", "smallest true distance from the hull to anything solid; negative after a collision"),
     ("collisions", "how often the hull began to touch something"),
@@ -45,7 +45,7 @@ const MEANINGS: [(&str, &str); 56] = [
     ("accuracy.over_limit", "share of the way with a 95 % error above the limit"),
     ("accuracy.fixes", "positions from ranges"),
     ("accuracy.stations_mean", "stations used for one fix, mean"),
-    ("accuracy.stations_min", "stations used for one fix, least"),
+    ("accuracy.stations_min", "stations used for one fix, smallest number"),
     ("positioning.mean_error_m", "distance from the estimated to the true position, mean"),
     ("positioning.p50_m", "distance from the estimated to the true position, median"),
     (
@@ -78,7 +78,7 @@ pub(crate) fn meaning(name: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }
 
-/// The unit of a column: `1` for shares and counts, empty for what is no number.
+/// The unit of a column: `1` for shares and counts, empty for what is not a number.
 pub(crate) fn unit(name: &str, is_number: bool) -> &'static str {
     if !is_number {
         return "";

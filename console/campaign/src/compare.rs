@@ -117,7 +117,7 @@ fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<Strin
         table.numbers(metric)
     };
     let outcome = table.words("outcome");
-    // What a mission costs that gave up is no measure of the task.
+    // The cost of a mission that gave up does not measure the task.
     let counts = |row: &usize| match metric {
         "success" => status[*row].as_deref() == Some("flown"),
         _ => outcome.get(*row).is_some_and(|word| word.as_deref() == Some(COMPLETE)),

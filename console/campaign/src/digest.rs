@@ -67,7 +67,7 @@ pub(crate) fn check(file: &impl ChunkReader) -> Result<Seal, ParquetError> {
     Ok(if is_whole { Seal::Whole } else { Seal::Damaged })
 }
 
-/// The metadata at the end of a file with all that follows; nothing if it is no Parquet file.
+/// The metadata at the end of a file with all that follows; nothing if it is not a Parquet file.
 fn metadata(file: &impl ChunkReader) -> Result<Option<Vec<u8>>, ParquetError> {
     let Some(tail_at) = file.len().checked_sub(TAIL) else { return Ok(None) };
     let tail = file.get_bytes(tail_at, TAIL as usize)?;

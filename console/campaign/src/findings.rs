@@ -34,7 +34,7 @@ pub struct Findings {
     pub metrics: Vec<String>,
     /// What is compared, in the order of the plan.
     pub arms: Vec<Arm>,
-    /// Missions to be looked at first.
+    /// The missions to look at first.
     pub worst: Vec<Worst>,
 }
 
@@ -81,7 +81,7 @@ pub struct Faults {
     pub command: String,
 }
 
-/// A mission to be looked at.
+/// A mission to look at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worst {
     /// What came of it.

@@ -84,7 +84,7 @@ impl Campaign {
     /// Reads a frozen campaign.
     ///
     /// # Errors
-    /// It is none, of another format, or not as it was frozen.
+    /// It is not a campaign, has another format, or was changed after it was frozen.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
         let no_campaign = |error| format!("is not a campaign: {error}");
         let value: serde_json::Value = serde_json::from_slice(json).map_err(no_campaign)?;
@@ -97,7 +97,7 @@ impl Campaign {
         let campaign: Self = serde_json::from_value(value).map_err(no_campaign)?;
         let damage = campaign
             .damage()
-            .or_else(|| (campaign.digest() != digest).then(|| "its SHA-256 is another one".to_owned()));
+            .or_else(|| (campaign.digest() != digest).then(|| "its SHA-256 does not match".to_owned()));
         match damage {
             None => Ok(campaign),
             Some(what) => Err(format!("was changed or damaged: {what}; prepare the campaign again")),
@@ -316,8 +316,8 @@ pub(crate) mod tests {
         assert!(refused("\"first\":10", "\"first\":18446744073709551615").contains("no missions, or more"));
         assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("has not 2 values"));
         assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("scenario a is not the text"));
-        assert!(refused("[\"x\",0.5]", "[\"x\",0.7]").contains("its SHA-256 is another one"));
-        assert!(refused("\"first\":10", "\"first\":11").contains("its SHA-256 is another one"));
+        assert!(refused("[\"x\",0.5]", "[\"x\",0.7]").contains("its SHA-256 does not match"));
+        assert!(refused("\"first\":10", "\"first\":11").contains("its SHA-256 does not match"));
     }
 
     proptest! {

@@ -51,7 +51,7 @@ pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> 
     page.render().map_err(|error| error.to_string())
 }
 
-/// So many missions of so many, and the means over them.
+/// A share of the missions, and the means over it.
 fn cells(hits: u64, n: u64, means: &[Option<Mean>]) -> Vec<String> {
     let means = means.iter().map(|mean| text::interval(mean.as_ref()));
     std::iter::once(format!("{hits} of {n}")).chain(means).collect()
@@ -64,14 +64,9 @@ mod tests {
     #[test]
     fn a_page_has_every_section_and_refers_to_nothing_outside() {
         let page = super::page(&campaign(&PLAN.replace("\"p\"", "\"<p>\"")), &example()).expect("a page");
-        for part in [
-            "Success",
-            "Paired differences",
-            "Distribution",
-            "Pareto",
-            "To be looked at first",
-            "tankops run",
-        ] {
+        for part in
+            ["Success", "Paired differences", "Distribution", "Pareto", "Look at these first", "tankops run"]
+        {
             assert!(page.contains(part), "{part}");
         }
         assert_eq!(page.matches("<svg").count(), 3);

@@ -131,19 +131,19 @@ pub(crate) fn more_is_better(metric: &str) -> bool {
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The columns do not fit.
-    #[error("has columns that do not fit: {0}")]
+    #[error("its columns do not match: {0}")]
     Arrow(#[from] ArrowError),
     /// No Parquet, or damaged.
-    #[error("is no whole Parquet file: {0}")]
+    #[error("is not a complete Parquet file: {0}")]
     Parquet(#[from] ParquetError),
     /// Its digest is another one.
     #[error("is damaged: its bytes are not those that were written")]
     Damaged,
     /// A part without a digest.
-    #[error("is no whole part: it carries no digest")]
+    #[error("is not a complete part: it has no digest")]
     NoDigest,
     /// What is read makes no sense to the reader.
-    #[error("is damaged, or no Parquet file that can be read here")]
+    #[error("is damaged, or not a Parquet file that tankops can read")]
     Unreadable,
     /// A part of something else.
     #[error("comes from another campaign or block, or from another version of this campaign")]

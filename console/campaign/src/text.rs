@@ -144,7 +144,7 @@ impl fmt::Display for Findings {
         if self.arms.len() > MOST_ARMS {
             writeln!(f, "  ({} more in summary.html and summary.json)", self.arms.len() - MOST_ARMS)?;
         }
-        writeln!(f, "\nTo be looked at first")?;
+        writeln!(f, "\nLook at these first")?;
         if self.worst.is_empty() {
             writeln!(f, "  nothing: every mission succeeded, without a fault of a planner")?;
         }

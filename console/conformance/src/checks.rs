@@ -67,7 +67,10 @@ struct FailedBeside;
 pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Vec<Check> {
     let check = |what, failure| Check { what, failure, warning: None };
     let mut checks = vec![
-        check("answers soundly in every tank", named(flown, first_seed, |flown| flown.misbehaved.as_deref())),
+        check(
+            "gives valid answers in every tank",
+            named(flown, first_seed, |flown| flown.misbehaved.as_deref()),
+        ),
         Check {
             what: "does not give up everywhere",
             failure: gives_up(flown, first_seed),
@@ -80,14 +83,11 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
         check("takes over under way", subject.takes_over()),
     ];
     if subject.planner.snapshots {
-        checks.push(check("goes on from its saved state", subject.restores()));
+        checks.push(check("continues from its saved state", subject.restores()));
     }
     checks.extend([
         check("keeps no memory for ever", subject.hoards()),
-        check(
-            "ends when it is not wanted any more",
-            named(flown, first_seed, |flown| flown.bad_end.as_deref()),
-        ),
+        check("ends when told to", named(flown, first_seed, |flown| flown.bad_end.as_deref())),
         Check { what: "leaves no thread behind", failure: None, warning: threads_left(flown) },
     ]);
     checks

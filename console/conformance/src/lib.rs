@@ -84,7 +84,7 @@ impl Trial {
         let flown: Vec<Flown> = flights.par_iter().map(|(id, tank)| fly(tank, ids[*id], plugins)).collect();
         let rows = ids.iter().zip(flown.chunks(tanks.len().max(1)));
         let mut rows: Vec<Row> = rows.map(|(id, flown)| Row::of(id, flown, first_seed)).collect();
-        // Who does not fly such missions at all is no comparison.
+        // A planner that does not fly such missions at all is nothing to compare with.
         rows.retain(|row| row.planner == planner.id || row.unsupported < row.tanks);
         let is_sound = |row: &&Row| row.faults == 0 && others.shipped.contains(&row.planner);
         let beside = rows[1..].iter().filter(is_sound).map(|row| row.planner.as_str()).take(1).collect();

@@ -68,7 +68,7 @@ pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
     let kept = about.lines().find_map(|line| line.strip_prefix(FRAMES_DIGEST));
     match kept {
         None => Err(format!(
-            "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; an earlier tankops left it, or it was changed"
+            "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; an earlier tankops wrote it, or it was changed"
         )),
         Some(kept) if kept.trim() == digest_of(frames) => Ok(()),
         Some(_) => Err(format!("was cut or changed: its SHA-256 is not the one in {CRASH_FILE}")),

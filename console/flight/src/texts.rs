@@ -1,50 +1,27 @@
 //! Short texts that people write: scripts, plans, facts, lists.
 
 use crate::failure::bad_input;
-use foreign::{MOST_TEXT_BYTES, open_regular};
-use scenario::Foreign;
-use std::{
-    fs::File,
-    io::{self, Read},
-    path::Path,
-};
+use foreign::{MOST_TEXT_BYTES, open_waiting, text_of};
+use std::{io, path::Path};
 
 /// The text of a file, which may be a pipe.
 ///
 /// # Errors
 /// It cannot be read or is not UTF-8: what it is instead, and what to do about it.
 pub fn read(file: &Path) -> anyhow::Result<String> {
-    text(file, File::open(file).and_then(all))
+    named(file, open_waiting(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
 }
 
 /// The text of a regular file.
 ///
 /// # Errors
-/// As [`read`]; also that it is no regular file.
+/// As [`read`]; also that it is not a regular file.
 pub fn read_regular(file: &Path) -> anyhow::Result<String> {
-    text(file, open_regular(file).and_then(all))
+    named(file, foreign::read_regular(file))
 }
 
-/// All of a file that is not too long for a text that somebody wrote.
-fn all(file: File) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    file.take(MOST_TEXT_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_TEXT_BYTES {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidData,
-            format!("it is longer than {} MB", MOST_TEXT_BYTES >> 20),
-        ));
-    }
-    Ok(bytes)
-}
-
-fn text(file: &Path, bytes: io::Result<Vec<u8>>) -> anyhow::Result<String> {
-    let shown = file.display();
-    let bytes = bytes.map_err(|error| bad_input(format!("{shown}: {error}")))?;
-    match Foreign::of(&bytes) {
-        Some(foreign) => Err(bad_input(format!("{shown}: {foreign}; {}", foreign.remedy()))),
-        None => Ok(String::from_utf8_lossy(&bytes).into_owned()),
-    }
+fn named(file: &Path, text: io::Result<String>) -> anyhow::Result<String> {
+    text.map_err(|error| bad_input(format!("{}: {error}", file.display())))
 }
 
 #[cfg(test)]

@@ -1,10 +1,15 @@
 //! Files read within limits.
 
-use rustix::fs::{OFlags, SeekFrom, seek};
+use crate::NotUtf8;
+use rustix::{
+    event::{PollFd, PollFlags, poll},
+    fs::{OFlags, SeekFrom, fcntl_getfl, fcntl_setfl, seek},
+    io::Errno,
+};
 use std::{
     fs::{File, OpenOptions},
     io::{self, ErrorKind, Read},
-    os::unix::fs::OpenOptionsExt,
+    os::unix::fs::{FileTypeExt, OpenOptionsExt},
     path::Path,
 };
 
@@ -14,7 +19,7 @@ pub const MOST_TEXT_BYTES: u64 = 64 << 20;
 /// Opens a regular file: a device or a pipe may never end. Never waits for the other end of a pipe.
 ///
 /// # Errors
-/// It is no regular file, has holes (its length costs nothing, and no file that is written here has any), or cannot be opened.
+/// It is not a regular file, has holes (its length costs nothing, and no file that is written here has any), or cannot be opened.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     let file = OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)?;
     let about = file.metadata()?;
@@ -33,6 +38,22 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Opens a file that may be a pipe; then waits until its other end has written something or is closed.
+///
+/// Who wrote and left already is not missed, as long as somebody else keeps the pipe open.
+///
+/// # Errors
+/// It cannot be opened.
+pub fn open_waiting(path: &Path) -> io::Result<File> {
+    let file =
+        OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(path)?;
+    if file.metadata()?.file_type().is_fifo() {
+        while poll(&mut [PollFd::new(&file, PollFlags::IN)], None) == Err(Errno::INTR) {}
+    }
+    fcntl_setfl(&file, fcntl_getfl(&file)? - OFlags::NONBLOCK)?;
+    Ok(file)
+}
+
 /// The text of a regular file of at most [`MOST_TEXT_BYTES`].
 ///
 /// # Errors
@@ -44,23 +65,31 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
 /// The text of a regular file of at most so many bytes.
 ///
 /// # Errors
-/// It is no regular file, is longer, cannot be read, or is no UTF-8.
+/// It is not a regular file, is longer, cannot be read, or is not UTF-8.
 pub fn read_at_most(path: &Path, most_bytes: u64) -> io::Result<String> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
-    let too_long = || damaged(format!("it has {length} bytes, and at most {most_bytes} are read"));
     if length > most_bytes {
-        return Err(too_long());
+        return Err(damaged(format!("it has {length} bytes, and at most {most_bytes} are read")));
     }
-    let mut bytes = Vec::new();
     // It may grow meanwhile.
-    file.take(most_bytes + 1).read_to_end(&mut bytes)?;
+    text_of(file, most_bytes)
+}
+
+/// The text that a reader gives, of at most so many bytes.
+///
+/// # Errors
+/// It gives more, cannot be read, or is not UTF-8: what it is instead, and what to do about it.
+pub fn text_of(reader: impl Read, most_bytes: u64) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    reader.take(most_bytes + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most_bytes {
-        return Err(too_long());
+        return Err(damaged(format!("it has more than {most_bytes} bytes, which are not read")));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        damaged(format!("no text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1))
-    })
+    if let Some(other) = NotUtf8::of(&bytes) {
+        return Err(damaged(format!("{other}; {}", other.remedy())));
+    }
+    String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))
 }
 
 /// The text of a regular file of JSON, of at most so many bytes, that is no larger in memory than a few times as much.
@@ -114,6 +143,28 @@ mod tests {
     }
 
     #[test]
+    fn a_pipe_is_waited_for_and_what_was_written_before_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let late = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::write(pipe, "late").unwrap()
+        });
+        assert_eq!(text_of(open_waiting(&pipe).unwrap(), 100).unwrap(), "late");
+        late.join().unwrap();
+
+        // Kept open by somebody, as whoever waits for it does.
+        let kept =
+            OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(&pipe).unwrap();
+        fs::write(&pipe, "early").unwrap();
+        assert_eq!(text_of(open_waiting(&pipe).unwrap(), 100).unwrap(), "early");
+        drop(kept);
+        fs::write(folder.path().join("file"), "regular").unwrap();
+        assert_eq!(text_of(open_waiting(&folder.path().join("file")).unwrap(), 100).unwrap(), "regular");
+    }
+
+    #[test]
     fn a_sparse_file_is_refused_whatever_its_length() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sparse");
@@ -143,7 +194,11 @@ mod tests {
         assert_eq!(read_at_most(&path, 8).unwrap(), "12345678");
         let refused = read_at_most(&path, 7).unwrap_err().to_string();
         assert_eq!(refused, "it has 8 bytes, and at most 7 are read");
-        fs::write(&path, b"ab\xff").unwrap();
-        assert_eq!(read_regular(&path).unwrap_err().to_string(), "no text: byte 3 is not UTF-8");
+        fs::write(&path, b"ab\nGr\xfcn").unwrap();
+        let refused = read_regular(&path).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("not UTF-8 but ISO-8859-1, by line 2; save it as UTF-8: `iconv"),
+            "{refused}"
+        );
     }
 }

@@ -8,7 +8,7 @@ const INSTEAD: char = '\u{fffd}';
 /// Whether a character is one that can be seen, or a space: it moves no cursor, turns no text around, and does not hide.
 ///
 /// Not plain are the control characters (C0, DEL, C1), the marks of direction, what has no width or no picture (soft hyphen,
-/// joiners, fillers, selectors of variants, byte order mark), separators of lines and paragraphs, tags, and what is no character.
+/// joiners, fillers, selectors of variants, byte order mark), separators of lines and paragraphs, tags, and what is not a character.
 pub fn is_plain(c: char) -> bool {
     let is_hidden = matches!(
         c,
@@ -69,31 +69,39 @@ pub fn plain_lines(text: &str) -> Cow<'_, str> {
 }
 
 fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
-    if text.chars().all(is_plain) {
+    rewritten(text, is_plain, |plain, c| plain.push(instead(c)))
+}
+
+/// A text in which the characters that may not stay are written anew.
+fn rewritten(
+    text: &str,
+    may_stay: impl Fn(char) -> bool,
+    mut write: impl FnMut(&mut String, char),
+) -> Cow<'_, str> {
+    if text.chars().all(&may_stay) {
         return text.into();
     }
-    text.chars().map(|c| if is_plain(c) { c } else { instead(c) }).collect::<String>().into()
+    let mut plain = String::with_capacity(text.len() + 64);
+    for c in text.chars() {
+        if may_stay(c) {
+            plain.push(c);
+        } else {
+            write(&mut plain, c);
+        }
+    }
+    plain.into()
 }
 
 /// JSON with the same values in which every character is plain: the others are written as `\u202e`.
 ///
 /// Line feeds and tabs are white space between values, and JSON has none within them.
 pub fn plain_json(text: &str) -> Cow<'_, str> {
-    let stays = |c: char| is_plain(c) || matches!(c, '\n' | '\t');
-    if text.chars().all(stays) {
-        return text.into();
-    }
-    let mut plain = String::with_capacity(text.len() + 64);
-    for c in text.chars() {
-        if stays(c) {
-            plain.push(c);
-        } else {
-            for unit in c.encode_utf16(&mut [0; 2]) {
-                let _ = write!(plain, "\\u{unit:04x}");
-            }
+    let may_stay = |c: char| is_plain(c) || matches!(c, '\n' | '\t');
+    rewritten(text, may_stay, |plain, c| {
+        for unit in c.encode_utf16(&mut [0; 2]) {
+            let _ = write!(plain, "\\u{unit:04x}");
         }
-    }
-    plain.into()
+    })
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<W
         let given = fields.name(&record).filter(|name| !name.is_empty());
         let name = given.map_or_else(|| format!("column {}", columns.len() + 1), foreign::seen);
         if !names.insert(name.clone()) {
-            problems.push(Wrong::new(line, "name", format!("`{name}` is there twice")));
+            problems.push(Wrong::new(line, "name", format!("`{name}` occurs twice")));
         }
         columns.extend(shape.map(|shape| (line, Named { name, shape })));
     }
@@ -159,7 +159,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
                 continue;
             }
             if notes.len() > MOST_NOTES {
-                return notes.push("more columns stand in each other".into());
+                return notes.push("more columns overlap".into());
             }
             let (mut first, mut second) = ((line, &named.name), (other_line, &other_named.name));
             if first.0 > second.0 {
@@ -177,7 +177,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     }
 }
 
-/// Why a line is no row.
+/// Why a line is not a row.
 fn no_row(error: &csv::Error, line: u64) -> Wrong {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

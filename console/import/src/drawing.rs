@@ -49,7 +49,7 @@ pub struct Assumed {
 /// Reads a drawing.
 ///
 /// # Errors
-/// It is no DXF, names no unit and none is stated, has no closed outline for the shell, or a layer that is named holds
+/// It is not DXF, names no unit and none is stated, has no closed outline for the shell, or a layer that is named holds
 /// nothing.
 pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     let of_file = |what: String| ImportError::of_input(input, what);

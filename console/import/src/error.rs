@@ -43,7 +43,7 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, ImportError> {
         return Err(of_file("is a folder; name a file in it".into()));
     }
     if !about.is_file() {
-        return Err(of_file("is no regular file; save what it gives to a file first".into()));
+        return Err(of_file("is not a regular file; save what it gives to a file first".into()));
     }
     if about.len() > LARGEST_BYTES {
         let (size, most) = (about.len() / 1_000_000, LARGEST_BYTES / 1_000_000);

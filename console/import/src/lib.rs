@@ -26,4 +26,3 @@ pub use input::{Input, InputKind};
 pub use occupancy::{OccupancyMap, Unseen};
 pub use outside::is_wholly_outside;
 pub use plan::{FloorPlan, Named};
-pub use text::Foreign;

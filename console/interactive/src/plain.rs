@@ -66,7 +66,7 @@ fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let began = thread::Builder::new().name("stdin".into()).spawn(move || {
         for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // What is no text is refused as a command that there is not; the lines after it count.
+            // A line that is not text is refused as an unknown command; the lines after it count.
             let msg = match String::from_utf8_lossy(&line).trim() {
                 "" => continue,
                 "yes" => Msg::Key(Key::Enter.into()),

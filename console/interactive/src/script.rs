@@ -79,7 +79,7 @@ impl Script {
     /// Reads a script.
     ///
     /// # Errors
-    /// The file cannot be read; a line is none: every such line with its number.
+    /// The file cannot be read, or some lines are not commands: every such line with its number.
     pub(super) fn read(file: &Path, keys: &Keymap) -> anyhow::Result<Self> {
         let shown = file.display();
         let text = texts::read(file)?;

@@ -39,7 +39,7 @@ pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let measured = opened.measured.context("the run was flown and not located")?;
     if opened.journal_version != JOURNAL_VERSION {
         return Err(bad_input(format!(
-            "the journal has version {}, and this tankops computes only version {JOURNAL_VERSION} again: {}",
+            "the journal has version {}, but this tankops recomputes only version {JOURNAL_VERSION}: {}",
             opened.journal_version,
             path.display()
         )));

@@ -51,7 +51,7 @@ const COLUMNS: [Column; 15] = [
     ("tool_on", NAME),
 ];
 
-/// A mean of more repetitions than this is no reading.
+/// A mean of more repetitions than this is not a reading.
 const REPETITIONS_MAX: u32 = 1000;
 
 /// What the readings of a file are.
@@ -117,7 +117,7 @@ impl Columns {
                 // A column with a unit counts more than a date beside it.
                 Some((_, present)) if factor <= DATED && present > DATED => {}
                 Some((_, present)) if present > DATED || factor <= DATED => {
-                    return Err(format!("column {name}: {} is there twice", COLUMNS[column].0));
+                    return Err(format!("column {name}: {} occurs twice", COLUMNS[column].0));
                 }
                 _ => at[column] = Some((index, factor)),
             }
@@ -133,7 +133,7 @@ impl Columns {
             Some("more than one column says what was measured; keep one of range, arrival and tdoa")
         } else if !has_time {
             Some(
-                "no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` do without",
+                "no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` need none",
             )
         } else if !is_there(RANGE) && sound_speed_m_s.is_none() {
             Some("times need the speed of sound: add --sound-speed with metres per second")

@@ -183,7 +183,7 @@ impl Task<'_> {
         if columns.has_tool() {
             let (readings, file) = (self.file.display(), file.display());
             return Err(bad_input(format!(
-                "{readings} has a column tool_on, and {file} says it as well; keep one of the two"
+                "{readings} has a column tool_on, and {file} states it, too; keep one of the two"
             )));
         }
         let stretches = tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())))?;

@@ -8,7 +8,7 @@ use world::StationId;
 const MOST_SQUARES: f64 = 16.0;
 /// Readings that scatter less than this many times as much as the noise, squared, do no harm.
 const HARMLESS: f64 = 1.3;
-/// So many standard deviations of a sum are no chance.
+/// A sum so many standard deviations off is not chance.
 const SIGNIFICANT: f64 = 5.0;
 
 /// Two readings of one station that are furthest apart.
@@ -44,7 +44,7 @@ pub struct Repeats {
 pub(crate) struct Scatter {
     pub noise: RangeNoise,
     pub timing: Timing,
-    /// Distance to count with where the readings are none, metres.
+    /// The distance to assume where the readings do not give one, metres.
     pub distance_m: Option<f64>,
 }
 

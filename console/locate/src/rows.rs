@@ -6,8 +6,8 @@ mod text;
 
 use crate::problem::Problem;
 use csv::StringRecord;
+use foreign::open_regular;
 use messages::Messages;
-use recording::open_regular;
 use std::{
     fs::File,
     io::{self, BufRead, BufReader, Read, Seek},

@@ -1,7 +1,7 @@
 //! When the tool was on: a column of the readings, or a file of its own.
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use recording::read_regular;
+use foreign::read_regular;
 use std::path::Path;
 
 /// Stretches of time in which the tool was on, put together out of moments.

@@ -209,7 +209,7 @@ pub enum Cause {
     BadOutput,
     /// It tried to do something outside its process that no planner may do; its process was killed.
     Forbidden,
-    /// It sent something that is no answer.
+    /// It sent something that is not a valid answer.
     Protocol,
     /// The host refused to load or configure it.
     Refused,

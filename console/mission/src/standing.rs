@@ -128,9 +128,9 @@ impl fmt::Display for Refusal {
             Self::AlreadyStarted => f.write_str("the mission has already been started"),
             Self::Planning => f.write_str("the plan is not ready yet; start when it is"),
             Self::NoPlan => f.write_str("there is no plan to start with; make one first"),
-            Self::PlanFailed { why } => write!(f, "there is no plan that may be run: {why}"),
+            Self::PlanFailed { why } => write!(f, "no plan may be run: {why}"),
             Self::OtherPlan { seen: None, ready } => {
-                write!(f, "a start must name the plan that was seen; ready is plan {}", ready.short())
+                write!(f, "a start must name the plan that was seen; plan {} is ready", ready.short())
             }
             Self::OtherPlan { seen: Some(seen), ready } => write!(
                 f,

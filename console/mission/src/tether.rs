@@ -48,7 +48,7 @@ pub struct Tether {
     cable: Cable,
     /// The ground as the middle of the hull meets it on its return path.
     roomy: Arc<CableObstacles>,
-    /// The taut line of the hull on that ground, dragged by the robot like the cable; `None` if the anchor is no place for it.
+    /// The taut line of the hull on that ground, dragged by the robot like the cable; `None` if the anchor is not a place for it.
     hull: Option<Cable>,
     /// For how long there has been no return path, seconds.
     without_home_s: f64,

@@ -93,7 +93,7 @@ fn is_plugin_name(path: &Path) -> bool {
     }
 }
 
-/// A larger file is no plugin, bytes.
+/// A larger file is not a plugin, bytes.
 pub(crate) const MOST_BYTES: u64 = 128 << 20;
 
 /// A file that is named like a plugin, with what can be determined without loading it.
@@ -175,12 +175,12 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Why this machine lets no process set aside a plugin, if it does not; a file that is no plugin for its size has another reason.
+/// Why this machine lets no process set aside a plugin, if it does not; a file that is too large to be a plugin has another reason.
 pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
     let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
     let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;
     Some(format!(
-        "the system lets no file grow beyond {limit} bytes, and {} has {length}: `ulimit -f {}`",
+        "the system limits files to {limit} bytes, and {} has {length}: `ulimit -f {}`",
         path.display(),
         MOST_BYTES / 1024
     ))

@@ -44,7 +44,7 @@ pub(crate) struct Loaded(abi::Entry);
 
 /// Why there is no file to be loaded.
 pub(crate) enum NotRead {
-    /// It is no plugin that can be loaded.
+    /// It is not a plugin that can be loaded.
     Refused(String),
     /// This machine does not let it be loaded.
     Machine(String),
@@ -112,7 +112,7 @@ impl Loaded {
 
 fn check_entry(entry: &abi::Entry) -> Result<(), String> {
     if entry.magic != abi::MAGIC {
-        return Err(format!("`{}` is no planner entry (wrong magic)", abi::SYMBOL));
+        return Err(format!("`{}` is not a planner entry (wrong magic)", abi::SYMBOL));
     }
     let theirs = Abi { major: entry.abi_major, minor: entry.abi_minor };
     stamp::accept(theirs).map_err(|error| error.to_string())?;
@@ -147,7 +147,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
     let text = |raw| plain(raw, LONGEST_TEXT);
     let id = text(raw.id);
     if !planner_api::export::is_id(&id) {
-        return Err(format!("`{id}` is no planner id; ids are 1 to 32 of a-z, 0-9, _ and -"));
+        return Err(format!("`{id}` is not a planner id; ids are 1 to 32 of a-z, 0-9, _ and -"));
     }
     let functions = [
         ("describe", raw.describe.is_some()),

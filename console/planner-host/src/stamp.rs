@@ -24,7 +24,7 @@ impl fmt::Display for Abi {
 /// The ABI that this console uses.
 pub const CONSOLE_ABI: Abi = Abi { major: abi::MAJOR, minor: abi::MINOR };
 
-/// Why a file is no plugin of this console; reads on after "refused:".
+/// Why a file is not a plugin of this console; reads on after "refused:".
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StampError {
     /// Neither ELF, Mach-O nor PE.

@@ -89,7 +89,7 @@ pub(crate) enum Failure {
     Starved,
     /// It had more memory than this, bytes; the process was killed.
     Overweight(u64),
-    /// An answer that is none; the process was killed.
+    /// An invalid answer; the process was killed.
     Protocol,
     /// There is no process any more.
     Gone,
@@ -99,7 +99,7 @@ pub(crate) enum Failure {
 
 /// What a process did that had more memory than this, bytes.
 pub(crate) fn overweight(limit: u64) -> String {
-    format!("took more than the {} MB of memory that it may have", limit >> 20)
+    format!("took more than its limit of {} MB of memory", limit >> 20)
 }
 
 /// Why a worker does not run: what cannot be done with its process, and what would let it.
@@ -134,7 +134,7 @@ impl Failure {
             Self::Died { how, .. } => how.clone(),
             Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
             Self::Overweight(limit) => overweight(*limit),
-            Self::Protocol => "sent something that is no answer".to_owned(),
+            Self::Protocol => "sent something that is not a valid answer".to_owned(),
             _ => "did not end in time".to_owned(),
         }
     }

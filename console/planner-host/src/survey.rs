@@ -292,7 +292,7 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
             "did not load in time; its process was stopped".to_owned()
         }
         Failure::Planner(_) | Failure::Protocol | Failure::Gone => {
-            "sent something that is no answer while it was loaded".to_owned()
+            "sent something that is not a valid answer while it was loaded".to_owned()
         }
     }
 }

@@ -203,7 +203,7 @@ impl Grid {
         let (low, high) = world.boundary.bounds();
         let span = high - low;
         let least_m = span.amax() / MOST_CELLS as f64;
-        // `max` also turns what is no number into the least.
+        // `max` also turns what is not a number into the least.
         let cell_m = cell_m.max(least_m).max(1e-6);
         let count = |span_m: f64| ((span_m / cell_m).ceil().max(1.0) as usize).min(MOST_CELLS + 1);
         Self { origin: low, cell_m, width: count(span.x), height: count(span.y) }

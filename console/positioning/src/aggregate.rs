@@ -50,7 +50,7 @@ impl Aggregation {
     /// `noise` is how single ranges scatter; repetitions count as independent.
     ///
     /// # Errors
-    /// [`FixError::BadRange`] if a range is no number between a micrometre and a million metres.
+    /// [`FixError::BadRange`] if a range is not a number between a micrometre and a million metres.
     pub fn aggregate(self, sets: &[RangeSet], noise: &RangeNoise) -> Result<Vec<Ranging>, FixError> {
         sets.iter().filter(|set| !set.ranges_m.is_empty()).map(|set| self.one(set, noise)).collect()
     }
@@ -81,7 +81,7 @@ impl Aggregation {
             }),
         };
         let repetitions = u32::try_from(ranges_m.len()).unwrap_or(u32::MAX);
-        // `max` also turns what is no number into the floor.
+        // `max` also turns what is not a number into the floor.
         let at_least_m = sigma_m.max(SIGMA_FLOOR_M);
         let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         let station = set.station;

@@ -111,7 +111,7 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
     }
     let surveyed = stations.iter().find(|s| s.id == station && s.position.coords.amax() <= RANGE_LIMIT_M);
     let at = surveyed.ok_or(FixError::UnknownStation { station })?.position;
-    // `amax` skips what is no number.
+    // `amax` skips what is not a number.
     if at.coords.iter().any(|c| c.is_nan()) {
         return Err(FixError::UnknownStation { station });
     }

@@ -78,7 +78,7 @@ impl Calibration {
     pub fn new(stations: &[Station], unknowns: Unknowns) -> Self {
         let surveyed = if unknowns.has_survey() { 2 * stations.len() } else { 0 };
         let n = 1 + surveyed + usize::from(unknowns.has_offset());
-        // `max` also turns what is no number into the least.
+        // `max` also turns what is not a number into the least.
         let at_least = unknowns.sound_sigma_ratio.max(LEAST_SCALE);
         let sound = at_least.min(1.0);
         let mut information = DMatrix::from_diagonal_element(n, n, unknowns.survey_sigma_m.powi(-2));

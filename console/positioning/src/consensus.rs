@@ -154,7 +154,7 @@ fn subsets(n: usize) -> impl Iterator<Item = [usize; 3]> {
     (0..n).flat_map(move |i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k]))).step_by(every)
 }
 
-/// The position of three stations, if they are no line.
+/// The position of three stations, if they are not on a line.
 fn fit_three(three: &[Anchor; 3]) -> Option<Point> {
     let mut position = solve_linear(three).ok()?.position;
     for _ in 0..SUBSET_STEPS {

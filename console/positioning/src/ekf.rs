@@ -82,7 +82,7 @@ impl Update {
 ///
 /// Besides the pose it estimates the slip and the gyro's bias, because both last. Ranges say nothing about the heading
 /// by themselves; it becomes known through the correlation that motion makes between heading and position. Input that
-/// is no number is refused, so the state always is finite.
+/// is not a number is refused, so the state always is finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ekf {
     state: State,
@@ -105,7 +105,7 @@ impl Ekf {
         );
         let mut filter = Self {
             state: State::new(position.x, position.y, heading_rad, 0.0, 0.0),
-            // `min` also turns what is no number into the limit.
+            // `min` also turns what is not a number into the limit.
             covariance: Covariance::from_diagonal(
                 &sigma.zip_map(&State::from(SIGMA_LIMITS), |s, limit| s.abs().min(limit).powi(2)),
             ),
@@ -188,7 +188,7 @@ impl Ekf {
         let expected = by_state * self.covariance * by_state.transpose() + noise;
         let Some(inverse) = expected.try_inverse() else { return Update::REFUSED };
         let nis = (innovation.transpose() * inverse * innovation)[(0, 0)];
-        // The comparison also refuses what is no number.
+        // The comparison also refuses what is not a number.
         if !(0.0..=GATE[N - 1]).contains(&nis) {
             return Update::refused(nis);
         }

@@ -197,7 +197,7 @@ pub enum FixError {
         limit: f64,
     },
     /// A range, or its sigma, is not a positive number that can be a distance in a tank.
-    #[error("the range of station {} is no positive number of metres", station.0)]
+    #[error("the range of station {} is not a positive number of metres", station.0)]
     BadRange {
         /// Which station.
         station: StationId,
@@ -208,7 +208,7 @@ pub enum FixError {
         /// Which station.
         station: StationId,
     },
-    /// A range names a station that the tank does not have, or whose place is no place.
+    /// A range names a station that the tank does not have, or whose place is not finite.
     #[error("there is no station {}", station.0)]
     UnknownStation {
         /// Which station.

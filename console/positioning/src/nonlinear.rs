@@ -49,7 +49,7 @@ pub(crate) fn solve_anchors(anchors: &[Anchor], prior: Option<Prior>) -> Result<
 fn solve_many(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let start = match (solve_linear(anchors), prior) {
         (Ok(linear), _) => linear.position,
-        (Err(FixError::Collinear { .. }), Some((near, _))) => near,
+        (Err(FixError::Collinear { .. }), Some((near, _))) => beside_the_line(anchors, near),
         (Err(error), _) => return Err(error),
     };
     let conditioning = conditioning(anchors);
@@ -120,12 +120,36 @@ fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
 
 /// The position behind the line that the stations stand on most nearly.
 fn reflected(anchors: &[Anchor], position: Point) -> Point {
+    let (middle, along) = line_of(anchors);
+    let across = Vector::new(-along.y, along.x);
+    position - across * (2.0 * across.dot(&(position - middle)))
+}
+
+/// The middle of the stations and the direction in which they lie most nearly on a line.
+fn line_of(anchors: &[Anchor]) -> (Point, Vector) {
     let n = anchors.len() as f64;
     let middle = Point::from(anchors.iter().map(|a| a.at.coords).sum::<Vector>() / n);
     let scatter: Matrix2<f64> = anchors.iter().map(|a| a.at - middle).map(|d| d * d.transpose()).sum();
     let angle = 0.5 * (2.0 * scatter[(0, 1)]).atan2(scatter[(0, 0)] - scatter[(1, 1)]);
-    let across = Vector::new(-angle.sin(), angle.cos());
-    position - across * (2.0 * across.dot(&(position - middle)))
+    (middle, Vector::new(angle.cos(), angle.sin()))
+}
+
+/// The place that the squared ranges give beside stations on a line, on the side of a place.
+///
+/// The place itself is no start: on the line the cost has a saddle, on which a descent does not settle.
+fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
+    /// Least distance from the line, as a share of the longest range.
+    const OFF_THE_SADDLE: f64 = 1e-3;
+    let (middle, along) = line_of(anchors);
+    let across = Vector::new(-along.y, along.x);
+    let stations = || anchors.iter().map(|a| (along.dot(&(a.at - middle)), a.range_m));
+    // r^2 - s^2 = (x^2 + y^2) - 2 s x, where the places s of the stations along the line have the mean 0.
+    let spread: f64 = stations().map(|(s, _)| s * s).sum();
+    let x = -stations().map(|(s, r)| s * (r * r - s * s)).sum::<f64>() / (2.0 * spread);
+    let squared = stations().map(|(s, r)| r * r - s * s).sum::<f64>() / anchors.len() as f64;
+    let longest = stations().map(|(_, r)| r).fold(0.0, f64::max);
+    let y = (squared - x * x).max(0.0).sqrt().max(OFF_THE_SADDLE * longest);
+    middle + along * x + across * y.copysign(across.dot(&(near - middle)))
 }
 
 /// Goes down from `start` until the steps are negligible.

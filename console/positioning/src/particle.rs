@@ -18,7 +18,7 @@ const TOO_FEW: f64 = 0.02;
 const JITTER: f64 = 0.25;
 /// Tries to find a place within the bounds for a new guess.
 const TRIES: u32 = 20;
-/// Odometry of one tick beyond this is no motion of a robot, metres or radians.
+/// Odometry of one tick beyond this is not the motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
 
 /// What a particle filter has to know beforehand.
@@ -240,7 +240,7 @@ fn bell(rng: &mut Pcg64) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// A deviation that keeps numbers finite; nothing for what is no number.
+/// A deviation that keeps numbers finite; nothing for what is not a number.
 fn bounded(sigma: f64) -> f64 {
     if sigma.is_nan() { 0.0 } else { sigma.abs().min(MOTION_LIMIT) }
 }

@@ -23,7 +23,7 @@ const MIRROR_SIGMA_M: f64 = 0.01;
 /// A range that cannot be is shown up to this length, metres.
 const MOST_SHOWN_M: f64 = 1e9;
 
-/// A range as it is shown: a number within bounds, also where it was none.
+/// A range as it is shown: always a number within bounds.
 fn shown_m(range_m: f64) -> f64 {
     if range_m.is_nan() { -MOST_SHOWN_M } else { range_m.clamp(-MOST_SHOWN_M, MOST_SHOWN_M) }
 }
@@ -59,7 +59,7 @@ pub struct Estimate {
 /// What a ranging cycle brought.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleResult {
-    /// One range per station heard; empty if one of the ranges was no range.
+    /// One range per station heard; empty if one of the ranges was not valid.
     pub rangings: Vec<Ranging>,
     /// The fix of this cycle alone.
     pub fix: Result<Fix, FixError>,

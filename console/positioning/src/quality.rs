@@ -17,7 +17,7 @@ const SCATTER_Z: f64 = 3.719_016_485;
 
 /// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
 const PROTECTION_SIGMAS: f64 = 4.0;
-/// Where a place this many standard deviations off is not ruled out, errors are no ellipse.
+/// Where a place this many standard deviations off is not ruled out, errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
 /// A range whose residual keeps a smaller share of its variance than this cannot be checked by the others.
 const LEAST_SPARED: f64 = 1e-6;
@@ -145,7 +145,7 @@ fn gdop(anchors: &[Anchor], position: Point) -> f64 {
     inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
 }
 
-/// The inverse of a symmetric matrix that is no negative one, unless it is all but singular.
+/// The inverse of a symmetric matrix without negative eigenvalues, unless it is all but singular.
 pub(crate) fn inverse_of(information: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     let (a, b, c) = (information[(0, 0)], information[(0, 1)], information[(1, 1)]);
     let determinant = a * c - b * b;

@@ -8,7 +8,7 @@ use crate::{fix::Fix, quality::inverse_of};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector3};
 use world::{Station, StationId};
 
-/// An error of more standard deviations than this is none of chance: one honest session in 15 000 for each error.
+/// An error of more standard deviations than this is significant: chance gives one in one honest session of 15 000.
 const SIGNIFICANT: f64 = 4.0;
 /// An error that moves fixes by less than this, squared and in their own standard deviations, does no harm: 93.5 % of truths still lie in
 /// the 95 % ellipse.

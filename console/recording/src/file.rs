@@ -16,7 +16,7 @@ use std::{
 /// SHA-256 of a file, hexadecimal.
 ///
 /// # Errors
-/// It is no regular file, or cannot be read.
+/// It is not a regular file, or cannot be read.
 pub fn sha256(path: &Path) -> io::Result<String> {
     sha256_while(path, |_| true)
 }

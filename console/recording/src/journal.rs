@@ -77,8 +77,8 @@ pub enum JournalError {
         /// Which file.
         path: PathBuf,
     },
-    /// The first line is no `run_opened` event.
-    #[error("this is no journal: line 1 is not the event run_opened ({why}): {}", path.display())]
+    /// The first line is not a `run_opened` event.
+    #[error("this is not a journal: line 1 is not the event run_opened ({why}): {}", path.display())]
     NotAJournal {
         /// What is wrong with it.
         why: String,

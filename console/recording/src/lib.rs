@@ -28,7 +28,6 @@ pub use self::mcap::export_mcap;
 pub use error::RecordingError;
 pub use export::export;
 pub use file::{FileChange, sha256, sha256_of, sha256_while};
-pub use foreign::{open_regular, read_regular};
 pub use identity::Identity;
 pub use inspect::{Summary, inspect};
 pub use journal::{

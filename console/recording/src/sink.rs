@@ -162,7 +162,7 @@ impl rr::LogSink for SafeSink {
         if let Err(error) = self.encoder().flush_blocking() {
             self.health.fail(&error);
         }
-        // What only waits for space is no failure to the SDK: nothing is lost.
+        // What only waits for space is not a failure to the SDK: nothing is lost.
         let lost = self.health.error().filter(|_| self.health.has_ended());
         lost.map_or(Ok(()), |error| Err(rr::SinkFlushError::failed(error)))
     }

@@ -97,6 +97,12 @@ impl SignedRun {
         let Files { journal_sha256, recording_sha256, closed_as, .. } = past.files.clone();
         Self { run: closed_as.unwrap_or_else(|| past.name.clone()), journal_sha256, recording_sha256 }
     }
+
+    /// A run as it is now under the name that it was closed with and under that of its folder, which another run may have taken.
+    pub fn names_of(past: &PastRun) -> [Self; 2] {
+        let closed = Self::of(past);
+        [Self { run: past.name.clone(), ..closed.clone() }, closed]
+    }
 }
 
 impl Revision {

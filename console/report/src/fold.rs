@@ -234,7 +234,7 @@ impl Fold {
         }
     }
 
-    /// The account of the floor; none for missions that are not there to scan it.
+    /// The account of the floor; none for missions that are not to scan it.
     fn account(&self) -> Option<Account> {
         let run = self.run.as_ref().filter(|_| self.is_to_scan())?;
         Some(account(run, self.scanned.as_ref()?, self.evidence.as_ref()?))

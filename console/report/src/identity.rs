@@ -19,7 +19,7 @@ impl Stated {
     /// What the scenario of a run says.
     ///
     /// # Errors
-    /// It is no TOML: its journal was changed.
+    /// It is not TOML: its journal was changed.
     pub(crate) fn by(run: &RunOpened) -> Result<Self, String> {
         toml::from_str(&run.scenario_toml)
             .map_err(|error| format!("the scenario in its journal cannot be read: {}", error.message()))
@@ -68,7 +68,7 @@ impl FloorFacts {
 }
 
 /// Where facts of people say something else about the floor than the scenario that was flown, as a sentence; what only one of
-/// them states is no contradiction.
+/// them states is not a contradiction.
 pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
     let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
     let flown = flown.or(&facts);

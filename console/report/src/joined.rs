@@ -96,7 +96,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         all.evidence.to_mut().join(&evidence);
     }
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
-        // What only the other runs found is no floor either.
+        // What only the other runs found is not floor either.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();
@@ -124,7 +124,7 @@ fn require_different(runs: &[PastRun]) -> Result<(), String> {
     Ok(())
 }
 
-/// Name of what was found in one of so many runs, each of which counts from 1.
+/// The name of an object found in one of several runs, each of which counts from 1.
 pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
     if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }

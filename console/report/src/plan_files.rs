@@ -75,7 +75,7 @@ impl Planned {
         dxf.finish()
     }
 
-    /// The legs with their numbers from 1 and their lines; a leg in one place is no line, and other programs refuse it.
+    /// The legs with their numbers from 1 and their lines; a leg in one place is not a line, and other programs refuse it.
     fn lines(&self) -> impl Iterator<Item = (usize, &Leg, &[Point])> {
         let numbered = (1..).zip(&self.legs);
         let lines = numbered.map(|(number, leg)| (number, leg, &self.path[leg.first..=leg.last]));

@@ -74,7 +74,7 @@ pub struct Summary {
     pub violations: Option<Vec<String>>,
     /// How much of the floor was scanned.
     pub coverage: Option<Coverage>,
-    /// The account of the floor for inspectors; absent for missions that are not there to scan it.
+    /// The account of the floor for inspectors; absent for missions that are not to scan it.
     #[serde(default)]
     pub floor: Option<Account>,
     /// How closely a preset path was followed; absent for other missions.

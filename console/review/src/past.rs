@@ -77,7 +77,7 @@ pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let scenario =
         Scenario::recorded(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
     let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
-    // The bounds are those of a mission, and readings that were located are none.
+    // The bounds belong to missions; located readings are not a mission.
     let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };
     let (logs, files) = (Some(run.logs.clone()), &run.files);
     let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());

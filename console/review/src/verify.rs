@@ -94,7 +94,7 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
 /// Verifies readings that were located: nothing was flown, so that only files and signed reports are compared.
 fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> anyhow::Result<Verified> {
     let past = Past::read(folder)?.run;
-    let (signed, not_as_signed) = signed(folder, &SignedRun::of(&past));
+    let (signed, not_as_signed) = signed(folder, &SignedRun::names_of(&past));
     let is_equal = past.files.doubts.is_empty() && not_as_signed.is_empty();
     let mut lines: Vec<String> =
         past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
@@ -127,7 +127,8 @@ pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
 
 fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings> {
     thread::scope(|scope| {
-        let files = scope.spawn(|| Past::read(folder).map(|past| (SignedRun::of(&past.run), past.run.files)));
+        let files =
+            scope.spawn(|| Past::read(folder).map(|past| (SignedRun::names_of(&past.run), past.run.files)));
         let findings = compare(&journal_of(folder), plugins)?;
         let (now, files) =
             files.join().map_err(|_| anyhow::anyhow!("reading the files of the run panicked"))??;
@@ -142,9 +143,9 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
 
 /// The signed reports on a run as lines, and everything that speaks against them or against the run being the one that was
 /// signed.
-fn signed(folder: &Path, now: &SignedRun) -> (Vec<String>, Vec<String>) {
+fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
     let Signatures { revisions, mut doubts } = signatures(folder, &register());
-    doubts.extend(revisions.iter().filter_map(|revision| revision.doubt(now)));
+    doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
     let line = |revision: &Revision| {
         let (letter, signature) = (&revision.revision, &revision.signature);
         format!("signed: revision {letter} by {}, {} UTC: {}", signature.by, signature.at, revision.file)

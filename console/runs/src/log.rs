@@ -100,7 +100,7 @@ impl RunLog {
         self.recorder.is_behind()
     }
 
-    /// Closes the files, and writes the report with what is no event: figures about the planners' calls and about stops, by
+    /// Closes the files, and writes the report with what is not an event: figures about the planners' calls and about stops, by
     /// the wall clock, and what a scenario expects.
     pub fn close(
         self,

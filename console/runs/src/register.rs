@@ -2,7 +2,7 @@
 //! has lost one, or was changed, is noticed.
 
 use crate::error::RunError;
-use recording::read_regular;
+use foreign::read_regular;
 use report::document::Revision;
 use std::{
     fs::{self, OpenOptions},

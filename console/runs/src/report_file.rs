@@ -169,7 +169,7 @@ impl Reported {
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
-    /// What speaks against the recording. A recording that is not there any more can be made again, and is no doubt.
+    /// What speaks against the recording. A recording that is not there any more can be made again, and is not a doubt.
     pub(crate) fn recording_doubt(&self, folder: &Path, now: &Now<'_>) -> Option<String> {
         let (then, path) = (self.source.recording_sha256.as_deref()?, folder.join(RECORDING_FILE));
         if !path.exists() {

@@ -11,7 +11,7 @@ use std::{
 /// Writes a file whole or not at all: to a draft beside it, `NAME.part`, onto the disk, then renamed. The space that a draft
 /// already takes is used. When it fails, the file is as it was, and there is no draft.
 ///
-/// What is no regular file (a pipe, `/dev/stdout`) is written to as it is.
+/// What is not a regular file (a pipe, `/dev/stdout`) is written to as it is.
 ///
 /// # Errors
 /// The system refuses, or the file is read-only.

@@ -35,16 +35,15 @@ pub use renamed::with_todays_keys;
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 
-pub use import::Foreign;
 use mission::MissionConfig;
 use report::{Expect, Inspection};
 use sim::SimConfig;
 use source::Source;
-use std::{fs::File, io::Read, path::Path};
+use std::{io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
 
-/// A larger file is no scenario, kilobytes; a large map written out takes some two thousand.
+/// A larger file is not a scenario, kilobytes; a large map written out takes some two thousand.
 const LIMIT_KB: usize = 8000;
 
 /// A scenario, checked.
@@ -151,12 +150,16 @@ fn read_text(path: &Path) -> Result<String, Complaint> {
     if is_stdin(path) {
         std::io::stdin().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
     } else {
-        File::open(path).map_err(unreadable)?.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+        foreign::open_waiting(path)
+            .map_err(unreadable)?
+            .take(limit)
+            .read_to_end(&mut bytes)
+            .map_err(unreadable)?;
     }
     if bytes.len() > LIMIT_KB * 1000 {
         return Err(Complaint::TooLarge { limit_kb: LIMIT_KB });
     }
-    match Foreign::of(&bytes) {
+    match foreign::NotUtf8::of(&bytes) {
         Some(foreign) => Err(Complaint::NotText(foreign)),
         None => Ok(String::from_utf8_lossy(&bytes).into_owned()),
     }

@@ -22,7 +22,7 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     let Some((tank, named)) = tank.and_then(|tank| Some((tank, tank.get("map")?))) else {
         return Ok(text.to_owned());
     };
-    // What is no text, and no tolerance, is left to the reader of the schema.
+    // What is neither text nor a tolerance is left to the reader of the schema.
     let Some(file) = named.get_ref().as_str() else { return Ok(text.to_owned()) };
     let tolerance = tank.get("map_tolerance_m");
     let tolerance_m = tolerance.and_then(|tolerance| number(tolerance.get_ref())).filter(|m| *m >= 0.0);

@@ -1,6 +1,6 @@
 //! What can be wrong with a scenario.
 
-use import::Foreign;
+use foreign::NotUtf8;
 use std::{fmt, ops::Range};
 use thiserror::Error;
 
@@ -41,7 +41,7 @@ pub enum Complaint {
     },
     /// The file is not text in UTF-8.
     #[error("{0}")]
-    NotText(Foreign),
+    NotText(NotUtf8),
     /// The text is not TOML.
     #[error("not TOML: {0}")]
     NotToml(String),
@@ -74,7 +74,7 @@ pub enum Complaint {
     /// A number out of range.
     #[error("must be {0}")]
     OutOfRange(String),
-    /// A word that is none of the choices.
+    /// A word that is not among the choices.
     #[error("must be one of {}", .words.join(", "))]
     UnknownWord {
         /// The choices.

@@ -44,7 +44,7 @@ pub(crate) fn renamed_keys(section: &str) -> impl Iterator<Item = (&'static str,
     RENAMED.iter().filter(move |(place, ..)| *place == section).map(|(_, old, new)| (*old, *new))
 }
 
-/// A scenario's text with today's keys, for the scenarios in old journals; a text that is no TOML stays as it is.
+/// A scenario's text with today's keys, for the scenarios in old journals; a text that is not TOML stays as it is.
 pub fn with_todays_keys(text: &str) -> String {
     let Ok(table) = DeTable::parse(text) else { return text.to_owned() };
     let mut old = old_keys("", "", table.get_ref());

@@ -36,7 +36,7 @@ impl Settings {
     /// The text with the settings in it: planner first, then seed, then every `--set` in order.
     ///
     /// # Errors
-    /// A setting that is no `KEY=VALUE` or whose key leads through something that is no table.
+    /// A setting that is not a `KEY=VALUE` or whose key leads through something that is not a table.
     pub fn put_into(&self, text: &str) -> Result<String, Complaint> {
         let bad = |error: toml_edit::TomlError| Complaint::NotToml(error.message().to_owned());
         let mut document: DocumentMut = text.parse().map_err(bad)?;
@@ -73,7 +73,7 @@ fn put_setting(document: &mut DocumentMut, setting: &str) -> Result<(), String> 
     if key.is_empty() || written.is_empty() || key.split('.').any(str::is_empty) {
         return Err("must be KEY=VALUE, with dots between the parts of the key".into());
     }
-    // What is no TOML value is a word: --set mode=literal needs no quotes.
+    // What is not a TOML value is a word: --set mode=literal needs no quotes.
     let mut value: Value = written.parse().unwrap_or_else(|_| written.into());
     let path: Vec<&str> = match key.split('.').collect::<Vec<_>>()[..] {
         [only] if !TOP_KEYS.contains(&only) => vec!["planner", "parameters", only],
@@ -100,8 +100,9 @@ fn put(item: &mut Item, path: &[&str], value: &Value) -> Result<(), String> {
     if let Item::Value(inline) = item {
         return put_in_value(inline, path, value);
     }
-    let table =
-        item.as_table_mut().ok_or_else(|| format!("`{first}` would be inside something that is no table"))?;
+    let table = item
+        .as_table_mut()
+        .ok_or_else(|| format!("`{first}` would be inside something that is not a table"))?;
     put_in_table(table, path, value)
 }
 

@@ -187,7 +187,7 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
     }
     if !model.console.planners.is_empty() {
         let changes = differences(&model.console.planners, &found);
-        model.say(Severity::Info, format!("plugins looked at again: {} changed", changes.len()));
+        model.say(Severity::Info, format!("plugins rescanned: {} changed", changes.len()));
         model.console.reloaded = Some(changes);
         shadow::tell_rebuilt(model, &found);
     }

@@ -339,7 +339,7 @@ impl Machine {
         let out = view.and_then(|view| match retreat.mouth {
             Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
             _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
-            // Deep in a spiral what looks like the mouth may be none.
+            // Deep in a spiral what looks like the mouth may not be one.
             seen => Mouth::left_behind(at, &view, seen.is_some()),
         });
         if let Some(mouth) = out {

@@ -11,7 +11,7 @@ const THETA_PER_M: f64 = 0.15;
 const ROOM_M: f64 = 0.5;
 /// From a place with a wider opening than this the robot is as good as outside.
 const OPEN_RAD: f64 = 0.98 * PI;
-/// A mouth that is seen under less than this is none: the inside of a spiral.
+/// A mouth that is seen under a smaller angle is the inside of a spiral.
 const NARROW_RAD: f64 = 0.15;
 /// A spiral is left when its opening is wider than this.
 const OUT_RAD: f64 = 1.1 * PI;

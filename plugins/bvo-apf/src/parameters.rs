@@ -29,7 +29,7 @@ const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0,
     .help("Distance between hull and obstacle at which obstacles begin to act.")
     .group(FIELD);
 const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
-    .help("Tangent force round what blocks the way to the goal, as a multiple of the repulsion gain; 0 is none.")
+    .help("Tangent force round what blocks the way to the goal, as a multiple of the repulsion gain; 0 turns it off.")
     .group(FIELD);
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
     .help("Length of a move when planning; the paper moves 0.01, its step count fits 0.0071.")

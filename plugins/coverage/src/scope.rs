@@ -33,7 +33,7 @@ impl<'a> Scope<'a> {
     /// All that a request asks for, as if there were no tether, if it is to cover floor; `id` is the planner that is asked.
     ///
     /// # Errors
-    /// Another task, or a start that is no number.
+    /// Another task, or a start that is not a number.
     pub(crate) fn of(request: &PlanRequest<'a>, id: &str, cell_m: f64) -> Result<Self> {
         let start = request.start.position;
         if !(start.x.is_finite() && start.y.is_finite()) {

@@ -101,6 +101,21 @@ impl Workspace {
         self.room.spare_m(at) >= 0.0
     }
 
+    /// Whether the middle of the hull may be within a distance of a place, straight away from the solid that is nearest to it.
+    pub(crate) fn is_in_reach(&self, at: Point, reach_m: f64) -> bool {
+        /// Step of the differences by which the direction away is found, metres.
+        const STEP_M: f64 = 1e-4;
+        /// Rounding of the differences, metres.
+        const TOLERANCE_M: f64 = 1e-4;
+        let lacks_m = -self.room.spare_m(at);
+        if lacks_m <= 0.0 || lacks_m > reach_m {
+            return lacks_m <= 0.0;
+        }
+        let rises = |step: Vector| self.room.spare_m(at + step) - self.room.spare_m(at - step);
+        let away = Vector::new(rises(Vector::new(STEP_M, 0.0)), rises(Vector::new(0.0, STEP_M)));
+        away.try_normalize(0.0).is_some_and(|away| self.room.spare_m(at + away * lacks_m) >= -TOLERANCE_M)
+    }
+
     /// Whether a place is floor: inside the wall and outside everything solid.
     pub(crate) fn is_floor(&self, at: Point) -> bool {
         !self.room.is_solid(at)

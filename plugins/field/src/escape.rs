@@ -1,7 +1,7 @@
 //! Ways out of a trap that add a force for a while: a virtual target, or a push to the side.
 //!
 //! Wang et al. 2023 compare with both by name only; places, gains and times are reconstructed, so figures of these
-//! planners are no evidence about the originals.
+//! planners are not evidence about the originals.
 
 use crate::law::Law;
 use geometry::{Point, Vector};

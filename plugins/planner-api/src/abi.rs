@@ -44,7 +44,7 @@ impl Str {
         Self { ptr: text.as_ptr(), len: text.len() }
     }
 
-    /// The text, with what is no UTF-8 replaced; at most `most` bytes of it.
+    /// The text, with what is not UTF-8 replaced; at most `most` bytes of it.
     ///
     /// # Safety
     /// `ptr` is null or points at `len` readable bytes.

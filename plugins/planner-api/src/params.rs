@@ -222,10 +222,10 @@ impl<'a> Config<'a> {
         self.number(key) != 0.0
     }
 
-    /// The chosen word; panics like [`Config::float`], or if it is no choice.
+    /// The chosen word; panics like [`Config::float`], or if it is not a choice.
     pub fn choice(&self, key: &str) -> &'static str {
         let Kind::Choice { options, default } = self.spec(key).kind else {
-            panic!("parameter `{key}` is no choice")
+            panic!("parameter `{key}` is not a choice")
         };
         options.get(self.number(key) as usize).copied().unwrap_or(options[default])
     }

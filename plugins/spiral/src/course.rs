@@ -193,7 +193,7 @@ pub(crate) fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
     Err(PlannerError::new(Code::Config, message))
 }
 
-/// Refuses parameters that are no numbers from 0 on; none of ours may be negative.
+/// Refuses parameters that are not numbers from 0 on; none of ours may be negative.
 ///
 /// # Errors
 /// [`Code::Config`].

@@ -50,7 +50,7 @@ impl Sources {
     /// Reads crates: names with the folders of their sources.
     ///
     /// # Panics
-    /// If a file cannot be read or is no Rust.
+    /// If a file cannot be read or is not Rust.
     pub fn read(crates: &[(&str, &Path)]) -> Self {
         let mut sources = Self::default();
         for (name, folder) in crates {

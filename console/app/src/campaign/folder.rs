@@ -4,7 +4,7 @@ use crate::shared_folder::SharedFolder;
 use anyhow::Context;
 use campaign::{Campaign, Table, TableError, part};
 use flight::failure::bad_input;
-use recording::{open_regular, read_regular};
+use foreign::{open_regular, read_regular};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -82,9 +82,7 @@ impl Folder {
     ) -> anyhow::Result<T> {
         let file = self.path().join(Self::part(block));
         let open = open_regular(&file).with_context(|| file.display().to_string())?;
-        read(open).map_err(|why| {
-            bad_input(format!("{} {why}; block {block} has to be flown again", file.display()))
-        })
+        read(open).map_err(|why| bad_input(format!("{} {why}; fly block {block} again", file.display())))
     }
 
     /// Publishes the rows of a block, after what they cost.

@@ -80,11 +80,11 @@ pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyh
 pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let file = if path.is_dir() { path.join("results.parquet") } else { path.to_owned() };
     let shown = file.display();
-    let open = recording::open_regular(&file)
+    let open = foreign::open_regular(&file)
         .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
     let (table, is_proven) = Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
     if !is_proven {
-        let why = "an earlier tankops or another program wrote it, so that damage to it is not noticed";
+        let why = "an earlier tankops or another program wrote it; damage to it would go unnoticed";
         warn_line(&format!("{shown} carries no digest: {why}"));
     }
     Ok(table)

@@ -234,7 +234,7 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
 /// When the tool was on.
 fn tool(survey: &Survey) -> String {
     let Some(stretches) = &survey.tool_on_s else {
-        return "not known when it was on, so that no coverage is stated (column tool_on, or --tool-on FILE)"
+        return "not known when it was on, so no coverage is stated (add a column tool_on, or --tool-on FILE)"
             .into();
     };
     let on_s: f64 = stretches.iter().map(|[from_s, to_s]| to_s - from_s).sum();

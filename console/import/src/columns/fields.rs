@@ -130,5 +130,5 @@ fn meaning(name: &str) -> Result<Meaning, String> {
     let unit_m = UNITS.iter().find(|(known, _)| *known == unit).map(|(_, unit_m)| unit_m * share);
     unit_m
         .map(|unit_m| Meaning::Length(quantity, unit_m))
-        .ok_or_else(|| format!("`{unit}` is no unit of length that is read; they are m, cm, mm, in and ft"))
+        .ok_or_else(|| format!("`{unit}` is not a known unit of length; write m, cm, mm, in or ft"))
 }

@@ -67,7 +67,7 @@ fn errors_name_line_and_field() {
     );
     assert_eq!(
         message("# a\nx_m,y [furlong],radius_m\n"),
-        "c.csv, line 2, y [furlong]: `furlong` is no unit of length that is read; they are m, cm, mm, in and ft"
+        "c.csv, line 2, y [furlong]: `furlong` is not a known unit of length; write m, cm, mm, in or ft"
     );
     assert_eq!(
         message("x_m,y_m,Nr\n1,2,3\n"),

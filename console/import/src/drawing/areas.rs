@@ -44,7 +44,7 @@ pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, Vec<
     }
     let (rings, open) = rings::closed(chains);
     areas.extend(rings.into_iter().map(|ring| Area::new(ring, 0.0)));
-    // What encloses nothing is no outline.
+    // What encloses nothing is not an outline.
     areas.retain(|area| area.size_m() + area.half_width_m > SMALLEST_M);
     (areas, open)
 }

@@ -13,7 +13,7 @@ use world::{
 const SAME_M: f64 = 5e-3;
 /// Straight pieces that are compared with each other at most.
 const MOST_PIECES: usize = 20_000;
-/// What remains of a line beyond the last one that it meets and is shorter than this is no line of its own, metres.
+/// What remains of a line beyond the last one that it meets and is shorter than this is not a line of its own, metres.
 const LOOSE_M: f64 = 0.1;
 
 type Piece = [Point; 2];

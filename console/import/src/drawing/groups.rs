@@ -128,7 +128,7 @@ impl Drawing {
             };
             let code: i32 = code.trim().parse().map_err(|_| {
                 wrong(format!(
-                    "no DXF drawing: `{}` is no group code",
+                    "not a DXF drawing: `{}` is not a group code",
                     code.trim().chars().take(20).collect::<String>()
                 ))
             })?;

@@ -4,7 +4,7 @@ use world::{Point, shape::bounds_of};
 
 /// Lines whose ends are compared with each other at most, the longest ones.
 const MOST_LINES: usize = 400;
-/// A gap wider than this share of the outline is none that somebody overlooked.
+/// Nobody overlooks a gap that is wider than this share of the outline.
 const WIDEST_SHARE: f64 = 0.25;
 /// Sides that are compared with each other at most.
 const MOST_SIDES: usize = 5_000;
@@ -170,7 +170,7 @@ mod tests {
                 .told(1.0)
                 .contains("an outline of 1.000 m across is nearly closed: one gap of")
         );
-        assert_eq!(nearest(&[line(&[(0.0, 0.0), (5.0, 0.0)])]), None, "a line is no outline");
+        assert_eq!(nearest(&[line(&[(0.0, 0.0), (5.0, 0.0)])]), None, "a line is not an outline");
         assert_eq!(nearest(&[]), None);
     }
 

@@ -17,9 +17,9 @@ use world::{
 
 /// Corners of a round plate, and of a round shell that seams divide.
 const N_ROUND: [usize; 2] = [120, 720];
-/// A strip narrower than this lies between both edges of an overlap and is no plate, metres.
+/// A strip narrower than this lies between both edges of an overlap and is not a plate, metres.
 const NARROWEST_M: f64 = 0.1;
-/// A corner nearer to the line between its neighbours than this is none, metres.
+/// A point nearer than this to the line between its neighbours is not a corner, metres.
 const STRAIGHT_M: f64 = 2e-4;
 /// Most that an outline of too many corners is drawn in, metres.
 const COARSEST_M: f64 = 0.05;

@@ -121,7 +121,7 @@ fn what_is_missing_is_named() {
         read(&Input::read(&file).unwrap(), &plain())
             .unwrap_err()
             .to_string()
-            .contains("line 1: no DXF drawing: `this is not a drawin` is no group code")
+            .contains("line 1: not a DXF drawing: `this is not a drawin` is not a group code")
     );
 }
 
@@ -479,7 +479,7 @@ fn an_outline_with_a_gap_is_named_with_its_place() {
         read_text(",9 $INSUNITS,70 4", "", GAPPED, &plain()).unwrap_err(),
         format!("d.dxf: no shell on a layer SHELL: {told}; layers: `SHELL` (4 LINE)")
     );
-    // A column drawn on the same layer is no shell.
+    // A column drawn on the same layer is not a shell.
     let with_column = format!("{GAPPED}0 CIRCLE,8 SHELL,10 3000,20 3000,40 1000");
     assert_eq!(
         read_text(",9 $INSUNITS,70 4", "", &with_column, &plain()).unwrap_err(),

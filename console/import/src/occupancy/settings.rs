@@ -108,7 +108,7 @@ impl Settings {
         let mode = match &written.mode {
             None => Mode::Trinary,
             Some(mode) => Mode::named(&mode.value).ok_or_else(|| {
-                let what = format!("`{}` is no mode; it must be trinary, scale or raw", mode.value);
+                let what = format!("`{}` is not a mode; it must be trinary, scale or raw", mode.value);
                 at(mode.referenced.line(), what)
             })?,
         };
@@ -198,7 +198,7 @@ fn twice(text: &str, key: Option<&str>, line: Option<usize>) -> String {
     let lines = text.lines().take(line.unwrap_or_default().saturating_sub(1)).enumerate();
     let first = lines.filter(|(_, written)| is_it(written)).map(|(k, _)| k + 1).next();
     let first = first.map_or_else(String::new, |first| format!(", first in line {first}"));
-    format!("is there twice{first}; keep one of them")
+    format!("occurs twice{first}; keep one of them")
 }
 
 /// x and y in metres and an angle in radians.

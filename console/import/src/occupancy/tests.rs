@@ -151,11 +151,11 @@ fn errors_name_file_line_and_key() {
         ),
         (
             message(&format!("{YAML}mode: binary\n")),
-            "m.yaml, line 7, mode: `binary` is no mode; it must be trinary, scale or raw",
+            "m.yaml, line 7, mode: `binary` is not a mode; it must be trinary, scale or raw",
         ),
         (
             message(&format!("{YAML}negate: 1\n")),
-            "m.yaml, line 7, negate: is there twice, first in line 4; keep one of them",
+            "m.yaml, line 7, negate: occurs twice, first in line 4; keep one of them",
         ),
         (
             message(&format!("{YAML}map_type: costmap\n")),

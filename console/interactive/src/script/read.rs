@@ -15,7 +15,7 @@ type Numbered<T> = (usize, T);
 /// Reads a script: its steps by the number of their line.
 ///
 /// # Errors
-/// Each line that is none, by its number, and what is wrong with it.
+/// Each line that is not a command, by its number, and what is wrong with it.
 pub(super) fn steps(text: &str, keys: &Keymap) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));

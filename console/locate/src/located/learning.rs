@@ -32,7 +32,7 @@ impl Task<'_> {
     pub(super) fn check_findable(&self, columns: &Columns) -> anyhow::Result<()> {
         if self.finds_clock_offset && columns.kind() == Kind::Differences {
             return Err(bad_input(format!(
-                "{}: without the time of emission there is no clock offset to be found; leave out --find clock-offset, or add a \
+                "{}: without the time of emission no clock offset can be found; leave out --find clock-offset, or add a \
                  column emitted_s",
                 self.shown
             )));

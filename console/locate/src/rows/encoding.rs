@@ -1,6 +1,6 @@
 //! Which encoding a file is in that is not in UTF-8, and what to do about it.
 
-use recording::open_regular;
+use foreign::{NotUtf8, open_regular};
 use std::{
     io::{BufRead, BufReader, Read},
     path::Path,
@@ -8,45 +8,35 @@ use std::{
 
 /// Bytes of a beginning that are looked at.
 const BEGINNING: u64 = 64;
-/// A line with more bytes than this is none.
+/// Longest line that is read, bytes.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// What is wrong with a file of two bytes a character; `None` if it is no such file.
+/// What is wrong with a file of two or four bytes a character; `None` if it is not such a file.
 pub(super) fn wide(file: &Path) -> Option<String> {
     let mut beginning = Vec::new();
     open_regular(file).ok()?.take(BEGINNING).read_to_end(&mut beginning).ok()?;
-    let zeros = |from: usize| beginning.iter().skip(from).step_by(2).filter(|byte| **byte == 0).count();
-    let half = beginning.len() / 2;
-    let name = match beginning.as_slice() {
-        [0xff, 0xfe, ..] => "UTF-16LE",
-        [0xfe, 0xff, ..] => "UTF-16BE",
-        // Latin letters in pairs of bytes without a mark.
-        _ if half > 4 && zeros(1) == half && zeros(0) == 0 => "UTF-16LE",
-        _ if half > 4 && zeros(0) >= half && zeros(1) == 0 => "UTF-16BE",
-        _ => return None,
-    };
-    Some(format!(
-        "line 1: text in {name} (\"Unicode text\" of spreadsheets); save the readings as \"CSV UTF-8\", or convert them: iconv -f \
-         {name} -t UTF-8 READINGS"
-    ))
+    let name = NotUtf8::of(&beginning)?.encoding.filter(|name| name.starts_with("UTF"))?;
+    Some(format!("line 1: text in {name} (\"Unicode text\" of spreadsheets); {}", remedy(name)))
 }
 
-/// What is wrong with the line of a file that is no UTF-8, by the first such byte in it.
+/// What is wrong with the line of a file that is not UTF-8, by the first such byte in it.
 pub(super) fn narrow(file: &Path, line: u64) -> String {
-    let byte = first_byte(file, line);
+    let bytes = bytes_of(file, line).unwrap_or_default();
+    let byte = std::str::from_utf8(&bytes).err().and_then(|error| bytes.get(error.valid_up_to()));
     let shown = match byte {
-        Some(byte @ 0xa0..) => format!("byte {byte:#04x} (`{}` in Windows-1252)", char::from(byte)),
+        Some(byte @ 0xa0..) => format!("byte {byte:#04x} (`{}` in Windows-1252)", char::from(*byte)),
         Some(byte) => format!("byte {byte:#04x}"),
         None => "a byte".into(),
     };
-    format!(
-        "{shown} is no UTF-8, as in text in Windows-1252 (ISO 8859-1); save the readings as \"CSV UTF-8\", or convert them: iconv -f \
-         WINDOWS-1252 -t UTF-8 READINGS"
-    )
+    format!("{shown} is not UTF-8; {}", remedy("WINDOWS-1252"))
 }
 
-/// The first byte of a line that is no UTF-8.
-fn first_byte(file: &Path, line: u64) -> Option<u8> {
+fn remedy(name: &str) -> String {
+    format!("save the readings as \"CSV UTF-8\", or convert them: iconv -f {name} -t UTF-8 READINGS")
+}
+
+/// The bytes of a line.
+fn bytes_of(file: &Path, line: u64) -> Option<Vec<u8>> {
     let mut text = BufReader::new(open_regular(file).ok()?);
     let mut bytes = Vec::new();
     for _ in 0..line {
@@ -55,6 +45,5 @@ fn first_byte(file: &Path, line: u64) -> Option<u8> {
             return None;
         }
     }
-    let error = std::str::from_utf8(&bytes).err()?;
-    bytes.get(error.valid_up_to()).copied()
+    Some(bytes)
 }

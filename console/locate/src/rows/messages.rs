@@ -123,7 +123,7 @@ impl Messages {
                         *held > FREE_BYTES + MOST_EXPANSION * *read
                     } =>
                 {
-                    return Err(damaged(*count, &"it unpacks to more than a recording does"));
+                    return Err(damaged(*count, &"it unpacks to more than any recording holds"));
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {

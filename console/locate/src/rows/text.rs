@@ -5,10 +5,10 @@ use std::{
     io::{self, Read},
 };
 
-/// A line with more bytes than this is none.
+/// Longest line that is read, bytes.
 const LONGEST_LINE: usize = 1 << 16;
 
-/// A file whose bytes are refused where they are no text, so that no reader collects an endless line; every line ends with
+/// A file whose bytes are refused where they are not text, so that no reader collects an endless line; every line ends with
 /// a line feed, so that lines can be counted.
 pub(crate) struct Text {
     file: File,

@@ -129,7 +129,7 @@ impl Mission {
         match self.candidate.take_if(|_| is_ready && is_taken) {
             Some(slot) => self.take_better_plan(slot),
             None if is_ready => self.drop_better_plan("the robot has passed the place where it begins"),
-            None => self.drop_better_plan("it was not made before the robot came to where it was to begin"),
+            None => self.drop_better_plan("it came after the robot had passed the place where it begins"),
         }
     }
 

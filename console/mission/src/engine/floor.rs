@@ -17,7 +17,7 @@ impl ScannedFloor {
         Self { coverage: CoverageGrid::new(floor), surveyor: None }
     }
 
-    /// Takes in shapes that were found: what stands where is no floor, and what is beside it cannot be reached. Gives the
+    /// Takes in shapes that were found: what stands where is not floor, and what is beside it cannot be reached. Gives the
     /// cells that have changed.
     pub(super) fn survey(&mut self, config: &MissionConfig, chart: &Chart, found: &[Shape]) -> Vec<KindRun> {
         let changes = self.surveyor(config, chart).update(chart.world(), chart.map(), found);

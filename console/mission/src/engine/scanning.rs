@@ -23,7 +23,7 @@ impl Mission {
         if events.is_empty() && !changes_plans {
             return false;
         }
-        // What moves is no part of the floor.
+        // What moves is not part of the floor.
         let still = events.iter().filter(|event| !self.chart.moves(event));
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
         let is_due = |task: &Task| {

@@ -303,7 +303,7 @@ fn note_text(Note { what, by }: &Note) -> String {
         Noted::Shelved { text, for_s, reason, .. } => {
             format!("alarm shelved{by} for {} min ({reason}): {text}", (for_s / 6.0).round() / 10.0)
         }
-        Noted::Unshelved { text, .. } => format!("alarm taken back from the shelf{by}: {text}"),
+        Noted::Unshelved { text, .. } => format!("alarm unshelved{by}: {text}"),
         Noted::PresetTaken { preset, planner } => format!("preset {preset} of {planner} taken{by}"),
     }
 }

@@ -14,7 +14,7 @@ use world::{Point, Pose};
 
 /// Steps in a unit.
 const STEPS: f64 = 1e6;
-/// Larger numbers have no digits to lose, and are none of a tank.
+/// Larger numbers have no digits to lose, and do not occur in a tank.
 const MOST: f64 = 1e9;
 
 /// A number to the millionth; no `-0.0`.

@@ -23,7 +23,7 @@ pub fn certify_from_start(
 }
 
 /// Index of the point of a plan's path at which a return path along the cable ends; 0 without one. A way that ends away
-/// from the anchor is none, whatever the planner calls it.
+/// from the anchor is not one, whatever the planner calls it.
 pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
     let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
     let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);

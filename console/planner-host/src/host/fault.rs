@@ -96,7 +96,7 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         Failure::Protocol => fault(
             Cause::Protocol,
             format!(
-                "planner {planner} sent something that is no answer during {phase}; its process was killed"
+                "planner {planner} sent something that is not a valid answer during {phase}; its process was killed"
             ),
         ),
         Failure::Gone => {

@@ -2,7 +2,7 @@
 //!
 //! The kernel counts the private memory that can be written (`RLIMIT_DATA`), and that is nearly all of it. Who writes to
 //! memory and then gives up the right to write keeps it uncounted, and address space that can only be read costs tables of
-//! pages. `RLIMIT_AS` is no help: where it is reached, the kernel makes memory writable without counting it. So the calls that
+//! pages. `RLIMIT_AS` does not help: where it is reached, the kernel makes memory writable without counting it. So the calls that
 //! withdraw the right to write, or take address space without it, wait for a decision here.
 
 use super::listener::Call;

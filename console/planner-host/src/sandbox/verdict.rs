@@ -166,7 +166,7 @@ fn forbidden(call: &Call, path: &str) -> Verdict {
     Verdict::Forbid(format!("{} of {}", name(call.number), for_people(path)))
 }
 
-/// What a thread's memory holds at an address, up to its first zero; nothing if it is no path of usual length.
+/// What a thread's memory holds at an address, up to its first zero; nothing if it is not a path of usual length.
 fn path_at(thread: u32, address: u64) -> Option<String> {
     let mut bytes = [0; LONGEST_PATH];
     let read = File::open(format!("/proc/{thread}/mem")).and_then(|mem| mem.read_at(&mut bytes, address));

@@ -103,7 +103,7 @@ impl Cache {
         (entry.of == of && entry.circumstances == self.circumstances).then_some(entry.kept)
     }
 
-    /// A cache that cannot be written is none.
+    /// A cache that cannot be written counts as missing.
     fn write<T: Serialize + ?Sized>(&self, of: &str, kept: &T) {
         let Some(file) = self.file_of(of) else { return };
         let entry = Entry { circumstances: self.circumstances.clone(), of: of.to_owned(), kept };

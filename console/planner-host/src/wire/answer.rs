@@ -21,7 +21,7 @@ pub(crate) struct Refusal {
     pub(crate) partial: Vec<Point2<f64>>,
 }
 
-/// Code of a refusal that the worker itself makes: the planner's answer is none.
+/// Code of a refusal that the worker itself makes: the planner's answer is invalid.
 pub(crate) const BAD_OUTPUT: i32 = 100;
 
 /// Most planners in a library.

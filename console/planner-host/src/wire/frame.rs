@@ -17,7 +17,7 @@ pub(crate) enum Received {
     Frame,
     /// The peer has closed the connection.
     Closed,
-    /// What arrived is no frame.
+    /// The bytes that arrived are not a frame.
     Broken,
 }
 

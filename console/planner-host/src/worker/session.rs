@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Why there is no answer.
 pub(super) enum Trouble {
-    /// The library is no plugin, or does not describe itself.
+    /// The library is not a plugin, or does not describe itself.
     Refused(String),
     /// The machine does not let the worker run.
     Unable(String),

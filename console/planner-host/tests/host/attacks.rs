@@ -295,7 +295,7 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
     let sealed = [vec![0], text("ab"), vec![1, 0, 0, 0, 0, 0, 0, 0]].concat();
     assert_eq!(
         refusal_of(&sending(0x84, 1, &sealed)),
-        "sent something that is no answer while it was loaded"
+        "sent something that is not a valid answer while it was loaded"
     );
     // One planner: id, name, version, about; no abilities, state 1, no parameters.
     let named = |id: &str| [vec![1, 0, 0, 0], text(id), vec![0; 16], vec![1, 0, 0, 0], vec![0; 4]].concat();
@@ -307,7 +307,10 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
     assert_eq!((lying.planners[0].id.as_str(), &lying.planners[0].sha256), ("spiral", &lying.sha256));
     assert_ne!(lying.sha256, honest, "the hash of this very file");
     let unsound = surveyed(&sending(0x80, 1, &named("two words")));
-    assert_eq!(unsound.refused.as_deref(), Some("sent something that is no answer while it was loaded"));
+    assert_eq!(
+        unsound.refused.as_deref(),
+        Some("sent something that is not a valid answer while it was loaded")
+    );
 }
 
 /// Writes a frame to the console, in C.
@@ -323,7 +326,7 @@ fn frames_that_nobody_asked_for_are_no_answers() {
     for kind in [0x80, 0x84] {
         let fault = fault_of("IN_STEP", &sending(kind, u32::MAX, &[]));
         let sentence =
-            "planner hostile sent something that is no answer during step 3; its process was killed";
+            "planner hostile sent something that is not a valid answer during step 3; its process was killed";
         assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Protocol));
     }
 }

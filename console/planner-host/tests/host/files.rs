@@ -1,4 +1,4 @@
-//! Files that are no good plugins: refused with the reason, and nobody else is hurt.
+//! Files that are not good plugins: refused with the reason, and nobody else is hurt.
 
 use crate::stand::{assert_refused, built, choose, compile, config, direct_c, folder_with, worker};
 use mission::planner::Parameters;

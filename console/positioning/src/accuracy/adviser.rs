@@ -35,7 +35,7 @@ pub struct Advice {
 /// Why there is no advice.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AdviceError {
-    /// The number of stations is none that advice can be given for.
+    /// No advice can be given for this number of stations.
     #[error("advice is for {} to {} stations, not for {asked}", COUNTS.start(), COUNTS.end())]
     Count {
         /// How many were asked for.

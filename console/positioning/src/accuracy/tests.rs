@@ -58,7 +58,7 @@ fn a_column_casts_a_shadow_where_two_stations_are_left() {
         Accuracy { error_95_m: None, gdop: None, heard: 2, mirror: None }
     );
     assert_eq!(accuracy.at(beside).unwrap().heard, 3);
-    assert_eq!(accuracy.at(Point::new(5.0, 0.0)), None, "a column is no floor");
+    assert_eq!(accuracy.at(Point::new(5.0, 0.0)), None, "a column is not floor");
     let through = AccuracyMap::new(&world, &Forecast { needs_line_of_sight: false, ..FORECAST });
     assert_eq!(through.at(behind).unwrap().heard, 3);
 }

@@ -5,7 +5,7 @@ use crate::fix::ELLIPSE_95;
 use nalgebra::{Matrix2, Vector2};
 use world::Odometry;
 
-/// Odometry of one tick beyond this is no motion of a robot, metres or radians.
+/// Odometry of one tick beyond this is not the motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
 /// Part of the odometry error that is fresh in every metre, as a share of the part that stays the same.
 const FRESH_SHARE: f64 = 0.3;
@@ -85,7 +85,7 @@ impl Ekf {
     ///
     /// Every place of the 95 % ellipse, moved by so much, lies in the new ellipse, and its longer half axis grows by just so much:
     /// of all ellipses that hold the sum of an ellipse and a disc (Kurzhanski) it is the one that is shortest. Several short motions
-    /// give the same as a long one. The covariance is no variance of chance then: a robot that drives straight on at its top
+    /// give the same as a long one. The covariance does not describe chance then: a robot that drives straight on at its top
     /// speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {

@@ -29,7 +29,7 @@ impl Ekf {
         let Ok(anchors) = anchored(ranges, stations) else { return Update::REFUSED };
         let degrees = u32::try_from(anchors.len()).unwrap_or(u32::MAX);
         let gate = chi_squared_quantile(GATE_Z, degrees);
-        // The comparison also refuses what is no number.
+        // The comparison also refuses what is not a number.
         let met = |filter: &Self| filter.meeting(&anchors).filter(|(_, met)| met.cost <= gate);
         let slip_chance =
             if self.last_way.norm() > 0.0 { self.noise.slip_chance.clamp(0.0, 0.5) } else { 0.0 };

@@ -34,7 +34,7 @@ pub struct PositionerConfig {
     pub aggregation: Aggregation,
     /// How ranges become a fix.
     pub solver: SolverKind,
-    /// The wall of the tank: a fix clearly behind it is none.
+    /// The wall of the tank: a fix clearly behind it is rejected.
     pub boundary: Option<Boundary>,
     /// Whether the speed of sound is found out under way; needs four stations.
     pub calibrate_sound_speed: bool,

@@ -57,7 +57,7 @@ fn tail_of(lines: &mut dyn Read) -> io::Result<Vec<u8>> {
 /// SHA-256 of the lines of a journal, hexadecimal: equal for equal runs.
 ///
 /// # Errors
-/// It is no regular file, or cannot be read or decompressed.
+/// It is not a regular file, or cannot be read or decompressed.
 pub fn events_sha256(path: &Path) -> io::Result<String> {
     events_sha256_while(path, |_| true)
 }

@@ -20,18 +20,19 @@ const MOST_EXPANSION: u64 = 200;
 /// So much is given whatever the expansion, bytes.
 const FREE_BYTES: u64 = 16 << 20;
 
-/// Whether so many bytes of lines can come of so many bytes of the file.
+/// Whether the lines can be as long as this, given the size of the file.
 pub(super) fn check_expansion(packed: u64, lines: u64) -> io::Result<()> {
     if lines <= FREE_BYTES + MOST_EXPANSION * packed {
         return Ok(());
     }
-    let why = format!("its first {packed} bytes hold more than {lines} bytes of lines, which no run writes");
+    let why =
+        format!("its first {packed} bytes hold more than {lines} bytes of lines, more than any run writes");
     Err(io::Error::new(io::ErrorKind::InvalidData, why))
 }
 
 /// What is said of a line that has no end.
 pub(super) fn too_long() -> String {
-    format!("the line is longer than {} MB, and no event is", MOST_LINE_BYTES >> 20)
+    format!("the line is longer than {} MB, longer than any event", MOST_LINE_BYTES >> 20)
 }
 
 /// Memory that a line may take when it is read by way of any value, bytes.
@@ -72,13 +73,13 @@ impl Pace {
     pub(super) fn take(&mut self, event: &Event, bytes: usize) -> Result<(), String> {
         let Event { tick, t_s, kind } = event;
         if matches!(kind, EventKind::RunOpened(_)) && std::mem::replace(&mut self.is_opened, true) {
-            return Err("the run is opened a second time".to_owned());
+            return Err("the run opens a second time".to_owned());
         }
         self.lasting +=
             u32::from(matches!(kind, EventKind::ObstacleFound { .. } | EventKind::ZoneDrawn { .. }));
         if self.lasting > MOST_LASTING {
             return Err(format!(
-                "more than {MOST_LASTING} obstacles were found or zones drawn, which no run has"
+                "more than {MOST_LASTING} obstacles were found or zones drawn, more than any run has"
             ));
         }
         if *tick < self.tick || t_s.is_nan() || *t_s < self.t_s {
@@ -95,7 +96,7 @@ impl Pace {
         self.bytes += bytes as u64;
         if self.lines > MOST_TICK_LINES || self.bytes > MOST_TICK_BYTES {
             return Err(format!(
-                "tick {tick} has more than {MOST_TICK_LINES} lines or {} MB, which no tick has",
+                "tick {tick} has more than {MOST_TICK_LINES} lines or {} MB, more than any tick has",
                 MOST_TICK_BYTES >> 20
             ));
         }

@@ -12,7 +12,7 @@ pub(super) fn line(line: &[u8]) -> Option<Vec<u8>> {
     if line.iter().all(|byte| matches!(byte, b' '..=b'[' | b']'..=b'~' | b'\n')) {
         return None;
     }
-    // What is no text is refused by who reads it.
+    // The reader refuses a line that is not text.
     let text = std::str::from_utf8(line).ok()?;
     let (mut plain, mut rest, mut is_changed) = (String::with_capacity(text.len()), text, false);
     while let Some((c, length)) = next(rest) {
@@ -24,7 +24,7 @@ pub(super) fn line(line: &[u8]) -> Option<Vec<u8>> {
     is_changed.then(|| plain.into_bytes())
 }
 
-/// The next character of a text in JSON and how long it is as it is written; no character for what is an escape of none.
+/// The next character of a text in JSON and how long it is as it is written; no character for an escape that gives none.
 fn next(text: &str) -> Option<(Option<char>, usize)> {
     let first = text.chars().next()?;
     if first != '\\' {
@@ -36,7 +36,7 @@ fn next(text: &str) -> Option<(Option<char>, usize)> {
         Some('b') => (Some('\u{8}'), length),
         Some('f') => (Some('\u{c}'), length),
         Some('u') => escaped(text),
-        // A quote, a slash, an end of a line: plain in itself.
+        // The escape of a quote, a slash or an end of a line: it is plain.
         _ => (None, length),
     })
 }

@@ -196,7 +196,7 @@ impl JournalReader {
     /// The next event with the bytes of its line; `None` after the end.
     ///
     /// # Errors
-    /// See [`JournalError`]; a last line that is cut off is no error.
+    /// See [`JournalError`]; a last line that is cut off is not an error.
     pub fn next_line(&mut self) -> Result<Option<JournalLine<'_>>, JournalError> {
         if self.ended {
             return Ok(None);

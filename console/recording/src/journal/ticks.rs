@@ -116,7 +116,7 @@ impl Ticks {
     /// Opens a journal.
     ///
     /// # Errors
-    /// There is none, or its first line is none of a journal.
+    /// There is none, or its first line does not open a journal.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let reader = JournalReader::open_verbatim(path)?;
         let mut ticks = Self { reader, ahead: None, ended: false, no_end: None };

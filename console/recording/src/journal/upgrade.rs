@@ -59,7 +59,7 @@ const WORD_KEYS: &[&str] = &["event", "by", "alarm"];
 /// An event of an older version.
 ///
 /// # Errors
-/// The line is no JSON, or no event even with today's names.
+/// The line is not JSON, or not an event even with today's names.
 pub(super) fn event(line: &[u8]) -> serde_json::Result<Event> {
     serde_json::from_value(with_todays_names(serde_json::from_slice(line)?))
 }

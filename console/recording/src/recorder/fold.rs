@@ -214,7 +214,7 @@ fn draw_found(stream: &Stream, at: At, obstacle: &Obstacle) -> Done {
 
 fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
     let Some(line) = event.log_line(stations) else { return Ok(()) };
-    // The viewer has no level for what is worth watching, and shows a word of its own without a colour.
+    // The viewer has no level for WATCH, and shows a word of its own without a colour.
     let level = match line.severity {
         Severity::Info => rr::TextLogLevel::INFO,
         Severity::Watch => "WATCH",

@@ -9,7 +9,7 @@ use world::{Point, ShellFigures, ShellStretch};
 pub(crate) const CRITICAL_ZONE_M: f64 = 0.075;
 /// Share of the shell along which the whole zone is scanned when it counts as done.
 const CRITICAL_DONE: f64 = 0.995;
-/// A rim below this is none, metres.
+/// A narrower rim is not shown, metres.
 const LEAST_RIM_M: f64 = 0.005;
 /// Arcs that are not done are one if they are nearer than this, and are left out if they are shorter, metres.
 const ARC_M: f64 = 0.1;

@@ -14,7 +14,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     match facts.inspector_certificate_expires.as_ref().map(|text| (text, Date::read(text))) {
         None => doubts.push("inspection.inspector_certificate_expires".to_owned()),
         Some((text, None)) => {
-            doubts.push(format!("inspection.inspector_certificate_expires is no day, as 2027-03-31: `{text}`"));
+            doubts.push(format!("inspection.inspector_certificate_expires is not a date such as 2027-03-31: `{text}`"));
         }
         Some((_, Some(end))) => doubts.extend(is_past(end).map(|day| {
             format!("inspection.inspector_certificate_expires: it expired on {end}, before the inspection on {day}")
@@ -25,7 +25,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
         let lack = if is_located {
             "inspection.inspected_on"
         } else {
-            "the day of the inspection: the name of the run's folder does not say it"
+            "the day of the inspection, which the name of the run's folder does not tell"
         };
         doubts.push(lack.to_owned());
     }

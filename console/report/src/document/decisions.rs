@@ -31,7 +31,7 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     let mut decisions = Vec::new();
     if let Some(contradiction) = &document.contradiction {
         decisions.push(Decision {
-            what: format!("The facts say something else about the floor than the scenario that was flown: {contradiction}."),
+            what: format!("The facts contradict the scenario that was flown: {contradiction}."),
             section: 1,
             key: "identity_corrected",
             item: TANK,

@@ -80,7 +80,7 @@ fn given(facts: &[(&str, &Option<String>)]) -> Vec<String> {
 
 /// A fact that says nothing.
 fn empty(key: &str, text: &str) -> Option<String> {
-    says_nothing(text).then(|| format!("inspection.{key} says nothing: `{}`", text.trim()))
+    says_nothing(text).then(|| format!("inspection.{key} has no content: `{}`", text.trim()))
 }
 
 /// Adds the decisions of an item to its answer, and those not made to what it lacks.
@@ -163,7 +163,7 @@ fn calibration(document: &Document) -> Answered {
     let sound = facts.sound_speed.as_ref().filter(|text| !says_nothing(text));
     lacks.extend(sound.filter(|text| !is_determined(text)).map(|text| {
         format!(
-            "inspection.sound_speed does not say both how many m/s and how that was determined: `{}`",
+            "inspection.sound_speed must state both the speed in m/s and how it was determined: `{}`",
             text.trim()
         )
     }));
@@ -173,7 +173,7 @@ fn calibration(document: &Document) -> Answered {
 
 /// The answer of a report on a run that was not there to scan, to what is asked of scans.
 fn no_scan() -> Answered {
-    ("the mission was not there to scan the floor".to_owned(), Vec::new())
+    ("the mission was not to scan the floor".to_owned(), Vec::new())
 }
 
 /// Whether a text gives a number, and says more than it and its unit.
@@ -329,7 +329,7 @@ fn hashes(document: &Document) -> Answered {
                 String::new()
             };
             lacks.push(format!(
-                "{}: no report of the end of the run that the files could be checked against{close}",
+                "{}: without a report of the run's end there is nothing to check the files against{close}",
                 run.run
             ));
         }
@@ -344,8 +344,7 @@ fn hashes(document: &Document) -> Answered {
         let recovered = run.files.recovered.as_ref()?;
         Some(format!("{} was killed, and closed {recovered}", run.run))
     };
-    let bound =
-        "SHA-256 of journal and recording as when the run was closed; report.json agrees with the journal";
+    let bound = "SHA-256 of journal and recording unchanged since the run was closed; report.json agrees with the journal";
     let recovered = document.runs.iter().filter_map(recovered);
     (std::iter::once(bound.to_owned()).chain(recovered).collect::<Vec<_>>().join("; "), lacks)
 }

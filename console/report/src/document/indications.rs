@@ -80,8 +80,10 @@ pub(super) fn indications(
     let mut faults: Vec<Fault> = table.broken.clone();
     faults.extend(table.mixed_marks());
     if runs.len() > 1 && table.has("t_s").or(table.has("time")).is_some() && table.has("run").is_none() {
-        let what =
-            format!("with several runs a column `run` must name the run of each indication: {}", names(runs));
+        let what = format!(
+            "with several runs, add a column `run` that names the run of each indication: {}",
+            names(runs)
+        );
         return Err(format!("{file}: line 1: {what}"));
     }
     let mut placed = Vec::new();
@@ -125,7 +127,7 @@ impl Row<'_> {
             } else {
                 format!("{place} lies {:.3} m within {name}", -off_m)
             };
-            return Err(self.fault(column, format!("{what}: no floor that could have been scanned")));
+            return Err(self.fault(column, format!("{what}: not floor that could have been scanned")));
         }
         Ok(Indication {
             number,

@@ -1,5 +1,5 @@
 //! A report on readings that were located: where something was, with its errors, and what its tool passed if the readings say
-//! when it was on. It was no mission: no floor was to be scanned, and none was missed.
+//! when it was on. It was not a mission: no floor was to be scanned, and none was missed.
 
 mod front;
 mod gate;

@@ -179,7 +179,7 @@ pub(super) struct Page {
     pub(super) title: String,
     /// The title on the page.
     pub(super) heading: &'static str,
-    /// What must be known before anything else, if it is no simulation.
+    /// What must be known before anything else, if it is not a simulation.
     pub(super) banner: String,
     pub(super) css: &'static str,
     pub(super) head: String,

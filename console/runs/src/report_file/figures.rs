@@ -2,7 +2,7 @@
 
 use report::{Summary, first_difference};
 
-/// The first figure of a report that the journal gives otherwise, with both values; what is no event is not compared.
+/// The first figure of a report that the journal gives otherwise, with both values; what is not an event is not compared.
 pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String> {
     let computed = Summary {
         wall_time_s: reported.wall_time_s,

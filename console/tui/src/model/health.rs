@@ -10,7 +10,7 @@ pub const RESPONSE_MS: Limit = Limit { alarm: 33.0, clear: 22.0, on_delay_s: 2.0
 /// that it needs no delay to come.
 pub const FRAMES: Limit = Limit { alarm: 30.0, clear: 10.0, on_delay_s: 0.0, off_delay_s: 5.0 };
 /// Ticks that wait to be written, of 8192 that can: at half of them the simulation waits for the disk, so that this leaves
-/// time to act. A disk that pauses for a second is no alarm.
+/// time to act. A disk that pauses for a second is not an alarm.
 pub const RECORDER_LAG: Limit = Limit { alarm: 1024.0, clear: 128.0, on_delay_s: 1.0, off_delay_s: 2.0 };
 /// Space left where runs are kept, megabytes: a mission takes about 100 MB an hour, so that two hours are left. Space that
 /// is freed for a moment does not count.

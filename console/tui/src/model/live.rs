@@ -162,7 +162,7 @@ impl Live {
         combined.or_else(|| self.result.as_ref()?.summary.floor.as_ref())
     }
 
-    /// This run, after those of which it re-scans what they missed; `None` if another run is named or it is no re-scan.
+    /// This run, after those of which it re-scans what they missed; `None` if another run is named or it is not a re-scan.
     pub fn with_earlier(&self, run: &str) -> Option<Vec<String>> {
         let is_open = self.result.as_ref().is_none_or(|result| result.name.as_deref() == Some(run));
         let Some(Source::Rescan(earlier)) = self.source.as_ref().filter(|_| is_open) else { return None };

@@ -166,7 +166,7 @@ fn around(model: &Model, id: ActionId) -> Result<(), String> {
         }
         ActionId::GoResult => demand(live.result.is_some(), "no run has ended yet"),
         ActionId::Reload => {
-            let why = "plugins are looked at again while the robot is held; space: HOLD";
+            let why = "plugins are rescanned only while the robot is held; space: HOLD";
             demand(!live.run.is_running(), why)
         }
         ActionId::NextMissed | ActionId::PreviousMissed => {

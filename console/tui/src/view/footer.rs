@@ -101,7 +101,7 @@ fn hints(model: &Model) -> Vec<Hint> {
     for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
         let is_text = contexts.contains(&Context::Text);
         let mut keys = model.console.keys.of(action).iter();
-        // In a text field a character is no key.
+        // In a text field a character is not a key.
         let Some(key) = keys.find(|key| !(is_text && matches!(key, Key::Char(_)))) else { continue };
         let label = label(action, model);
         match hints.last_mut().filter(|last| last.label == label) {

@@ -11,7 +11,7 @@ pub(super) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
 }
 
-/// A number with some decimals; a dash for what is no number.
+/// A number with some decimals; a dash for what is not a number.
 pub(super) fn number(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "-".into();

@@ -206,7 +206,7 @@ fn the_actions_of_an_alarm_are_run_by_their_digits_and_what_moves_asks() {
     assert!(matches!(screen.model.ui.overlay, Overlay::Planners { .. }), "the second one, by Enter");
     screen.press([Key::Esc, Key::Enter]);
     screen.type_text("9");
-    assert_eq!(screen.model.ui.screen, SHOWN, "a digit that is no action does nothing");
+    assert_eq!(screen.model.ui.screen, SHOWN, "a digit that is not an action does nothing");
     assert!(matches!(screen.model.ui.overlay, Overlay::Remedies { .. }));
 }
 

@@ -69,7 +69,7 @@ fn a_step_key_that_is_pressed_steps_once() {
     assert_eq!(moves(&pass(&mut screen, 299)), Vec::<&Order>::new());
     assert_eq!(moves(&pass(&mut screen, 2)), [&Order::Step]);
     screen.model.live.asked = None;
-    // Another key between them: it is no repeat.
+    // Another key between them: it is not a repeat.
     assert_eq!(moves(&screen.press([Key::Char('}')])), [&Order::StepTo(StepTo::LaneEnd)]);
     screen.model.live.asked = None;
     assert_eq!(moves(&screen.press([Key::Enter])), [&Order::Step]);

@@ -100,7 +100,7 @@ fn a_draft_is_forecast_and_moves_nothing() {
     assert_eq!(screen.press([Key::Char('p'), Key::Enter]), []);
     screen.press([Key::Ctrl('u')]);
     screen.type_text("0.8");
-    assert_eq!(screen.press([Key::Enter]), [], "a draft is no order");
+    assert_eq!(screen.press([Key::Enter]), [], "a draft is not an order");
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("Forecast with parameters of rpf"));
     let draft = with("rpf", &[("rpf_gain", ParamValue::Float(0.8))]);
     let forecast = screen.type_text("w");

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_cell_belongs_to_the_first_plate_that_holds_it_a_gap_to_its_neighbour_and_the_rest_to_no_plate() {
         let plates = vec![
-            // An L: the notch at (1, 1) is no part of it.
+            // An L: the notch at (1, 1) is not part of it.
             plate("L", &[(-2.0, -2.0), (2.0, -2.0), (2.0, 0.0), (0.0, 0.0), (0.0, 2.0), (-2.0, 2.0)]),
             plate("lapped", &[(-1.0, -3.0), (1.0, -3.0), (1.0, -1.0), (-1.0, -1.0)]),
             plate("beyond a gap", &[(2.15, -2.0), (3.0, -2.0), (3.0, 0.0), (2.15, 0.0)]),

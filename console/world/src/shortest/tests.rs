@@ -243,7 +243,7 @@ fn a_solid_in_pieces_is_as_good_as_a_whole_one() {
     let pieces = floor(&ROUND, &pieces.map(|(w, s, e, n)| piece(w, s, e, n)), 0.5);
     let length_m = |floor| shortest(floor, (-3.0, -0.4), (5.0, 0.3)).unwrap().length_m;
     assert!((length_m(&whole) - length_m(&pieces)).abs() < 1e-12);
-    // The points where pieces meet along a straight side are no corners.
+    // The points where pieces meet along a straight side are not corners.
     assert_eq!((whole.corners.len(), pieces.corners.len()), (4, 4));
     assert!(pieces.spare_m(Point::new(1.0, 0.5)) < 0.0);
 }

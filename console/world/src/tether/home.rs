@@ -1,6 +1,6 @@
 //! The return path: back along the cable, with room for the hull.
 //!
-//! The taut cable itself is no path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
+//! The taut cable itself is not a path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
 //! class among obstacles grown by the hull, so it exists wherever the robot has driven. Either the robot drags that line along as
 //! it drags the cable, which costs little and never errs where the robot has room; or it is laid along the taut cable, which needs no
 //! memory of the way driven. The cable bears on what is grown, and between obstacles that stand closely the nearest place outside of
@@ -66,7 +66,7 @@ impl Cable {
     }
 
     /// A hull's taut line of length 0 as near to the anchor as the hull comes, to be dragged along with the robot; `None` if that
-    /// is no place for it.
+    /// is not a place for it.
     pub fn hull_at(anchor: Point, grown: &Arc<CableObstacles>) -> Option<Self> {
         Self::on(grown.outside(anchor), Arc::clone(grown)).ok()
     }

@@ -49,6 +49,15 @@ impl ReachableFloor {
                 (cells[other], is_known[other]) = (workspace.is_floor(at), true);
             }
         }
+        // The hull may go on from the last free centre to the rim of its room, by up to a cell.
+        for cell in raster.rim(&free) {
+            let reach_m = raster.bar_m / 2.0 + raster.cell_m;
+            let near = raster.near(raster.center(cell), reach_m, |other| !is_known[other]);
+            for (other, at) in near.collect::<Vec<_>>() {
+                let is_reached = workspace.is_floor(at) && workspace.is_in_reach(at, raster.bar_m / 2.0);
+                (cells[other], is_known[other]) = (is_reached, true);
+            }
+        }
         let n = cells.iter().filter(|reachable| **reachable).count();
         Self { raster, cells: cells.into(), n }
     }

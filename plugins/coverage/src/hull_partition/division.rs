@@ -92,7 +92,7 @@ fn one_more_gate<'a>(
     })
 }
 
-/// Every border that is no gate is a cut; pieces under the discs need none.
+/// Every border that is not a gate is a cut; pieces under the discs need none.
 fn cuts(borders: &[Border], gates: &[usize]) -> Vec<Vec<Point>> {
     let closed = borders.iter().enumerate().filter(|(k, border)| border.is_open && !gates.contains(k));
     let mut lines: Vec<(Point, Point)> = Vec::new();

@@ -28,7 +28,7 @@ pub(super) struct Candidate {
 impl Candidate {
     /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
     pub(super) fn all(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Self> {
-        // Contours of the outer wall are no lanes of a floor between inner walls, and too many columns break them.
+        // Contours of the outer wall are not lanes of a floor between inner walls, and too many columns break them.
         let is_other = workspace.is_room || workspace.is_crowded();
         let is_meant = preferences.contours && (preferences.directions == 0 || !is_other);
         let contours = is_meant.then_some(Pattern::Contours);

@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::VecDeque;
 
-/// Less is no gain, metres.
+/// Less is not a gain, metres.
 const LEAST_GAIN_M: f64 = 1e-6;
 
 /// How hard to try, and what turns cost.

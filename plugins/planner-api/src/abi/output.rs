@@ -69,7 +69,7 @@ pub struct Leg {
     pub reserved: u32,
 }
 
-/// What a plan says beside its points; the console fills it with what is no answer.
+/// What a plan says beside its points; the console fills it with what is not an answer.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanOut {
@@ -78,7 +78,7 @@ pub struct PlanOut {
     pub cost: f64,
 }
 
-/// A command; the console fills it with what is no answer.
+/// A command; the console fills it with what is not an answer.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepOut {

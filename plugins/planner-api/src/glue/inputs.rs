@@ -183,7 +183,7 @@ pub(super) unsafe fn config_values<'a>(first: *const abi::Value, n: u32) -> Resu
     raw.iter()
         .map(|value| {
             // SAFETY: promised by the caller.
-            let key = unsafe { text(value.key) }.ok_or_else(|| invalid("a key is no UTF-8"))?;
+            let key = unsafe { text(value.key) }.ok_or_else(|| invalid("a key is not UTF-8"))?;
             Ok(Value { key, number: value.number })
         })
         .collect()
@@ -232,7 +232,7 @@ pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2
         .map(|raw| match unsafe { outline(raw)? } {
             Outline::Polygon { vertices } => Ok(vertices),
             Outline::Disc { .. } | Outline::Polyline { .. } => {
-                Err(invalid("the console sent a region that is no polygon"))
+                Err(invalid("the console sent a region that is not a polygon"))
             }
         })
         .collect()

@@ -210,7 +210,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
         stood += usize::from(flight.pose == before);
     }
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
-    let late = "it was not made before the robot came to where it was to begin";
+    let late = "it came after the robot had passed the place where it begins";
     assert_eq!(*said, format!("no better plan of straight: {late}"));
     assert_eq!((stood, flight.closed.as_slice()), (0, &[WorkerId(2)][..]));
 }

@@ -259,7 +259,7 @@ fn a_plan_that_scans_nothing_of_what_is_asked_is_refused_with_the_reason() {
     flight.planner.leads_nowhere = true;
     flight.tick(&[Order::Start]);
     flight.fly(5);
-    // No matter of the tether: flying it all the same would be no remedy.
+    // No matter of the tether: flying it all the same would not be a remedy.
     let Some(HoldReason::PlannerFault { message }) = flight.held_by() else {
         panic!("{:?}", flight.mission.phase())
     };

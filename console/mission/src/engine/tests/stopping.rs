@@ -241,7 +241,7 @@ fn a_candidate_that_the_fallback_displaces_is_reported() {
     assert_eq!(count(&flight, is_reported), 1);
 }
 
-/// A planner that takes long to open is no robot that is stuck.
+/// A planner that takes long to open is not a robot that is stuck.
 #[test]
 fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     let is_open = |ask: &Ask| matches!(ask.what, What::Open { .. });
@@ -250,7 +250,7 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
     assert_eq!(flight.mission.phase(), &Phase::Running(Gait::Steady));
 }
 
-/// A plan that a new obstacle made due is no reason to let go of a planner that is well, for one that may not even open.
+/// A plan that a new obstacle made due is not a reason to let go of a planner that is well, for one that may not even open.
 #[test]
 fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     let mut flight = started(config());

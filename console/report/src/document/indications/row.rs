@@ -14,7 +14,7 @@ pub(super) const COLUMNS: [&str; 13] = [
 ];
 /// Those that hold numbers.
 pub(super) const NUMBERS: [&str; 7] = ["t_s", "left_m", "ahead_m", "x_m", "y_m", "size_mm", "depth_mm"];
-/// A number larger than this is no place or size.
+/// A number larger than this is not a place or size.
 const MOST: f64 = 1e9;
 
 /// A row, read and within what its numbers can be.
@@ -55,13 +55,13 @@ impl<'a> Row<'a> {
             let read = Clock::read(text);
             if read.is_none() {
                 let right = "write 2026-11-24T07:40:12Z, or 07:40:12 (UTC)";
-                faults.push(fault(cells, "time", format!("`{text}` is no time of day; {right}")));
+                faults.push(fault(cells, "time", format!("`{text}` is not a time; {right}")));
             }
             read
         });
         for name in ["kind", "note"] {
             if let Some(odd) = unplain(table.cell(cells, name)) {
-                faults.push(fault(cells, name, format!("must be text that can be read: {odd} cannot")));
+                faults.push(fault(cells, name, format!("must be plain text, without {odd}")));
             }
         }
         for (name, mm) in [("size_mm", size_mm), ("depth_mm", depth_mm)] {
@@ -78,16 +78,15 @@ impl<'a> Row<'a> {
         let is_bad = |name: &str| faults.iter().any(|fault| fault.column.as_deref() == Some(name));
         let place_fault = match (x_m, y_m, t_s.is_some() || clock.is_some()) {
             (Some(_), Some(_), _) if left_m.or(ahead_m).is_some() => {
-                Some(("left_m", "x_m and y_m say where it lies: leave left_m and ahead_m empty"))
+                Some(("left_m", "x_m and y_m already give the place: leave left_m and ahead_m empty"))
             }
-            (Some(_), Some(_), true) => Some((
-                "x_m",
-                "the row says both when it was found and where it lies: leave one of them empty",
-            )),
+            (Some(_), Some(_), true) => {
+                Some(("x_m", "the row gives both a time and a place: leave one of them empty"))
+            }
             (Some(_), None, _) if !is_bad("y_m") => Some(("y_m", "empty; x_m and y_m belong together")),
             (None, Some(_), _) if !is_bad("x_m") => Some(("x_m", "empty; x_m and y_m belong together")),
             (None, None, false) if !["t_s", "time", "x_m", "y_m"].into_iter().any(is_bad) => {
-                Some(("t_s", "empty; say when it was found, or with x_m and y_m where it lies"))
+                Some(("t_s", "empty; give the time, or the place in x_m and y_m"))
             }
             _ => None,
         };
@@ -129,7 +128,7 @@ impl<'a> Row<'a> {
             (Some(clock), Some(began)) => Ok(("time", clock.after_s(began))),
             (Some(_), None) => {
                 let what = format!(
-                    "when run {} began is not in the name of its folder; give t_s, the mission time",
+                    "the folder's name does not tell when run {} began; give t_s, the mission time",
                     run.name
                 );
                 Err(self.fault("time", what))
@@ -153,7 +152,7 @@ fn number(text: &str) -> Result<Option<f64>, String> {
         Some(value) if value.is_finite() && value.abs() <= MOST => Ok(Some(value)),
         Some(_) => Err(format!("`{text}`: must be a finite number")),
         None => Err(format!(
-            "`{text}` is no number; write 12.5 or 12,5, without marks for thousands and without units"
+            "`{text}` is not a number; write 12.5 or 12,5, without marks for thousands and without units"
         )),
     }
 }

@@ -59,7 +59,7 @@ impl Table {
                 return Err(at_line(1, format!("unknown column `{name}`; there are {known}")));
             }
             if names[..index].contains(name) {
-                return Err(at_line(1, format!("column `{name}` is there twice")));
+                return Err(at_line(1, format!("column `{name}` occurs twice")));
             }
         }
         let (mut rows, mut broken) = (Vec::new(), Vec::new());
@@ -77,12 +77,14 @@ impl Table {
         }
         let table = Self { names, rows, broken };
         match (table.has("t_s").or(table.has("time")), table.has("x_m").zip(table.has("y_m"))) {
-            (None, None) => Err(at_line(1, "no column says where: add t_s or time, or x_m and y_m".into())),
+            (None, None) => {
+                Err(at_line(1, "no column gives the place: add t_s or time, or x_m and y_m".into()))
+            }
             _ if table.has("x_m").is_some() != table.has("y_m").is_some() => {
                 Err(at_line(1, "x_m and y_m belong together".into()))
             }
             _ if table.has("t_s").is_some() && table.has("time").is_some() => {
-                Err(at_line(1, "t_s and time both say when: keep one".into()))
+                Err(at_line(1, "t_s and time both give the time: keep one".into()))
             }
             _ => Ok(table),
         }
@@ -112,7 +114,7 @@ impl Table {
         };
         let (comma, point) = (marked(',')?, marked('.')?);
         let what = format!(
-            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep to one"
+            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep one of them"
         );
         Some(Fault { line: comma.min(point), column: None, what })
     }

@@ -62,7 +62,7 @@ fn semicolons_tabs_and_decimal_commas_are_read_as_other_programs_write_them() {
     let mixed = refused("t_s;left_m\n1,5;0\n2.5;0\n");
     assert!(mixed.contains("decimal comma (line 2) and with a decimal point (line 3)"), "{mixed}");
     let thousands = refused("t_s;size_mm\n1;1.234,5\n");
-    assert!(thousands.contains("found.csv: line 2, size_mm: `1.234,5` is no number"), "{thousands}");
+    assert!(thousands.contains("found.csv: line 2, size_mm: `1.234,5` is not a number"), "{thousands}");
 }
 
 #[test]
@@ -82,9 +82,9 @@ fn what_lies_beyond_the_tool_outside_the_tank_or_in_a_column_is_refused_all_of_i
     let expected = [
         "found.csv: line 2, ahead_m: 40 lies beyond the tool: at most 0.3 m from its centre, half of the swath",
         "found.csv: line 3, left_m: 0.9 lies beyond the tool: at most 0.3 m from its centre, half of the swath",
-        "found.csv: line 5, t_s: 5.000, 0.250 m lies 0.300 m within column C1: no floor that could have been scanned",
+        "found.csv: line 5, t_s: 5.000, 0.250 m lies 0.300 m within column C1: not floor that could have been scanned",
         "found.csv: line 6, t_s: 99: the run lasts from 0 to 9.0 s",
-        "found.csv: line 7, t_s: `soon` is no number; write 12.5 or 12,5, without marks for thousands and without units",
+        "found.csv: line 7, t_s: `soon` is not a number; write 12.5 or 12,5, without marks for thousands and without units",
     ];
     assert_eq!(all.lines().collect::<Vec<_>>(), expected);
     let outside = refused("x_m,y_m\n35.58,17.29\n");
@@ -95,7 +95,7 @@ fn what_lies_beyond_the_tool_outside_the_tank_or_in_a_column_is_refused_all_of_i
 fn every_fault_has_its_line_and_column() {
     assert_eq!(refused("t_s,size_mm\n1,0\n"), "found.csv: line 2, size_mm: 0: must be above 0");
     assert!(refused("t_s,depth_mm\n1,9\n").contains("line 2, depth_mm: 9: must be at most 8, the thickness"));
-    assert!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n").contains("line 4, t_s: `soon` is no number"));
+    assert!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n").contains("line 4, t_s: `soon` is not a number"));
     assert_eq!(refused("t_s,left_m\n1,nan\n"), "found.csv: line 2, left_m: `nan`: must be a finite number");
     let odd = refused("t_s,kind\n1,\u{202E}pit\n");
     assert_eq!(odd, "found.csv: line 2, kind: must be text that can be read: U+202E cannot");
@@ -106,7 +106,7 @@ fn every_fault_has_its_line_and_column() {
     assert!(refused("kind\npit\n").contains("line 1: no column says where"));
     assert!(
         refused("time\n2026-13-01T00:00:00Z\n")
-            .contains("line 2, time: `2026-13-01T00:00:00Z` is no time of day")
+            .contains("line 2, time: `2026-13-01T00:00:00Z` is not a time")
     );
 }
 

@@ -50,9 +50,7 @@ fn p95_cm(document: &Document) -> Option<f64> {
 fn verdict(document: &Document, located: &Located) -> Verdict {
     let error = p95_cm(document).map_or_else(
         || "The position error is not known.".to_owned(),
-        |p95_cm| {
-            format!("In 95 % of the moments the position is known to within {p95_cm:.1} cm (95 % error).")
-        },
+        |p95_cm| format!("95 % of the time the position is known to within {p95_cm:.1} cm (95 % error)."),
     );
     let floor = match located.tool_on_s {
         Some(on_s) => format!(
@@ -73,7 +71,7 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
         value: p95_cm(document).map_or_else(|| "\u{2013}".into(), |cm| format!("{cm:.1}")),
         unit: "cm",
         of: "95 % position error",
-        about: "not exceeded in 95 % of the moments, by the covariance".into(),
+        about: "not exceeded for 95 % of the time, by the covariance".into(),
     };
     let count = Share {
         value: fixes.to_string(),

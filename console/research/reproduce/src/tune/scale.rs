@@ -20,7 +20,7 @@ impl Scale {
     /// The range of a planner's parameter.
     ///
     /// # Errors
-    /// There is none of this name, or it is no real number.
+    /// There is none of this name, or it is not a real number.
     pub(super) fn of(planner: &PlannerInfo, key: &str) -> Result<Self, String> {
         let floats = || planner.parameters.iter().filter(|p| matches!(p.kind, ParamKind::Float { .. }));
         let Some(info) = planner.parameters.iter().find(|info| info.key == key) else {
