@@ -108,7 +108,7 @@ impl Task<'_> {
     fn scatter(&self, kind: Kind) -> Scatter {
         // Without the time of emission nobody knows how far off a station is; the span of the stations is as far as it can be.
         let (low, high) = self.scenario.sim.world.boundary.bounds();
-        let distance_m = (kind == Kind::Differences).then(|| (high - low).amax() / 2.0);
+        let distance_m = (kind == Kind::Differences).then(|| (high - low).amax());
         Scatter { noise: self.noise(), timing: self.scenario.mission.locating.timing, distance_m }
     }
 
@@ -247,8 +247,9 @@ impl Task<'_> {
         };
         take(&[opened]);
         let scatter = self.scatter(survey.kind);
-        let doubtful_scale =
-            survey.verdict.scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
+        let scale = survey.verdict.scale;
+        let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
+        let likely_ratio = scale.filter(|scale| !scale.is_proven).map_or(0.0, |scale| scale.likely());
         for mut moment in moments.flatten() {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
@@ -257,7 +258,7 @@ impl Task<'_> {
             let repeats = survey.repeats.doubt_m(&moment, &scatter);
             let is_suspect = repeats.is_some() || survey.verdict.is_wrong();
             let sigma_m = repeats.unwrap_or_default();
-            track.locator.doubt(Doubt { ratio: doubtful_scale, sigma_m, is_suspect });
+            track.locator.doubt(Doubt { ratio, likely_ratio, sigma_m, is_suspect });
             take(&track.events(&moment));
         }
         let reason = format!("end of {}", self.shown);

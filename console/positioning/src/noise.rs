@@ -142,14 +142,16 @@ impl Timing {
         NORMAL_EXTREME * self.jitter_m + self.resolution_m
     }
 
-    /// Adds these errors to those of ranges that were brought down to one of each station.
-    pub fn apply(&self, rangings: &mut [Ranging], noise: &RangeNoise) {
+    /// Adds these errors to those of ranges that were brought down to one of each station; `excess_m`: by how much all of them are
+    /// longer than the distances.
+    pub fn apply(&self, rangings: &mut [Ranging], noise: &RangeNoise, excess_m: f64) {
         if self.is_none() {
             return;
         }
         for ranging in rangings {
             let single_m = noise.sigma_ratio() * ranging.range_m;
-            let timing_m = self.mean_sigma_m(single_m, f64::from(ranging.repetitions));
+            let spread_m = noise.sigma_ratio() * (ranging.range_m - excess_m).max(0.0);
+            let timing_m = self.mean_sigma_m(spread_m, f64::from(ranging.repetitions));
             // A range that is all but 0 by chance has no error of its own that could be taken to other distances.
             ranging.sigma_m = ranging.sigma_m.min(single_m).hypot(timing_m);
             ranging.timing_sigma_m = timing_m;

@@ -10,6 +10,7 @@ use crate::{
     ekf::Ekf,
     fix::{Exclusion, Fix, FixError, Integrity, Prior, Ranging, ellipse_95},
     possible::{Impossible, Possible},
+    session::shift_by_scale,
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
 };
@@ -35,6 +36,9 @@ const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 pub struct Doubt {
     /// What may be wrong with all ranges, as a share of the distance.
     pub ratio: f64,
+    /// What all ranges are likely to be wrong by, as a share of the distance and a standard deviation: fixes are wider, but not
+    /// suspect.
+    pub likely_ratio: f64,
     /// What may be wrong with all ranges, metres.
     pub sigma_m: f64,
     /// Whether fixes are suspect even if nothing is known about how wrong they are.
@@ -150,7 +154,8 @@ impl Positioner {
             Ok(rangings) => rangings,
             Err(error) => return CycleResult { fix: Err(error), ..result },
         };
-        self.config.timing.apply(&mut rangings, &self.config.noise);
+        let excess_m = self.excess_m(&rangings);
+        self.config.timing.apply(&mut rangings, &self.config.noise, excess_m);
         if self.config.calibrate_sound_speed {
             let prior = (self.filter.pose().position, self.filter.position_covariance());
             // A cycle without a position contributes nothing; the fix states why there is none.
@@ -159,6 +164,9 @@ impl Positioner {
         }
         self.widen(&mut rangings);
         result.fix = self.solve(&rangings, &result.impossible);
+        if let Ok(fix) = &mut result.fix {
+            self.allow_for_scale(fix);
+        }
         if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &result.fix) {
             take_excess_out(fix, &mut rangings, &self.config.stations);
         }
@@ -176,6 +184,21 @@ impl Positioner {
         CycleResult { rangings, ..result }
     }
 
+    /// By how much ranges are longer than the distances from where the robot is believed to be, on average; 0 where they are
+    /// distances.
+    fn excess_m(&self, rangings: &[Ranging]) -> f64 {
+        if self.config.solver != SolverKind::Differences || rangings.is_empty() {
+            return 0.0;
+        }
+        let here = self.filter.pose().position;
+        let distance_m = |id| {
+            let station = self.config.stations.iter().find(|station| station.id == id);
+            station.map_or(0.0, |station| (here - station.position).norm())
+        };
+        let too_long = rangings.iter().map(|r| r.range_m - distance_m(r.station)).sum::<f64>();
+        too_long / rangings.len() as f64
+    }
+
     /// Widens ranges by what they may all be wrong by.
     fn widen(&self, rangings: &mut [Ranging]) {
         let Doubt { ratio, sigma_m, .. } = self.doubt;
@@ -185,6 +208,17 @@ impl Positioner {
                 ranging.sigma_m = ranging.sigma_m.hypot(share * ranging.range_m).hypot(sigma_m);
                 ranging.timing_sigma_m = ranging.timing_sigma_m.hypot(sigma_m);
             }
+        }
+    }
+
+    /// Widens a fix along the line on which it moves with the scale of all ranges.
+    fn allow_for_scale(&self, fix: &mut Fix) {
+        let PositionerConfig { stations, solver, .. } = &self.config;
+        let is_emission_free = *solver == SolverKind::Differences;
+        let ratio = self.doubt.likely_ratio;
+        if let (true, Some(shift)) = (ratio > 0.0, shift_by_scale(fix, stations, is_emission_free)) {
+            let shift = shift * ratio;
+            fix.covariance += shift * shift.transpose();
         }
     }
 

@@ -4,8 +4,11 @@
 //! there (all ranges too long by a share; one station's ranges too long by a length) the score and its information are summed over the
 //! fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for single readings).
 
-use crate::{fix::Fix, quality::inverse_of};
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector3};
+use crate::{
+    fix::{Fix, Residual},
+    quality::inverse_of,
+};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 use world::{Station, StationId};
 
 /// An error of more standard deviations than this is significant: chance gives one in one honest session of 15 000.
@@ -53,6 +56,13 @@ pub struct Verdict {
     pub stations: Vec<(StationId, Wrong)>,
 }
 
+impl Wrong {
+    /// How large the error is likely to be, as a standard deviation: the square of what was found, less that of chance.
+    pub fn likely(&self) -> f64 {
+        (self.value.powi(2) - self.sigma.powi(2)).max(0.0).sqrt()
+    }
+}
+
 impl Verdict {
     /// Whether an error is proven.
     pub fn is_wrong(&self) -> bool {
@@ -78,7 +88,7 @@ impl Session {
 
     /// Takes in a fix, by the residuals that it left.
     pub fn take(&mut self, fix: &Fix) {
-        let seen: Vec<Seen> = fix.residuals.iter().filter_map(|residual| self.seen(fix, residual)).collect();
+        let seen = seen(fix, &self.stations, self.is_emission_free);
         let Some(free) = Free::of(&seen, self.is_emission_free) else { return };
         self.fixes += 1;
         // Error 0 is the scale, and after it one for each station.
@@ -102,20 +112,6 @@ impl Session {
                 self.information[(*i, *j)] -= moved.dot(other);
             }
         }
-    }
-
-    fn seen(&self, fix: &Fix, residual: &crate::fix::Residual) -> Option<Seen> {
-        let index = self.stations.iter().position(|station| station.id == residual.station)?;
-        let away = fix.position - self.stations[index].position;
-        let distance_m = away.norm().max(1e-3);
-        let excess = f64::from(u8::from(self.is_emission_free));
-        Some(Seen {
-            error: index + 1,
-            distance_m,
-            by: Vector3::new(away.x / distance_m, away.y / distance_m, excess),
-            residual_m: residual.residual_m,
-            weight: residual.sigma_m.powi(-2),
-        })
     }
 
     /// By which share all ranges are too long, and its standard deviation, if that can be seen.
@@ -172,6 +168,36 @@ impl Session {
                 .collect(),
         }
     }
+}
+
+/// How far a fix lies from where it would be if all ranges were longer by their whole length: by a share of that if they are too
+/// long by that share. `None` if the fix leaves nothing to choose.
+pub(crate) fn shift_by_scale(
+    fix: &Fix,
+    stations: &[Station],
+    is_emission_free: bool,
+) -> Option<Vector2<f64>> {
+    let seen = seen(fix, stations, is_emission_free);
+    let pull: Vector3<f64> = seen.iter().map(|s| s.by * (s.weight * s.distance_m)).sum();
+    Some((Free::of(&seen, is_emission_free)?.inverse * pull).xy())
+}
+
+/// The ranges of a fix.
+fn seen(fix: &Fix, stations: &[Station], is_emission_free: bool) -> Vec<Seen> {
+    let seen = |residual: &Residual| {
+        let index = stations.iter().position(|station| station.id == residual.station)?;
+        let away = fix.position - stations[index].position;
+        let distance_m = away.norm().max(1e-3);
+        let excess = f64::from(u8::from(is_emission_free));
+        Some(Seen {
+            error: index + 1,
+            distance_m,
+            by: Vector3::new(away.x / distance_m, away.y / distance_m, excess),
+            residual_m: residual.residual_m,
+            weight: residual.sigma_m.powi(-2),
+        })
+    };
+    fix.residuals.iter().filter_map(seen).collect()
 }
 
 /// A range of a fix.

@@ -146,7 +146,12 @@ impl Task<'_> {
             Kind::Differences => possible.differences(&moment.ranges),
         };
         let mut rangings = locating.aggregation.aggregate(&sets, &self.noise()).unwrap_or_default();
-        locating.timing.apply(&mut rangings, &self.noise());
+        // Of differences it is only known that no station is nearer than the first one: the least spread, the least that is fresh.
+        let excess_m = match kind {
+            Kind::Ranges => 0.0,
+            Kind::Differences => rangings.iter().map(|r| r.range_m).fold(f64::INFINITY, f64::min),
+        };
+        locating.timing.apply(&mut rangings, &self.noise(), excess_m);
         rangings
     }
 }
