@@ -224,7 +224,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     let whole = std::fs::read(&part).unwrap();
     std::fs::write(&part, &whole[..whole.len() - 9]).unwrap();
     let damaged = campaign(&bench, "merge", &[Path::new("out")]);
-    let says = damaged.err.contains("part-00001.parquet") && damaged.err.contains("delete it");
+    let says = damaged.err.contains("part-00001.parquet") && damaged.err.contains("fly block 1 again");
     assert!(damaged.code == Some(2) && says, "{damaged:?}");
     std::fs::remove_file(&part).unwrap();
     for pipe in [&part, &frozen] {

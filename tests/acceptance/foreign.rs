@@ -95,7 +95,11 @@ const ODD: &str = "od\u{1b}]0;x\u{7}\u{9b}2J\u{202e}\u{2066}\u{61c}\u{ad}\u{e004
 fn assert_plain(what: &str, bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let odd = text.chars().find(|c| !foreign::is_plain(*c) && !matches!(c, '\n' | '\t' | '\r'));
-    assert_eq!(odd, None, "{what}");
+    let around = || {
+        let at = odd.and_then(|odd| text.find(odd)).unwrap_or_default();
+        String::from_utf8_lossy(&text.as_bytes()[at.saturating_sub(80)..text.len().min(at + 20)]).into_owned()
+    };
+    assert_eq!(odd, None, "{what}: {:?}", around());
 }
 
 #[test]

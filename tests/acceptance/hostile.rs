@@ -347,6 +347,16 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         let arguments = format!("--plugin-dir {plugins} console {} --planner hostile", goto.display());
         let mut session = Session::open(&arguments, 120, 36);
         session.see("IDLE");
+        if *moment == "IN_THREAD" {
+            // It attacks from its first moment on: there is no plan to start with.
+            session.see("FAILED: planner hostile");
+            session.press("S");
+            session.see("tart blocked");
+            session.press_until("1", "1 Home");
+            session.press("q");
+            assert_eq!(session.back_in_the_shell(), "code=0", "{attack}");
+            continue;
+        }
         session.start();
         session.until("the attack", |session| {
             let runs = session.bench.runs();

@@ -133,7 +133,7 @@ fn readings_with_the_tool_on_state_coverage_and_are_signed_as_located() {
     let signed = sign(&format!("{facts}inspected_on = \"2026-11-24\"\n"));
     assert!(signed.code == Some(0) && signed.out.contains("signed as revision A"), "{signed:?}");
     let page = std::fs::read_to_string(bench.path().join("a.html")).unwrap();
-    assert!(page.contains("The tool was on for 0:00:40") && page.contains("LOCATED FROM READINGS"));
+    assert!(page.contains("The tool was on for 00:00:40") && page.contains("LOCATED FROM READINGS"));
     let report = bench.tankops(&["report", &run, "-o", "d.json"]);
     assert_eq!(report.code, Some(0), "{report:?}");
     let report: Value =

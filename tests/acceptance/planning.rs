@@ -17,7 +17,9 @@ fn replanning(fault: &str) -> Session {
     let mut session = faulty(fault);
     session.start();
     session.see("▶ RUN");
-    session.press(":no-go 2,2 3,3\r");
+    session.press(":");
+    session.see("Tab complete");
+    session.press("no-go 2,2 3,3\r");
     session.see("Planning (faulty)");
     session
 }
@@ -174,9 +176,9 @@ fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
     session.see("start when the plan is ready");
     session.start();
     session.see("▶ RUN");
-    session.finish();
+    // Its plan leads through a column, before which the robot is held.
+    let (session, events) = leave(session);
     let run = session.run();
-    let events = journal(&run);
     let orders: Vec<&Value> = of_kind(&events, "ordered").iter().map(|event| &event["order"]).collect();
     let named = orders.iter().filter_map(|order| order["start_plan"].as_str()).collect::<Vec<_>>();
     assert!(matches!(named[..], [plan] if plan.len() == 64), "{orders:?}");

@@ -129,7 +129,11 @@ fn is_zombie(pid: i32) -> bool {
 #[test]
 fn a_small_terminal_keeps_the_controls() {
     let mut session = Session::open(&goto(), 44, 10);
-    session.start();
+    session.see("Press S to start");
+    session.press("S");
+    // The question takes two lines here.
+    session.see("Enter: start, Esc:");
+    session.press("\r");
     session.see("RUN");
     session.press(" ");
     session.see("HOLD");

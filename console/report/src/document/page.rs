@@ -204,7 +204,8 @@ pub fn html(document: &Document) -> String {
     page.css = CSS;
     number(&mut page);
     // Nothing in the template can fail.
-    Html { page: &page }.render().unwrap_or_default()
+    let html = Html { page: &page }.render().unwrap_or_default();
+    foreign::plain_lines(&html).into_owned()
 }
 
 /// Numbers figures and tables in their order.
