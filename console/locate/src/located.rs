@@ -258,7 +258,8 @@ impl Task<'_> {
             let repeats = survey.repeats.doubt_m(&moment, &scatter);
             let is_suspect = repeats.is_some() || survey.verdict.is_wrong();
             let sigma_m = repeats.unwrap_or_default();
-            track.locator.doubt(Doubt { ratio, likely_ratio, sigma_m, is_suspect });
+            let likely_m = survey.repeats.likely_m(&moment, &scatter);
+            track.locator.doubt(Doubt { ratio, likely_ratio, sigma_m, likely_m, is_suspect });
             take(&track.events(&moment));
         }
         let reason = format!("end of {}", self.shown);

@@ -132,6 +132,24 @@ impl Repeats {
         self.degrees > 0 && self.sum > limit * degrees
     }
 
+    /// By how much a position from an emission with several readings of a station is likely to be off although nothing is proven,
+    /// metres: a standard deviation, what readings scatter more than the noise and one standard deviation of chance.
+    pub(crate) fn likely_m(&self, moment: &Moment, scatter: &Scatter) -> f64 {
+        let is_repeated = |set: &&world::RangeSet| {
+            moment.heard.iter().filter(|heard| heard.station == set.station).count() > 1
+        };
+        let mean_m =
+            |set: &world::RangeSet| set.ranges_m.iter().sum::<f64>() / set.ranges_m.len().max(1) as f64;
+        let repeated = moment.ranges.iter().filter(is_repeated);
+        let variances: Vec<f64> = repeated.map(|set| scatter.variance_m2(mean_m(set))).collect();
+        if variances.is_empty() || self.degrees == 0 {
+            return 0.0;
+        }
+        let degrees = f64::from(self.degrees);
+        let excess = (self.sum / degrees - 1.0 - (2.0 / degrees).sqrt()).max(0.0);
+        (excess * variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
+    }
+
     /// By how much the readings of an emission may be wrong because of that, metres; `None` if there is no such doubt.
     pub(crate) fn doubt_m(&self, moment: &Moment, scatter: &Scatter) -> Option<f64> {
         let once = Once::of(moment, scatter);

@@ -39,6 +39,8 @@ pub struct Doubt {
     /// What all ranges are likely to be wrong by, as a share of the distance and a standard deviation: fixes are wider, but not
     /// suspect.
     pub likely_ratio: f64,
+    /// By how much a position is likely to be off in any direction, metres, as a standard deviation: fixes are wider, but not suspect.
+    pub likely_m: f64,
     /// What may be wrong with all ranges, metres.
     pub sigma_m: f64,
     /// Whether fixes are suspect even if nothing is known about how wrong they are.
@@ -165,7 +167,7 @@ impl Positioner {
         self.widen(&mut rangings);
         result.fix = self.solve(&rangings, &result.impossible);
         if let Ok(fix) = &mut result.fix {
-            self.allow_for_scale(fix);
+            self.allow_for_likely(fix);
         }
         if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &result.fix) {
             take_excess_out(fix, &mut rangings, &self.config.stations);
@@ -211,15 +213,16 @@ impl Positioner {
         }
     }
 
-    /// Widens a fix along the line on which it moves with the scale of all ranges.
-    fn allow_for_scale(&self, fix: &mut Fix) {
+    /// Widens a fix by what is likely: along the line on which it moves with the scale of all ranges, and in every direction.
+    fn allow_for_likely(&self, fix: &mut Fix) {
         let PositionerConfig { stations, solver, .. } = &self.config;
         let is_emission_free = *solver == SolverKind::Differences;
-        let ratio = self.doubt.likely_ratio;
+        let Doubt { likely_ratio: ratio, likely_m, .. } = self.doubt;
         if let (true, Some(shift)) = (ratio > 0.0, shift_by_scale(fix, stations, is_emission_free)) {
             let shift = shift * ratio;
             fix.covariance += shift * shift.transpose();
         }
+        fix.covariance += Matrix2::identity() * likely_m.powi(2);
     }
 
     /// Trusts the ranges of the next cycles less.
