@@ -4,6 +4,7 @@ use super::*;
 use crate::accuracy::Estimate;
 use crate::fold::tests::round_tank;
 use proptest::prelude::*;
+use std::sync::LazyLock;
 use world::{CellRun, CoverageGrid, Point, Pose, Tool, coverage::runs_of};
 
 /// The account of a grid whose scanned cells are all guaranteed.
@@ -316,10 +317,11 @@ fn the_figures_converge_as_the_cells_get_smaller() {
 proptest! {
     #[test]
     fn whatever_was_scanned_the_shares_sum_to_one(runs in prop::collection::vec((0_u32..12_000, 1_u32..400), 0..30)) {
-        let run = round_tank(0.1);
+        static TANK: LazyLock<RunOpened> = LazyLock::new(|| round_tank(0.1));
+        let run = &*TANK;
         let mut grid = CoverageGrid::new(run.floor.clone());
         grid.apply(&runs.iter().map(|(first, count)| CellRun(*first, *count)).collect::<Vec<_>>());
-        let account = account(&run, &grid, &Evidence::new(&run));
+        let account = account(run, &grid, &Evidence::new(run));
         prop_assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
         let printed = |percent: Percent| {
             let Percent { scanned, missed, unreachable, margin, .. } = percent;

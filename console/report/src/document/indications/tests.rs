@@ -98,12 +98,12 @@ fn every_fault_has_its_line_and_column() {
     assert!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n").contains("line 4, t_s: `soon` is not a number"));
     assert_eq!(refused("t_s,left_m\n1,nan\n"), "found.csv: line 2, left_m: `nan`: must be a finite number");
     let odd = refused("t_s,kind\n1,\u{202E}pit\n");
-    assert_eq!(odd, "found.csv: line 2, kind: must be text that can be read: U+202E cannot");
+    assert_eq!(odd, "found.csv: line 2, kind: must be plain text, without U+202E");
     assert!(refused("when\n1\n").contains("line 1: unknown column `when`; there are run, t_s, time"));
     assert!(refused("t_s,left_m\n1,2,4\n").contains("line 2: 3 cells, and the first line has 2"));
-    assert!(refused("t_s,x,y\n1,2,3\n").contains("says both when it was found and where it lies"));
+    assert!(refused("t_s,x,y\n1,2,3\n").contains("gives both a time and a place"));
     assert!(refused("t_s,x,y\n,2,\n").contains("line 2, y_m: empty; x_m and y_m belong together"));
-    assert!(refused("kind\npit\n").contains("line 1: no column says where"));
+    assert!(refused("kind\npit\n").contains("line 1: no column gives the place"));
     assert!(
         refused("time\n2026-13-01T00:00:00Z\n")
             .contains("line 2, time: `2026-13-01T00:00:00Z` is not a time")
@@ -113,14 +113,14 @@ fn every_fault_has_its_line_and_column() {
 #[test]
 fn with_several_runs_each_indication_names_its_own() {
     let two = |text: &str| read(text, &["a", "b"]);
-    assert!(two("t_s\n1\n").unwrap_err().contains("line 1: with several runs a column `run`"));
+    assert!(two("t_s\n1\n").unwrap_err().contains("line 1: with several runs, add a column `run`"));
     assert_eq!(two("run,t_s\nc,1\n").unwrap_err(), "found.csv: line 2, run: c: must be one of a, b");
     assert_eq!(two("run,t_s\nb,1\n").unwrap()[0].run.as_deref(), Some("b"));
     assert_eq!(two("x,y\n1,1\n").unwrap()[0].run, None);
     assert!(
         two("run,time\nb,04:01:02\n")
             .unwrap_err()
-            .contains("line 2, time: when run b began is not in the name")
+            .contains("line 2, time: the folder's name does not tell when run b began")
     );
 }
 
