@@ -133,8 +133,7 @@ fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
 }
 
 fn is_over(fault: &Fault) -> bool {
-    fault.cause == Cause::Died
-        && fault.message.contains("took more than the 64 MB of memory that it may have")
+    fault.cause == Cause::Died && fault.message.contains("took more than its limit of 64 MB of memory")
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn time_does_not_go_back_and_a_run_is_opened_once() {
     let (_folder, path) = packed(lines[..=later].iter().chain(&lines[1..]));
     assert_eq!(refused(&path, "time goes back"), later + 1);
     let (_folder, path) = packed(lines[..=later].iter().chain(&lines));
-    assert_eq!(refused(&path, "opened a second time"), later + 1);
+    assert_eq!(refused(&path, "opens a second time"), later + 1);
 }
 
 #[test]
