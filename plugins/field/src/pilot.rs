@@ -10,7 +10,8 @@ use crate::{
 use geometry::{Vector, convex::Part};
 use planner_api::{Command, Ctx, Layer, Result, Sensed, Site};
 use steering::{
-    Contact, Decision, Forces, Pilot, Side, Source, Tick, detour::Detour, drawing::FAR_M, wall_contacts,
+    Contact, Decision, Forces, Pilot, Side, Source, Tick, detour::Detour, drawing::FAR_M, evade,
+    wall_contacts,
 };
 
 /// Flies a robot along the resultant of a law.
@@ -51,12 +52,12 @@ impl ForcePilot {
     /// When the console wants it to stop.
     pub fn step(&mut self, settings: &FieldSettings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let bodies = self.pilot.bodies(sensed);
-        let Reasoned { decision, forces, detour } =
-            self.decide(settings, &Tick::toward_target(sensed, &bodies));
+        let (movers, standing) = evade::sorted_if(settings.evades, sensed, self.pilot.bodies(sensed));
+        let tick = Tick::toward_target(sensed, &standing);
+        let Reasoned { decision, forces, detour } = self.decide(settings, &tick);
         forces.show(ctx, sensed.pose.position, settings.law.k_att);
         show_detour(ctx, detour.as_ref());
-        Ok(decision.into())
+        Ok(self.pilot.past(&movers, decision, &tick, ctx))
     }
 
     /// The same without a console: how the robot moves in this situation.
@@ -104,16 +105,17 @@ impl ForcePilot {
         detour: Option<&Detour>,
     ) -> Forces {
         let at = tick.pose.position;
-        let goal = at + (tick.target - at).cap_magnitude(FAR_M);
         match settings.rotation_use {
             RotationUse::Gaps => {
                 // The printed form would make the robot jerk at the range of every obstacle.
                 let law = Law { rotation: RotationForm::Smooth, ..settings.law };
+                let goal = at + (tick.target - at).cap_magnitude(FAR_M);
                 unopposed(law.forces(at, goal, contacts, |c| side_of(detour, c)))
             }
             RotationUse::Paper => {
                 self.look_out_for_traps(settings, tick, contacts);
-                let mut forces = settings.law.forces(at, goal, contacts, |c| self.response.turning.side(c));
+                let side = |c: &Contact| self.response.turning.side(c);
+                let mut forces = settings.law.forces(at, tick.target, contacts, side);
                 forces.attraction += self.response.escape;
                 forces
             }
