@@ -15,6 +15,8 @@ mod bench;
 #[cfg(unix)]
 #[path = "acceptance/campaign.rs"]
 mod campaign;
+#[path = "acceptance/carts.rs"]
+mod carts;
 #[path = "acceptance/command_line.rs"]
 mod command_line;
 #[cfg(unix)]

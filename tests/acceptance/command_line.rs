@@ -2,6 +2,26 @@
 
 use crate::bench::{Bench, scenario};
 
+const EVADES: &str = "evades what moves";
+const STANDING: &str = "takes what moves as standing";
+/// What planners say about what moves.
+const ABOUT_WHAT_MOVES: [(&str, &str); 14] = [
+    ("apf", EVADES),
+    ("tapf", EVADES),
+    ("apf-virtual-goals", EVADES),
+    ("apf-dwa", EVADES),
+    ("rpf", EVADES),
+    ("vt", EVADES),
+    ("iapf", EVADES),
+    ("navfn", EVADES),
+    ("shortest", EVADES),
+    ("spiral-lattice", STANDING),
+    ("spiral-tangent", STANDING),
+    ("boustrophedon", STANDING),
+    ("hull-partition", STANDING),
+    ("tether-safe", STANDING),
+];
+
 #[test]
 fn planners_are_listed_with_their_parameters() {
     let bench = Bench::new();
@@ -12,6 +32,9 @@ fn planners_are_listed_with_their_parameters() {
     let ids: Vec<&str> = planners.iter().map(|planner| planner["id"].as_str().unwrap()).collect();
     assert!(ids.contains(&"apf") && ids.contains(&"rpf"), "{ids:?}");
     for planner in planners {
+        if let Some((_, moving)) = ABOUT_WHAT_MOVES.iter().find(|(id, _)| planner["id"] == *id) {
+            assert!(planner["about"].as_str().unwrap().contains(moving), "{planner}");
+        }
         for parameter in planner["parameters"].as_array().unwrap() {
             assert_ne!(parameter["help"], "", "{}: {}", planner["id"], parameter["key"]);
         }

@@ -2,6 +2,9 @@
 
 use crate::bench::{Bench, journal_text, scenario, workspace};
 
+/// A flight into a trap ends as near to the end of its plan as this, metres.
+const STOP_M: f64 = 0.2;
+
 fn shipped() -> Vec<std::path::PathBuf> {
     let folders = ["scenarios", "scenarios/papers"].map(|folder| workspace().join(folder));
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap());
@@ -71,4 +74,22 @@ fn the_demo_shows_what_it_is_there_for() {
     assert!(report["obstacles_found"].as_u64() >= Some(1), "{report}");
     assert!((100.0..400.0).contains(&report["mission_time_s"].as_f64().unwrap()), "{report}");
     assert!(report["clearance_min_m"].as_f64().unwrap() > 0.0, "{report}");
+}
+
+/// Xu et al. 2022, Table 2: the classical field stops in the trap.
+#[test]
+fn the_classical_field_ends_its_flight_where_its_plan_ends() {
+    let bench = Bench::new();
+    let file = scenario("papers/xu-table2.toml");
+    let gains = ["--set", "k_rep=10", "--set", "rho_0_m=2", "--set", "wall_gain=0", "--planner", "apf"];
+    let planned = bench.command().args(["plan", "--json"]).arg(&file).args(gains).output().unwrap();
+    let plan: serde_json::Value = serde_json::from_slice(&planned.stdout).unwrap();
+    let stop = plan["path"].as_array().unwrap().last().unwrap();
+    assert_eq!(bench.fly(&file, &gains).json()["outcome"], "stuck");
+    let run = &bench.runs()[0];
+    let truth = bench.tankops(&["events", run.to_str().unwrap(), "--kind", "truth"]).out;
+    let last: serde_json::Value = serde_json::from_str(truth.lines().last().unwrap()).unwrap();
+    let off =
+        |axis: usize| (last["pose"]["position"][axis].as_f64().unwrap() - stop[axis].as_f64().unwrap()).abs();
+    assert!(off(0).hypot(off(1)) < STOP_M, "{stop} {last}");
 }

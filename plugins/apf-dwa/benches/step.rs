@@ -47,7 +47,7 @@ fn step(criterion: &mut Criterion) {
     let map = KnownMap::new(&AmphibiousLayout::site(&corners, &obstacles, &zones));
     let pose = Pose::new(-1.0, -2.4, 0.8);
     let twist = Twist { v_m_per_s: 0.2, w_rad_per_s: 0.0 };
-    let near = NearThings::of(&map, pose.position, 20.0, |_| Vector::zeros());
+    let near = NearThings::of(&map, pose.position, 20.0);
     let (window, pace) = (settings().window, Amphibious::YANG_2021.underwater);
     criterion.bench_function("dwa_window", |bencher| {
         bencher.iter(|| window.choose(&pose, twist, pace, Vector::new(1.0, 1.0), &near));
@@ -57,7 +57,7 @@ fn step(criterion: &mut Criterion) {
         let state = State { pose, twist };
         let mut around = Surroundings::new(map.clone());
         around.look(pose.position, 3.0, &[], |_| false);
-        bencher.iter(|| hybrid.decide(&state, layout.goal, &[], &around, |_| Vector::zeros()));
+        bencher.iter(|| hybrid.decide(&state, layout.goal, &[], &around));
     });
 }
 

@@ -1,7 +1,7 @@
 //! The planner: offline on the known map, and tick by tick.
 
 use crate::{
-    hybrid::{Hybrid, HybridSettings, State, distances_m, route, run},
+    hybrid::{Decision, Hybrid, HybridSettings, State, distances_m, route, run},
     parameters,
     surroundings::{Changed, Surroundings},
     window::{Twist, Window, arc, moved},
@@ -10,16 +10,23 @@ use field::{
     ends,
     outcome::{Shortfall, Walk},
 };
+use geometry::motion::{TURN_FIRST_RAD, drive_for};
 use planner_api::{
-    Caps, Command, Config, Ctx, Drive, Layer, LogLevel, Motion, ParamSpec, Plan, PlanRequest, Planner,
-    Result, Sensed, Site, Status, Vector2, ZoneKind,
+    Caps, Command, Config, Ctx, Drive, Layer, Limits, LogLevel, Motion, ParamSpec, Plan, PlanRequest,
+    Planner, Result, Sensed, Site, Status, ZoneKind,
 };
-use steering::{Body, KnownMap, stall::Stall};
-use world::{Pose, Zone};
+use steering::{
+    Body, KnownMap,
+    evade::{self, Around, Mover},
+    stall::Stall,
+};
+use world::{Pace, Pose, Zone};
 
 /// Steps allowed for a plan, as a multiple of the straight way at the slower pace, and some more.
 const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
+/// Of an arc to be flown the velocity over this time is compared with others when something moves, seconds.
+const WISH_S: f64 = 1.0;
 
 /// What is said to whom it leaves without a way.
 const INSTEAD: &str = "choose shortest or navfn, which find a way wherever there is one";
@@ -29,7 +36,10 @@ pub(crate) struct ApfDwa {
     settings: HybridSettings,
     hybrid: Hybrid,
     around: Surroundings,
-    motion: Motion,
+    no_go: Vec<Body>,
+    limits: Limits,
+    clearance_m: f64,
+    evades: bool,
     stuck_s: f64,
     stall: Stall,
     used: u32,
@@ -39,7 +49,7 @@ impl Planner for ApfDwa {
     const ID: &'static str = "apf-dwa";
     const NAME: &'static str = "Field and dynamic window";
     const ABOUT: &'static str = "A potential field with virtual goals steers a dynamic window with limits by land and \
-                                 water, after Yang et al. 2021.";
+                                 water, after Yang et al. 2021; evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 
@@ -49,7 +59,10 @@ impl Planner for ApfDwa {
             settings,
             hybrid: Hybrid::new(settings, zones(site), site.limits.radius_m),
             around: Surroundings::of_site(site),
-            motion: site.limits.motion,
+            no_go: Body::no_go(site),
+            limits: site.limits,
+            clearance_m: site.clearance_m,
+            evades: config.flag("evade"),
             stuck_s: config.float("stuck_s"),
             stall: Stall::default(),
             used: 0,
@@ -88,19 +101,13 @@ impl Planner for ApfDwa {
         ctx.check()?;
         let pose = Pose { position: sensed.pose.position, heading_rad: sensed.pose.heading_rad };
         let twist = Twist { v_m_per_s: sensed.v_m_per_s.max(0.0), w_rad_per_s: sensed.w_rad_per_s };
-        let velocity_of = |id| {
-            let sighted = sensed.obstacles.iter().find(|o| o.id == id);
-            sighted.map_or_else(Vector2::zeros, |o| o.velocity_m_per_s)
-        };
-        let bodies = Body::sensed(sensed, &[]);
-        let reach_m = self.hybrid.reach_m(fastest_m_per_s(sensed));
-        let changed =
-            self.around.look(pose.position, reach_m, &bodies, |id| velocity_of(id) != Vector2::zeros());
+        let (movers, standing) = evade::sorted_if(self.evades, sensed, Body::sensed(sensed, &[]));
+        let moves = |id| sensed.obstacles.iter().any(|o| o.id == id && evade::moves(o));
+        let changed = self.around.look(pose.position, self.hybrid.reach_m(), &standing, moves);
         self.hybrid.take_change(changed);
         self.hybrid.set_tick(sensed.dt_s);
         let state = State { pose, twist };
-        let decision =
-            self.hybrid.decide(&state, sensed.target, sensed.path_ahead, &self.around, velocity_of);
+        let decision = self.hybrid.decide(&state, sensed.target, sensed.path_ahead, &self.around);
         decision.forces.show(ctx, pose.position, self.settings.field.square.k_att);
         for (name, distance_m) in DISTANCES.iter().zip(distances_m(self.around.map(), pose.position)) {
             ctx.scalar(name, distance_m, "m");
@@ -110,8 +117,15 @@ impl Planner for ApfDwa {
         ctx.scalar("speed_limit", decision.pace.v_max_m_per_s, "m/s");
         self.report(&pose, decision.twist, ctx);
         let idle_s = self.stall.update(sensed.t_s, pose.position, sensed.target);
-        let status = if idle_s > self.stuck_s { Status::Stuck } else { Status::Moving };
-        Ok(Command { drive: self.drive(&pose, decision.twist), status })
+        let is_stuck = idle_s > self.stuck_s && movers.is_empty();
+        let status = if is_stuck { Status::Stuck } else { Status::Moving };
+        movers.iter().for_each(|mover| mover.show(ctx));
+        let drive = if movers.is_empty() {
+            self.drive(&pose, decision.twist)
+        } else {
+            self.past(&movers, standing, &decision, sensed)
+        };
+        Ok(Command { drive, status })
     }
 }
 
@@ -160,7 +174,7 @@ impl ApfDwa {
 
     /// A twist; for a robot that moves in any direction at once the velocity along its arc.
     fn drive(&self, pose: &Pose, twist: Twist) -> Drive {
-        if self.motion == Motion::Unicycle {
+        if self.limits.motion == Motion::Unicycle {
             return Drive::Twist { v_m_per_s: twist.v_m_per_s, w_rad_per_s: twist.w_rad_per_s };
         }
         let dt_s = self.settings.window.dt_s;
@@ -168,10 +182,33 @@ impl ApfDwa {
         // A point robot looks where it goes: it cannot turn on the spot.
         Drive::Velocity(turned.direction() * twist.v_m_per_s.max(1e-3))
     }
-}
 
-fn fastest_m_per_s(sensed: &Sensed<'_>) -> f64 {
-    sensed.obstacles.iter().map(|o| o.velocity_m_per_s.norm()).fold(0.0, f64::max)
+    /// The same, or the velocity nearest to the arc's that stays clear of what moves.
+    fn past(
+        &self,
+        movers: &[Mover],
+        mut standing: Vec<Body>,
+        decision: &Decision,
+        sensed: &Sensed<'_>,
+    ) -> Drive {
+        let pose = Pose { position: sensed.pose.position, heading_rad: sensed.pose.heading_rad };
+        let Pace { v_max_m_per_s, w_max_rad_per_s } = decision.pace;
+        let limits = Limits { v_max_m_per_s, w_max_rad_per_s, ..self.limits };
+        standing.extend(self.no_go.iter().cloned());
+        let around = Around {
+            movers,
+            standing: &standing,
+            wall: &self.around.map().wall,
+            limits: &limits,
+            clearance_m: self.clearance_m,
+        };
+        let wish = (moved(&pose, decision.twist, WISH_S).position - pose.position) / WISH_S;
+        let velocity = evade::evade(wish, &sensed.pose, &around);
+        if velocity == wish {
+            return self.drive(&pose, decision.twist);
+        }
+        drive_for(Drive::Velocity(velocity), pose.heading_rad, &limits, TURN_FIRST_RAD)
+    }
 }
 
 fn zones(site: &Site<'_>) -> Vec<Zone> {
@@ -188,5 +225,7 @@ fn zones(site: &Site<'_>) -> Vec<Zone> {
     site.zones.iter().map(zone).collect()
 }
 
+#[cfg(test)]
+mod clearance;
 #[cfg(test)]
 mod tests;

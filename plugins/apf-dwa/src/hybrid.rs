@@ -7,7 +7,7 @@ use crate::{
     window::{Twist, Window, moved},
 };
 use steering::{Forces, KnownMap};
-use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Vector, Zone, polyline};
+use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Zone, polyline};
 
 /// Near the goal, or a place to pass, the robot does not go faster than it can turn there.
 const TURNING_M: f64 = 1.2;
@@ -95,32 +95,22 @@ impl Hybrid {
         self.guide.take_change(changed);
     }
 
-    /// How far away things can matter to the next step, metres; `fastest_m_per_s` is the speed of the fastest of them.
-    pub fn reach_m(&self, fastest_m_per_s: f64) -> f64 {
+    /// How far away things can matter to the next step, metres.
+    pub fn reach_m(&self) -> f64 {
         let Amphibious { land, underwater, .. } = self.settings.robot;
-        let reach_m = |pace| self.settings.window.reach_m(pace, fastest_m_per_s);
+        let reach_m = |pace| self.settings.window.reach_m(pace);
         reach_m(land).max(reach_m(underwater)).max(self.settings.field.push.rho_m)
     }
 
-    /// Decides how to move in the next tick; `ahead` is the plan for the next metres, if there is one, and `velocity_of`
-    /// gives the velocity of an obstacle, metres per second.
-    pub fn decide(
-        &mut self,
-        state: &State,
-        goal: Point,
-        ahead: &[Point],
-        around: &Surroundings,
-        velocity_of: impl Fn(u32) -> Vector,
-    ) -> Decision {
+    /// Decides how to move in the next tick; `ahead` is the plan for the next metres, if there is one.
+    pub fn decide(&mut self, state: &State, goal: Point, ahead: &[Point], around: &Surroundings) -> Decision {
         let pace = self.adapt(state.pose.position);
         let window = &self.settings.window;
         let (at, step_m) = (state.pose.position, pace.v_max_m_per_s * window.dt_s);
         let aim = if around.is_everything() { goal } else { ahead.last().copied().unwrap_or(goal) };
         let forces = self.guide.forces(&self.settings.field, around, &Trip { at, goal, aim }, step_m);
         let reference = forces.resultant().try_normalize(1e-9).unwrap_or(goal - at);
-        let map = around.map();
-        let fastest = map.solids.iter().map(|s| velocity_of(s.id).norm()).fold(0.0, f64::max);
-        let near = NearThings::of(map, at, window.reach_m(pace, fastest), velocity_of);
+        let near = NearThings::of(around.map(), at, window.reach_m(pace));
         let drivable = Pace { v_max_m_per_s: drivable(state, goal, pace), ..pace };
         let twist = window.choose(&state.pose, state.twist, drivable, reference, &near);
         Decision { twist, forces, pace }
@@ -191,7 +181,7 @@ pub fn run<E>(
     let mut around = Surroundings::new(map.clone());
     let mut state = State { pose: start, twist: Twist::default() };
     let mut run = Run { path: vec![start.position], arrived: false, overspeed_m_per_s: 0.0 };
-    let reach_m = hybrid.reach_m(0.0);
+    let reach_m = hybrid.reach_m();
     let dt_s = hybrid.settings.window.dt_s;
     for _ in 0..steps_max {
         let at = state.pose.position;
@@ -201,7 +191,7 @@ pub fn run<E>(
         }
         check()?;
         hybrid.take_change(around.look(at, reach_m, &[], |_| false));
-        let decision = hybrid.decide(&state, goal, &[], &around, |_| Vector::zeros());
+        let decision = hybrid.decide(&state, goal, &[], &around);
         state.twist = decision.twist;
         state.pose = moved(&state.pose, state.twist, dt_s);
         run.path.push(state.pose.position);

@@ -113,6 +113,7 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
     STEP_S,
     STEPS,
     p::STUCK,
+    p::EVADE,
 ];
 
 /// The window keeps this much more than is demanded: arcs are looked at in places, metres.

@@ -94,24 +94,21 @@ impl Surroundings {
     }
 
     /// Looks about from a place, at least as far as the window reaches. What moves, or is on the drawing, is forgotten
-    /// when it is no longer sensed.
+    /// when it is no longer among what is sensed, and what seemed to stand as soon as it is known to move.
     pub fn look(&mut self, at: Point, least_m: f64, sensed: &[Body], moves: impl Fn(u32) -> bool) -> Changed {
         let ways = sensed.iter().any(|body| self.is_news(body));
         let is_cut = self.update_cut(at, least_m);
-        if !is_cut && sensed.is_empty() && self.sensed.iter().all(|known| !self.passes(known)) {
+        let passes =
+            |known: &Sensed| known.moves || moves(known.body.id) || self.charted_ids.contains(&known.body.id);
+        if !is_cut && sensed.is_empty() && !self.sensed.iter().any(passes) {
             return Changed { parts: false, ways };
         }
-        let kept = |known: &Sensed| !self.passes(known) && sensed.iter().all(|body| body.id != known.body.id);
+        let kept = |known: &Sensed| !passes(known) && sensed.iter().all(|body| body.id != known.body.id);
         let mut all: Vec<Sensed> = self.sensed.iter().filter(|known| kept(known)).cloned().collect();
         all.extend(sensed.iter().map(|body| Sensed { moves: moves(body.id), body: body.clone() }));
         self.sensed = all;
         self.fill_here();
         Changed { parts: true, ways }
-    }
-
-    /// Whether it counts only while it is sensed.
-    fn passes(&self, known: &Sensed) -> bool {
-        known.moves || self.charted_ids.contains(&known.body.id)
     }
 
     /// The floor hereabouts for a robot that keeps a distance, metres.

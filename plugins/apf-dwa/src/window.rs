@@ -62,15 +62,15 @@ struct Candidate {
 
 impl Window {
     /// How far away things can matter, metres.
-    pub fn reach_m(&self, pace: Pace, fastest_thing_m_per_s: f64) -> f64 {
-        (pace.v_max_m_per_s + fastest_thing_m_per_s) * HORIZON_S + CAP_M + self.keep_m
+    pub fn reach_m(&self, pace: Pace) -> f64 {
+        pace.v_max_m_per_s * HORIZON_S + CAP_M + self.keep_m
     }
 
     /// The best twist for the next tick: within the limits and what the drives can do, and such that the robot can stop
     /// before it touches anything. Where no arc is allowed it brakes and turns slowly toward the reference.
     pub fn choose(&self, pose: &Pose, now: Twist, pace: Pace, reference: Vector, near: &NearThings) -> Twist {
         let (speeds, turns) = (self.speeds(now, pace), self.turns(now, pace));
-        let here_m = self.spare_m(near, &[pose.position], 0.0);
+        let here_m = self.spare_m(near, &[pose.position]);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(N_SPEEDS * N_TURNS);
         for w_rad_per_s in spread::<N_TURNS>(turns) {
             let places = arc_per_speed(pose, w_rad_per_s);
@@ -78,7 +78,7 @@ impl Window {
             let off_rad = Vector::new(end_rad.cos(), end_rad.sin()).angle(&reference);
             for v_m_per_s in spread::<N_SPEEDS>(speeds) {
                 let points = places.map(|offset| pose.position + offset * v_m_per_s);
-                let distance_m = self.spare_m(near, &points, STEP_S);
+                let distance_m = self.spare_m(near, &points);
                 let twist = Twist { v_m_per_s, w_rad_per_s };
                 if self.is_allowed(v_m_per_s, distance_m, here_m) {
                     let heading = std::f64::consts::PI - off_rad;
@@ -90,8 +90,8 @@ impl Window {
     }
 
     /// Room beyond what is kept, on the way over some places, metres; no more than counts.
-    fn spare_m(&self, near: &NearThings, points: &[Point], step_s: f64) -> f64 {
-        near.distance_m(points, step_s, CAP_M + self.keep_m) - self.keep_m
+    fn spare_m(&self, near: &NearThings, points: &[Point]) -> f64 {
+        near.distance_m(points, CAP_M + self.keep_m) - self.keep_m
     }
 
     /// Whether it can stop in time. A robot that is too near already may move where it does not get nearer.
@@ -188,11 +188,7 @@ mod tests {
     const WATER: Pace = Pace { v_max_m_per_s: 0.23, w_max_rad_per_s: 0.31 };
 
     fn discs(discs: &[(f64, f64, f64)]) -> NearThings {
-        let disc = |&(x, y, radius_m): &(f64, f64, f64)| Disc {
-            center: Point::new(x, y),
-            radius_m,
-            velocity: Vector::zeros(),
-        };
+        let disc = |&(x, y, radius_m): &(f64, f64, f64)| Disc { center: Point::new(x, y), radius_m };
         NearThings { discs: discs.iter().map(disc).collect(), ..NearThings::default() }
     }
 
@@ -218,7 +214,7 @@ mod tests {
     fn it_never_comes_nearer_than_it_keeps() {
         let near = discs(&[(1.5, 0.05, 0.4), (2.5, 0.9, 0.4)]);
         for (pose, _) in run(&near, Vector::x(), 400) {
-            assert!(near.distance_m(&[pose.position], 0.0, 9.0) >= 0.3 - 1e-6);
+            assert!(near.distance_m(&[pose.position], 9.0) >= 0.3 - 1e-6);
         }
     }
 
@@ -233,7 +229,7 @@ mod tests {
             for _ in 0..300 {
                 twist = window.choose(&pose, twist, WATER, Vector::x(), &near);
                 pose = moved(&pose, twist, 0.1);
-                let least_m = near.distance_m(&[pose.position], 0.0, 99.0);
+                let least_m = near.distance_m(&[pose.position], 99.0);
                 prop_assert!(least_m >= radius_m + clearance_m - 1e-3, "{least_m}");
             }
         }

@@ -15,7 +15,7 @@ impl Planner for Apf {
     const ID: &'static str = "apf";
     const NAME: &'static str = "Artificial potential field";
     const ABOUT: &'static str = "Attraction and repulsion after Khatib 1986, toward a goal or along a preset path; \
-                                 stays in local minima.";
+                                 stays in local minima, evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[
         p::K_ATT,
@@ -34,6 +34,7 @@ impl Planner for Apf {
         p::SLOW,
         p::MIN_SHARE,
         p::STUCK,
+        p::EVADE,
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {

@@ -66,7 +66,7 @@ impl Planner for ApfVirtualGoals {
     const ID: &'static str = "apf-virtual-goals";
     const NAME: &'static str = "Field with virtual goals";
     const ABOUT: &'static str = "Leaves minima toward virtual goals on a square round the goal and keeps its pull near \
-                                 the goal, after Yang et al. 2021.";
+                                 the goal, after Yang et al. 2021; evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = &[
         K_ATT,
@@ -85,11 +85,12 @@ impl Planner for ApfVirtualGoals {
         p::SLOW,
         p::MIN_SHARE,
         p::STUCK,
+        p::EVADE,
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
         let law = law(config);
-        let flight = GoalFlight::new(site, p::flight(config), law.repulsion.rho_m);
+        let flight = GoalFlight::new(site, config, law.repulsion.rho_m);
         Ok(Self { law, flight, goals: VirtualGoals::default() })
     }
 

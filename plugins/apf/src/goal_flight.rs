@@ -1,8 +1,8 @@
 //! What the goal planners of this crate share: checks of a plan, the map as it is known, the flight along a force.
 
-use field::{ends, goal_walk::Trip, outcome::Walk};
-use planner_api::{Command, Ctx, Plan, PlanRequest, Result, Sensed, Site, Status};
-use steering::{Flight, Forces, KnownMap, Nearby, Pilot, Tick, drawing};
+use field::{ends, goal_walk::Trip, outcome::Walk, params};
+use planner_api::{Command, Config, Ctx, Plan, PlanRequest, Result, Sensed, Site, Status};
+use steering::{Decision, Flight, Forces, KnownMap, Nearby, Pilot, Tick, drawing, evade};
 use world::{Point, Vector};
 
 /// Steps allowed for a plan, as a multiple of those of the straight way, and some more for short ways.
@@ -16,6 +16,7 @@ pub(crate) struct GoalFlight {
     /// What of it is near the robot.
     pub nearby: Nearby,
     flight: Flight,
+    evades: bool,
     pilot: Pilot,
 }
 
@@ -27,10 +28,12 @@ pub(crate) struct Checked {
 }
 
 impl GoalFlight {
-    /// A flight over a site, for a law that reaches so far.
-    pub(crate) fn new(site: &Site<'_>, flight: Flight, reach_m: f64) -> Self {
-        let map = KnownMap::new(site);
-        Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, pilot: Pilot::pursuing(site) }
+    /// A flight over a site as configured, for a law that reaches so far.
+    pub(crate) fn new(site: &Site<'_>, config: &Config<'_>, reach_m: f64) -> Self {
+        let evades = config.flag("evade");
+        let map = map_of(site, evades);
+        let (flight, pilot) = (params::flight(config), Pilot::pursuing(site));
+        Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, evades, pilot }
     }
 
     /// Takes the map of a request and checks its ends; `id` names the planner.
@@ -39,7 +42,7 @@ impl GoalFlight {
     /// Those of [`ends::single_goal`].
     pub(crate) fn check(&mut self, request: &PlanRequest<'_>, id: &str, step_m: f64) -> Result<Checked> {
         let (goal, tolerance_m) = ends::single_goal(request, id)?;
-        self.map = KnownMap::new(request.site);
+        self.map = map_of(request.site, self.evades);
         self.nearby.forget();
         let start = request.start.position;
         let steps_max = (DETOUR * (goal - start).norm() / step_m) as usize + SPARE_STEPS;
@@ -59,20 +62,29 @@ impl GoalFlight {
         force: impl FnOnce(Point, &KnownMap, &mut Nearby) -> Forces,
     ) -> Result<Command> {
         ctx.check()?;
-        let bodies = self.pilot.bodies(sensed);
-        if self.map.learn(&bodies) {
+        let (movers, standing) = evade::sorted_if(self.evades, sensed, self.pilot.bodies(sensed));
+        // At first sight what moves seems to stand.
+        let forgot = self.map.forget(&movers.iter().map(|mover| mover.body.id).collect::<Vec<_>>());
+        if self.map.learn(&standing) || forgot {
             self.nearby.forget();
         }
         let at = sensed.pose.position;
         let forces = force(at, &self.map, &mut self.nearby);
         forces.show(ctx, at, k_att);
-        drawing::show_nearest(ctx, at, self.map.hull_m, &bodies);
-        let Some(along) = forces.resultant().try_normalize(1e-12) else {
-            return Ok(Command::still(Status::Stuck));
-        };
-        let way: Vector = along * (sensed.target - at).norm().clamp(0.05, 1.0);
-        Ok(self.pilot.pursue(&self.flight, &Tick::toward_target(sensed, &bodies), at + way).into())
+        drawing::show_nearest(ctx, at, self.map.hull_m, &standing);
+        let tick = Tick::toward_target(sensed, &standing);
+        let decision = forces.resultant().try_normalize(1e-12).map(|along| {
+            let way = along * (sensed.target - at).norm().clamp(0.05, 1.0);
+            self.pilot.pursue(&self.flight, &tick, at + way)
+        });
+        let stuck = Decision { velocity: Vector::zeros(), status: Status::Stuck };
+        Ok(self.pilot.past(&movers, decision.unwrap_or(stuck), &tick, ctx))
     }
+}
+
+/// The map of a site; what is evaded is not on it.
+fn map_of(site: &Site<'_>, evades: bool) -> KnownMap {
+    if evades { KnownMap::standing(site) } else { KnownMap::new(site) }
 }
 
 impl Checked {

@@ -51,7 +51,8 @@ const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 5
 impl Planner for Tapf {
     const ID: &'static str = "tapf";
     const NAME: &'static str = "Tangent potential field";
-    const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022; stays in traps that are half closed.";
+    const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022; stays in traps that are \
+                                 half closed, evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = &[
         p::K_ATT,
@@ -67,6 +68,7 @@ impl Planner for Tapf {
         p::SLOW,
         p::MIN_SHARE,
         p::STUCK,
+        p::EVADE,
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _: &Ctx<'_>) -> Result<Self> {
@@ -86,7 +88,7 @@ impl Planner for Tapf {
             law,
             step_m: config.float("goto_step_m"),
             window_m: config.float("window_m"),
-            flight: GoalFlight::new(site, p::flight(config), law.rho_m),
+            flight: GoalFlight::new(site, config, law.rho_m),
             sides: Sides::default(),
         })
     }

@@ -41,7 +41,7 @@ impl Planner for Boustrophedon {
     const ID: &'static str = "boustrophedon";
     const NAME: &'static str = "Boustrophedon";
     const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor in order, round columns by the shorter \
-                                 side; it knows nothing of a tether.";
+                                 side; it knows nothing of a tether and takes what moves as standing.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
         &[DIRECTION, SHELL_LAP, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

@@ -49,7 +49,7 @@ impl Planner for HullPartition {
     const ID: &'static str = "hull-partition";
     const NAME: &'static str = "Hull partition";
     const ABOUT: &'static str = "Pan 2025: convex cells between the hull rings of the columns, visited in an order by a \
-                                 genetic algorithm, with backtracking.";
+                                 genetic algorithm, with backtracking; takes what moves as standing.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
         &[BACKTRACKING, ORDER, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

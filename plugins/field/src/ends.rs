@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use geometry::Point;
-use planner_api::{Code, Obstacle, PlanRequest, PlannerError, Result, Site, Task};
+use planner_api::{Code, PlanRequest, PlannerError, Result, Site, Task};
 use steering::evade;
 
 /// Outside the floor by no more than this is rounding, metres.
@@ -18,9 +18,7 @@ pub fn single_goal(request: &PlanRequest<'_>, id: &str) -> Result<(Point, f64)> 
         return Err(PlannerError::new(Code::Unsupported, message));
     };
     // What passes over the goal now will be gone when the robot arrives.
-    let standing: Vec<Obstacle<'_>> =
-        request.site.obstacles.iter().filter(|o| !evade::moves(o)).copied().collect();
-    let scene = Scene::new(&Site { obstacles: &standing, ..*request.site });
+    let scene = Scene::new(&Site { obstacles: &evade::standing(request.site), ..*request.site });
     check_start(&scene, request.start.position, request.site.limits.radius_m)?;
     check_goal(&scene, goal, tolerance_m)?;
     Ok((goal, tolerance_m))

@@ -142,6 +142,7 @@ mod tests {
             max_lag_m: 1.0,
         },
         rotation_use: RotationUse::Paper,
+        evades: false,
         flight: Flight { guard_m: 0.1, guard_sigmas: 1.0, slow_m: 0.5, min_share: 0.3, stuck_s: 30.0 },
     };
 

@@ -10,7 +10,8 @@ use crate::{
     settings::{FieldSettings, Planning},
 };
 use geometry::{Point, polyline};
-use planner_api::{Code, Ctx, Plan, PlanRequest, PlannerError, Result, Task};
+use planner_api::{Code, Ctx, Plan, PlanRequest, PlannerError, Result, Site, Task};
+use steering::evade;
 
 /// More preset points than this after splitting long gaps are refused.
 const MOST_POINTS: usize = 200_000;
@@ -22,7 +23,9 @@ const MOST_POINTS: usize = 200_000;
 /// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`],
 /// [`Code::Invalid`] for preset points that coincide or are missing, and whatever ends the call early.
 pub fn plan(settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
-    let scene = Scene::new(request.site);
+    let standing = evade::standing(request.site);
+    let obstacles = if settings.evades { standing.as_slice() } else { request.site.obstacles };
+    let scene = Scene::new(&Site { obstacles, ..*request.site });
     check_start(&scene, request.start.position, request.site.limits.radius_m)?;
     match request.task {
         Task::Goto { goal, tolerance_m } => check_goal(&scene, goal, tolerance_m)?,

@@ -8,7 +8,7 @@ use crate::{
 };
 use planner_api::{Config, ParamSpec, choice, flag, float};
 
-pub use steering::params::{GUARD, GUARD_SIGMAS, MIN_SHARE, SLOW, STUCK, flight};
+pub use steering::params::{EVADE, GUARD, GUARD_SIGMAS, MIN_SHARE, SLOW, STUCK, flight};
 
 const FIELD: &str = "Field";
 const PLAN: &str = "Plan";
@@ -109,8 +109,8 @@ pub const MAX_LAG: ParamSpec = float("max_lag_m", "Lag allowed", "m", 0.05, 20.0
 
 /// Whether the flight follows the paper.
 pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["paper", "gaps"], 1)
-    .help("Paper: as in the plan. Gaps: about what blocks the way, on the side of the smaller detour, with narrow gaps \
-           closed.")
+    .help("Paper: as in the plan, and nothing is evaded. Gaps: about what blocks the way, on the side of the smaller \
+           detour, with narrow gaps closed.")
     .group(FLIGHT)
     .live();
 
@@ -137,6 +137,7 @@ pub fn settings(config: &Config<'_>) -> FieldSettings {
         walking: walking(config),
         rotation_use: RotationUse::Paper,
         flight: flight(config),
+        evades: config.flag("evade"),
     }
 }
 
@@ -159,6 +160,7 @@ pub fn rotating_settings(config: &Config<'_>) -> FieldSettings {
     };
     settings.rotation_use =
         if config.choice("steering") == "gaps" { RotationUse::Gaps } else { RotationUse::Paper };
+    settings.evades &= settings.rotation_use == RotationUse::Gaps;
     settings
 }
 

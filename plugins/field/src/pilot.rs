@@ -10,14 +10,22 @@ use crate::{
 use geometry::{Vector, convex::Part};
 use planner_api::{Command, Ctx, Layer, Result, Sensed, Site};
 use steering::{
-    Contact, Decision, Forces, Pilot, Side, Source, Tick, detour::Detour, drawing::FAR_M, wall_contacts,
+    Contact, Decision, Forces, Pilot, Side, Source, Tick, detour::Detour, drawing::FAR_M, evade,
+    wall_contacts,
 };
+
+/// Where the force turns back, the robot goes on at this share of its speed; at this multiple where it does not; never slower
+/// than this share of what it is given.
+const TURNED_BACK: f64 = 0.5;
+const GOES_ON: f64 = 1.2;
+const LEAST_SHARE: f64 = 0.02;
 
 /// Flies a robot along the resultant of a law.
 #[derive(Debug, Clone)]
 pub struct ForcePilot {
     pilot: Pilot,
     response: TrapResponse,
+    settling: Settling,
     /// When the next move of the plan would begin, seconds: the paper looks out for traps between moves.
     due_s: f64,
 }
@@ -37,7 +45,8 @@ impl ForcePilot {
     /// A pilot for a site.
     pub fn new(settings: &FieldSettings, site: &Site<'_>) -> Self {
         let response = TrapResponse::new(settings);
-        Self { pilot: Pilot::pursuing(site), response, due_s: f64::NEG_INFINITY }
+        let settling = Settling { share: 1.0, last: Vector::zeros() };
+        Self { pilot: Pilot::pursuing(site), response, settling, due_s: f64::NEG_INFINITY }
     }
 
     /// Takes over changed settings on the way; what it remembers stays.
@@ -51,12 +60,12 @@ impl ForcePilot {
     /// When the console wants it to stop.
     pub fn step(&mut self, settings: &FieldSettings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
-        let bodies = self.pilot.bodies(sensed);
-        let Reasoned { decision, forces, detour } =
-            self.decide(settings, &Tick::toward_target(sensed, &bodies));
+        let (movers, standing) = evade::sorted_if(settings.evades, sensed, self.pilot.bodies(sensed));
+        let tick = Tick::toward_target(sensed, &standing);
+        let Reasoned { decision, forces, detour } = self.decide(settings, &tick);
         forces.show(ctx, sensed.pose.position, settings.law.k_att);
         show_detour(ctx, detour.as_ref());
-        Ok(decision.into())
+        Ok(self.pilot.past(&movers, decision, &tick, ctx))
     }
 
     /// The same without a console: how the robot moves in this situation.
@@ -69,7 +78,11 @@ impl ForcePilot {
         };
         let contacts = self.contacts(&settings.law, tick, detour.as_ref());
         let forces = self.forces(settings, tick, &contacts, detour.as_ref());
-        let velocity = self.pilot.velocity(flight, tick, forces.resultant(), &contacts);
+        let along = self.pilot.velocity(flight, tick, forces.resultant(), &contacts);
+        let velocity = match settings.rotation_use {
+            RotationUse::Paper => along * self.settling.share(forces.resultant()),
+            RotationUse::Gaps => along,
+        };
         Reasoned { decision: Decision { velocity, status }, forces, detour }
     }
 
@@ -104,16 +117,17 @@ impl ForcePilot {
         detour: Option<&Detour>,
     ) -> Forces {
         let at = tick.pose.position;
-        let goal = at + (tick.target - at).cap_magnitude(FAR_M);
         match settings.rotation_use {
             RotationUse::Gaps => {
                 // The printed form would make the robot jerk at the range of every obstacle.
                 let law = Law { rotation: RotationForm::Smooth, ..settings.law };
+                let goal = at + (tick.target - at).cap_magnitude(FAR_M);
                 unopposed(law.forces(at, goal, contacts, |c| side_of(detour, c)))
             }
             RotationUse::Paper => {
                 self.look_out_for_traps(settings, tick, contacts);
-                let mut forces = settings.law.forces(at, goal, contacts, |c| self.response.turning.side(c));
+                let side = |c: &Contact| self.response.turning.side(c);
+                let mut forces = settings.law.forces(at, tick.target, contacts, side);
                 forces.attraction += self.response.escape;
                 forces
             }
@@ -128,6 +142,25 @@ impl ForcePilot {
         self.due_s = tick.t_s + step_m / self.pilot.limits().v_max_m_per_s.max(1e-3);
         let now = Situation { at: tick.pose.position, goal: tick.target, contacts, law, step_m };
         self.response.update(&now, step_m);
+    }
+}
+
+/// A tick is much longer than a move of a plan, so in a minimum a robot at full speed would go to and fro about the place where the
+/// plan stops, and along a wall far from it. Its speed is adapted by the sign of the force, as steps are by Riedmiller and Braun
+/// 1993.
+#[derive(Debug, Clone, Copy)]
+struct Settling {
+    share: f64,
+    last: Vector,
+}
+
+impl Settling {
+    /// The share of the speed that is left, for the force that acts now.
+    fn share(&mut self, force: Vector) -> f64 {
+        let turns_back = force.dot(&self.last) < 0.0;
+        let share = self.share * if turns_back { TURNED_BACK } else { GOES_ON };
+        *self = Self { share: share.clamp(LEAST_SHARE, 1.0), last: force };
+        self.share
     }
 }
 
@@ -153,5 +186,24 @@ fn show_detour(ctx: &Ctx<'_>, detour: Option<&Detour>) {
         for &(a, b) in &detour.closed {
             ctx.polyline(Layer::Virtual, &[a, b]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_the_force_turns_back_the_robot_settles_and_goes_on_at_full_speed_where_it_does_not() {
+        let mut settling = Settling { share: 1.0, last: Vector::zeros() };
+        assert!((0..9).all(|k| settling.share(Vector::new(1.0, 0.1 * f64::from(k))) > 0.999));
+        let (mut at_m, spring) = (0.31, |at_m: f64| Vector::new(-30.0 * at_m, 0.0));
+        for _ in 0..200 {
+            let force = spring(at_m);
+            at_m += 0.1 * settling.share(force) * force.x.signum();
+        }
+        assert!(at_m.abs() < 0.005, "{at_m}");
+        let recovered = (0..40).fold(0.0, |_, _| settling.share(Vector::y()));
+        assert!(recovered > 0.999);
     }
 }

@@ -61,4 +61,6 @@ pub struct FieldSettings {
     pub rotation_use: RotationUse,
     /// How the robot is flown.
     pub flight: Flight,
+    /// Whether what moves is evaded in flight and left out of plans; else it stands where it is seen.
+    pub evades: bool,
 }

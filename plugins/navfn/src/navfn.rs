@@ -33,7 +33,7 @@ impl Planner for Navfn {
     const ID: &'static str = "navfn";
     const NAME: &'static str = "Navigation function";
     const ABOUT: &'static str = "Eikonal distance to the goal on a grid, repaired when the map changes, and string pulling; \
-                                 proves it when there is no way.";
+                                 proves it when there is no way; evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[CELLS, p::CLEARANCE, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

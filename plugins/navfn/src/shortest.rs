@@ -18,7 +18,7 @@ impl Planner for Shortest {
     const ID: &'static str = "shortest";
     const NAME: &'static str = "Exact shortest path";
     const ABOUT: &'static str = "The exact shortest path among discs and polygons, by a bitangent visibility graph and \
-                                 A*; says so if none exists.";
+                                 A*; says so if none exists, and evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

@@ -21,6 +21,7 @@ const PARAMS: &[ParamSpec] = &[
     p::SLOW,
     p::MIN_SHARE,
     p::STUCK,
+    p::EVADE,
 ];
 
 /// A potential field that leaves traps by a virtual target beside the obstacle; Yang 2018, reconstructed.
@@ -38,8 +39,8 @@ pub enum Push {}
 impl Kind for VirtualTarget {
     const ID: &'static str = "vt";
     const NAME: &'static str = "Virtual target";
-    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target; reconstructed from the \
-                                 description of Yang 2018 in Wang et al. 2023.";
+    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target and evades what moves; \
+                                 reconstructed from the description of Yang 2018 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
     fn settings(config: &Config<'_>) -> FieldSettings {
@@ -50,8 +51,8 @@ impl Kind for VirtualTarget {
 impl Kind for Push {
     const ID: &'static str = "iapf";
     const NAME: &'static str = "Improved potential field";
-    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side; reconstructed from the \
-                                 description of Zhao 2022 in Wang et al. 2023.";
+    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side and evades what moves; \
+                                 reconstructed from the description of Zhao 2022 in Wang et al. 2023.";
     const PARAMS: &'static [ParamSpec] = PARAMS;
 
     fn settings(config: &Config<'_>) -> FieldSettings {
@@ -64,7 +65,7 @@ mod tests {
     use super::*;
     use crate::bench::plan;
     use planner_api::{Motion, Planner};
-    use steering::trial::{Robot, fly};
+    use steering::trial::{Robot, cross, fly};
     use trials::{Distribution, Layout, Sampling, score};
 
     /// Wang et al. 2023, first distribution.
@@ -87,6 +88,15 @@ mod tests {
             (precision::<Iapf>(&[]), precision::<Iapf>(&[("repulsion", 1.0)])),
         ] {
             assert!((0.4..0.9).contains(&classic) && improved > 0.85, "{classic} {improved}");
+        }
+    }
+
+    #[test]
+    fn what_crosses_their_way_is_met_where_it_will_be() {
+        for from_y_m in [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0] {
+            for crossing in [cross::<Vt>(&[], from_y_m), cross::<Iapf>(&[], from_y_m)] {
+                assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
+            }
         }
     }
 

@@ -18,7 +18,7 @@ impl Kind for Rotating {
     const ID: &'static str = "rpf";
     const NAME: &'static str = "Rotating potential field";
     const ABOUT: &'static str = "Potential field with a rotating force about obstacles, along a preset spiral, after \
-                                 Wang et al. 2023.";
+                                 Wang et al. 2023; evades what moves unless steered as in the paper.";
     const PARAMS: &'static [ParamSpec] = &[
         p::READING,
         p::SENSE,
@@ -42,6 +42,7 @@ impl Kind for Rotating {
         p::SLOW,
         p::MIN_SHARE,
         p::STUCK,
+        p::EVADE,
     ];
 
     fn settings(config: &Config<'_>) -> FieldSettings {

@@ -41,7 +41,7 @@ impl Planner for SpiralLattice {
     const ID: &'static str = "spiral-lattice";
     const NAME: &'static str = "Offset lattice";
     const ABOUT: &'static str = "Global plan along a preset path: least squared offset with hard clearance, wall and \
-                                 turn limit, by dynamic programming.";
+                                 turn limit, by dynamic programming; takes what moves as standing.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, TURN, MAX_OFFSET, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

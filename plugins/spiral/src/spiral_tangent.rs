@@ -40,7 +40,7 @@ impl Planner for SpiralTangent {
     const ID: &'static str = "spiral-tangent";
     const NAME: &'static str = "Tangent follower";
     const ABOUT: &'static str = "Reactive: follows a preset path or a plan by what is sensed, past obstacles along their \
-                                 tangents, with hard clearance and wall.";
+                                 tangents, with hard clearance and wall; takes what moves as standing.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

@@ -10,7 +10,7 @@ use geometry::{
     Boundary, Drive, Limits, Point, Vector,
     motion::{TURN_FIRST_RAD, drive_for, heading_error_rad},
 };
-use planner_api::{Obstacle, PoseEstimate, Sensed};
+use planner_api::{Ctx, Layer, Obstacle, PoseEstimate, Sensed, Site};
 
 /// Slower than this an obstacle stands still, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
@@ -35,6 +35,11 @@ pub fn moves(obstacle: &Obstacle<'_>) -> bool {
     obstacle.velocity_m_per_s.norm() > STILL_M_PER_S
 }
 
+/// The obstacles of a site that stand: when the robot arrives, what moves will be elsewhere.
+pub fn standing<'a>(site: &Site<'a>) -> Vec<Obstacle<'a>> {
+    site.obstacles.iter().filter(|o| !moves(o)).copied().collect()
+}
+
 /// Something that moves.
 #[derive(Debug, Clone)]
 pub struct Mover {
@@ -42,6 +47,18 @@ pub struct Mover {
     pub body: Body,
     /// Its velocity, metres per second.
     pub velocity: Vector,
+}
+
+impl Mover {
+    /// Draws where it goes.
+    pub fn show(&self, ctx: &Ctx<'_>) {
+        ctx.arrow(Layer::Virtual, self.body.center(), self.velocity);
+    }
+}
+
+/// What is to be evaded, and what counts as standing: without evasion everything.
+pub fn sorted_if(evades: bool, sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
+    if evades { sorted(sensed, bodies) } else { (Vec::new(), bodies) }
 }
 
 /// What is sensed, sorted: what moves, and what stands; `bodies` are those of what is sensed, and others that stand.

@@ -1,6 +1,6 @@
 //! The parameters that planners share, and what they stand for.
 
-use planner_api::{Config, ParamSpec, float};
+use planner_api::{Config, ParamSpec, flag, float};
 
 const PLAN: &str = "Plan";
 const FLIGHT: &str = "Flight";
@@ -28,6 +28,14 @@ pub const MIN_SHARE: ParamSpec = float("min_share", "Least speed", "", 0.05, 1.0
 /// When the robot is stuck.
 pub const STUCK: ParamSpec = float("stuck_s", "Stuck after", "s", 1.0, 600.0, 30.0)
     .help("Time without getting on after which the robot reports that it is stuck.")
+    .group(FLIGHT)
+    .live();
+/// Whether what moves is evaded.
+pub const EVADE: ParamSpec = flag("evade", "Evades what moves", true)
+    .help(
+        "What moves is met where it will be in the next five seconds. Without it, it counts as standing where it is seen, as \
+         in the papers.",
+    )
     .group(FLIGHT)
     .live();
 /// Clearance asked of a plan.

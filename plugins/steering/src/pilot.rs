@@ -6,13 +6,14 @@ use crate::{
     contact::{Contact, wall_contacts},
     detour::{Detour, Detours},
     drawing::Forces,
+    evade::{self, Around, Mover},
     guard,
     params::Flight,
     stall::{Remedy, Stall},
     tick::Tick,
 };
 use geometry::{Boundary, Braking, Limits, Motion, Point, Vector, motion::heading_error_rad};
-use planner_api::{Command, Drive, PoseEstimate, Sensed, Site, Status};
+use planner_api::{Command, Ctx, Drive, PoseEstimate, Sensed, Site, Status};
 
 /// The guard keeps this much more than the mission demands, for it lets the hull touch its limit, metres.
 const SPARE_M: f64 = 0.02;
@@ -117,6 +118,23 @@ impl Pilot {
         // Wedged where the plan, which keeps the mission's clearance, passes.
         let is_wedged = safe.norm() < WEDGED_SHARE * velocity.norm();
         if is_wedged { self.guarded(velocity, tick, keep_m - spare_m) } else { safe }
+    }
+
+    /// The command for a decision, or for the velocity nearest to it that stays clear of what moves; the bodies of the
+    /// tick are what stands.
+    pub fn past(&self, movers: &[Mover], decision: Decision, tick: &Tick<'_>, ctx: &Ctx<'_>) -> Command {
+        if movers.is_empty() {
+            return decision.into();
+        }
+        movers.iter().for_each(|mover| mover.show(ctx));
+        let around = Around {
+            movers,
+            standing: tick.bodies,
+            wall: &self.wall,
+            limits: &self.limits,
+            clearance_m: self.clearance_m,
+        };
+        Command::velocity(evade::evade(decision.velocity, &tick.pose, &around))
     }
 
     /// What the robot can do.

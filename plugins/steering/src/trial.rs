@@ -1,11 +1,13 @@
 //! Closed-loop trials of a planner on random layouts, for tests: a robot with a noisy pose, columns on its way, and
 //! the mission's rule for the target.
 
+pub mod crossing;
 pub mod flight;
 
 use geometry::Point;
 use planner_api::{Obstacle, PoseEstimate, Sensed};
 
+pub use crossing::{Crossing, cross};
 pub use flight::{Outcome, Robot, fly};
 
 /// A pose known exactly, looking east.

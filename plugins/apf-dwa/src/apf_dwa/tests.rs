@@ -2,9 +2,9 @@
 
 use super::*;
 use geometry::Point;
-use planner_api::{Code, Obstacle, Outline, Reason, Task, testing::Bench};
+use planner_api::{Code, Obstacle, Outline, Reason, Task, Vector2, testing::Bench};
 use proptest::prelude::*;
-use steering::trial::exact_pose;
+use steering::trial::{cross, exact_pose};
 use trials::amphibious::{AmphibiousLayout, Group};
 
 fn with_planner<T>(
@@ -104,6 +104,16 @@ fn in_flight_it_arrives_though_it_must_discover_everything_and_is_swapped_on_the
         for new_at in [None, Some(200), Some(450)] {
             let (arrived, clearance_m) = fly(seed, new_at);
             assert!(arrived && clearance_m > 0.05, "{seed} {new_at:?} {clearance_m}");
+        }
+    }
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be() {
+    for from_y_m in [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0] {
+        for guide in [0.0, 1.0] {
+            let crossing = cross::<ApfDwa>(&[("guide", guide)], from_y_m);
+            assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {guide} {crossing:?}");
         }
     }
 }

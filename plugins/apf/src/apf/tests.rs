@@ -4,7 +4,7 @@ use super::*;
 use planner_api::testing::Bench;
 use planner_api::{Code, Drive, LogLevel, Motion, Obstacle, Outline, Reason, StopReason, Task};
 use proptest::prelude::*;
-use steering::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
+use steering::trial::{Outcome, Robot, cross, exact_pose, fly, sensed_at_rest};
 use trials::Layout;
 use world::{Point, polyline};
 
@@ -138,6 +138,28 @@ fn a_robot_outside_its_guard_distance_backs_out() {
     let target = [Point::new(3.0, 0.0)];
     let command = planner.step(&sensed_at_rest(Point::origin(), &target, &obstacles), &bench.ctx()).unwrap();
     assert!(matches!(command.drive, Drive::Velocity(v) if v.x < 0.0));
+}
+
+#[test]
+fn the_pull_in_flight_is_that_of_the_plan() {
+    let bench = Bench::new();
+    let layout = tank(&[]);
+    let site = layout.site(&[], Motion::Point);
+    let mut planner: Apf = bench.configure(&[("k_att", 2.0)], &site).unwrap();
+    let target = [Point::new(3.0, 4.0)];
+    planner.step(&sensed_at_rest(Point::origin(), &target, &[]), &bench.ctx()).unwrap();
+    assert!((bench.scalar("F_att").unwrap() - 10.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
+    let from_m = [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0];
+    for from_y_m in from_m {
+        let crossing = cross::<Apf>(&[], from_y_m);
+        assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
+    }
+    let taken_as_standing = from_m.map(|from_y_m| cross::<Apf>(&[("evade", 0.0)], from_y_m));
+    assert!(taken_as_standing.iter().any(|crossing| crossing.clearance_m < 0.0), "{taken_as_standing:?}");
 }
 
 proptest! {

@@ -2,7 +2,7 @@
 
 use super::*;
 use planner_api::{Motion, Reason, Task, testing::Bench};
-use steering::trial::{Robot, exact_pose, fly};
+use steering::trial::{Robot, cross, exact_pose, fly};
 use trials::spiral::Layout;
 
 /// Point obstacles on a wide floor, as the paper draws them.
@@ -72,4 +72,16 @@ fn in_flight_it_passes_columns_without_touching_them() {
         let outcome = fly::<ApfVirtualGoals>(&[("rho_0_m", 0.8)], &layout, robot, 5).unwrap();
         assert!(outcome.completed && outcome.clearance_m > 0.0, "{outcome:?}");
     }
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
+    let from_m = [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0];
+    for from_y_m in from_m {
+        let crossing = cross::<ApfVirtualGoals>(&[], from_y_m);
+        assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
+    }
+    let taken_as_standing = from_m.map(|from_y_m| cross::<ApfVirtualGoals>(&[("evade", 0.0)], from_y_m));
+    // What is evaded is given 0.15 m.
+    assert!(taken_as_standing.iter().any(|crossing| crossing.clearance_m < 0.05), "{taken_as_standing:?}");
 }

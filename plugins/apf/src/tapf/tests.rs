@@ -2,7 +2,7 @@
 
 use super::*;
 use planner_api::{Code, Motion, Reason, Task, testing::Bench};
-use steering::trial::{Robot, exact_pose, fly};
+use steering::trial::{Robot, cross, exact_pose, fly};
 use trials::spiral::Layout;
 use world::Point;
 
@@ -87,4 +87,15 @@ fn a_goal_near_the_wall_is_reached() {
     let layout = Layout { radius_m: 5.0, hull_m: 0.25, ..floor(&[(0.5, 0.2, 0.3)], (-4.2, 0.0)) };
     let reaches = |values: &[(&str, f64)]| plan(&layout, values, Point::new(4.2, 0.0)).0.unwrap().complete;
     assert!(reaches(&[]) && !reaches(&[("wall_gain", 0.1)]));
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be_unless_it_counts_as_standing() {
+    let from_m = [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0];
+    for from_y_m in from_m {
+        let crossing = cross::<Tapf>(&[], from_y_m);
+        assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
+    }
+    let taken_as_standing = from_m.map(|from_y_m| cross::<Tapf>(&[("evade", 0.0)], from_y_m));
+    assert!(taken_as_standing.iter().any(|crossing| crossing.clearance_m < 0.0), "{taken_as_standing:?}");
 }

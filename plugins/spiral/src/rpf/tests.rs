@@ -6,7 +6,7 @@ use planner_api::{
     Drawing, Drive, Layer, Motion, Obstacle, Outline, Plan, PlanRequest, Planner, Reason, Task,
 };
 use proptest::prelude::*;
-use steering::trial::{Outcome, Robot, exact_pose, fly, sensed_at_rest};
+use steering::trial::{Outcome, Robot, cross, exact_pose, fly, sensed_at_rest};
 use trials::{Layout, Score, score};
 use world::{Point, polyline, spiral::Spiral};
 
@@ -208,6 +208,18 @@ fn gains_can_change_under_way() {
     let values = [planner_api::Value { key: "k_att", number: 7.0 }];
     planner.reconfigure(&Config::new(Rpf::PARAMS, &values), &bench.ctx()).unwrap();
     assert!((planner.settings.law.k_att - 7.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_crosses_its_way_is_met_where_it_will_be_and_steered_by_the_paper_it_counts_as_standing() {
+    let from_m = [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0];
+    for from_y_m in from_m {
+        let crossing = cross::<Rpf>(&[], from_y_m);
+        assert!(crossing.arrived && crossing.clearance_m > 0.0, "{from_y_m} {crossing:?}");
+        let literal = [("steering", 0.0)];
+        let off = [("steering", 0.0), ("evade", 0.0)];
+        assert_eq!(cross::<Rpf>(&literal, from_y_m), cross::<Rpf>(&off, from_y_m));
+    }
 }
 
 proptest! {

@@ -149,7 +149,7 @@ fn sensed_at<'a>(
     }
 }
 
-fn moved(pose: &Pose, drive: Drive, limits: &Limits) -> Pose {
+pub(super) fn moved(pose: &Pose, drive: Drive, limits: &Limits) -> Pose {
     match drive_for(drive, pose.heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => {
             let heading_rad =
