@@ -29,6 +29,14 @@ pub(super) const TABLE1_IMPROVED: [[Printed; 3]; 3] = [
     [printed(86.04, 78.16, 28.63), printed(92.11, 87.20, 13.65), printed(95.06, 91.76, 11.39)],
 ];
 
+/// What Table 1 prints for a method by its id, `rpf/K1+ir`, and a column.
+pub(super) fn table1(id: &str, column: usize) -> Option<Printed> {
+    let rows = if id.ends_with("+ir") { TABLE1_IMPROVED } else { TABLE1_CLASSIC };
+    let planner = id.trim_end_matches("+ir").split('/').next()?;
+    let row = ["vt", "iapf", "rpf"].iter().position(|known| *known == planner)?;
+    Some(rows[row][column])
+}
+
 /// Sec. 3.2: time of a plan of RPF and of IAPF with improved repulsion in MATLAB, milliseconds.
 pub(super) const PLAN_TIME_MS: [(&str, f64); 2] = [("rpf/gated+ir", 400.0), ("iapf+ir", 380.0)];
 
