@@ -47,9 +47,10 @@ pub fn list() -> String {
 /// # Errors
 /// The study has nothing to draw, or the folder cannot be created.
 pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
-    if positioning::STUDIES.iter().any(|other| other.name == study.name) {
-        let drawn = STUDIES.into_iter().filter(|about| !std::ptr::eq(*about, positioning::STUDIES)).flatten();
-        let drawn: Vec<String> = drawn.map(|drawn| format!("`{}`", drawn.name)).collect();
+    let draws = |study: &Study| positioning::STUDIES.iter().all(|other| other.name != study.name);
+    if !draws(study) {
+        let drawn: Vec<String> =
+            studies().filter(|study| draws(study)).map(|drawn| format!("`{}`", drawn.name)).collect();
         let why = format!("--svg draws plans and curves; only {} have them", drawn.join(", "));
         return Err(StudyError::Refused(format!("{}: {why}", study.name)));
     }

@@ -1,13 +1,13 @@
 //! A flight over a known floor, over the plugin boundary, with the figures that the planner reports in every tick.
 
 use crate::study::{Method, Planners, Result, StudyError};
-use geometry::PathFollower;
+use geometry::{PathFollower, unit_vector};
 use mission::Cause;
 use nalgebra::Matrix3;
 use planner_api::{Drive, PlanRequest, PoseEstimate, Reason, Sensed, Site, Status, Task};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use world::{Point, Pose, unit_vector};
+use world::{Point, Pose};
 
 /// The planner is given so much of its plan ahead of the robot, metres.
 const SHOWN_M: f64 = 4.0;
