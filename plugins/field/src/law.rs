@@ -122,9 +122,11 @@ impl Law {
 impl Beside {
     /// The forces without those that are replaced, if what replaces them acts.
     pub(crate) fn left_of(self, forces: Forces, acts: bool) -> Forces {
+        if !acts {
+            return forces;
+        }
         match self {
             Self::All => forces,
-            _ if !acts => forces,
             Self::Pull => Forces { repulsion: Vector::zeros(), ..forces },
             Self::Nothing => Forces { rotation: forces.rotation, ..Forces::default() },
         }

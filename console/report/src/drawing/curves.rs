@@ -46,7 +46,8 @@ pub fn svg(curves: &Curves<'_>) -> String {
     let high = if high > 0.0 { high } else { 1.0 };
     let x = |along: f64| left + (right - left) * along / end;
     let y = |value: f64| bottom - (bottom - top) * (value / high).clamp(0.0, 1.0);
-    let mut body = axes(end, high);
+    let mut body = format!(r##"<rect width="{}" height="{}" fill="#fff"/>"##, SIZE_MM.0, SIZE_MM.1);
+    body += &axes(end, high);
     for (index, curve) in curves.curves.iter().enumerate() {
         let stroke = COLOURS[index % COLOURS.len()];
         let points: Vec<String> =
@@ -61,7 +62,7 @@ pub fn svg(curves: &Curves<'_>) -> String {
         let row = 86.0 + 3.6 * (index / 6) as f64;
         let _ = write!(
             body,
-            r#"<rect x="{place}" y="{:.1}" width="5" height="2" fill="{stroke}"/><text x="{:.1}" y="{row:.1}" font-size="2.4" fill="{}">{}</text>"#,
+            r#"<rect x="{place}" y="{:.1}" width="5" height="2" fill="{stroke}"/><text x="{:.1}" y="{row:.1}" font-size="2" fill="{}">{}</text>"#,
             row - 2.0,
             place + 6.0,
             colour::SOFT,

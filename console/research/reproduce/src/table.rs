@@ -191,7 +191,7 @@ mod tests {
         );
         assert!(lines[5].ends_with(",false,false,\"a, \"\"b\"\"\""), "{}", lines[5]);
         assert!(
-            lines[4].contains(",not reproduced,the sign of the claim does not come out: printed +9.5 %"),
+            lines[4].contains(",not reproduced,\"the sign of the claim does not come out: printed +9.5 %"),
             "{}",
             lines[4]
         );

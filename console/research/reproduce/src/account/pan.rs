@@ -1,6 +1,10 @@
 //! Pan 2025.
 
-use super::{Item, Paper, State::*, item};
+use super::{
+    Item, Paper,
+    State::{Absent, Ours, Read},
+    item,
+};
 
 pub(super) const PAPER: Paper = Paper { name: "Pan 2025", items: ITEMS };
 

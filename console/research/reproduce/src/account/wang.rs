@@ -1,6 +1,10 @@
 //! Wang et al. 2023.
 
-use super::{Item, Paper, State::*, item};
+use super::{
+    Item, Paper,
+    State::{Absent, Fitted, Missed, Ours, Read, Reproduced},
+    item,
+};
 
 pub(super) const PAPER: Paper = Paper { name: "Wang et al. 2023", items: ITEMS };
 
@@ -93,7 +97,7 @@ const ITEMS: &[Item] = &[
         "36 cells of IAPF and RPF, without and with IR",
         Fitted,
         "tankops reproduce wang-table1 --case d",
-        "readings K0, K1, J0 and J1, selected on this table, come within 7 to 9 % of the cells on average: compatible with it, no evidence",
+        "readings K0, K1, J0 and J1, selected on this table, are 8 to 10 % off its cells on average: compatible with it, no evidence",
     ),
     item(
         "Search",

@@ -1,6 +1,10 @@
 //! Xu et al. 2022.
 
-use super::{Item, Paper, State::*, item};
+use super::{
+    Item, Paper,
+    State::{Absent, Fitted, Missed, Ours, Read, Reproduced},
+    item,
+};
 
 pub(super) const PAPER: Paper = Paper { name: "Xu et al. 2022", items: ITEMS };
 

@@ -1,6 +1,10 @@
 //! Yang et al. 2021.
 
-use super::{Item, Paper, State::*, item};
+use super::{
+    Item, Paper,
+    State::{Absent, Fitted, Missed, Ours, Read, Reproduced},
+    item,
+};
 
 pub(super) const PAPER: Paper = Paper { name: "Yang et al. 2021", items: ITEMS };
 

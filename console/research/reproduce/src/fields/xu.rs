@@ -191,10 +191,8 @@ fn left_open(case: &str) -> Option<&'static str> {
 
 /// Table 1.
 pub(super) fn table1(job: &Job<'_>) -> Result<Vec<Row>> {
-    let cases = [
-        (behind_an_obstacle("table1", 1.0), TABLE1),
-        (behind_an_obstacle(WIDE, WIDE_M), TABLE1_WIDE),
-    ];
+    let cases =
+        [(behind_an_obstacle("table1", 1.0), TABLE1), (behind_an_obstacle(WIDE, WIDE_M), TABLE1_WIDE)];
     rows(job, &cases, &PRINTED_TABLE1)
 }
 

@@ -108,6 +108,13 @@ mod tests {
     }
 
     #[test]
+    fn a_method_has_the_line_of_its_planner_whatever_its_reading() {
+        assert_eq!(table1("rpf/K1+ir", 1), Some(TABLE1_IMPROVED[2][1]));
+        assert_eq!(table1("vt", 0), Some(TABLE1_CLASSIC[0][0]));
+        assert_eq!(table1("apf", 0), None);
+    }
+
+    #[test]
     fn every_printed_recall_is_a_count_of_2477_points() {
         let cells = TABLE1_CLASSIC.iter().chain(&TABLE1_IMPROVED).flatten().copied();
         for cell in cells.chain(TABLE2.iter().flatten().flatten().copied()) {

@@ -150,7 +150,9 @@ pub(super) fn search(job: &Job<'_>) -> Result<Vec<Row>> {
         let pair = fit::Pair { note: reading.words(), ..readings::pair(&reading.name) };
         let planned = Planned { runs: &runs, plans: &plans };
         all.extend(fit::rows(job, planned, &pair, "square"));
-        all.extend(fit::claims(job, planned, &pair, "square"));
+        // What comes out of a reading that was drawn is not about the paper's claim.
+        let reductions = fit::claims(job, planned, &pair, "square").into_iter();
+        all.extend(reductions.map(|row| Row { is_claim: false, ..row }));
     }
     Ok(all)
 }
