@@ -70,7 +70,7 @@ fn every_coverage_planner_has_every_figure_of_its_tether_and_is_drawn() {
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 6);
     let none = bench.tankops(&["reproduce", "pan-maps", "--case", "nope"]);
     assert!(none.code == Some(2) && none.err.contains("known are E1-circle-14"), "{none:?}");
-    let nothing = bench.tankops(&["reproduce", "wang-table1", "--svg", "plans"]);
+    let nothing = bench.tankops(&["reproduce", "wang-table3", "--svg", "plans"]);
     assert!(nothing.code == Some(2) && nothing.err.contains("coverage-suite"), "{nothing:?}");
 }
 

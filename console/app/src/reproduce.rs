@@ -1,7 +1,11 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
 use crate::{cli::ReproduceArgs, output::say_json, study_folder::StudyFolder};
-use ::reproduce::{Gallery, Options, Parts, Runner, csv, gallery, studies, study, table};
+use ::reproduce::{
+    Gallery, Options, Parts, Runner,
+    account::{PAPERS, Paper},
+    csv, gallery, studies, study, table,
+};
 use flight::failure::{COMPLETE, bad_input};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_host::PluginDirs;
@@ -63,9 +67,23 @@ fn list(json: bool) -> anyhow::Result<()> {
     if !json {
         return Ok(say(&::reproduce::list())?);
     }
-    let all: Vec<serde_json::Value> = studies()
-        .map(|s| serde_json::json!({ "name": s.name, "about": s.about, "layouts": s.layouts }))
-        .collect();
+    let studies = studies().map(
+        |s| serde_json::json!({ "kind": "study", "name": s.name, "about": s.about, "layouts": s.layouts }),
+    );
+    let of_paper = |paper: &'static Paper| {
+        paper.items.iter().map(|item| {
+            serde_json::json!({
+                "kind": "item",
+                "paper": paper.name,
+                "place": item.place,
+                "what": item.what,
+                "state": item.state.words(),
+                "command": (!item.command.is_empty()).then_some(item.command),
+                "why": item.why,
+            })
+        })
+    };
+    let all: Vec<serde_json::Value> = studies.chain(PAPERS.iter().flat_map(of_paper)).collect();
     say_json("the list", &all)
 }
 

@@ -50,6 +50,21 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
+/// Index of the nearest of the points from `from` on, found by going on for as long as the next one is no further away.
+/// `from` itself at the end of the list and beyond.
+///
+/// ```
+/// use geometry::{Point, polyline::nearest_ahead};
+/// let path = [0.0, 1.0, 2.0, 3.0].map(|x| Point::new(x, 0.0));
+/// assert_eq!(nearest_ahead(&path, 0, Point::new(2.2, 1.0)), 2);
+/// assert_eq!(nearest_ahead(&path, 3, Point::new(2.2, 1.0)), 3);
+/// ```
+pub fn nearest_ahead(path: &[Point], from: usize, at: Point) -> usize {
+    let from_m = |point: &Point| (point - at).norm_squared();
+    let going_on = path[from.min(path.len())..].windows(2).take_while(|w| from_m(&w[1]) <= from_m(&w[0]));
+    from + going_on.count()
+}
+
 /// Whether two segments cross, each with its ends strictly on both sides of the other; segments that touch do not.
 ///
 /// ```

@@ -1,7 +1,7 @@
 //! One choice of the dynamic window (147 arcs) with ten discs near, and one step of the whole loop.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use field::{GoalLaw, Pull, TangentUse, virtual_goals::SquareLaw};
+use field::{GoalLaw, Pull, PushForm, TangentUse, virtual_goals::SquareLaw};
 use planner_apf_dwa::{
     Hybrid, HybridSettings, State, Twist, Weights, Window,
     guide::{Field, GuideBy},
@@ -19,6 +19,7 @@ fn settings() -> HybridSettings {
     let push = GoalLaw {
         pull: Pull::Linear { k: 15.0 },
         k_rep: 5.0,
+        push: PushForm::Khatib,
         rho_m: 1.0,
         tangent: TangentUse::Off,
         tangent_weight: 0.0,

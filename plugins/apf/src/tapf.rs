@@ -1,7 +1,7 @@
 //! The tangent field.
 
 use crate::goal_flight::GoalFlight;
-use field::{GoalLaw, Pull, Sides, TangentUse, goal_walk, params as p};
+use field::{GoalLaw, Pull, Sides, TangentUse, goal_walk, open_points as o, params as p};
 use planner_api::{
     Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, choice, float,
 };
@@ -26,8 +26,8 @@ const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0,
     .group(FIELD);
 const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
     .help(
-        "always: toward the left tangent of everything in range; at a weight of 0.02 it gives the stop printed in the \
-         paper. blocking: round what blocks the way to the goal. off: the classical field.",
+        "always: toward the left tangent of everything in range; it gives the stop printed in the paper at a weight of \
+         0.02 about a radius of 1 m, or of 1 about one of 3.2 to 3.55 m (both fitted). blocking: round what blocks the way to the goal. off: the classical field.",
     )
     .group(FIELD);
 const WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
@@ -42,7 +42,7 @@ const WALL: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.00
     .group(FIELD)
     .live();
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
-    .help("Length of a move when planning; the paper moves 0.01.")
+    .help("Length of a move when planning; the paper prints none.")
     .group("Plan");
 const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 50.0, 2.0)
     .help("The field counts as trapped when the last moves of this length lead hardly anywhere.")
@@ -58,6 +58,7 @@ impl Planner for Tapf {
         p::K_ATT,
         K_REP,
         RHO_0,
+        o::GOAL_PUSH_FORM,
         TANGENT,
         WEIGHT,
         WALL,
@@ -75,6 +76,7 @@ impl Planner for Tapf {
         let law = GoalLaw {
             pull: Pull::Linear { k: config.float("k_att") },
             k_rep: config.float("k_rep"),
+            push: o::goal_push_form(config),
             rho_m: config.float("rho_0_m"),
             tangent: match config.choice("tangent") {
                 "off" => TangentUse::Off,

@@ -1,7 +1,7 @@
 //! One step of the state machine in a random trap, on average over the whole walk.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use field::{GoalLaw, NearLaw, Pull, TangentUse};
+use field::{GoalLaw, NearLaw, Pull, PushForm, TangentUse};
 use planner_bvo_apf::{Machine, MachineSettings, Mode, Next};
 use steering::KnownMap;
 use trials::traps::{Kind, Trap};
@@ -18,10 +18,13 @@ fn step(criterion: &mut Criterion) {
                 pull: Pull::Logarithm {
                     m: 10.0,
                     trip_m: (trap.goal - trap.start).norm(),
+                    k: None,
+                    n: None,
                     rho_1_m: 1.0,
                     near: NearLaw::Corrected,
                 },
                 k_rep: 10.0,
+                push: PushForm::Khatib,
                 rho_m: 2.0,
                 tangent: TangentUse::Blocking,
                 tangent_weight: 1.0,

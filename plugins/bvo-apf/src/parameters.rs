@@ -1,7 +1,7 @@
 //! The parameters, and how they become settings.
 
 use crate::settings::{MachineSettings, Mode};
-use field::{GoalLaw, NearLaw, Pull, TangentUse, params as p};
+use field::{GoalLaw, NearLaw, Pull, TangentUse, open_points as o, params as p};
 use planner_api::{Config, ParamSpec, Site, choice, float, int};
 
 const TRAP: &str = "Trap";
@@ -22,6 +22,12 @@ const RHO_1: ParamSpec = float("rho_1_m", "Range of the near law", "m", 0.01, 10
 const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "printed"], 0)
     .help("corrected: the pull grows at the goal, as the paper says. printed: it vanishes there, as its formula has it.")
     .group(FIELD);
+const K: ParamSpec = float("k", "Base of the logarithm", "", 0.0, 1e6, 0.0)
+    .help("The paper's k of eq. 4. Up to 1: the distance from start to goal and one, so that the pull falls from m.")
+    .group(FIELD);
+const N: ParamSpec = float("n", "Pull near the goal", "N", 0.0, 1e6, 0.0)
+    .help("Gain of the near law; the paper's n of eq. 4, which it calls adaptive. 0: as large as makes the two laws meet.")
+    .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
     .help("Push and tangent force of obstacles; the papers' mu.")
     .group(FIELD);
@@ -32,7 +38,7 @@ const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent
     .help("Tangent force round what blocks the way to the goal, as a multiple of the repulsion gain; 0 turns it off.")
     .group(FIELD);
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
-    .help("Length of a move when planning; the paper moves 0.01, its step count fits 0.0071.")
+    .help("Length of a move when planning; the paper prints none; its step count fits 0.0071.")
     .group("Plan");
 const MARGIN: ParamSpec = float("margin_m", "Margin of a detour", "m", 0.02, 5.0, 0.14)
     .help("Distance kept from what is gone round. Gaps that leave less on both sides of the hull count as closed.")
@@ -51,10 +57,13 @@ const ESCAPES: ParamSpec = int("escapes_max", "Escapes at most", "", 1, 1000, 12
 pub(crate) const PARAMS: &[ParamSpec] = &[
     MODE,
     M,
+    K,
     RHO_1,
     NEAR_LAW,
+    N,
     K_REP,
     RHO_0,
+    o::GOAL_PUSH_FORM,
     TANGENT_WEIGHT,
     p::WALL_GAIN,
     STEP,
@@ -85,7 +94,15 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Mac
             _ => Mode::Pre,
         },
         law: GoalLaw {
-            pull: Pull::Logarithm { m: config.float("m"), trip_m, rho_1_m: config.float("rho_1_m"), near },
+            pull: Pull::Logarithm {
+                m: config.float("m"),
+                trip_m,
+                k: Some(config.float("k")).filter(|k| *k > 1.0),
+                n: Some(config.float("n")).filter(|n| *n > 0.0),
+                rho_1_m: config.float("rho_1_m"),
+                near,
+            },
+            push: o::goal_push_form(config),
             k_rep: config.float("k_rep"),
             rho_m: config.float("rho_0_m"),
             tangent: if tangent_weight > 0.0 { TangentUse::Blocking } else { TangentUse::Off },

@@ -40,12 +40,10 @@ impl MachineSettings {
     /// The same for a trip of some length from start to goal, metres: the base of the logarithm depends on it.
     #[must_use]
     pub fn for_trip(&self, length_m: f64) -> Self {
-        let pull = match self.law.pull {
-            Pull::Logarithm { m, rho_1_m, near, .. } => {
-                Pull::Logarithm { m, trip_m: length_m, rho_1_m, near }
-            }
-            other => other,
-        };
+        let mut pull = self.law.pull;
+        if let Pull::Logarithm { trip_m, .. } = &mut pull {
+            *trip_m = length_m;
+        }
         Self { law: GoalLaw { pull, ..self.law }, ..*self }
     }
 }

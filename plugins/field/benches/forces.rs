@@ -1,7 +1,7 @@
 //! Cost of one evaluation of the forces against the number of obstacles: only those within reach may cost anything.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use field::{Law, Repulsion, RotationForm, Scene};
+use field::{Law, PushForm, Repulsion, RotationForm, Scene, law::Beside};
 use planner_api::{Boundary, Limits, Motion, Obstacle, Outline, Point2, Site};
 use std::hint::black_box;
 use steering::Side;
@@ -34,7 +34,10 @@ fn forces(criterion: &mut Criterion) {
         rho_0_m: 1.5,
         wall_gain: 0.1,
         repulsion: Repulsion::Improved { exponent: 2.0 },
+        form: PushForm::Khatib,
+        nearest_only: false,
         rotation: RotationForm::Smooth,
+        beside: Beside::All,
     };
     let mut group = criterion.benchmark_group("forces");
     for n_obstacles in [20, 200, 2_000, 20_000] {

@@ -3,9 +3,9 @@
 //! Wang et al. 2023 compare with both by name only; places, gains and times are reconstructed, so figures of these
 //! planners are not evidence about the originals.
 
-use crate::law::Law;
+use crate::law::{Law, nearest_obstacle};
 use geometry::{Point, Vector};
-use steering::{Contact, Source};
+use steering::{Contact, Forces};
 
 /// A virtual target is given up after this many moves.
 const TARGET_MOVES: usize = 25;
@@ -13,12 +13,16 @@ const TARGET_MOVES: usize = 25;
 const TARGET_OFF: f64 = 0.7;
 /// Its pull, in pulls of a target as far away as the range of obstacles.
 const TARGET_PULL: f64 = 3.0;
-/// A push to the side lasts this many moves.
+/// A push that is held lasts this many moves.
 const PUSH_MOVES: usize = 5;
 /// Its strength, in pulls of the target.
 const PUSH: f64 = 2.0;
 /// Its part ahead.
 const PUSH_AHEAD: f64 = 0.5;
+/// Strength of a push by half the pull, in pulls of the target.
+const HALF: f64 = 0.5;
+/// State of the random sides at the start of every plan and flight.
+const FIRST_RANDOM: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// What is done about a trap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,8 +31,39 @@ pub enum Escape {
     None,
     /// A target beside the nearest obstacle, on the side away from it as seen along the way, after Yang 2018.
     VirtualTarget,
-    /// A push to the side to which obstacles push, after Zhao 2022; chosen again in every trap, so it may alternate.
-    Push,
+    /// A push to a side, after Zhao 2022; the side is chosen again in every trap, so it may alternate.
+    Push {
+        /// How strong it is, and how long it lasts.
+        strength: PushStrength,
+        /// To which side.
+        side: PushSide,
+    },
+}
+
+/// How strong a push to the side is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PushStrength {
+    /// Twice the pull, half of it ahead, for five moves; ours.
+    Held,
+    /// Half the pull of the target, across the way to it, for one move.
+    HalfPull,
+    /// As strong as the pull of the target, across the way to it, for one move.
+    Pull,
+    /// The pull of a target one metre off, across the way to it, for one move.
+    UnitPull,
+}
+
+/// To which side it is pushed, as seen toward the target; Wang et al. 2023 do not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PushSide {
+    /// To where obstacles push.
+    Repulsion,
+    /// To the right.
+    Right,
+    /// At random; every plan and every flight begins with the same sequence.
+    Random,
+    /// To the other side than the last time.
+    Alternating,
 }
 
 /// An escape under way.
@@ -37,6 +72,7 @@ pub struct Escaping {
     rule: Escape,
     target: Option<Point>,
     side: f64,
+    random: u64,
     left: usize,
 }
 
@@ -58,7 +94,7 @@ pub struct Situation<'a> {
 impl Escaping {
     /// None under way.
     pub fn new(rule: Escape) -> Self {
-        Self { rule, target: None, side: 1.0, left: 0 }
+        Self { rule, target: None, side: 1.0, random: FIRST_RANDOM, left: 0 }
     }
 
     /// Takes the situation of the next move, and whether it is a trap; returns the force to add.
@@ -67,7 +103,7 @@ impl Escaping {
         match self.rule {
             Escape::None => Vector::zeros(),
             Escape::VirtualTarget => self.toward_target(now, ahead, is_trapped),
-            Escape::Push => self.push(now, ahead, is_trapped),
+            Escape::Push { strength, side } => self.push(now, ahead, is_trapped.then_some(side), strength),
         }
     }
 
@@ -82,25 +118,61 @@ impl Escaping {
         toward.map_or_else(Vector::zeros, |toward| toward * (TARGET_PULL * now.law.k_att * now.law.rho_0_m))
     }
 
-    fn push(&mut self, now: &Situation<'_>, ahead: Vector, is_trapped: bool) -> Vector {
+    /// The push of this move; a trap gives the rule for its side.
+    fn push(
+        &mut self,
+        now: &Situation<'_>,
+        ahead: Vector,
+        trap: Option<PushSide>,
+        strength: PushStrength,
+    ) -> Vector {
         let left = Vector::new(-ahead.y, ahead.x);
-        if is_trapped {
-            let repulsion = now.law.forces(now.at, now.goal, now.contacts, |_| None).repulsion;
-            self.side = if repulsion.dot(&left) >= 0.0 { 1.0 } else { -1.0 };
-            self.left = PUSH_MOVES;
+        if let Some(rule) = trap {
+            self.side = self.chosen(rule, now, left);
+            self.left = if strength == PushStrength::Held { PUSH_MOVES } else { 1 };
         }
         if self.left == 0 {
             return Vector::zeros();
         }
         self.left -= 1;
-        let strength = PUSH * now.law.k_att * (now.goal - now.at).norm().max(now.law.rho_0_m);
-        (left * self.side + ahead * PUSH_AHEAD) * strength
+        let (k_att, goal_m) = (now.law.k_att, (now.goal - now.at).norm());
+        match strength {
+            PushStrength::Held => {
+                (left * self.side + ahead * PUSH_AHEAD) * (PUSH * k_att * goal_m.max(now.law.rho_0_m))
+            }
+            PushStrength::HalfPull => left * (self.side * HALF * k_att * goal_m),
+            PushStrength::Pull => left * (self.side * k_att * goal_m),
+            PushStrength::UnitPull => left * (self.side * k_att),
+        }
+    }
+
+    /// 1 for the left, -1 for the right.
+    fn chosen(&mut self, rule: PushSide, now: &Situation<'_>, left: Vector) -> f64 {
+        let is_left = match rule {
+            PushSide::Repulsion => now.without_rotation().repulsion.dot(&left) >= 0.0,
+            PushSide::Right => false,
+            PushSide::Alternating => self.side < 0.0,
+            PushSide::Random => {
+                // Marsaglia's xorshift.
+                self.random ^= self.random << 13;
+                self.random ^= self.random >> 7;
+                self.random ^= self.random << 17;
+                self.random >> 63 == 1
+            }
+        };
+        if is_left { 1.0 } else { -1.0 }
+    }
+}
+
+impl Situation<'_> {
+    /// Pull and push without the rotating force.
+    pub fn without_rotation(&self) -> Forces {
+        self.law.forces(self.at, self.goal, self.contacts, |_| None)
     }
 }
 
 fn beside_nearest(now: &Situation<'_>, ahead: Vector) -> Option<Point> {
-    let obstacles = now.contacts.iter().filter(|contact| contact.source != Source::Wall);
-    let nearest = obstacles.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))?;
+    let nearest = nearest_obstacle(now.contacts)?;
     let obstacle = now.at - nearest.away * nearest.distance_m;
     let lies_left = ahead.perp(&(obstacle - now.at)) > 0.0;
     let left = Vector::new(-ahead.y, ahead.x);
@@ -111,17 +183,10 @@ fn beside_nearest(now: &Situation<'_>, ahead: Vector) -> Option<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Repulsion, RotationForm};
+    use crate::law::tests::LAW;
+    use steering::Source;
 
-    const LAW: Law = Law {
-        k_att: 1.0,
-        k_rep: 1.0,
-        k_rot: 0.0,
-        rho_0_m: 1.0,
-        wall_gain: 0.0,
-        repulsion: Repulsion::Classic,
-        rotation: RotationForm::Smooth,
-    };
+    const HELD: Escape = Escape::Push { strength: PushStrength::Held, side: PushSide::Repulsion };
 
     /// An obstacle ahead and a little to the left of a robot that is bound east.
     fn situation(contacts: &[Contact]) -> Situation<'_> {
@@ -146,10 +211,35 @@ mod tests {
 
     #[test]
     fn a_push_goes_where_obstacles_push_and_lasts_five_moves() {
-        let mut escaping = Escaping::new(Escape::Push);
+        let mut escaping = Escaping::new(HELD);
         let push = escaping.update(&situation(&[contact()]), true);
         assert!((push - Vector::new(2.0, -4.0)).norm() < 1e-9);
         let pushed = (0..9).filter(|_| escaping.update(&situation(&[contact()]), false).norm() > 0.0);
         assert_eq!(pushed.count(), PUSH_MOVES - 1);
+    }
+
+    /// The pushes of five moves that are all traps.
+    fn pushes(strength: PushStrength, side: PushSide) -> [Vector; 5] {
+        let mut escaping = Escaping::new(Escape::Push { strength, side });
+        [(); 5].map(|()| escaping.update(&situation(&[contact()]), true))
+    }
+
+    #[test]
+    fn a_push_of_one_move_goes_across_the_way_and_ends_with_the_trap() {
+        let half = pushes(PushStrength::HalfPull, PushSide::Right)[0];
+        assert!((half - Vector::new(0.0, -1.0)).norm() < 1e-9);
+        let unit = pushes(PushStrength::UnitPull, PushSide::Alternating);
+        assert!(unit.iter().zip([-1.0, 1.0, -1.0, 1.0, -1.0]).all(|(push, y)| (push.y - y).abs() < 1e-9));
+        let mut escaping =
+            Escaping::new(Escape::Push { strength: PushStrength::UnitPull, side: PushSide::Right });
+        escaping.update(&situation(&[contact()]), true);
+        assert_eq!(escaping.update(&situation(&[contact()]), false), Vector::zeros());
+    }
+
+    #[test]
+    fn random_sides_differ_and_are_the_same_in_every_plan() {
+        let random = || pushes(PushStrength::UnitPull, PushSide::Random);
+        assert_eq!(random(), random());
+        assert!(random().iter().any(|push| push.y > 0.0) && random().iter().any(|push| push.y < 0.0));
     }
 }

@@ -1,13 +1,14 @@
-//! Following preset points in lock step: the target moves on by one with every move, reached or not.
+//! Following preset points in lock step: the target moves on with every move, reached or not; by one, unless it is read
+//! otherwise.
 
 use crate::{
     descent::{self, Descent},
     outcome::{Shortfall, Walk},
     scene::Scene,
-    settings::FieldSettings,
+    settings::{FieldSettings, Targets},
     walk::{Move, Walker},
 };
-use geometry::Point;
+use geometry::{Point, polyline};
 use planner_api::{Ctx, Result};
 
 /// The stop near the last point counts only within this share of the list's end; without it a push through the middle
@@ -16,7 +17,7 @@ const TAIL_SHARE: f64 = 0.02;
 
 /// Walks along preset points (Wang et al. 2023, section 2).
 ///
-/// `path[k]` belongs to the k-th of `points`, counted from the first that is not the start itself; a start further off
+/// In lock step `path[k]` belongs to the k-th of `points`, counted from the first that is not the start itself; a start further off
 /// than a step is first brought to the first point. Ends within `tolerance_m` of the last point, or with the list.
 ///
 /// # Errors
@@ -49,7 +50,8 @@ pub fn follow(
     let mut walker = Walker::new(scene, settings, start);
     let mut lag = Lag::default();
     let mut previous = start;
-    for (index, &target) in remaining.iter().enumerate() {
+    let mut index = 0;
+    while let Some(&target) = remaining.get(index) {
         ctx.check()?;
         if index >= tail_from && (walker.at() - last).norm() < preset.tolerance_m {
             break;
@@ -59,6 +61,10 @@ pub fn follow(
         walker.advance(&Move { target, step_m, cap_m, expected_m });
         lag.record(walker.at(), target);
         previous = target;
+        index = match settings.walking.targets {
+            Targets::LockStep => index + 1,
+            Targets::Ahead => polyline::nearest_ahead(remaining, index, walker.at()) + 1,
+        };
     }
     let shortfall = shortfall(&walker, &lag, preset, last, settings);
     approach.extend(walker.into_path());
@@ -113,8 +119,10 @@ fn shortfall(
 mod tests {
     use super::*;
     use crate::{
-        law::{Law, Repulsion, RotationForm},
-        settings::{Planning, RotationUse, Walking},
+        law::{Beside, Law, Repulsion, RotationForm},
+        laws::PushForm,
+        settings::{MoveLength, Planning, RotationUse, Walking},
+        trap::Gate,
         turning::{Reading, SenseRule},
     };
     use planner_api::{Boundary, Limits, Motion, Site, testing::Bench};
@@ -128,14 +136,20 @@ mod tests {
             rho_0_m: 0.6,
             wall_gain: 0.0,
             repulsion: Repulsion::Classic,
+            form: PushForm::Khatib,
+            nearest_only: false,
             rotation: RotationForm::Smooth,
+            beside: Beside::All,
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        gate: Gate::Detected,
         escape: crate::Escape::None,
         planning: Planning::Walked,
         walking: Walking {
             step_m: 0.2,
+            targets: Targets::LockStep,
+            length: MoveLength::ToTarget,
             goto_step_m: 0.05,
             flexible: false,
             turn_limit_rad: None,

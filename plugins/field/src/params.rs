@@ -2,8 +2,10 @@
 
 use crate::{
     escape::Escape,
-    law::{Law, Repulsion, RotationForm},
-    settings::{FieldSettings, Planning, RotationUse, Walking},
+    law::{Beside, Law, Repulsion, RotationForm},
+    laws::PushForm,
+    settings::{FieldSettings, MoveLength, Planning, RotationUse, Targets, Walking},
+    trap::Gate,
     turning::{Reading, SenseRule},
 };
 use planner_api::{Config, ParamSpec, choice, flag, float};
@@ -31,15 +33,16 @@ pub const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 1
     .live();
 /// Which repulsion, Khatib's by default.
 pub const REPULSION_CLASSIC: ParamSpec =
-    choice("repulsion", "Repulsion", &["classic", "improved"], 0).help(REPULSION_HELP).group(FIELD).live();
+    choice("repulsion", "Repulsion", REPULSIONS, 0).help(REPULSION_HELP).group(FIELD).live();
 /// Which repulsion, the improved one by default.
 pub const REPULSION_IMPROVED: ParamSpec =
-    choice("repulsion", "Repulsion", &["classic", "improved"], 1).help(REPULSION_HELP).group(FIELD).live();
+    choice("repulsion", "Repulsion", REPULSIONS, 1).help(REPULSION_HELP).group(FIELD).live();
+const REPULSIONS: &[&str] = &["classic", "improved", "scaled"];
 const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an obstacle can be \
-     reached; it passes obstacles more closely.";
+     reached; it passes obstacles more closely. Scaled fades as well, without the improved one's part toward the target.";
 /// Power of the goal's distance.
-pub const EXPONENT: ParamSpec = float("exponent", "Exponent of improved repulsion", "", 1.0, 4.0, 2.0)
-    .help("Power of the distance to the target by which improved repulsion fades.")
+pub const EXPONENT: ParamSpec = float("exponent", "Exponent of improved repulsion", "", 0.0, 4.0, 2.0)
+    .help("Power of the distance to the target by which improved or scaled repulsion fades.")
     .group(FIELD)
     .live();
 /// Push of the wall.
@@ -63,8 +66,10 @@ pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal"
     .live();
 /// When the rotating force acts.
 pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["literal", "gated"], 1)
-    .help("Literal: the rotating force always acts. Gated: only in a trap and ten moves on, which fits the paper's \
-           figures.")
+    .help(
+        "Literal: the rotating force always acts. Gated: only while the gate is open, by default in a trap \
+           and ten moves on.",
+    )
     .group(FIELD)
     .live();
 /// Which way round.
@@ -118,6 +123,7 @@ pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["pape
 pub fn settings(config: &Config<'_>) -> FieldSettings {
     let repulsion = match config.choice("repulsion") {
         "improved" => Repulsion::Improved { exponent: config.float("exponent") },
+        "scaled" => Repulsion::Scaled { exponent: config.float("exponent") },
         _ => Repulsion::Classic,
     };
     FieldSettings {
@@ -128,10 +134,14 @@ pub fn settings(config: &Config<'_>) -> FieldSettings {
             rho_0_m: config.float("rho_0_m"),
             wall_gain: config.float("wall_gain"),
             repulsion,
+            form: PushForm::Khatib,
+            nearest_only: false,
             rotation: RotationForm::Smooth,
+            beside: Beside::All,
         },
         reading: Reading::Off,
         rule: SenseRule::CounterClockwise,
+        gate: Gate::Detected,
         escape: Escape::None,
         planning: Planning::Walked,
         walking: walking(config),
@@ -168,6 +178,8 @@ fn walking(config: &Config<'_>) -> Walking {
     let turn_limit_deg = config.float("turn_limit_deg");
     Walking {
         step_m: config.float("step_m"),
+        targets: Targets::LockStep,
+        length: MoveLength::ToTarget,
         goto_step_m: config.float("goto_step_m"),
         flexible: config.flag("flexible_step"),
         turn_limit_rad: (turn_limit_deg > 0.0).then(|| turn_limit_deg.to_radians()),

@@ -2,7 +2,7 @@
 
 use crate::{
     escape::Situation,
-    law::{Law, RotationForm},
+    law::{Beside, Law, RotationForm},
     response::TrapResponse,
     settings::{FieldSettings, RotationUse},
     turning::Turning,
@@ -51,7 +51,7 @@ impl ForcePilot {
 
     /// Takes over changed settings on the way; what it remembers stays.
     pub fn reset(&mut self, settings: &FieldSettings) {
-        self.response.turning = Turning::new(settings.reading, settings.rule);
+        self.response.turning = Turning::new(settings.reading, settings.rule, settings.gate);
     }
 
     /// The velocity until the next tick, with the forces drawn.
@@ -120,15 +120,17 @@ impl ForcePilot {
         match settings.rotation_use {
             RotationUse::Gaps => {
                 // The printed form would make the robot jerk at the range of every obstacle.
-                let law = Law { rotation: RotationForm::Smooth, ..settings.law };
+                let law = Law { rotation: RotationForm::Smooth, beside: Beside::All, ..settings.law };
                 let goal = at + (tick.target - at).cap_magnitude(FAR_M);
                 unopposed(law.forces(at, goal, contacts, |c| side_of(detour, c)))
             }
             RotationUse::Paper => {
                 self.look_out_for_traps(settings, tick, contacts);
                 let side = |c: &Contact| self.response.turning.side(c);
-                let mut forces = settings.law.forces(at, tick.target, contacts, side);
-                forces.attraction += self.response.escape;
+                let forces = settings.law.forces(at, tick.target, contacts, side);
+                let escape = self.response.escape;
+                let mut forces = settings.law.beside.left_of(forces, escape != Vector::zeros());
+                forces.attraction += escape;
                 forces
             }
         }

@@ -1,6 +1,7 @@
 //! How a goal pulls: linearly, by a logarithm, or no further than a cap.
 
 use geometry::{Point, Vector};
+use std::f64::consts::LN_2;
 
 /// Distances below this count as this, metres: the laws are singular at the goal.
 const FLOOR_M: f64 = 1e-9;
@@ -26,8 +27,12 @@ pub enum Pull {
     Logarithm {
         /// Force at the start.
         m: f64,
-        /// Distance from start to goal, metres; the base `k` is one more, so that the force falls from `m` on the way.
+        /// Distance from start to goal, metres.
         trip_m: f64,
+        /// The base; if none, one more than the trip, so that the force falls from `m` on the way.
+        k: Option<f64>,
+        /// Gain of the near law, newtons; if none, as large as makes the two laws meet.
+        n: Option<f64>,
         /// Where the near law takes over, metres.
         rho_1_m: f64,
         /// Which near law.
@@ -56,15 +61,28 @@ impl Pull {
         match *self {
             Self::Linear { k } => k * rho,
             Self::Capped { k, d_0_m } => k * rho.min(d_0_m),
-            Self::Logarithm { m, trip_m, rho_1_m, near } => {
-                let far = |rho: f64| m * rho.ln_1p() / trip_m.max(FLOOR_M).ln_1p();
-                if rho > rho_1_m { far(rho) } else { far(rho_1_m) * near.share(rho, rho_1_m) }
+            Self::Logarithm { m, trip_m, k, n, rho_1_m, near } => {
+                let base_ln = k.map_or_else(|| trip_m.max(FLOOR_M).ln_1p(), f64::ln);
+                let far = |rho: f64| m * rho.ln_1p() / base_ln;
+                match n {
+                    _ if rho > rho_1_m => far(rho),
+                    Some(n) => n * near.logarithm(rho),
+                    None => far(rho_1_m) * near.share(rho, rho_1_m),
+                }
             }
         }
     }
 }
 
 impl NearLaw {
+    /// Force for a gain of one.
+    fn logarithm(self, rho: f64) -> f64 {
+        match self {
+            Self::Corrected => (1.0 / rho).ln_1p() / LN_2,
+            Self::Printed => rho.ln_1p() / LN_2,
+        }
+    }
+
     /// Force at `rho` as a multiple of that at `rho_1`: the two branches meet there.
     fn share(self, rho: f64, rho_1: f64) -> f64 {
         match self {
@@ -79,7 +97,7 @@ mod tests {
     use super::*;
 
     const fn logarithm(near: NearLaw) -> Pull {
-        Pull::Logarithm { m: 10.0, trip_m: 50.0, rho_1_m: 1.0, near }
+        Pull::Logarithm { m: 10.0, trip_m: 50.0, k: None, n: None, rho_1_m: 1.0, near }
     }
 
     #[test]
@@ -95,6 +113,16 @@ mod tests {
     fn at_the_goal_the_corrected_law_grows_and_the_printed_one_vanishes() {
         assert!(logarithm(NearLaw::Corrected).strength(1e-3) > 10.0);
         assert!(logarithm(NearLaw::Printed).strength(1e-3) < 1e-2);
+    }
+
+    #[test]
+    fn base_and_near_gain_can_be_set() {
+        let pull =
+            |k, n| Pull::Logarithm { m: 10.0, trip_m: 50.0, k, n, rho_1_m: 1.0, near: NearLaw::Printed };
+        assert!((pull(Some(4.0), None).strength(15.0) - 20.0).abs() < 1e-12);
+        // n |log2(1 / (rho + 1))| at rho 1.
+        assert!((pull(None, Some(16.0)).strength(1.0) - 16.0).abs() < 1e-12);
+        assert_eq!(pull(None, Some(16.0)).strength(2.0), pull(None, None).strength(2.0));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::{
     escape::{Escaping, Situation},
     settings::FieldSettings,
-    trap::TrapDetector,
+    trap::{Gate, TrapDetector},
     turning::Turning,
 };
 use geometry::Vector;
@@ -12,6 +12,7 @@ use steering::Source;
 /// Looks out for traps and answers them as the settings say.
 #[derive(Debug, Clone)]
 pub struct TrapResponse {
+    gate: Gate,
     detector: TrapDetector,
     escaping: Escaping,
     /// When and which way round the rotating force acts.
@@ -24,9 +25,10 @@ impl TrapResponse {
     /// Of a robot that has not moved yet.
     pub fn new(settings: &FieldSettings) -> Self {
         Self {
+            gate: settings.gate,
             detector: TrapDetector::default(),
             escaping: Escaping::new(settings.escape),
-            turning: Turning::new(settings.reading, settings.rule),
+            turning: Turning::new(settings.reading, settings.rule, settings.gate),
             escape: Vector::zeros(),
         }
     }
@@ -36,7 +38,10 @@ impl TrapResponse {
         let to_goal = now.goal - now.at;
         self.detector.record(now.at);
         let obstacle_acts = now.contacts.iter().any(|c| c.source != Source::Wall);
-        let is_trapped = self.detector.is_trapped(expected_m, now.step_m, to_goal.norm(), obstacle_acts);
+        let is_trapped = match self.gate {
+            Gate::Detected => self.detector.is_trapped(expected_m, now.step_m, to_goal.norm(), obstacle_acts),
+            by_force => obstacle_acts && by_force.is_open(&now.without_rotation()),
+        };
         self.turning.update(is_trapped, now.contacts, to_goal);
         self.escape = self.escaping.update(now, is_trapped);
     }

@@ -3,6 +3,7 @@
 use crate::{
     escape::Escape,
     law::Law,
+    trap::Gate,
     turning::{Reading, SenseRule},
 };
 use steering::Flight;
@@ -18,11 +19,33 @@ pub enum Planning {
     ByHull,
 }
 
+/// Which preset point comes after a move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Targets {
+    /// The next of the list, whatever the move has done.
+    LockStep,
+    /// The one behind the nearest ahead, and the next of the list at least.
+    Ahead,
+}
+
+/// How long a move is, up to the step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MoveLength {
+    /// As far as the target.
+    ToTarget,
+    /// As far as the resultant would pull a spring of the attraction's gain, `F / k_att`.
+    ByForce,
+}
+
 /// How a law is walked over the known map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walking {
     /// Longest move toward a preset point, metres; the paper's `s`.
     pub step_m: f64,
+    /// Which preset point comes after a move.
+    pub targets: Targets,
+    /// How long a move toward a preset point is.
+    pub length: MoveLength,
     /// Length of a move toward a goal, metres.
     pub goto_step_m: f64,
     /// Whether moves may be twice as long while the robot lags behind its preset point.
@@ -51,6 +74,8 @@ pub struct FieldSettings {
     pub reading: Reading,
     /// Which way round it acts.
     pub rule: SenseRule,
+    /// What counts as a trap.
+    pub gate: Gate,
     /// What is done about a trap besides.
     pub escape: Escape,
     /// How a plan is made.

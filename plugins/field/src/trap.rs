@@ -2,6 +2,38 @@
 
 use geometry::Point;
 use std::collections::VecDeque;
+use steering::Forces;
+
+/// What opens the gate of the rotating force, and begins an escape. Wang et al. 2023 do not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gate {
+    /// Moves that lead hardly anywhere, by [`TrapDetector`]; the gate is held open for ten moves, an escape lasts several.
+    Detected,
+    /// The sum of pull and push points away from the target; asked anew at every move.
+    Backward,
+    /// The push is more than 0.8 of the pull and within 26 degrees of opposed to it; asked anew at every move.
+    Opposed,
+}
+
+/// A push that opposes the pull is more than this share of it ...
+const OPPOSED_SHARE: f64 = 0.8;
+/// ... and the cosine of the angle between them is below that of 154 degrees.
+const OPPOSED_COS: f64 = -0.898_794;
+
+impl Gate {
+    /// Whether pull and push alone open it; never where moves decide.
+    pub fn is_open(self, forces: &Forces) -> bool {
+        let (pull, push) = (forces.attraction, forces.repulsion);
+        match self {
+            Self::Detected => false,
+            Self::Backward => (pull + push).dot(&pull) < 0.0,
+            Self::Opposed => {
+                let (pull_n, push_n) = (pull.norm(), push.norm());
+                push_n > OPPOSED_SHARE * pull_n && pull.dot(&push) < OPPOSED_COS * pull_n * push_n
+            }
+        }
+    }
+}
 
 /// Moves that the detector looks back over.
 const WINDOW: usize = 6;
@@ -37,6 +69,18 @@ impl TrapDetector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::Vector;
+
+    #[test]
+    fn a_gate_by_force_asks_how_push_and_pull_stand() {
+        let open = |gate: Gate, push: (f64, f64)| {
+            let (attraction, repulsion) = (Vector::x(), Vector::new(push.0, push.1));
+            gate.is_open(&Forces { attraction, repulsion, ..Forces::default() })
+        };
+        assert!(open(Gate::Backward, (-1.1, 3.0)) && !open(Gate::Backward, (-0.9, 0.0)));
+        assert!(open(Gate::Opposed, (-0.9, 0.3)) && !open(Gate::Opposed, (-0.7, 0.0)));
+        assert!(!open(Gate::Opposed, (-1.1, 3.0)) && !open(Gate::Detected, (-9.0, 0.0)));
+    }
 
     fn after(places: impl Iterator<Item = f64>) -> TrapDetector {
         let mut detector = TrapDetector::default();

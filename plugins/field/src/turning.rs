@@ -1,11 +1,12 @@
 //! When the rotating force acts, and which way round.
 
+use crate::trap::Gate;
 use geometry::Vector;
 use std::collections::BTreeMap;
 use steering::{Contact, Side, Source};
 
 /// Moves for which a gate stays open once the detector has fired.
-const HOLD: usize = 10;
+const HOLD_MOVES: usize = 10;
 
 /// How the rotating force of Wang et al. 2023 is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +15,7 @@ pub enum Reading {
     Off,
     /// As printed: about every obstacle within range, always.
     Literal,
-    /// Only while the robot is trapped and ten moves on; the paper's figures fit only this.
+    /// Only while the gate is open; of all readings that were tried only such come near the printed figures.
     Gated,
 }
 
@@ -32,19 +33,21 @@ pub enum SenseRule {
 pub struct Turning {
     reading: Reading,
     rule: SenseRule,
+    hold: usize,
     open_for: usize,
     kept: BTreeMap<Source, Side>,
 }
 
 impl Turning {
     /// Closed, and with no side chosen.
-    pub fn new(reading: Reading, rule: SenseRule) -> Self {
-        Self { reading, rule, open_for: 0, kept: BTreeMap::new() }
+    pub fn new(reading: Reading, rule: SenseRule, gate: Gate) -> Self {
+        let hold = if gate == Gate::Detected { HOLD_MOVES } else { 1 };
+        Self { reading, rule, hold, open_for: 0, kept: BTreeMap::new() }
     }
 
     /// Takes the state of the next move: whether the law is trapped, and what is near.
     pub fn update(&mut self, is_trapped: bool, contacts: &[Contact], to_goal: Vector) {
-        self.open_for = if is_trapped { HOLD } else { self.open_for.saturating_sub(1) };
+        self.open_for = if is_trapped { self.hold } else { self.open_for.saturating_sub(1) };
         self.kept.retain(|source, _| contacts.iter().any(|c| c.source == *source));
         if self.is_on() && self.rule == SenseRule::SideAware {
             for contact in contacts {
@@ -85,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_gate_opens_in_a_trap_and_closes_ten_moves_later() {
-        let mut turning = Turning::new(Reading::Gated, SenseRule::CounterClockwise);
+        let mut turning = Turning::new(Reading::Gated, SenseRule::CounterClockwise, Gate::Detected);
         turning.update(false, &[EAST_OF_IT], Vector::y());
         assert_eq!(turning.side(&EAST_OF_IT), None);
         turning.update(true, &[EAST_OF_IT], Vector::y());
@@ -98,8 +101,17 @@ mod tests {
     }
 
     #[test]
+    fn a_gate_by_force_is_not_held_open() {
+        let mut turning = Turning::new(Reading::Gated, SenseRule::CounterClockwise, Gate::Backward);
+        turning.update(true, &[EAST_OF_IT], Vector::y());
+        assert!(turning.is_on());
+        turning.update(false, &[EAST_OF_IT], Vector::y());
+        assert!(!turning.is_on());
+    }
+
+    #[test]
     fn a_side_once_chosen_is_kept_while_the_obstacle_is_near() {
-        let mut turning = Turning::new(Reading::Literal, SenseRule::SideAware);
+        let mut turning = Turning::new(Reading::Literal, SenseRule::SideAware, Gate::Detected);
         turning.update(false, &[EAST_OF_IT], -Vector::y());
         assert_eq!(turning.side(&EAST_OF_IT), Some(Side::Left));
         turning.update(false, &[EAST_OF_IT], Vector::y());

@@ -5,6 +5,7 @@
 
 use crate::{
     goal_law::{GoalLaw, TangentUse},
+    laws::PushForm,
     pull::Pull,
 };
 use geometry::{Point, Vector};
@@ -62,7 +63,8 @@ impl SquareLaw {
     /// The push of obstacles and wall that goes with it; gains and range as those of [`GoalLaw`].
     pub fn push(&self, k_rep: f64, rho_m: f64, wall_gain: f64) -> GoalLaw {
         let pull = Pull::Capped { k: self.k_att, d_0_m: self.d_0_m };
-        GoalLaw { pull, k_rep, rho_m, tangent: TangentUse::Off, tangent_weight: 0.0, wall_gain }
+        let push = PushForm::Khatib;
+        GoalLaw { pull, k_rep, push, rho_m, tangent: TangentUse::Off, tangent_weight: 0.0, wall_gain }
     }
 
     /// The corners of the square round the goal, at 45, 135, 225 and 315 degrees.

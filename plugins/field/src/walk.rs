@@ -1,6 +1,11 @@
 //! Walking a law over the known map, move by move.
 
-use crate::{escape::Situation, response::TrapResponse, scene::Scene, settings::FieldSettings};
+use crate::{
+    escape::Situation,
+    response::TrapResponse,
+    scene::Scene,
+    settings::{FieldSettings, MoveLength},
+};
 use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::Contact;
@@ -64,24 +69,35 @@ impl<'a> Walker<'a> {
         self.path
     }
 
-    /// Moves along the resultant, by no more than the distance to the target: a free way ends exactly there.
+    /// Moves along the resultant, by no more than the distance to the target or what the force allows: a free way ends
+    /// exactly there.
     pub fn advance(&mut self, next: &Move) {
         let to_target = next.target - self.at;
         let (law, step_m) = (&self.settings.law, next.step_m);
         let contacts = self.scene.contacts(self.at, law);
         let now = Situation { at: self.at, goal: next.target, contacts: &contacts, law, step_m };
         self.response.update(&now, next.expected_m);
-        if let Some(direction) = self.direction(next.target, &contacts) {
-            self.at += direction * next.cap_m.min(to_target.norm());
+        let resultant = self.resultant(next.target, &contacts);
+        if let Some(direction) = self.direction(resultant) {
+            let length_m = match self.settings.walking.length {
+                MoveLength::ToTarget => to_target.norm(),
+                MoveLength::ByForce => resultant.norm() / law.k_att,
+            };
+            self.at += direction * next.cap_m.min(length_m);
             self.heading = Some(direction);
         }
         self.path.push(self.at);
         self.watch_for_trap((next.target - self.at).norm(), step_m);
     }
 
-    fn direction(&self, target: Point, contacts: &[Contact]) -> Option<Vector> {
+    fn resultant(&self, target: Point, contacts: &[Contact]) -> Vector {
         let forces = self.settings.law.forces(self.at, target, contacts, |c| self.response.turning.side(c));
-        let wanted = (forces.resultant() + self.response.escape).try_normalize(1e-12)?;
+        let escape = self.response.escape;
+        self.settings.law.beside.left_of(forces, escape != Vector::zeros()).resultant() + escape
+    }
+
+    fn direction(&self, resultant: Vector) -> Option<Vector> {
+        let wanted = resultant.try_normalize(1e-12)?;
         match (self.settings.walking.turn_limit_rad, self.heading) {
             (Some(limit_rad), Some(heading)) => Some(turned_at_most(heading, wanted, limit_rad)),
             _ => Some(wanted),

@@ -1,28 +1,39 @@
 //! The two potential fields that the rotating one is compared with: a virtual target, and a push out of the trap.
 
 use crate::potential::{Kind, Potential};
-use field::{Escape, FieldSettings, params as p};
+use field::{Escape, FieldSettings, open_points as o, params as p};
 use planner_api::{Config, ParamSpec};
 
-const PARAMS: &[ParamSpec] = &[
-    p::K_ATT,
-    p::K_REP,
-    p::RHO_0,
-    p::REPULSION_CLASSIC,
-    p::EXPONENT,
-    p::WALL_GAIN,
-    p::STEP,
-    p::GOTO_STEP,
-    p::FLEXIBLE,
-    p::TURN_LIMIT,
-    p::MAX_LAG,
-    p::GUARD,
-    p::GUARD_SIGMAS,
-    p::SLOW,
-    p::MIN_SHARE,
-    p::STUCK,
-    p::EVADE,
-];
+/// A list of parameters: what both have, and what only one has.
+macro_rules! params {
+    ($($own:expr),*) => {
+        &[
+            p::K_ATT,
+            p::K_REP,
+            p::RHO_0,
+            p::REPULSION_CLASSIC,
+            p::EXPONENT,
+            o::GATE,
+            $($own,)*
+            o::PUSH_FORM,
+            o::PUSH_OF,
+            o::TARGETS,
+            o::MOVE_LENGTH,
+            p::WALL_GAIN,
+            p::STEP,
+            p::GOTO_STEP,
+            p::FLEXIBLE,
+            p::TURN_LIMIT,
+            p::MAX_LAG,
+            p::GUARD,
+            p::GUARD_SIGMAS,
+            p::SLOW,
+            p::MIN_SHARE,
+            p::STUCK,
+            p::EVADE,
+        ]
+    };
+}
 
 /// A potential field that leaves traps by a virtual target beside the obstacle; Yang 2018, reconstructed.
 pub type Vt = Potential<VirtualTarget>;
@@ -41,10 +52,10 @@ impl Kind for VirtualTarget {
     const NAME: &'static str = "Virtual target";
     const ABOUT: &'static str = "Potential field that leaves traps by a virtual target and evades what moves; \
                                  reconstructed from the description of Yang 2018 in Wang et al. 2023.";
-    const PARAMS: &'static [ParamSpec] = PARAMS;
+    const PARAMS: &'static [ParamSpec] = params!();
 
     fn settings(config: &Config<'_>) -> FieldSettings {
-        FieldSettings { escape: Escape::VirtualTarget, ..p::settings(config) }
+        FieldSettings { escape: Escape::VirtualTarget, ..o::read(p::settings(config), config) }
     }
 }
 
@@ -53,10 +64,12 @@ impl Kind for Push {
     const NAME: &'static str = "Improved potential field";
     const ABOUT: &'static str = "Potential field that leaves traps by a push to the side and evades what moves; \
                                  reconstructed from the description of Zhao 2022 in Wang et al. 2023.";
-    const PARAMS: &'static [ParamSpec] = PARAMS;
+    const PARAMS: &'static [ParamSpec] = params!(o::PUSH, o::PUSH_SIDE, o::BESIDE);
 
     fn settings(config: &Config<'_>) -> FieldSettings {
-        FieldSettings { escape: Escape::Push, ..p::settings(config) }
+        let mut settings = o::read(p::settings(config), config);
+        settings.law.beside = o::beside(config);
+        FieldSettings { escape: o::push(config), ..settings }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The rotating potential field.
 
 use crate::potential::{Kind, Potential};
-use field::{FieldSettings, params as p};
+use field::{FieldSettings, open_points as o, params as p};
 use planner_api::{Config, ParamSpec};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
@@ -29,6 +29,12 @@ impl Kind for Rotating {
         p::RHO_0,
         p::REPULSION_IMPROVED,
         p::EXPONENT,
+        o::GATE,
+        o::BESIDE,
+        o::PUSH_FORM,
+        o::PUSH_OF,
+        o::TARGETS,
+        o::MOVE_LENGTH,
         p::WALL_GAIN,
         p::PLANNING,
         p::STEP,
@@ -46,7 +52,9 @@ impl Kind for Rotating {
     ];
 
     fn settings(config: &Config<'_>) -> FieldSettings {
-        p::rotating_settings(config)
+        let mut settings = o::read(p::rotating_settings(config), config);
+        settings.law.beside = o::beside(config);
+        settings
     }
 }
 

@@ -22,8 +22,8 @@ pub(crate) struct ReproduceArgs {
     /// Number of threads; 0: one per core. Affects times, not results.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder for drawings of every plan, one file per layout and method; created if missing. Only for studies of
-    /// whole floors; with --out, only plans that this process makes.
+    /// Folder for drawings of every plan or of its curves, one file per layout and method; created if missing. Studies of
+    /// positions have nothing to draw; with --out, only plans that this process makes.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
     /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and
@@ -36,7 +36,8 @@ pub(crate) struct ReproduceArgs {
     /// Print the rows as CSV on stdout.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// List everything that can be reproduced.
+    /// List every study, and the account of the papers: each equation, table, figure and claim, what became of it, and the
+    /// command that shows it.
     #[arg(long, conflicts_with = "name")]
     pub list: bool,
 }

@@ -5,6 +5,8 @@
 //! lengths come out, so agreement there shows consistency and no more. The notes say where a paper's formula is wrong.
 
 mod amphibious;
+mod curves;
+mod flown;
 mod layout;
 mod xu;
 mod yang;
@@ -32,6 +34,12 @@ pub(crate) const STUDIES: &[Study] = &[
         run: xu::table2,
     },
     Study {
+        name: "xu-forces",
+        about: "Xu et al. 2022, Figs 14 to 16: pull and push of three methods over the floor of Table 2, as flown",
+        layouts: 1,
+        run: curves::forces,
+    },
+    Study {
         name: "yang-table3",
         about: "Yang et al. 2021, Table 3: a free path and two goals with an obstacle behind them",
         layouts: 1,
@@ -48,5 +56,11 @@ pub(crate) const STUDIES: &[Study] = &[
         about: "Yang et al. 2021, Figs 12 to 15: from water to land among ten obstacles, with 0, 20 and 60 steps of transition",
         layouts: 200,
         run: amphibious::hybrid,
+    },
+    Study {
+        name: "yang-distances",
+        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles under way, as flown",
+        layouts: 10,
+        run: curves::distances,
     },
 ];

@@ -2,9 +2,11 @@
 //!
 //! A [`Study`] draws layouts or measurements from a seed, asks planners over the plugin boundary as the console does,
 //! and gives [`Row`]s. Layouts run in parallel; rows do not depend on the number of threads, except times. The
-//! registry ([`study`], [`studies`]) is on top: no study knows it, or another study.
+//! registry ([`study`], [`studies`]) is on top: no study knows it, or another study. The [`account`] of the papers names
+//! the studies, and a test holds it against them.
 #![forbid(unsafe_code)]
 
+pub mod account;
 mod coverage;
 mod fields;
 mod positioning;

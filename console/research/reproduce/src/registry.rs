@@ -1,7 +1,7 @@
 //! Every study. Studies do not know the registry.
 
 use crate::{
-    coverage, fields, positioning, spiral,
+    account, coverage, fields, positioning, spiral,
     study::{Gallery, Result, Study, StudyError},
     traps,
 };
@@ -31,22 +31,27 @@ fn unknown(name: &str) -> String {
     format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists them all")
 }
 
-/// The list of all studies for people.
+/// The list of all studies, and the account of the papers, for people.
 pub fn list() -> String {
     let width = studies().map(|study| study.name.len()).max().unwrap_or_default();
     let line = |study: &Study| format!("{:width$}  {} ({})\n", study.name, study.about, study.layouts);
     let lines: String = studies().map(line).collect();
-    format!("{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n")
+    format!(
+        "{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n\nThe papers, item by item:\n{}",
+        account::text()
+    )
 }
 
-/// A gallery in a folder for the plans of a study.
+/// A gallery in a folder for the plans or curves of a study.
 ///
 /// # Errors
-/// The study has no plans to draw, or the folder cannot be created.
+/// The study has nothing to draw, or the folder cannot be created.
 pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
-    if coverage::STUDIES.iter().all(|drawn| drawn.name != study.name) {
-        let drawn: Vec<String> = coverage::STUDIES.iter().map(|drawn| format!("`{}`", drawn.name)).collect();
-        let why = format!("--svg draws coverage plans; only {} have them", drawn.join(" and "));
+    let draws = |study: &Study| positioning::STUDIES.iter().all(|other| other.name != study.name);
+    if !draws(study) {
+        let drawn: Vec<String> =
+            studies().filter(|study| draws(study)).map(|drawn| format!("`{}`", drawn.name)).collect();
+        let why = format!("--svg draws plans and curves; only {} have them", drawn.join(", "));
         return Err(StudyError::Refused(format!("{}: {why}", study.name)));
     }
     Gallery::new(folder)

@@ -4,10 +4,12 @@
 //! the size of neither obstacles nor robot; collisions are counted at a clearance of 0.3 m from an obstacle point.
 
 mod figures;
+mod fit;
 mod group;
 mod method;
 mod plans;
 mod printed;
+mod readings;
 mod tables;
 mod trained;
 
@@ -23,6 +25,12 @@ pub(crate) const STUDIES: &[Study] = &[
         about: "Wang et al. 2023, Table 1: eight methods on three distributions of obstacles",
         layouts: 100,
         run: tables::table1,
+    },
+    Study {
+        name: "wang-search",
+        about: "readings of what Wang et al. 2023 leave open, drawn one by one and held against Table 1, VT included",
+        layouts: 8,
+        run: tables::search,
     },
     Study {
         name: "wang-fig8",

@@ -18,7 +18,7 @@ pub(crate) use planners::{Planned, Planners};
 pub(crate) use row::Block;
 pub use row::Row;
 pub use runner::Runner;
-pub(crate) use sample::Sample;
+pub(crate) use sample::{Sample, jackknife_95};
 pub use verdict::Verdict;
 pub(crate) use verdict::{judged, without_seed, wrong_signs};
 

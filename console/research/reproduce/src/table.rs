@@ -54,10 +54,14 @@ fn account(rows: &[Row]) -> String {
     let count =
         |words: &str| printed.iter().filter(|row| row.verdict.is_some_and(|v| v.words() == words)).count();
     if !printed.is_empty() {
+        let fitted = match count("fitted") {
+            0 => String::new(),
+            n => format!(", {n} as near by a number or a layout that was fitted to them"),
+        };
         let _ = writeln!(
             text,
             "{} rows with a printed value: {} reproduced (within 5 %, or in the interval of one draw where one is printed), {} \
-             better, {} not reproduced",
+             better, {} not reproduced{fitted}",
             printed.len(),
             count("reproduced"),
             count("better"),

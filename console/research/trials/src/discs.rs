@@ -2,7 +2,7 @@
 
 use planner_api::{Obstacle, Outline};
 use world::{
-    Boundary, Point, Shape, Vector, polyline,
+    Boundary, ObstacleId, Point, Shape, Vector, World, polyline,
     shortest::{GrownFloor, NoWay, Way},
 };
 
@@ -15,6 +15,18 @@ pub fn obstacles(discs: &[(Point, f64)]) -> Vec<Obstacle<'static>> {
         velocity_m_per_s: Vector::zeros(),
     };
     discs.iter().enumerate().map(obstacle).collect()
+}
+
+/// The discs as the drawing of a tank has them; ids from 0, named `C0` and so on.
+pub fn world(boundary: Boundary, discs: &[(Point, f64)]) -> World {
+    let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| world::Obstacle {
+        id: ObstacleId(id as u32),
+        name: format!("C{id}"),
+        shape: Shape::Disc { center, radius_m },
+        known: true,
+    };
+    let obstacles = discs.iter().enumerate().map(obstacle).collect();
+    World { boundary, obstacles, stations: Vec::new(), zones: Vec::new() }
 }
 
 /// Distance from a place to the nearest disc, metres; negative inside one, infinite without discs.

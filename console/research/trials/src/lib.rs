@@ -21,7 +21,7 @@ pub use amphibious::AmphibiousLayout;
 pub use entanglement::Entanglement;
 pub use paper::{Distribution, Sampling};
 pub use scan::Scan;
-pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score};
+pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score, score_paired, targets_ahead};
 pub use spiral::Layout;
 pub use traps::Trap;
 pub use walk::WalkOutcome;

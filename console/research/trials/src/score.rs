@@ -50,14 +50,19 @@ pub struct Safety {
 
 /// The figures of a path whose k-th point belongs to the k-th preset point.
 pub fn score(path: &[Point], preset: &[Point]) -> Score {
-    let lags: Vec<f64> = path.iter().zip(preset).skip(1).map(|(p, q)| (p - q).norm()).collect();
+    score_paired(path, preset, preset)
+}
+
+/// The figures of a path whose k-th point belongs to the k-th of `targets`, which are preset points.
+pub fn score_paired(path: &[Point], targets: &[Point], preset: &[Point]) -> Score {
+    let lags: Vec<f64> = path.iter().zip(targets).skip(1).map(|(p, q)| (p - q).norm()).collect();
     let offs = cross_track_m(path, preset);
-    let (precision, recall) = precision_recall(path, preset, CORRECT_M);
+    let (precision, n_correct) = correct(path, targets, CORRECT_M);
     let n_covered = preset.iter().filter(|q| is_covered(path, **q)).count();
     let n_preset = preset.len().max(1) as f64;
     Score {
         precision,
-        recall,
+        recall: n_correct / n_preset,
         rmse_m: root_mean_square(&lags),
         worst_m: lags.iter().copied().fold(0.0, f64::max),
         covered: n_covered as f64 / n_preset,
@@ -70,9 +75,27 @@ pub fn score(path: &[Point], preset: &[Point]) -> Score {
 /// Share of planned points within `correct_m` of the preset point of the same index, and the number of them as a share
 /// of the preset points: the paper's P and R for its `T0`.
 pub fn precision_recall(path: &[Point], preset: &[Point], correct_m: f64) -> (f64, f64) {
+    let (precision, n_correct) = correct(path, preset, correct_m);
+    (precision, n_correct / preset.len().max(1) as f64)
+}
+
+/// The preset points that a walk was bound for whose target was always the one behind the nearest ahead: one for each
+/// point of the path, which begins at the first.
+pub fn targets_ahead(path: &[Point], preset: &[Point]) -> Vec<Point> {
+    let mut index = 0;
+    let mut targets: Vec<Point> = preset.first().copied().into_iter().collect();
+    for at in &path[..path.len().saturating_sub(1)] {
+        index = (polyline::nearest_ahead(preset, index, *at) + 1).min(preset.len().saturating_sub(1));
+        targets.extend(preset.get(index));
+    }
+    targets
+}
+
+/// Share and number of planned points within `correct_m` of their target, the start aside.
+fn correct(path: &[Point], targets: &[Point], correct_m: f64) -> (f64, f64) {
     let is_correct = |(p, q): &(&Point, &Point)| (*p - *q).norm() <= correct_m;
-    let n_correct = path.iter().zip(preset).skip(1).filter(is_correct).count() as f64;
-    (n_correct / path.len().saturating_sub(1).max(1) as f64, n_correct / preset.len().max(1) as f64)
+    let n_correct = path.iter().zip(targets).skip(1).filter(is_correct).count() as f64;
+    (n_correct / path.len().saturating_sub(1).max(1) as f64, n_correct)
 }
 
 /// Clearances and turns of a path in a round tank with columns (centre and radius).
@@ -220,6 +243,18 @@ mod tests {
         let score = score(&path, &preset);
         assert!((score.rmse_m - 0.3).abs() < 1e-12 && (score.cross_track_rmse_m - 0.3).abs() < 1e-12);
         assert!(score.precision == 0.0 && score.covered == 0.0 && score.cross_track_precision == 0.0);
+    }
+
+    #[test]
+    fn a_walk_that_skips_preset_points_is_paired_with_those_that_it_was_bound_for() {
+        let preset = line(50);
+        // From the first to the second, then 0.5 m ahead, and on from there.
+        let path = [0.0, 0.1, 0.6, 0.7].map(|x| Point::new(x, 0.0));
+        let targets = targets_ahead(&path, &preset);
+        let expected = [0, 1, 2, 7].map(|index| preset[index]);
+        assert_eq!(targets, expected);
+        let score = score_paired(&path, &targets, &preset);
+        assert!((score.precision - 2.0 / 3.0).abs() < 1e-12 && (score.recall - 2.0 / 50.0).abs() < 1e-12);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::discs;
 use planner_api::{Limits, Motion, Site};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use world::{Boundary, Obstacle, ObstacleId, Point, Shape, Vector, World, shape::rectangle};
+use world::{Boundary, Point, Vector, World, shape::rectangle};
 
 /// Width of the floor scanned in one pass, metres.
 pub const SWATH_M: f64 = 0.6;
@@ -135,14 +135,7 @@ impl Tank {
 
     /// The tank as the world has it.
     pub fn world(&self) -> World {
-        let obstacle = |(id, &(center, radius_m)): (usize, &(Point, f64))| Obstacle {
-            id: ObstacleId(id as u32),
-            name: format!("C{id}"),
-            shape: Shape::Disc { center, radius_m },
-            known: true,
-        };
-        let obstacles = self.columns.iter().enumerate().map(obstacle).collect();
-        World { boundary: self.boundary.clone(), obstacles, stations: Vec::new(), zones: Vec::new() }
+        discs::world(self.boundary.clone(), &self.columns)
     }
 }
 

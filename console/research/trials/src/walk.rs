@@ -20,14 +20,14 @@ pub struct WalkOutcome {
     pub arrives: bool,
     /// Stood still for 25 moves while its preset point went on.
     pub is_trapped: bool,
-    /// Furthest distance to the preset point of the same index, metres.
+    /// Furthest distance to the preset point that a planned point belongs to, metres.
     pub lag_m: f64,
 }
 
 impl WalkOutcome {
-    /// The outcome of a walk whose k-th point belongs to the k-th preset point.
-    pub fn of(path: &[Point], preset: &[Point]) -> Self {
-        let lags: Vec<f64> = path.iter().zip(preset).map(|(p, q)| (p - q).norm()).collect();
+    /// The outcome of a walk whose k-th point belongs to the k-th of `targets`, which are preset points.
+    pub fn of(path: &[Point], targets: &[Point], preset: &[Point]) -> Self {
+        let lags: Vec<f64> = path.iter().zip(targets).map(|(p, q)| (p - q).norm()).collect();
         let stands = |k: usize| {
             (path[k + TRAP_MOVES] - path[k]).norm() < TRAP_GAIN_M
                 && lags[k..=k + TRAP_MOVES].iter().all(|lag| *lag > TRAP_LAG_M)
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn the_preset_path_itself_is_ok() {
         let preset = Spiral::WANG_2023.points();
-        let outcome = WalkOutcome::of(&preset, &preset);
+        let outcome = WalkOutcome::of(&preset, &preset, &preset);
         assert!(outcome.is_ok() && outcome.lag_m == 0.0);
     }
 
@@ -62,7 +62,7 @@ mod tests {
     fn a_walk_that_stays_where_it_is_is_trapped() {
         let preset = Spiral::WANG_2023.points();
         let path: Vec<Point> = preset.iter().enumerate().map(|(k, p)| preset[k.min(300)] + (p - p)).collect();
-        let outcome = WalkOutcome::of(&path, &preset);
+        let outcome = WalkOutcome::of(&path, &preset, &preset);
         assert!(outcome.is_trapped && !outcome.arrives && !outcome.is_ok());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{guide::GuideBy, window::Weights};
-use field::{GoalLaw, Pull, TangentUse, virtual_goals::SquareLaw};
+use field::{GoalLaw, Pull, PushForm, TangentUse, virtual_goals::SquareLaw};
 use trials::amphibious::{AmphibiousLayout, Group, HULL_M};
 use world::{Shape, ZoneKind, polyline};
 
@@ -13,6 +13,7 @@ fn settings(by: GuideBy, transition_steps: u32) -> HybridSettings {
     let push = GoalLaw {
         pull: Pull::Linear { k: 15.0 },
         k_rep: 5.0,
+        push: PushForm::Khatib,
         rho_m: 1.0,
         tangent: TangentUse::Off,
         tangent_weight: 0.0,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::thought::{Walked, ahead_of_traps, walk};
-use field::{GoalLaw, NearLaw, Pull, TangentUse};
+use field::{GoalLaw, NearLaw, Pull, PushForm, TangentUse};
 use proptest::prelude::*;
 use trials::traps::{HULL_M, Kind, Trap};
 use world::{Boundary, polyline};
@@ -10,11 +10,20 @@ use world::{Boundary, polyline};
 const MODES: [Mode; 4] = [Mode::Literal, Mode::Hull, Mode::Rollout, Mode::Pre];
 
 fn settings(mode: Mode) -> MachineSettings {
-    let pull = Pull::Logarithm { m: 10.0, trip_m: 40.0, rho_1_m: 1.0, near: NearLaw::Corrected };
+    let pull =
+        Pull::Logarithm { m: 10.0, trip_m: 40.0, k: None, n: None, rho_1_m: 1.0, near: NearLaw::Corrected };
     let (tangent, tangent_weight) = (TangentUse::Blocking, 1.0);
     MachineSettings {
         mode,
-        law: GoalLaw { pull, k_rep: 10.0, rho_m: 2.0, tangent, tangent_weight, wall_gain: 0.1 },
+        law: GoalLaw {
+            pull,
+            k_rep: 10.0,
+            push: PushForm::Khatib,
+            rho_m: 2.0,
+            tangent,
+            tangent_weight,
+            wall_gain: 0.1,
+        },
         step_m: 0.05,
         margin_m: 0.14,
         taut_margin_m: 0.05,

@@ -90,6 +90,27 @@ fn the_gated_reading_has_the_figures_of_the_study() {
 }
 
 #[test]
+fn ahead_of_the_nearest_point_a_plan_skips_points_after_a_detour_and_only_then() {
+    let by_force =
+        [("k_rep", 100.0), ("repulsion", 0.0), ("gate", 2.0), ("push_form", 1.0), ("move_length", 1.0)];
+    let lock_step = with(&PAPER, &by_force);
+    let ahead = with(&lock_step, &[("targets", 1.0)]);
+    let among = Layout::of_the_paper(3, 39, true);
+    assert!(plan(&among, &ahead).path.len() < plan(&among, &lock_step).path.len());
+    let empty = paper_tank(&[]);
+    assert_eq!(plan(&empty, &ahead).path, plan(&empty, &lock_step).path);
+}
+
+#[test]
+fn what_replaces_the_push_frees_more_walks() {
+    // Opposed forces and a rotation that replaces both: the reading K1 of the study.
+    let k1 = [("k_rep", 100.0), ("gate", 2.0), ("push_form", 1.0), ("push_of", 1.0), ("targets", 1.0)];
+    let k1 = with(&with(&PAPER, &GATED), &with(&k1, &[("move_length", 1.0), ("beside", 2.0)]));
+    let (gated, k1) = (mean_score(&with(&PAPER, &GATED), 6), mean_score(&k1, 6));
+    assert!(k1.cross_track_rmse_m < gated.cross_track_rmse_m, "{k1:?} {gated:?}");
+}
+
+#[test]
 fn all_gains_together_do_not_change_the_path() {
     let layout = Layout::of_the_paper(3, 39, false);
     let gains = |k: f64| with(&PAPER[3..], &[("k_att", k), ("k_rep", k), ("k_rot", k)]);

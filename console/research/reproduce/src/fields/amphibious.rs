@@ -1,11 +1,14 @@
 //! Yang et al. 2021, Figs 12 to 15: the hybrid planner from water to land.
 
-use crate::study::{Block, Job, Method, Planners, Result, Row, Sample, StudyError};
+use crate::study::{Block, Job, Method, Planners, Result, Row, Runner, Sample, StudyError};
 use planner_api::Task;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_4;
-use trials::amphibious::{AmphibiousLayout, Group};
-use world::{Amphibious, Medium, Mode, Point, Pose, Shape, Zone, ZoneKind, polyline};
+use trials::{
+    amphibious::{AmphibiousLayout, Group, HULL_M},
+    discs,
+};
+use world::{Amphibious, Boundary, Medium, Mode, Point, Pose, Shape, Zone, ZoneKind, polyline};
 
 /// Steps of transition compared; the paper has none and 20.
 const TRANSITIONS: [u32; 3] = [0, 20, 60];
@@ -56,7 +59,7 @@ pub(super) fn hybrid(job: &Job<'_>) -> Result<Vec<Row>> {
     let runs: Vec<(Group, &Entry)> =
         groups.iter().flat_map(|group| entries.iter().map(move |entry| (*group, entry))).collect();
     let measured = job.runner.grid(&runs, &job.seeds(), |planners, (group, entry), seed| {
-        measure(planners, entry, *group, *seed)
+        measure(job.runner, planners, entry, (*group, *seed))
     })?;
     let mut rows = Vec::new();
     for (group, measured) in groups.iter().zip(measured.chunks(entries.len())) {
@@ -78,7 +81,12 @@ pub(super) fn hybrid(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn measure(planners: &Planners, entry: &Entry, group: Group, seed: u64) -> Result<Measured> {
+fn measure(
+    runner: &Runner<'_>,
+    planners: &Planners,
+    entry: &Entry,
+    (group, seed): (Group, u64),
+) -> Result<Measured> {
     let layout = AmphibiousLayout::random(group, seed);
     let (corners, obstacles) = (AmphibiousLayout::corners(), layout.obstacles());
     let water = AmphibiousLayout::water();
@@ -87,6 +95,10 @@ fn measure(planners: &Planners, entry: &Entry, group: Group, seed: u64) -> Resul
     let start = Pose { position: layout.start, heading_rad: FRAC_PI_4 };
     let task = Task::Goto { goal: layout.goal, tolerance_m: TOLERANCE_M };
     let planned = planners.plan(&entry.method, start, task, &site)?;
+    if let Some(gallery) = runner.gallery() {
+        let world = discs::world(Boundary::Polygon { vertices: corners.clone() }, &layout.discs);
+        gallery.add_path((group.id(), seed, &entry.method.id), &world, HULL_M, None, &planned.plan);
+    }
     let path = planned.path();
     let length_m = polyline::length_m(path);
     let shortest = layout.shortest_path();

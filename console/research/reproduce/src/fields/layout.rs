@@ -1,13 +1,16 @@
 //! A floor with discs, a start and a goal, and what a planner makes of it.
 
-use crate::study::{Block, Method, Planned, Planners, Result, Row, StudyError};
-use planner_api::{Boundary, Limits, Motion, Site, Task};
+use super::flown::{Flown, Trip, fly};
+use crate::study::{Block, Method, Planned, Planners, Result, Row, Runner, StudyError};
+use planner_api::{Boundary, Limits, Motion, Obstacle, Site, Task};
 use serde::{Deserialize, Serialize};
 use trials::discs;
-use world::{Point, Pose, Vector, polyline, shape::rectangle};
+use world::{Boundary as WallOf, Point, Pose, Vector, polyline, shape::rectangle};
 
 /// The wall stands this far from everything: the papers have none, metres.
 const WALL_OFF_M: f64 = 20.0;
+/// A flight ends this near to the goal, metres.
+const FLOWN_TOLERANCE_M: f64 = 0.1;
 /// Every plan is made this many times, and the fastest counts.
 const TIMED: usize = 5;
 
@@ -59,10 +62,37 @@ impl GotoLayout {
 
     fn plan(&self, planners: &Planners, method: &Method) -> Result<Planned> {
         let (corners, obstacles) = (self.corners(), discs::obstacles(&self.discs));
-        let site = Site {
+        let task = Task::Goto { goal: self.goal, tolerance_m: self.tolerance_m };
+        planners.plan(method, self.start(), task, &self.site(&corners, &obstacles))
+    }
+
+    /// Lets a planner fly it for so many seconds at most, at a metre a second.
+    ///
+    /// # Errors
+    /// The planner is missing, refuses its parameters or broke down.
+    pub(super) fn fly(&self, planners: &Planners, method: &Method, most_s: f64) -> Result<Flown> {
+        let (corners, obstacles) = (self.corners(), discs::obstacles(&self.discs));
+        let (start, goal) = (self.start(), self.goal);
+        let trip = Trip { start, goal, tolerance_m: FLOWN_TOLERANCE_M, most_s };
+        fly(planners, method, &self.site(&corners, &obstacles), &trip)
+    }
+
+    /// Draws a plan, if plans are to be drawn.
+    pub(super) fn draw(&self, runner: &Runner<'_>, method: &Method, measured: &Measured) {
+        let Some(gallery) = runner.gallery() else { return };
+        let world = discs::world(WallOf::Polygon { vertices: self.corners() }, &self.discs);
+        gallery.add_path((self.id, 0, &method.id), &world, self.hull_m, None, &measured.planned.plan);
+    }
+
+    fn start(&self) -> Pose {
+        Pose { position: self.start, heading_rad: 0.0 }
+    }
+
+    fn site<'a>(&self, corners: &'a [Point], obstacles: &'a [Obstacle<'a>]) -> Site<'a> {
+        Site {
             revision: 0,
-            boundary: Boundary::Polygon { vertices: &corners },
-            obstacles: &obstacles,
+            boundary: Boundary::Polygon { vertices: corners },
+            obstacles,
             zones: &[],
             limits: Limits {
                 motion: Motion::Point,
@@ -77,10 +107,7 @@ impl GotoLayout {
             swath_m: 1.0,
             clearance_m: 0.0,
             seed: 0,
-        };
-        let start = Pose { position: self.start, heading_rad: 0.0 };
-        let task = Task::Goto { goal: self.goal, tolerance_m: self.tolerance_m };
-        planners.plan(method, start, task, &site)
+        }
     }
 
     fn measured(&self, planned: Planned) -> Result<Measured> {

@@ -116,7 +116,11 @@ fn rows(job: &Job<'_>, cases: Vec<Case>) -> Result<Vec<Row>> {
         let methods = job.methods(methods(case), |method| method.id.clone())?;
         runs.extend(methods.into_iter().map(|method| (case, method)));
     }
-    let measured = job.runner.map(&runs, |planners, (case, method)| case.layout.measure(planners, method))?;
+    let measured = job.runner.map(&runs, |planners, (case, method)| {
+        let measured = case.layout.measure(planners, method)?;
+        case.layout.draw(job.runner, method, &measured);
+        Ok(measured)
+    })?;
     let of_run = |((case, method), measured): (&(&Case, Method), &Measured)| {
         case.rows(&job.block(case.layout.id, &method.id, method.note), measured)
     };
@@ -130,7 +134,10 @@ impl Case {
             _ => self.traditional,
         };
         let with_printed = |row: Row| match row.metric.as_str() {
-            "length_m" => row.printed(length_m).note(format!("{}. {}", self.note, block.note)),
+            "length_m" => {
+                let row = row.printed(length_m).note(format!("{}. {}", self.note, block.note));
+                if self.note == TUNED { row.fitted() } else { row }
+            }
             "success_rate" => row.printed(f64::from(u8::from(arrives))),
             "plan_time_ms" => row.printed(1e3 * time_s),
             _ => row,

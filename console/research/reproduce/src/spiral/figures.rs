@@ -2,9 +2,8 @@
 
 use super::{
     group::CLEARANCE_M,
-    method::Pairing,
+    method::{Pairing, Set},
     plans::{Measured, Run},
-    printed::Printed,
 };
 use crate::study::{Block, Row, Sample};
 
@@ -33,7 +32,7 @@ impl Success {
 /// All rows of the plans of a run.
 pub(super) fn rows(block: &Block<'_>, run: &Run, plans: &[Measured], success: Success) -> Vec<Row> {
     let mut rows = outcome(block, plans, success);
-    rows.extend(tracking(block, plans, run.printed, run.pairing));
+    rows.extend(tracking(block, plans, run));
     rows.extend(safety(block, plans));
     let times: Sample = plans.iter().map(|plan| plan.planned.plan_time_ms).collect();
     rows.extend(block.mean_and_median("plan_time_ms", &times, "ms"));
@@ -63,15 +62,20 @@ fn outcome(block: &Block<'_>, plans: &[Measured], success: Success) -> Vec<Row> 
     ]
 }
 
-fn tracking(block: &Block<'_>, plans: &[Measured], printed: Option<Printed>, pairing: Pairing) -> Vec<Row> {
+fn tracking(block: &Block<'_>, plans: &[Measured], run: &Run) -> Vec<Row> {
+    let printed = run.printed;
     let mut rows = Vec::new();
     let mut add = |metric, figure: fn(&Measured) -> f64, unit, paper: Option<f64>| {
         let sample = with_path(plans).map(figure).collect();
-        rows.extend(block.mean_and_median(metric, &sample, unit).map(|row| row.printed(paper)));
+        let with_printed = |row: Row| {
+            let row = row.printed(paper);
+            if run.set == Set::Text { row } else { row.fitted() }
+        };
+        rows.extend(block.mean_and_median(metric, &sample, unit).map(with_printed));
     };
     let (precision, rmse_m) = (printed.map(|p| p.precision), printed.map(|p| p.rmse_m));
-    match pairing {
-        Pairing::Index => {
+    match run.pairing {
+        Pairing::Index | Pairing::Ahead => {
             add("precision", |p| p.score.precision, "", precision);
             add("recall", |p| p.score.recall, "", printed.map(|p| p.recall));
             add("rmse", |p| p.score.rmse_m, "m", rmse_m);

@@ -1,6 +1,9 @@
 //! The paper's methods as planners of ours with their parameters.
 
-use super::printed::{self, Printed};
+use super::{
+    fit::Pair,
+    printed::{self, Printed},
+};
 use crate::study::Method;
 
 /// A column of a table.
@@ -12,6 +15,17 @@ pub(super) struct Entry {
     pub printed: [Option<Printed>; 3],
     /// Which preset point a planned point belongs to.
     pub pairing: Pairing,
+    /// To which methods it belongs.
+    pub set: Set,
+}
+
+/// Methods that are planned and told together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Set {
+    /// Those of the text, and ours.
+    Text,
+    /// Those of a reading of this name, which was selected on the printed table for obstacles drawn in the square.
+    Reading(String),
 }
 
 /// Which preset point a planned point is compared with.
@@ -19,13 +33,15 @@ pub(super) struct Entry {
 pub(super) enum Pairing {
     /// That of the same index, as the paper's formulas have it.
     Index,
+    /// That which it was bound for, where the target is always the one behind the nearest ahead.
+    Ahead,
     /// The nearest place of the preset path ahead; for paths with points of their own.
     Forward,
 }
 
 const RECONSTRUCTED: &str = "the cited source is not available: reconstructed from one sentence";
 const GATED: &str =
-    "rotating force only in a trap; nearest to the printed level, though the text has it always on";
+    "rotating force only in a trap of our detector and ten moves on, though the text has it always on";
 const FORWARD: &str = "reactive: points of its own, compared with the nearest place of the preset path ahead";
 const LITERAL: &str = "rotating force always on, as the text has it; cannot give the printed figures";
 
@@ -35,7 +51,8 @@ pub(super) fn of_table1() -> Vec<Entry> {
         let rows = if improved { &printed::TABLE1_IMPROVED } else { &printed::TABLE1_CLASSIC };
         let entry = |id: &str, reading, row: Option<usize>, note| {
             let printed = row.map_or([None; 3], |row| rows[row].map(Some));
-            Entry { method: method(id, reading, improved, note), printed, pairing: Pairing::Index }
+            let pairing = Pairing::Index;
+            Entry { method: method(id, reading, improved, note), printed, pairing, set: Set::Text }
         };
         [
             entry("apf", None, None, "fails in the paper too"),
@@ -48,11 +65,19 @@ pub(super) fn of_table1() -> Vec<Entry> {
     [both(false), both(true)].concat()
 }
 
+/// The two readings of the text against our reconstruction of IAPF.
+pub(super) fn pairs() -> [Pair; 2] {
+    [("gated", GATED), ("literal", LITERAL)].map(|(name, note)| Pair {
+        name: name.to_owned(),
+        ids: ["vt".to_owned(), "iapf".to_owned(), format!("rpf/{name}")],
+        note: note.to_owned(),
+    })
+}
+
 fn method(planner: &str, reading: Option<&str>, improved: bool, note: &'static str) -> Method {
     let reading_id = reading.map(|reading| format!("/{reading}")).unwrap_or_default();
     let id = format!("{planner}{reading_id}{}", if improved { "+ir" } else { "" });
-    let gains = [("k_att", 200.0), ("k_rep", 200.0), ("step_m", 0.2), ("wall_gain", 0.0)];
-    let method = gains.iter().fold(Method::new(id, planner, note), |m, (key, value)| m.number(key, *value));
+    let method = base(Method::new(id, planner, note));
     let method = method.word("repulsion", if improved { "improved" } else { "classic" });
     let Some(reading) = reading else { return method };
     let words = [
@@ -64,6 +89,12 @@ fn method(planner: &str, reading: Option<&str>, improved: bool, note: &'static s
     words.iter().fold(method, |m, (key, word)| m.word(key, word)).number("k_rot", 200.0)
 }
 
+/// With the gains of Table 1.
+pub(super) fn base(method: Method) -> Method {
+    let gains = [("k_att", 200.0), ("k_rep", 200.0), ("step_m", 0.2), ("wall_gain", 0.0)];
+    gains.iter().fold(method, |method, (key, value)| method.number(key, *value))
+}
+
 /// The rotating field with improved repulsion and the gains of Table 2.
 pub(super) fn of_table2(k_att: f64, rho_0_m: f64, note: &'static str) -> Method {
     let gains = [("k_att", k_att), ("k_rot", k_att), ("k_rep", 100.0), ("rho_0_m", rho_0_m)];
@@ -73,7 +104,7 @@ pub(super) fn of_table2(k_att: f64, rho_0_m: f64, note: &'static str) -> Method 
 
 /// Our own followers; the lattice also without its turn limit, which shows what the limit costs.
 pub(super) fn followers() -> Vec<Entry> {
-    let entry = |method, pairing| Entry { method, printed: [None; 3], pairing };
+    let entry = |method, pairing| Entry { method, printed: [None; 3], pairing, set: Set::Text };
     let lattice = |id: &str, note| Method::new(id, "spiral-lattice", note);
     vec![
         entry(lattice("spiral-lattice", ""), Pairing::Index),

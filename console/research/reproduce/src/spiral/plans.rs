@@ -2,14 +2,14 @@
 
 use super::{
     group::{CLEARANCE_M, Group},
-    method::{Entry, Pairing},
+    method::{Entry, Pairing, Set},
     printed::Printed,
 };
-use crate::study::{Block, Job, Method, Planned, Planners, Result, Runner, StudyError};
+use crate::study::{Block, Gallery, Job, Method, Planned, Planners, Result, Runner, StudyError};
 use planner_api::{Motion, Task};
 use serde::{Deserialize, Serialize};
-use trials::{Layout, Safety, Score, WalkOutcome, floor_rmse_m, safety, score};
-use world::Pose;
+use trials::{Layout, Safety, Score, WalkOutcome, discs, floor_rmse_m, safety, score_paired, targets_ahead};
+use world::{Boundary, Pose};
 
 /// The spiral is at its end this near to the centre, metres; the paper's `d0`.
 const TOLERANCE_M: f64 = 0.2;
@@ -30,12 +30,14 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    fn of(planned: Planned, layout: &Layout) -> Self {
+    fn of(planned: Planned, layout: &Layout, pairing: Pairing) -> Self {
         let path = planned.path();
+        let ahead = (pairing == Pairing::Ahead).then(|| targets_ahead(path, &layout.path));
+        let targets = ahead.as_ref().unwrap_or(&layout.path);
         Self {
-            score: score(path, &layout.path),
+            score: score_paired(path, targets, &layout.path),
             safety: safety(path, &layout.path, &layout.columns, layout.radius_m),
-            walk: WalkOutcome::of(path, &layout.path),
+            walk: WalkOutcome::of(path, targets, &layout.path),
             floor_m: floor_rmse_m(&layout.path, &layout.columns, CLEARANCE_M),
             planned,
         }
@@ -59,6 +61,8 @@ pub(super) struct Run {
     pub printed: Option<Printed>,
     /// Which preset point a planned point belongs to.
     pub pairing: Pairing,
+    /// To which methods it belongs.
+    pub set: Set,
 }
 
 impl Run {
@@ -70,7 +74,8 @@ impl Run {
             method = method.number("rho_0_m", group.distribution.rho_0_m());
         }
         let printed = entry.printed[group.column()];
-        Self { case: group.id(), method, group, printed, pairing: entry.pairing }
+        let set = entry.set.clone();
+        Self { case: group.id(), method, group, printed, pairing: entry.pairing, set }
     }
 
     /// The rows of the run.
@@ -78,7 +83,7 @@ impl Run {
         job.block(&self.case, &self.method.id, self.method.note)
     }
 
-    fn plan(&self, planners: &Planners, seed: u64) -> Result<Measured> {
+    fn plan(&self, planners: &Planners, seed: u64, gallery: Option<&Gallery>) -> Result<Measured> {
         let layout = self.group.distribution.layout(self.group.sampling, seed, CLEARANCE_M);
         let obstacles = layout.obstacles();
         let site = layout.site(&obstacles, Motion::Point);
@@ -86,11 +91,18 @@ impl Run {
         let task = Task::Follow { targets: &layout.path, tolerance_m: TOLERANCE_M };
         let planned = planners.plan(&self.method, start, task, &site);
         let in_case = |e: StudyError| e.in_case(format!("{} seed {seed}, {}", self.case, self.method.id));
-        Ok(Measured::of(planned.map_err(in_case)?, &layout))
+        let measured = Measured::of(planned.map_err(in_case)?, &layout, self.pairing);
+        if let Some(gallery) = gallery {
+            let wall = Boundary::Circle { radius_m: layout.radius_m };
+            let world = discs::world(wall, &layout.columns);
+            let name = (&*self.case, seed, &*self.method.id);
+            gallery.add_path(name, &world, CLEARANCE_M, Some(&layout.path), &measured.planned.plan);
+        }
+        Ok(measured)
     }
 }
 
 /// Plans every run on every layout; one list for each run, in the order of the seeds.
 pub(super) fn plan_all(runner: &Runner<'_>, seeds: &[u64], runs: &[Run]) -> Result<Vec<Vec<Measured>>> {
-    runner.grid(runs, seeds, |planners, run, seed| run.plan(planners, *seed))
+    runner.grid(runs, seeds, |planners, run, seed| run.plan(planners, *seed, runner.gallery()))
 }

@@ -29,6 +29,14 @@ pub(super) const TABLE1_IMPROVED: [[Printed; 3]; 3] = [
     [printed(86.04, 78.16, 28.63), printed(92.11, 87.20, 13.65), printed(95.06, 91.76, 11.39)],
 ];
 
+/// What Table 1 prints for a method by its id, `rpf/K1+ir`, and a column.
+pub(super) fn table1(id: &str, column: usize) -> Option<Printed> {
+    let rows = if id.ends_with("+ir") { TABLE1_IMPROVED } else { TABLE1_CLASSIC };
+    let planner = id.trim_end_matches("+ir").split('/').next()?;
+    let row = ["vt", "iapf", "rpf"].iter().position(|known| *known == planner)?;
+    Some(rows[row][column])
+}
+
 /// Sec. 3.2: time of a plan of RPF and of IAPF with improved repulsion in MATLAB, milliseconds.
 pub(super) const PLAN_TIME_MS: [(&str, f64); 2] = [("rpf/gated+ir", 400.0), ("iapf+ir", 380.0)];
 
@@ -97,6 +105,13 @@ mod tests {
         let (iapf, rpf) = (mean_rmse_m(TABLE1_CLASSIC[1]), mean_rmse_m(TABLE1_CLASSIC[2]));
         assert!((1.0 - rpf / iapf - 0.0865).abs() < 5e-4, "of the old value");
         assert!((iapf / rpf - 1.0 - 0.0949).abs() < 5e-4, "as printed, of the new value");
+    }
+
+    #[test]
+    fn a_method_has_the_line_of_its_planner_whatever_its_reading() {
+        assert_eq!(table1("rpf/K1+ir", 1), Some(TABLE1_IMPROVED[2][1]));
+        assert_eq!(table1("vt", 0), Some(TABLE1_CLASSIC[0][0]));
+        assert_eq!(table1("apf", 0), None);
     }
 
     #[test]

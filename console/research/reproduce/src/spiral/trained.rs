@@ -3,7 +3,7 @@
 use super::{
     figures::{Success, rows},
     group::{CLEARANCE_M, Group},
-    method::Pairing,
+    method::{Pairing, Set},
     plans::{Measured, Run, plan_all},
 };
 use crate::study::{Block, Method, Result, Row, Runner};
@@ -20,7 +20,8 @@ pub(crate) struct Trained {
 impl Trained {
     /// Lets a planner plan the layouts of these seeds.
     pub(crate) fn new(runner: &Runner<'_>, seeds: &[u64], method: Method, group: Group) -> Result<Self> {
-        let run = Run { case: group.id(), method, group, printed: None, pairing: Pairing::Index };
+        let run =
+            Run { case: group.id(), method, group, printed: None, pairing: Pairing::Index, set: Set::Text };
         let plans = plan_all(runner, seeds, std::slice::from_ref(&run))?.pop().unwrap_or_default();
         Ok(Self { run, plans })
     }

@@ -1,11 +1,19 @@
 //! Plans of a study, drawn into a folder.
 
 use super::error::{Result, StudyError};
-use report::drawing::plan::{Drawn, svg};
+use planner_api::Plan;
+use report::{
+    drawing::{
+        curves::{self, Curves},
+        plan::{Drawn, svg},
+    },
+    leg::legs,
+};
 use std::{
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
 };
+use world::{Point, World};
 
 /// A folder of drawings, and the first reason why one could not be written.
 pub struct Gallery {
@@ -27,9 +35,43 @@ impl Gallery {
     }
 
     /// Draws the plan of a method for a case and seed into a file of its own.
-    pub(crate) fn add(&self, (case, seed, method): (&str, u64, &str), drawn: &Drawn<'_>) {
-        let file = self.folder.join(format!("{case}-{seed}-{}.svg", method.replace('/', "-")));
-        if let Err(error) = std::fs::write(&file, svg(drawn)) {
+    pub(crate) fn add(&self, name: (&str, u64, &str), drawn: &Drawn<'_>) {
+        self.write(name, &svg(drawn));
+    }
+
+    /// Draws the path of a plan among obstacles, with the preset path if there is one; the hull needs `room_m`.
+    pub(crate) fn add_path(
+        &self,
+        name: (&str, u64, &str),
+        world: &World,
+        room_m: f64,
+        preset: Option<&[Point]>,
+        plan: &Plan,
+    ) {
+        let legs = legs(plan);
+        let drawn = Drawn {
+            world,
+            room_m,
+            swath_m: 0.0,
+            preset,
+            anchor: None,
+            path: &plan.path,
+            legs: &legs,
+            cuts: &plan.cuts,
+            cable: &[],
+        };
+        self.add(name, &drawn);
+    }
+
+    /// Draws curves of a method for a case and seed into a file of its own.
+    pub(crate) fn add_curves(&self, name: (&str, u64, &str), curves: &Curves<'_>) {
+        self.write(name, &curves::svg(curves));
+    }
+
+    fn write(&self, (case, seed, method): (&str, u64, &str), svg: &str) {
+        let name = format!("{case}-{seed}-{method}.svg").replace('/', "-");
+        let file = self.folder.join(name);
+        if let Err(error) = std::fs::write(&file, svg) {
             let why = format!("a drawing cannot be written: {error}: {}", file.display());
             // A thread that panicked while holding the lock has already been reported.
             let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);

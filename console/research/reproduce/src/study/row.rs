@@ -47,6 +47,9 @@ pub struct Row {
     /// Whether it is a claim of the paper, whose sign counts.
     #[serde(default)]
     pub is_claim: bool,
+    /// Whether a number or a layout behind ours was fitted to the printed values.
+    #[serde(default)]
+    pub is_fitted: bool,
 }
 
 fn is_seeded() -> bool {
@@ -72,6 +75,11 @@ impl Row {
     /// With the printed value.
     pub(crate) fn printed(self, paper: impl Into<Option<f64>>) -> Self {
         Self { paper: paper.into(), ..self }
+    }
+
+    /// As one behind which a number or a layout was fitted to the printed values: agreement is no confirmation.
+    pub(crate) fn fitted(self) -> Self {
+        Self { is_fitted: true, ..self }
     }
 
     /// With something that a reader must know, instead of the note of the block.
@@ -115,6 +123,7 @@ impl Block<'_> {
             why: String::new(),
             seeded: true,
             is_claim: false,
+            is_fitted: false,
         }
     }
 

@@ -88,6 +88,19 @@ impl Sample {
     }
 }
 
+/// 95 % interval of a figure of `n` draws by what it is without each of them.
+pub(crate) fn jackknife_95(
+    figure: f64,
+    n: usize,
+    without: impl Fn(Option<usize>) -> Option<f64>,
+) -> Option<[f64; 2]> {
+    let others: Vec<f64> = (0..n).filter_map(|index| without(Some(index))).collect();
+    let mean = others.iter().copied().collect::<Sample>().mean().filter(|_| n > 1 && others.len() == n)?;
+    let squares: f64 = others.iter().map(|other| (other - mean).powi(2)).sum();
+    let half = 1.96 * (squares * (n - 1) as f64 / n as f64).sqrt();
+    Some([figure - half, figure + half])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,5 +130,18 @@ mod tests {
         let sample = Sample::default();
         assert!(sample.is_empty());
         assert_eq!([sample.mean(), sample.median(), sample.max(), sample.mean_margin_95()], [None; 4]);
+    }
+
+    #[test]
+    fn the_interval_of_a_mean_without_each_value_is_that_of_the_mean() {
+        let values = [1.0, 2.0, 4.0, 9.0];
+        let mean = |without: Option<usize>| {
+            let kept = values.iter().enumerate().filter(|(index, _)| Some(*index) != without);
+            kept.map(|(_, value)| *value).collect::<Sample>().mean()
+        };
+        let margin = values.into_iter().collect::<Sample>().mean_margin_95().expect("four values");
+        let [low, high] = jackknife_95(4.0, 4, mean).expect("four values");
+        assert!((low - 4.0 + margin).abs() < 1e-9 && (high - 4.0 - margin).abs() < 1e-9, "{low} {high}");
+        assert_eq!(jackknife_95(4.0, 1, |_| Some(4.0)), None);
     }
 }

@@ -14,6 +14,8 @@ const EQUAL: f64 = 1e-9;
 pub enum Verdict {
     /// Within 5 % of the printed one, or in the interval of a single draw where that is what is printed.
     Reproduced,
+    /// As near, by a number or a layout that was fitted to the printed values.
+    Fitted,
     /// Farther from it, on the good side.
     Better,
     /// Farther from it otherwise.
@@ -25,6 +27,7 @@ impl Verdict {
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
+            Self::Fitted => "fitted",
             Self::Better => "better",
             Self::NotReproduced => "not reproduced",
         }
@@ -77,7 +80,7 @@ fn verdict(row: &Row, paper: f64) -> (Verdict, String) {
     let off = ours - paper;
     let is_within = row.interval_95.is_some_and(|[low, high]| (low..=high).contains(&paper));
     if off.abs() <= (NEAR * paper.abs()).max(EQUAL) || (is_within && row.is_of_one_draw) {
-        return (Verdict::Reproduced, String::new());
+        return (if row.is_fitted { Verdict::Fitted } else { Verdict::Reproduced }, String::new());
     }
     if row.is_claim && ours * paper < 0.0 {
         return (Verdict::NotReproduced, format!("the sign of the claim does not come out: {}", claim(row)));

@@ -5,11 +5,14 @@ use super::{
     measured::{Attempt, Measured, TOLERANCE_M},
     rows::rows,
 };
-use crate::study::{Job, Method, Planners, Result, Row, StudyError};
+use crate::study::{Job, Method, Planners, Result, Row, Runner, StudyError};
 use mission::During;
-use planner_api::Task;
-use trials::traps::{Kind, SIDE_M, Trap};
-use world::Pose;
+use planner_api::{Plan, Task};
+use trials::{
+    discs,
+    traps::{HULL_M, Kind, SIDE_M, Trap},
+};
+use world::{Boundary, Pose};
 
 /// Range within which the discs of an unknown map are discovered, metres.
 const RANGE_M: f64 = 6.0;
@@ -49,7 +52,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Vec<Row>> {
         entries.iter().flat_map(|entry| kinds.iter().map(move |kind| (entry, *kind))).collect();
     let measured = job.runner.grid(&runs, &job.seeds(), |planners, (entry, kind), seed| {
         let method = &entry.method;
-        measure(planners, entry, *kind, *seed)
+        measure(job.runner, planners, entry, (*kind, *seed))
             .map_err(|error| error.in_case(format!("{} seed {seed}, {}", kind.id(), method.id)))
     })?;
     let mut all = Vec::new();
@@ -67,7 +70,12 @@ pub(super) fn run(job: &Job<'_>) -> Result<Vec<Row>> {
 }
 
 /// Asks a method to leave a trap; none if there is no such planner here.
-fn measure(planners: &Planners, entry: &Entry, kind: Kind, seed: u64) -> Result<Option<Measured>> {
+fn measure(
+    runner: &Runner<'_>,
+    planners: &Planners,
+    entry: &Entry,
+    (kind, seed): (Kind, u64),
+) -> Result<Option<Measured>> {
     let trap = Trap::random(kind, seed);
     let attempt = if entry.is_map_known {
         plan(planners, &entry.method, &trap)
@@ -76,7 +84,15 @@ fn measure(planners: &Planners, entry: &Entry, kind: Kind, seed: u64) -> Result<
     };
     match attempt {
         Err(StudyError::Planner { fault, .. }) if fault.during == During::Load => Ok(None),
-        attempt => attempt?.measured(&trap, seed).map(Some),
+        attempt => {
+            let attempt = attempt?;
+            if let Some(gallery) = runner.gallery() {
+                let world = discs::world(Boundary::Polygon { vertices: Trap::corners() }, &trap.discs);
+                let plan = Plan { path: attempt.path.clone(), ..Plan::default() };
+                gallery.add_path((kind.id(), seed, &entry.method.id), &world, HULL_M, None, &plan);
+            }
+            attempt.measured(&trap, seed).map(Some)
+        }
     }
 }
 
