@@ -77,7 +77,9 @@ pub fn of_traps<E>(
             let paper = By::Mode(Mode::Literal);
             tried.push(attempt(paper, machine, start, goal, tolerance_m, &mut check)?.0);
         }
-        walked.path.push(goal);
+        // A goal too near to something is reached within its tolerance.
+        let end = walked.path[walked.path.len() - 1];
+        walked.path.extend(Some(goal).filter(|goal| machine.map.is_free(end, *goal, 0.0)));
         walked.path = taut::pulled(&walked.path, &machine.map, machine.settings.taut_margin_m);
         return Ok(Ahead { walked, tried, news });
     }

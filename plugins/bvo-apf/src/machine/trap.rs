@@ -19,6 +19,8 @@ const AHEAD_RANGES: f64 = 2.0;
 const SAME_PLACE_M: f64 = 1.5;
 /// Another attempt goes on until it is this much nearer to the goal than where it began, metres.
 const GAIN_M: f64 = 1.0;
+/// A way may lie this much further off than its margin, so that rounding does not count against it, metres.
+const ROUNDING_M: f64 = 1e-6;
 
 impl Machine {
     pub(super) fn leave_trap(&mut self, at: Point, goal: Point) {
@@ -86,9 +88,10 @@ impl Machine {
 
     /// Follows the outlines from here on to the goal.
     pub fn follow_outlines(&mut self, at: Point, goal: Point) {
-        let (hull_m, MachineSettings { mode, keep_m, margin_m, .. }) = (self.map.hull_m, self.settings);
-        // A plan may use every gap that the robot fits through; a robot that flies by the outlines needs room.
-        let most_m = if mode == Mode::Pre { keep_m } else { margin_m };
+        let MachineSettings { mode, keep_m, margin_m, taut_margin_m, .. } = self.settings;
+        let hull_m = self.map.hull_m;
+        // A way that is pulled taut may use every gap in which it keeps its margin; a robot that flies needs room.
+        let most_m = if mode == Mode::Pre { taut_margin_m + ROUNDING_M } else { margin_m };
         let follow = Follow::new(goal, self.outline(), Side::Left, hull_m + keep_m, hull_m + most_m);
         self.phase = Phase::Follow(follow);
         self.count_escape(at);
