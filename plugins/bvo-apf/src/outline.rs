@@ -23,7 +23,9 @@ const ROUND_EDGES: u32 = 256;
 /// The id of the edges of the wall; obstacles count up, no-go zones down from the largest number.
 const WALL: u32 = LAST_VIRTUAL;
 
-/// The hand reaches back this far from the last move, radians.
+/// The hand finds an outline that is this much further off than the distance kept, metres.
+const HAND_M: f64 = 0.2;
+/// Where it finds none, it reaches back this far from the last move, radians.
 const HAND_RAD: f64 = 0.6 * PI;
 /// Directions that are tried.
 const DIRECTIONS: u32 = 96;
@@ -44,8 +46,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The outlines of a map, whose solids are joined in clusters by a margin, for a robot that reaches this far in a
-    /// step, metres.
+    /// The outlines of a map, whose solids are joined in clusters by a margin, for a robot that steps and keeps its
+    /// distance within this reach, metres.
     pub fn new(map: &KnownMap, clusters: &Clusters, margin_m: f64, reach_m: f64) -> Self {
         let walls = edges_of(&map.wall);
         let passage_m = 2.0 * (map.hull_m + margin_m);
@@ -57,7 +59,7 @@ impl Outline {
         let solids: Vec<Solid> = real().cloned().chain(walls).collect();
         let length_m = solids.iter().map(|solid| round_m(solid, map.hull_m + margin_m)).sum();
         let map = KnownMap { solids, wall: map.wall.clone(), hull_m: map.hull_m };
-        Self { map, nearby: Nearby::new(reach_m), held, length_m }
+        Self { map, nearby: Nearby::new(reach_m + HAND_M), held, length_m }
     }
 
     /// The edges of the wall.
@@ -78,6 +80,12 @@ impl Outline {
     /// Distance from a place to the nearest outline, metres.
     fn distance_m(&self, at: Point) -> f64 {
         self.map.clearance_m(at) + self.map.hull_m
+    }
+
+    /// The ways out of what is nearer than this, metres, as unit vectors.
+    fn ways_out(&mut self, at: Point, reach_m: f64) -> impl Iterator<Item = Vector> + '_ {
+        let near = self.nearby.update(&self.map, at).iter().map(|index| self.map.solids[*index].distance(at));
+        near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
     }
 
     /// Whether a step keeps a distance from every outline, metres, or leads away from what is nearer.
@@ -120,8 +128,8 @@ pub struct Follow {
     /// On which side it passes what stops it.
     pub side: Side,
     keep_m: f64,
-    /// The last move and where it began, while the hand is on an outline.
-    along: Option<(Point, Vector)>,
+    /// The direction of the last move, while the hand is on an outline.
+    along: Option<Vector>,
     nearest_m: f64,
     without_gain_m: f64,
 }
@@ -140,29 +148,36 @@ impl Follow {
         let Some(ahead) = (goal - at).try_normalize(1e-12) else { return Some(Vector::zeros()) };
         // Shorter steps than the distance kept, so that the hand stays where it is.
         let step_m = step_m.min(self.keep_m / 2.0).min(missing_m);
-        if let Some((from, way)) = self.along
-            && (from - at).norm() < step_m / 2.0
-        {
-            return Some(way * step_m);
-        }
         let is_nearer = missing_m < self.nearest_m - ROUNDING_M;
         self.without_gain_m = if is_nearer { 0.0 } else { self.without_gain_m + step_m };
         self.nearest_m = self.nearest_m.min(missing_m);
         if self.without_gain_m > ROUNDS * outline.length_m() {
             return None;
         }
+        let first = self.along.map_or(ahead, |way| self.hand(at, way, outline));
         let keep_m = self.keep_m;
         let mut is_free = |way: &Vector| outline.lets(at, way * step_m, keep_m);
         if (is_nearer || self.along.is_none()) && is_free(&ahead) {
             self.along = None;
             return Some(ahead * step_m);
         }
-        let turned = |way: Vector, angle_rad: f64| Rotation2::new(self.side.sign() * angle_rad) * way;
-        let first = self.along.map_or(ahead, |(_, way)| turned(way, -HAND_RAD));
-        let mut tried = (0..DIRECTIONS).map(|k| turned(first, TAU * f64::from(k) / f64::from(DIRECTIONS)));
+        let mut tried =
+            (0..DIRECTIONS).map(|k| self.turned(first, TAU * f64::from(k) / f64::from(DIRECTIONS)));
         let way = tried.find(|way| is_free(way))?;
-        self.along = Some((at, way));
+        self.along = Some(way);
         Some(way * step_m)
+    }
+
+    /// Toward the outline under the hand: of those in reach the one that the last move was along.
+    fn hand(&self, at: Point, way: Vector, outline: &mut Outline) -> Vector {
+        let share = |away: &Vector| self.side.along(*away).dot(&way);
+        let out = outline.ways_out(at, self.keep_m + HAND_M).max_by(|a, b| share(a).total_cmp(&share(b)));
+        out.map_or_else(|| self.turned(way, -HAND_RAD), |away| -away)
+    }
+
+    /// A direction turned away from what it passes, radians.
+    fn turned(&self, way: Vector, angle_rad: f64) -> Vector {
+        Rotation2::new(self.side.sign() * angle_rad) * way
     }
 }
 
