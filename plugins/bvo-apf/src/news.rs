@@ -29,8 +29,6 @@ pub enum News {
     Follows {
         /// Where from.
         at: Point,
-        /// On this side.
-        side: Side,
     },
     /// The way to the goal is clear of what was gone round.
     Resumes {
@@ -63,13 +61,9 @@ impl fmt::Display for News {
             Self::Escapes { at, side } => {
                 write!(f, "goes round on the {} from ({:.2}, {:.2})", word(side), at.x, at.y)
             }
-            Self::Follows { at, side } => write!(
-                f,
-                "trapped by the wall at ({:.2}, {:.2}): follows the outlines on the {}",
-                at.x,
-                at.y,
-                word(side)
-            ),
+            Self::Follows { at } => {
+                write!(f, "trapped by the wall at ({:.2}, {:.2}): follows the outlines", at.x, at.y)
+            }
             Self::Resumes { at } => write!(f, "clear of the obstacle at ({:.2}, {:.2})", at.x, at.y),
             Self::GivesUp { at, escapes } => {
                 write!(f, "gives up at ({:.2}, {:.2}) after {escapes} escapes", at.x, at.y)

@@ -122,6 +122,9 @@ fn round_m(solid: &Solid, distance_m: f64) -> f64 {
     edges(&corners).map(|(a, b)| (b - a).norm()).sum::<f64>() + TAU * (widest_m + distance_m)
 }
 
+/// The side is chosen anew where the robot meets something this far from where it last chose, metres.
+const CHOICE_M: f64 = 1.0;
+
 /// A robot with its hand on the outlines.
 #[derive(Debug, Clone)]
 pub struct Follow {
@@ -130,6 +133,8 @@ pub struct Follow {
     keep_m: f64,
     /// The direction of the last move, while the hand is on an outline.
     along: Option<Vector>,
+    /// Where the side was chosen last.
+    pub met: Option<Point>,
     nearest_m: f64,
     without_gain_m: f64,
 }
@@ -139,7 +144,7 @@ impl Follow {
     /// as the goal leaves.
     pub fn new(goal: Point, outline: &Outline, side: Side, least_m: f64, most_m: f64) -> Self {
         let keep_m = outline.distance_m(goal).clamp(least_m, most_m);
-        Self { side, keep_m, along: None, nearest_m: f64::INFINITY, without_gain_m: 0.0 }
+        Self { side, keep_m, along: None, met: None, nearest_m: f64::INFINITY, without_gain_m: 0.0 }
     }
 
     /// The next move, at most as long as a step, metres; `None` when there is no way.
@@ -166,6 +171,12 @@ impl Follow {
         let way = tried.find(|way| is_free(way))?;
         self.along = Some(way);
         Some(way * step_m)
+    }
+
+    /// Whether the last step, before which it was as given, met something that calls for a choice of side.
+    pub fn meets_more_than(&self, before: &Self, at: Point) -> bool {
+        let is_far = self.met.is_none_or(|met| (met - at).norm() > CHOICE_M);
+        self.along.is_some() && before.along.is_none() && is_far
     }
 
     /// Toward the outline under the hand: of those in reach the one that the last move was along.

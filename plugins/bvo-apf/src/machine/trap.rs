@@ -94,12 +94,8 @@ impl Machine {
         let most_m = if mode == Mode::Pre { taut_margin_m + ROUNDING_M } else { margin_m };
         let follow = Follow::new(goal, self.outline(), Side::Left, hull_m + keep_m, hull_m + most_m);
         self.phase = Phase::Follow(follow);
+        self.news.push(News::Follows { at });
         self.count_escape(at);
-        let side = self.first_side(at, goal);
-        self.take_side(side);
-        if let Phase::Follow(follow) = &self.phase {
-            self.news.push(News::Follows { at, side: follow.side });
-        }
     }
 
     pub(super) fn along_outlines(&mut self, at: Point, goal: Point) -> Next {
@@ -107,7 +103,19 @@ impl Machine {
         let (Phase::Follow(follow), Some(outline)) = (&mut self.phase, &mut self.outline) else {
             return Next::Nowhere;
         };
-        let Some(step) = follow.step(at, goal, outline, self.settings.step_m) else {
+        let mut before = follow.clone();
+        let mut step = follow.step(at, goal, outline, self.settings.step_m);
+        if follow.meets_more_than(&before, at) && self.rolls_out() {
+            before.met = Some(at);
+            self.phase = Phase::Follow(before);
+            let side = thought::shorter_side(self, at, goal);
+            self.take_side(side);
+            let (Phase::Follow(follow), Some(outline)) = (&mut self.phase, &mut self.outline) else {
+                return Next::Nowhere;
+            };
+            step = follow.step(at, goal, outline, self.settings.step_m);
+        }
+        let Some(step) = step else {
             self.news.push(News::GivesUp { at, escapes: self.escapes });
             self.phase = Phase::Stuck;
             return Next::Nowhere;
@@ -141,12 +149,13 @@ impl Machine {
 
     /// Left, as in the paper, or the side that is shorter in thought.
     fn first_side(&self, at: Point, goal: Point) -> Side {
-        let rolls_out = matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought;
-        if rolls_out && self.going_round().is_some() {
-            thought::shorter_side(self, at, goal)
-        } else {
-            Side::Left
-        }
+        let goes_round = self.going_round().is_some();
+        if goes_round && self.rolls_out() { thought::shorter_side(self, at, goal) } else { Side::Left }
+    }
+
+    /// Whether it walks both sides in thought before it takes one.
+    fn rolls_out(&self) -> bool {
+        matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought
     }
 
     pub(super) fn count_escape(&mut self, at: Point) {
