@@ -31,8 +31,10 @@ const HAND_RAD: f64 = 0.6 * PI;
 const DIRECTIONS: u32 = 96;
 /// Places that count as equally near, metres.
 const ROUNDING_M: f64 = 1e-9;
-/// A robot that comes no nearer in this many times the length of all outlines finds no way.
+/// A robot that comes no nearer in this many times the length of all outlines finds no way, whatever it remembers.
 const ROUNDS: f64 = 2.0;
+/// After this way without coming nearer, being where it came nearest means that it has gone round, metres.
+const ROUND_LEAST_M: f64 = 1.0;
 
 /// Everything real that stands on the floor, the wall among it.
 #[derive(Debug, Clone)]
@@ -136,6 +138,8 @@ pub struct Follow {
     /// Where the side was chosen last.
     pub met: Option<Point>,
     nearest_m: f64,
+    /// Where it came nearest to the goal, and its move from there.
+    nearest: Option<(Point, Vector)>,
     without_gain_m: f64,
 }
 
@@ -144,7 +148,15 @@ impl Follow {
     /// as the goal leaves.
     pub fn new(goal: Point, outline: &Outline, side: Side, least_m: f64, most_m: f64) -> Self {
         let keep_m = outline.distance_m(goal).clamp(least_m, most_m);
-        Self { side, keep_m, along: None, met: None, nearest_m: f64::INFINITY, without_gain_m: 0.0 }
+        Self {
+            side,
+            keep_m,
+            along: None,
+            met: None,
+            nearest_m: f64::INFINITY,
+            nearest: None,
+            without_gain_m: 0.0,
+        }
     }
 
     /// The next move, at most as long as a step, metres; `None` when there is no way.
@@ -156,7 +168,7 @@ impl Follow {
         let is_nearer = missing_m < self.nearest_m - ROUNDING_M;
         self.without_gain_m = if is_nearer { 0.0 } else { self.without_gain_m + step_m };
         self.nearest_m = self.nearest_m.min(missing_m);
-        if self.without_gain_m > ROUNDS * outline.length_m() {
+        if self.without_gain_m > ROUNDS * outline.length_m() || self.has_gone_round(at, step_m) {
             return None;
         }
         let first = self.along.map_or(ahead, |way| self.hand(at, way, outline));
@@ -170,7 +182,17 @@ impl Follow {
             (0..DIRECTIONS).map(|k| self.turned(first, TAU * f64::from(k) / f64::from(DIRECTIONS)));
         let way = tried.find(|way| is_free(way))?;
         self.along = Some(way);
+        if is_nearer {
+            self.nearest = Some((at, way));
+        }
         Some(way * step_m)
+    }
+
+    /// Whether it is again where it came nearest, and on the same way.
+    fn has_gone_round(&self, at: Point, step_m: f64) -> bool {
+        let Some(((place, way), along)) = self.nearest.zip(self.along) else { return false };
+        let is_there = (place - at).norm() < 2.0 * step_m && way.dot(&along) > 0.5;
+        self.without_gain_m > ROUND_LEAST_M && is_there
     }
 
     /// Whether the last step, before which it was as given, met something that calls for a choice of side.
