@@ -86,7 +86,8 @@ impl Outline {
 
     /// The ways out of what is nearer than this, metres, as unit vectors.
     fn ways_out(&mut self, at: Point, reach_m: f64) -> impl Iterator<Item = Vector> + '_ {
-        let near = self.nearby.update(&self.map, at).iter().map(|index| self.map.solids[*index].distance(at));
+        let (map, nearby) = (&self.map, &mut self.nearby);
+        let near = nearby.update(map, at).iter().map(move |index| map.solids[*index].distance(at));
         near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
     }
 
@@ -196,7 +197,7 @@ impl Follow {
     }
 
     /// Whether the last step, before which it was as given, met something that calls for a choice of side.
-    pub fn meets_more_than(&self, before: &Self, at: Point) -> bool {
+    pub fn meets_something(&self, before: &Self, at: Point) -> bool {
         let is_far = self.met.is_none_or(|met| (met - at).norm() > CHOICE_M);
         self.along.is_some() && before.along.is_none() && is_far
     }

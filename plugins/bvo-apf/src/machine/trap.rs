@@ -105,7 +105,7 @@ impl Machine {
         };
         let mut before = follow.clone();
         let mut step = follow.step(at, goal, outline, self.settings.step_m);
-        if follow.meets_more_than(&before, at) && self.rolls_out() {
+        if follow.meets_something(&before, at) && self.rolls_out() {
             before.met = Some(at);
             self.phase = Phase::Follow(before);
             let side = thought::shorter_side(self, at, goal);
