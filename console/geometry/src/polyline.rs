@@ -8,9 +8,11 @@ use crate::Point;
 /// use geometry::{Point, polyline::length_m};
 /// let path = [Point::new(0.0, 0.0), Point::new(3.0, 0.0), Point::new(3.0, 4.0)];
 /// assert_eq!(length_m(&path), 7.0);
+/// assert!(length_m(&[]).is_sign_positive());
 /// ```
 pub fn length_m(path: &[Point]) -> f64 {
-    path.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
+    // The sum of no floats at all is negative zero.
+    0.0 + path.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>()
 }
 
 /// The point of the segment from `a` to `b` that is nearest to `point`.

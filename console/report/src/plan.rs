@@ -15,6 +15,9 @@ use world::{
     tether::{Cable, Certificate},
 };
 
+/// A shorter time is mostly that of the way to the planner's process and back, milliseconds.
+const RESOLVED_MS: f64 = 0.05;
+
 /// A plan as scripts read it.
 #[derive(Debug, Serialize)]
 pub struct Planned {
@@ -27,7 +30,8 @@ pub struct Planned {
     pub(crate) length_m: f64,
     /// Time to drive it at full speed, with stops to turn at corners, seconds.
     mission_time_s: f64,
-    plan_time_ms: f64,
+    /// Absent where the clock cannot tell it from the way to the planner and back.
+    plan_time_ms: Option<f64>,
     pub(crate) complete: bool,
     /// Why it is not complete.
     reason: Option<String>,
@@ -78,7 +82,7 @@ impl Planned {
             legs: legs(&plan),
             length_m: polyline::length_m(&plan.path),
             mission_time_s: time::time_s(mission, &map, &plan.path),
-            plan_time_ms,
+            plan_time_ms: Some(plan_time_ms).filter(|time_ms| *time_ms >= RESOLVED_MS),
             complete: plan.complete,
             reason,
             warnings,
@@ -126,12 +130,13 @@ impl Planned {
     pub fn human(&self) -> String {
         let reason = self.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
         format!(
-            "planner   {}\nlength    {:.2} m, {} points\n{}time      {:.2} ms\ncomplete  {}\n{reason}{}{}{}",
+            "planner   {}\nlength    {:.2} m, {} points\n{}time      {}\ncomplete  {}\n{reason}{}{}{}",
             self.planner,
             self.length_m,
             self.path.len(),
             lengths(self),
-            self.plan_time_ms,
+            self.plan_time_ms
+                .map_or_else(|| format!("under {RESOLVED_MS} ms"), |time_ms| format!("{time_ms:.2} ms")),
             if self.complete { "yes" } else { "no" },
             warnings(self),
             self.floor.as_ref().map(floor).unwrap_or_default(),
@@ -223,4 +228,24 @@ fn certified(certificate: &Certificate) -> String {
         wrap_total_max_rad.to_degrees(),
         reasons.concat(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fold::tests::round_tank;
+
+    #[test]
+    fn a_time_that_cannot_be_told_from_the_way_to_the_planner_is_no_figure() {
+        let run = round_tank(0.05);
+        let planned = |plan_time_ms| {
+            let made = Made { plan: Plan::default(), plan_time_ms, reason: None, warnings: vec![] };
+            Planned::new(&run.mission, &run.world, made)
+        };
+        assert_eq!(planned(0.014).plan_time_ms, None);
+        assert!(planned(0.014).human().contains("time      under 0.05 ms\n"));
+        assert!(planned(1.5).human().contains("time      1.50 ms\n"));
+        // A plan without a path has no length, and no sign either.
+        assert!(planned(1.5).length_m.is_sign_positive());
+    }
 }

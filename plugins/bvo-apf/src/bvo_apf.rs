@@ -1,6 +1,7 @@
 //! The planner: offline on the known map, and tick by tick.
 
 use crate::{
+    ahead::{self, Ahead},
     machine::{Machine, News, Next, Phase},
     parameters,
     settings::{MachineSettings, Mode},
@@ -17,7 +18,7 @@ use planner_api::{
     PlannerError, Result, Sensed, Site, Status,
 };
 use steering::{
-    Flight, Forces, KnownMap, Pilot, Side, Tick, drawing,
+    Flight, Forces, KnownMap, Pilot, Tick, drawing,
     evade::{self, Around},
 };
 use world::Point;
@@ -142,9 +143,10 @@ impl BvoApf {
         if machine.settings.mode != Mode::Pre {
             return thought::walk(machine, start, goal, tolerance_m, || ctx.check());
         }
-        let walked = thought::ahead_of_traps(machine, start, goal, tolerance_m, || ctx.check())?;
-        let path = taut::paced(&walked.path, self.settings.step_m);
-        Ok(Walked { path, ..walked })
+        let ahead = ahead::of_traps(machine, start, goal, tolerance_m, || ctx.check())?;
+        report_attempts(&ahead, ctx);
+        let path = taut::paced(&ahead.walked.path, self.settings.step_m);
+        Ok(Walked { path, ..ahead.walked })
     }
 
     /// Where to go now and by what forces; `None` when it has given up.
@@ -209,30 +211,22 @@ fn phase_number(phase: &Phase) -> f64 {
         Phase::Retreat(_) => 1.0,
         Phase::Escape(_) => 2.0,
         Phase::Stuck => 3.0,
+        Phase::Follow(_) => 4.0,
     }
 }
 
 fn report(news: &[News], ctx: &Ctx<'_>) {
-    for item in news {
-        let (level, message) = match item {
-            News::Retreats { at } => {
-                (LogLevel::Info, format!("trapped at ({:.2}, {:.2}): retreats", at.x, at.y))
-            }
-            News::Sealed { circles } => {
-                (LogLevel::Info, format!("seals the trap with {circles} virtual circles"))
-            }
-            News::Escapes { at, side } => {
-                let side = if *side == Side::Left { "left" } else { "right" };
-                (LogLevel::Info, format!("goes round on the {side} from ({:.2}, {:.2})", at.x, at.y))
-            }
-            News::Resumes { at } => {
-                (LogLevel::Info, format!("clear of the obstacle at ({:.2}, {:.2})", at.x, at.y))
-            }
-            News::GivesUp { at, escapes } => {
-                (LogLevel::Warn, format!("gives up at ({:.2}, {:.2}) after {escapes} escapes", at.x, at.y))
-            }
-        };
-        ctx.log(level, &message);
+    news.iter().for_each(|item| item.report(ctx));
+}
+
+/// Says how a way was found that is not the method's own.
+fn report_attempts(ahead: &Ahead, ctx: &Ctx<'_>) {
+    let follows = ahead.news.iter().filter(|item| matches!(item, News::Follows { .. }));
+    let said: Vec<String> = follows.map(ToString::to_string).collect();
+    let tried = ahead.tried.iter().filter(|_| ahead.tried.len() > 1).map(ToString::to_string);
+    let said: Vec<String> = said.into_iter().chain(tried).collect();
+    if !said.is_empty() {
+        ctx.log(LogLevel::Warn, &said.join("; "));
     }
 }
 

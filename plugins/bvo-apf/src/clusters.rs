@@ -54,7 +54,7 @@ fn root(of: &[usize], mut index: usize) -> usize {
 }
 
 /// Gap between two outlines, metres; exact only below `enough_m`.
-fn gap_m(a: &Solid, b: &Solid, enough_m: f64) -> f64 {
+pub fn gap_m(a: &Solid, b: &Solid, enough_m: f64) -> f64 {
     let around_m = (a.center - b.center).norm() - a.radius_m - b.radius_m;
     let are_discs = a.corners().len() == 1 && b.corners().len() == 1;
     if are_discs || around_m >= enough_m { around_m } else { a.part.gap(&b.part).width_m }

@@ -1,6 +1,7 @@
 //! The potential field with virtual obstacles of Xu et al. 2022 (BVO-APF), as published and as we would build it.
 //!
-//! In a trap the robot retreats along its own way, closes the mouth with virtual circles and goes round the whole.
+//! In a trap the robot retreats along its own way, closes the mouth with virtual circles and goes round the whole. Where
+//! the wall makes the trap, it follows the outlines.
 //! Frame: the tank frame, metres, radians. Distances are measured from the hull.
 #![forbid(unsafe_code)]
 
@@ -9,9 +10,12 @@ pub mod view;
 
 pub mod machine;
 pub mod mouth;
+pub mod news;
 pub mod settings;
 
+pub mod ahead;
 pub mod escape;
+pub mod outline;
 pub mod taut;
 pub mod thought;
 

@@ -1,31 +1,25 @@
 //! The state machine: approach, retreat, seal, escape (Xu et al. 2022, section 4).
 
+mod retreat;
+mod trap;
+
+pub use crate::news::News;
+pub use retreat::Retreat;
+
 use crate::{
     clusters::Clusters,
     escape::Escape,
-    mouth::{FIRST_VIRTUAL, Mouth, is_virtual},
-    settings::{MachineSettings, Mode},
-    thought,
-    view::View,
+    mouth::{FIRST_VIRTUAL, is_virtual},
+    outline::{Follow, Outline},
+    settings::MachineSettings,
 };
 use field::{Sides, oscillation::Oscillation};
 use geometry::Braking;
-use std::{collections::BTreeSet, f64::consts::PI};
-use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, Solid, guard, wall_contacts};
+use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, guard, wall_contacts};
 use world::{Point, Vector};
-
-/// The nearest solid on the way to the goal is looked for this far ahead, as a multiple of the law's range.
-const AHEAD_RANGES: f64 = 2.0;
-
-/// An escape that begins this near to an earlier one is another attempt at the same, metres.
-const SAME_PLACE_M: f64 = 1.5;
-/// Another attempt goes on until it is this much nearer to the goal than where it began, metres.
-const GAIN_M: f64 = 1.0;
 
 /// A way round may take this many times the circle about the group before it counts as leading nowhere.
 const ROUNDS: f64 = 2.5;
-/// On the way back the trap is examined again after this distance, metres.
-const LOOK_BACK_M: f64 = 0.05;
 /// A robot in thought stops at once.
 const IN_THOUGHT: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.0 };
 
@@ -38,17 +32,10 @@ pub enum Phase {
     Retreat(Retreat),
     /// Going round what trapped it.
     Escape(Escape),
+    /// Following the outlines to the goal: the wall holds it.
+    Follow(Follow),
     /// Given up.
     Stuck,
-}
-
-/// A retreat under way.
-#[derive(Debug, Clone)]
-pub struct Retreat {
-    ids: BTreeSet<u32>,
-    members: Vec<usize>,
-    mouth: Option<Mouth>,
-    looked: Option<Point>,
 }
 
 /// Where to move next.
@@ -60,40 +47,6 @@ pub enum Next {
     Back(Point),
     /// Nowhere: it has given up.
     Nowhere,
-}
-
-/// Something that the operator wants to know.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum News {
-    /// The field oscillates in a trap: it goes back.
-    Retreats {
-        /// Where.
-        at: Point,
-    },
-    /// The mouth was closed.
-    Sealed {
-        /// With so many virtual circles.
-        circles: usize,
-    },
-    /// It goes round.
-    Escapes {
-        /// Where from.
-        at: Point,
-        /// On this side.
-        side: Side,
-    },
-    /// The way to the goal is clear of what was gone round.
-    Resumes {
-        /// Where.
-        at: Point,
-    },
-    /// It has tried often enough.
-    GivesUp {
-        /// Where.
-        at: Point,
-        /// After so many escapes.
-        escapes: u32,
-    },
 }
 
 /// The planner's whole state on a map.
@@ -113,6 +66,8 @@ pub struct Machine {
     pub news: Vec<News>,
     phase: Phase,
     clusters: Clusters,
+    /// Made when it is first needed on a map.
+    outline: Option<Outline>,
     trail: Vec<Point>,
     began: Vec<(Point, Side)>,
     oscillation: Oscillation,
@@ -129,6 +84,7 @@ impl Machine {
         let next_id = map.solids.iter().filter(|s| is_virtual(s)).map(|s| s.id + 1).max();
         Self {
             clusters: Clusters::new(&map, settings.margin_m),
+            outline: None,
             oscillation: Oscillation::new(settings.window_m, settings.step_m),
             nearby: Nearby::new(settings.law.rho_m + map.hull_m),
             sides: Sides::default(),
@@ -144,6 +100,12 @@ impl Machine {
             settings,
             map,
         }
+    }
+
+    /// The same machine, which has not moved, with other settings but for the margin.
+    #[must_use]
+    pub fn set_to(&self, settings: MachineSettings) -> Self {
+        Self { settings, oscillation: Oscillation::new(settings.window_m, settings.step_m), ..self.clone() }
     }
 
     /// The same machine in thought: it takes coarser steps, remembers no way back and keeps to a side.
@@ -168,10 +130,21 @@ impl Machine {
 
     /// Makes it go round on a side instead, if it is going round anything.
     pub fn take_side(&mut self, side: Side) {
-        if let Phase::Escape(escape) = &mut self.phase
-            && escape.side != side
-        {
-            escape.turn_back();
+        match &mut self.phase {
+            Phase::Escape(escape) if escape.side != side => escape.turn_back(),
+            Phase::Follow(follow) => follow.side = side,
+            Phase::Escape(_) | Phase::Approach | Phase::Retreat(_) | Phase::Stuck => {}
+        }
+    }
+
+    /// The side on which it goes round something, if it does, and the way once round that, metres.
+    pub fn going_round(&self) -> Option<(Side, f64)> {
+        match &self.phase {
+            Phase::Escape(escape) => Some((escape.side, escape.round_m())),
+            Phase::Follow(follow) => {
+                Some((follow.side, self.outline.as_ref().map_or(0.0, Outline::length_m)))
+            }
+            Phase::Approach | Phase::Retreat(_) | Phase::Stuck => None,
         }
     }
 
@@ -183,6 +156,7 @@ impl Machine {
     /// Takes what is sensed; the group being gone round is recomputed if that changes the map.
     pub fn learn(&mut self, bodies: &[Body]) {
         if self.map.learn(bodies) {
+            self.outline = None;
             self.map_changed();
         }
     }
@@ -190,6 +164,7 @@ impl Machine {
     /// Takes off the map what was found to move.
     pub fn forget(&mut self, movers: &[u32]) {
         if self.map.forget(movers) {
+            self.outline = None;
             self.map_changed();
         }
     }
@@ -201,14 +176,16 @@ impl Machine {
         match &mut self.phase {
             Phase::Retreat(retreat) => retreat.members = self.clusters.closure(&self.map, &retreat.ids),
             Phase::Escape(escape) => escape.regroup(&self.map, &self.clusters),
-            Phase::Approach | Phase::Stuck => {}
+            Phase::Approach | Phase::Follow(_) | Phase::Stuck => {}
         }
     }
 
     /// Decides the next step of a robot at a place that is bound for a goal.
     pub fn next(&mut self, at: Point, goal: Point) -> Next {
-        if let Phase::Retreat(_) = self.phase {
-            return self.retreat(at, goal);
+        match self.phase {
+            Phase::Retreat(_) => return self.retreat(at, goal),
+            Phase::Follow(_) => return self.along_outlines(at, goal),
+            Phase::Approach | Phase::Escape(_) | Phase::Stuck => {}
         }
         let oscillates = self.oscillation.record(at, (goal - at).norm());
         if oscillates {
@@ -229,7 +206,7 @@ impl Machine {
                 self.step_along(at, way, self.settings.step_m)
             }
             Phase::Stuck => Next::Nowhere,
-            Phase::Approach | Phase::Retreat(_) => self.approach(at, goal),
+            Phase::Approach | Phase::Retreat(_) | Phase::Follow(_) => self.approach(at, goal),
         }
     }
 
@@ -277,132 +254,10 @@ impl Machine {
                 self.count_escape(at);
             }
             Phase::Approach => self.leave_trap(at, goal),
-            Phase::Retreat(_) | Phase::Stuck => {}
-        }
-    }
-
-    fn leave_trap(&mut self, at: Point, goal: Point) {
-        let Some(culprit) = self.culprit(at, goal) else { return };
-        let attempts = self.began.iter().filter(|(place, _)| (place - at).norm() < SAME_PLACE_M).count();
-        let members = if attempts == 0 { self.clusters.members(culprit) } else { self.all_near(at, culprit) };
-        let gap_rad = |from: Point| {
-            View::of(from, &self.map, &members, self.map.hull_m).map_or(2.0 * PI, |view| view.gap_rad)
-        };
-        if gap_rad(at) >= PI || gap_rad(goal) < PI {
-            // A goal in the same trap is not sealed off: it is found along the outline.
-            let hugs = gap_rad(at) < PI;
-            self.go_round(at, goal, members, hugs);
-            return;
-        }
-        self.news.push(News::Retreats { at });
-        self.retreats += 1;
-        let view = View::of(at, &self.map, &members, self.map.hull_m);
-        let mouth = view.and_then(|view| Mouth::seen(at, &view));
-        let ids = members.iter().map(|index| self.map.solids[*index].id).collect();
-        self.phase = Phase::Retreat(Retreat { ids, members, mouth, looked: None });
-    }
-
-    /// Everything that pushes the robot back here, and what belongs to it: between two groups the field may have a
-    /// minimum though the robot would fit through.
-    fn all_near(&self, at: Point, culprit: usize) -> Vec<usize> {
-        let reach_m = self.settings.law.rho_m + self.map.hull_m;
-        let near = self.map.solids.iter().filter(|s| s.distance(at).0 < reach_m);
-        let ids = near.chain([&self.map.solids[culprit]]).map(|s| s.id).collect();
-        self.clusters.closure(&self.map, &ids)
-    }
-
-    /// What holds the robot: the first solid on the way to the goal within twice the range, or else the nearest.
-    fn culprit(&self, at: Point, goal: Point) -> Option<usize> {
-        let ahead = at + (goal - at).cap_magnitude(AHEAD_RANGES * self.settings.law.rho_m);
-        let hull_m = self.map.hull_m;
-        let solids = || self.map.solids.iter().enumerate();
-        let on_the_way = solids().filter(|(_, s)| s.segment_distance_m(at, ahead, hull_m) < hull_m);
-        let nearest = |(i, s): (usize, &Solid)| (i, s.distance(at).0);
-        let by_distance = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
-        let first = on_the_way.map(nearest).min_by(by_distance);
-        first.or_else(|| solids().map(nearest).min_by(by_distance)).map(|(index, _)| index)
-    }
-
-    fn retreat(&mut self, at: Point, goal: Point) -> Next {
-        let hull_m = self.map.hull_m;
-        let Phase::Retreat(retreat) = &mut self.phase else { return Next::Nowhere };
-        let is_at_start = self.trail.is_empty();
-        if let Some(back) = self.trail.last()
-            && retreat.looked.is_some_and(|from| (from - at).norm() < LOOK_BACK_M)
-        {
-            let back = *back;
-            self.trail.pop();
-            return Next::Back(back);
-        }
-        retreat.looked = Some(at);
-        let view = View::of(at, &self.map, &retreat.members, hull_m);
-        let out = view.and_then(|view| match retreat.mouth {
-            Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
-            _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
-            // Deep in a spiral what looks like the mouth may not be one.
-            seen => Mouth::left_behind(at, &view, seen.is_some()),
-        });
-        if let Some(mouth) = out {
-            let ids = retreat.ids.clone();
-            self.seal(at, goal, &mouth);
-            let members = self.clusters.closure(&self.map, &ids);
-            self.go_round(at, goal, members, false);
-            return self.next(at, goal);
-        }
-        if let Some(back) = self.trail.pop() {
-            return Next::Back(back);
-        }
-        // It began inside: there is no way back, and a seal would shut it in.
-        let members = retreat.members.clone();
-        self.go_round(at, goal, members, true);
-        self.next(at, goal)
-    }
-
-    fn seal(&mut self, at: Point, goal: Point, mouth: &Mouth) {
-        let circles = mouth.circles(&self.map, at, goal, self.next_id);
-        self.news.push(News::Sealed { circles: circles.len() });
-        self.next_id += circles.len() as u32;
-        self.map.solids.extend(circles);
-        self.map_changed();
-    }
-
-    fn go_round(&mut self, at: Point, goal: Point, members: Vec<usize>, hugs: bool) {
-        let mut escape = Escape::new(&self.map, members, Side::Left);
-        if hugs {
-            escape.hug();
-        }
-        let is_here = |(place, _): &&(Point, Side)| (place - at).norm() < SAME_PLACE_M;
-        let attempts = self.began.iter().filter(is_here).count();
-        let before = self.began.iter().rfind(is_here).map(|(_, side)| *side);
-        if attempts > 0 {
-            escape.gain((goal - at).norm() - GAIN_M * attempts as f64);
-        }
-        self.oscillation.forget_for((ROUNDS * escape.round_m() / self.settings.step_m) as usize);
-        self.phase = Phase::Escape(escape);
-        self.count_escape(at);
-        let side = before.map_or_else(|| self.first_side(at, goal), Side::other);
-        self.began.push((at, side));
-        self.take_side(side);
-        if let Phase::Escape(escape) = &self.phase {
-            self.news.push(News::Escapes { at, side: escape.side });
-        }
-    }
-
-    /// Left, as in the paper, or the side that is shorter in thought.
-    fn first_side(&self, at: Point, goal: Point) -> Side {
-        let rolls_out = matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought;
-        let goes_round = matches!(self.phase, Phase::Escape(_));
-        if rolls_out && goes_round { thought::shorter_side(self, at, goal) } else { Side::Left }
-    }
-
-    fn count_escape(&mut self, at: Point) {
-        self.escapes += 1;
-        if self.escapes > self.settings.escapes_max {
-            self.news.push(News::GivesUp { at, escapes: self.escapes - 1 });
-            self.phase = Phase::Stuck;
+            Phase::Retreat(_) | Phase::Follow(_) | Phase::Stuck => {}
         }
     }
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

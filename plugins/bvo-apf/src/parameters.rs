@@ -7,7 +7,8 @@ use planner_api::{Config, ParamSpec, Site, choice, float, int};
 const TRAP: &str = "Trap";
 const FIELD: &str = "Field";
 
-const MODE: ParamSpec = choice("mode", "Mode", &["literal", "hull", "rollout", "pre"], 3)
+const MODES: [&str; 4] = [Mode::Literal.name(), Mode::Hull.name(), Mode::Rollout.name(), Mode::Pre.name()];
+const MODE: ParamSpec = choice("mode", "Mode", &MODES, 3)
     .help(
         "literal: round a circle about the trap, on the left, as published. hull: along the hull of the trap. rollout: \
          on the side that is shorter when walked in thought. pre: the detour begins before the trap is entered.",
@@ -87,12 +88,7 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> Mac
     let tangent_weight = config.float("tangent_weight");
     let keep_m = site.clearance_m + SPARE_M;
     MachineSettings {
-        mode: match config.choice("mode") {
-            "literal" => Mode::Literal,
-            "hull" => Mode::Hull,
-            "rollout" => Mode::Rollout,
-            _ => Mode::Pre,
-        },
+        mode: Mode::ALL.into_iter().find(|mode| mode.name() == config.choice("mode")).unwrap_or(Mode::Pre),
         law: GoalLaw {
             pull: Pull::Logarithm {
                 m: config.float("m"),

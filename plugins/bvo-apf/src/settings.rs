@@ -11,8 +11,23 @@ pub enum Mode {
     Hull,
     /// Along the hull, on the side whose detour is shorter when walked in thought.
     Rollout,
-    /// Rolled out, pulled taut and begun before the trap is entered.
+    /// Rolled out, pulled taut and begun before the trap is entered; where that finds no way, by the others.
     Pre,
+}
+
+impl Mode {
+    /// All modes, as they are ordered where one is chosen.
+    pub const ALL: [Self; 4] = [Self::Literal, Self::Hull, Self::Rollout, Self::Pre];
+
+    /// Its name where one is chosen.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Literal => "literal",
+            Self::Hull => "hull",
+            Self::Rollout => "rollout",
+            Self::Pre => "pre",
+        }
+    }
 }
 
 /// Everything that a machine needs besides the map.

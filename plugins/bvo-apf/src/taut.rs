@@ -1,6 +1,7 @@
 //! Pulling a way taut: shortcuts first, then corners cut until nothing is gained.
 
-use steering::KnownMap;
+use std::cell::Cell;
+use steering::{KnownMap, Solid};
 use world::{Point, polyline};
 
 /// Distance between the places from which shortcuts are looked for, metres.
@@ -14,13 +15,36 @@ const HALVINGS: usize = 10;
 ///
 /// Pieces of the way that do not keep it themselves are left as they are.
 pub fn pulled(path: &[Point], map: &KnownMap, margin_m: f64) -> Vec<Point> {
-    let is_free = |a: Point, b: Point| map.is_free(a, b, margin_m);
+    let sight = Sight { map, margin_m, last: Cell::new(0) };
+    let is_free = |a: Point, b: Point| sight.is_free(a, b);
     let spacing_m = polyline::length_m(path) / path.len().max(1) as f64;
     let mut way = shortcut(path, (SPACING_M / spacing_m.max(1e-9)).clamp(1.0, 1e6) as usize, is_free);
     for _ in 0..ROUNDS {
         way = corners_cut(&way, is_free);
     }
     shortcut(&way, 1, is_free)
+}
+
+/// Whether one place is seen from another; what was in the way last is mostly in the way again.
+struct Sight<'a> {
+    map: &'a KnownMap,
+    margin_m: f64,
+    last: Cell<usize>,
+}
+
+impl Sight<'_> {
+    fn is_free(&self, a: Point, b: Point) -> bool {
+        let keep_m = self.map.hull_m + self.margin_m;
+        let blocks = |solid: &Solid| solid.segment_distance_m(a, b, keep_m) < keep_m;
+        if self.map.solids.get(self.last.get()).is_some_and(blocks) {
+            return false;
+        }
+        if let Some(blocker) = self.map.solids.iter().position(blocks) {
+            self.last.set(blocker);
+            return false;
+        }
+        self.map.wall_distance_m(a, b, keep_m) >= keep_m
+    }
 }
 
 /// From every corner on to the furthest place that is seen from there, of those a stride apart.

@@ -1,15 +1,11 @@
-//! Walking in thought: the whole way over the known map, and the shorter side of a detour.
+//! Walking in thought: a machine over the known map, and the shorter side of a detour.
 
-use crate::{
-    machine::{Machine, Next, Phase},
-    settings::MachineSettings,
-    taut,
-};
+use crate::machine::{Machine, Next, Phase};
 use steering::Side;
 use world::Point;
 
 /// Rollouts take steps of at least this length, metres.
-const COARSE_M: f64 = 0.1;
+pub(crate) const COARSE_M: f64 = 0.1;
 /// A rollout is given up after this many times the way round the group and to the goal.
 const PATIENCE: f64 = 4.0;
 /// A walk may be this many times as long as the straight way, and some more for short ways.
@@ -36,7 +32,9 @@ pub fn walk<E>(
     tolerance_m: f64,
     mut check: impl FnMut() -> Result<(), E>,
 ) -> Result<Walked, E> {
-    let steps = ((DETOUR * (goal - start).norm() + SPARE_M) / machine.settings.step_m) as usize;
+    let round_m = machine.going_round().map_or(0.0, |(_, round_m)| round_m);
+    let patience_m = DETOUR * (goal - start).norm() + SPARE_M + PATIENCE * round_m;
+    let steps = (patience_m / machine.settings.step_m) as usize;
     let mut at = start;
     let mut path = Vec::with_capacity(steps.min(20_000));
     path.push(start);
@@ -57,27 +55,6 @@ pub fn walk<E>(
     Ok(Walked { path, arrived: false })
 }
 
-/// A way that begins its detours before it enters a trap: the walk over the known map in thought, pulled taut.
-///
-/// # Errors
-/// What `check` says.
-pub fn ahead_of_traps<E>(
-    machine: &Machine,
-    start: Point,
-    goal: Point,
-    tolerance_m: f64,
-    check: impl FnMut() -> Result<(), E>,
-) -> Result<Walked, E> {
-    let settings = MachineSettings { step_m: machine.settings.step_m.max(COARSE_M), ..machine.settings };
-    let mut thought = Machine::new(settings, machine.map.clone());
-    let mut walked = walk(&mut thought, start, goal, tolerance_m.max(settings.step_m / 2.0), check)?;
-    if walked.arrived {
-        walked.path.push(goal);
-        walked.path = taut::pulled(&walked.path, &machine.map, settings.taut_margin_m);
-    }
-    Ok(walked)
-}
-
 /// The side on which the detour that begins now is shorter: until it is over, and straight on from there.
 pub fn shorter_side(machine: &Machine, at: Point, goal: Point) -> Side {
     let cost_m = |side: Side| detour_m(machine, at, goal, side);
@@ -90,15 +67,15 @@ fn detour_m(machine: &Machine, start: Point, goal: Point, side: Side) -> f64 {
     let step_m = machine.settings.step_m.max(COARSE_M);
     let mut thought = machine.thought(step_m);
     thought.take_side(side);
-    let round_m = match thought.phase() {
-        Phase::Escape(escape) => escape.round_m(),
-        _ => 0.0,
-    };
+    let round_m = thought.going_round().map_or(0.0, |(_, round_m)| round_m);
     let steps = (PATIENCE * (round_m + 2.0) / step_m) as usize;
     let mut at = start;
     for step in 0..steps {
-        let is_on_side = matches!(thought.phase(), Phase::Escape(escape) if escape.side == side);
-        if !is_on_side {
+        let follows = matches!(thought.phase(), Phase::Follow(_));
+        if follows && (goal - at).norm() <= step_m {
+            return step as f64 * step_m;
+        }
+        if thought.going_round().is_none_or(|(going, _)| going != side) {
             let is_over = matches!(thought.phase(), Phase::Approach);
             return if is_over { step as f64 * step_m + (goal - at).norm() } else { f64::INFINITY };
         }

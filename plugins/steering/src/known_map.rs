@@ -103,7 +103,7 @@ impl KnownMap {
     }
 
     /// Distance from the wall to a segment, metres; negative outside, and exact only below `enough_m`.
-    fn wall_distance_m(&self, a: Point, b: Point, enough_m: f64) -> f64 {
+    pub fn wall_distance_m(&self, a: Point, b: Point, enough_m: f64) -> f64 {
         let ends_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
         let Boundary::Polygon { vertices } = &self.wall else { return ends_m };
         // No place between is nearer to the wall than this.

@@ -129,13 +129,15 @@ impl Planner {
         budget: Duration,
         write: impl FnOnce(&mut Writer),
     ) -> Result<(), Fault> {
+        // A worker on this processor may have answered before this thread runs again.
+        let at = Instant::now();
         let asked = match &mut self.worker {
             Some(worker) => worker.ask(kind, budget, write),
             None => Err(Failure::Gone),
         };
         let phase = doing.phase();
         asked.map_err(|failure| self.fault(failure, phase))?;
-        self.asked = Some(Asked { id, at: Instant::now(), doing });
+        self.asked = Some(Asked { id, at, doing });
         Ok(())
     }
 

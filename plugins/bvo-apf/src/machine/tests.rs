@@ -1,15 +1,20 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use crate::thought::{Walked, ahead_of_traps, walk};
+use crate::{
+    ahead::of_traps,
+    settings::Mode,
+    thought::{Walked, walk},
+};
 use field::{GoalLaw, NearLaw, Pull, PushForm, TangentUse};
 use proptest::prelude::*;
+use steering::Solid;
 use trials::traps::{HULL_M, Kind, Trap};
 use world::{Boundary, polyline};
 
 const MODES: [Mode; 4] = [Mode::Literal, Mode::Hull, Mode::Rollout, Mode::Pre];
 
-fn settings(mode: Mode) -> MachineSettings {
+pub(crate) fn settings(mode: Mode) -> MachineSettings {
     let pull =
         Pull::Logarithm { m: 10.0, trip_m: 40.0, k: None, n: None, rho_1_m: 1.0, near: NearLaw::Corrected };
     let (tangent, tangent_weight) = (TangentUse::Blocking, 1.0);
@@ -50,7 +55,7 @@ fn cup() -> Vec<(Point, f64)> {
 
 fn walked(machine: &mut Machine, start: Point, goal: Point) -> Walked {
     if machine.settings.mode == Mode::Pre {
-        return ahead_of_traps::<()>(machine, start, goal, 0.1, || Ok(())).unwrap();
+        return of_traps::<()>(machine, start, goal, 0.1, || Ok(())).unwrap().walked;
     }
     walk::<()>(machine, start, goal, 0.1, || Ok(())).unwrap()
 }

@@ -1,0 +1,296 @@
+//! Out of a trap that the tank's outline makes: straight to the goal, and along whatever stands in the way.
+//!
+//! Xu et al. 2022 know obstacles that stand free. The outline encloses the robot and its goal: it has no mouth to seal
+//! and no circle to go round. So the robot keeps one hand on what stops it, and lets go where it is nearer to the goal
+//! than ever before and nothing stops it there. That ends at the goal if there is a way (Class1 in Ng and Bräunl 2007,
+//! after Lumelsky and Stepanov 1987).
+
+use crate::{
+    clusters::{Clusters, gap_m},
+    mouth::{LAST_VIRTUAL, is_virtual},
+};
+use geometry::convex::Part;
+use nalgebra::Rotation2;
+use std::{
+    collections::BTreeSet,
+    f64::consts::{PI, TAU},
+};
+use steering::{KnownMap, Nearby, Side, Solid};
+use world::{Boundary, Point, Vector, polyline::edges};
+
+/// A round wall has this many edges: in a tank of 10 m they lie 1 mm inside it.
+const ROUND_EDGES: u32 = 256;
+/// The id of the edges of the wall; obstacles count up, no-go zones down from the largest number.
+const WALL: u32 = LAST_VIRTUAL;
+
+/// The hand finds an outline that is this much further off than the distance kept, metres.
+const HAND_M: f64 = 0.2;
+/// Where it finds none, it reaches back this far from the last move, radians.
+const HAND_RAD: f64 = 0.6 * PI;
+/// Directions that are tried.
+const DIRECTIONS: u32 = 96;
+/// Places that count as equally near, metres.
+const ROUNDING_M: f64 = 1e-9;
+/// A robot that comes no nearer in this many times the length of all outlines finds no way, whatever it remembers.
+const ROUNDS: f64 = 2.0;
+/// After this way without coming nearer, being where it came nearest means that it has gone round, metres.
+const ROUND_LEAST_M: f64 = 1.0;
+
+/// Everything real that stands on the floor, the wall among it.
+#[derive(Debug, Clone)]
+pub struct Outline {
+    /// The wall's edges as solids besides the obstacles.
+    map: KnownMap,
+    nearby: Nearby,
+    /// Obstacles that leave no passage to the wall, by themselves or by what they are joined with.
+    held: BTreeSet<u32>,
+    length_m: f64,
+}
+
+impl Outline {
+    /// The outlines of a map, whose solids are joined in clusters by a margin, for a robot that steps and keeps its
+    /// distance within this reach, metres.
+    pub fn new(map: &KnownMap, clusters: &Clusters, margin_m: f64, reach_m: f64) -> Self {
+        let walls = edges_of(&map.wall);
+        let passage_m = 2.0 * (map.hull_m + margin_m);
+        let real = || map.solids.iter().filter(|solid| !is_virtual(solid));
+        let touching =
+            real().filter(|solid| walls.iter().any(|wall| gap_m(solid, wall, passage_m) < passage_m));
+        let ids = touching.map(|solid| solid.id).collect();
+        let held = clusters.closure(map, &ids).into_iter().map(|index| map.solids[index].id).collect();
+        let solids: Vec<Solid> = real().cloned().chain(walls).collect();
+        let length_m = solids.iter().map(|solid| round_m(solid, map.hull_m + margin_m)).sum();
+        let map = KnownMap { solids, wall: map.wall.clone(), hull_m: map.hull_m };
+        Self { map, nearby: Nearby::new(reach_m + HAND_M), held, length_m }
+    }
+
+    /// The edges of the wall.
+    pub fn walls(&self) -> impl Iterator<Item = &Solid> {
+        self.map.solids.iter().filter(|solid| solid.id == WALL)
+    }
+
+    /// Whether an obstacle hangs on the wall.
+    pub fn holds(&self, id: u32) -> bool {
+        self.held.contains(&id)
+    }
+
+    /// Way along all outlines, metres; at least that.
+    pub fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
+    /// Distance from a place to the nearest outline, metres.
+    fn distance_m(&self, at: Point) -> f64 {
+        self.map.clearance_m(at) + self.map.hull_m
+    }
+
+    /// The ways out of what is nearer than this, metres, as unit vectors.
+    fn ways_out(&mut self, at: Point, reach_m: f64) -> impl Iterator<Item = Vector> + '_ {
+        let (map, nearby) = (&self.map, &mut self.nearby);
+        let near = nearby.update(map, at).iter().map(move |index| map.solids[*index].distance(at));
+        near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
+    }
+
+    /// Whether a step keeps a distance from every outline, metres, or leads away from what is nearer.
+    fn lets(&mut self, at: Point, step: Vector, keep_m: f64) -> bool {
+        let to = at + step;
+        let enough_m = keep_m - ROUNDING_M;
+        let leads_away = |solid: &Solid| {
+            let before_m = solid.distance(at).0;
+            before_m < enough_m && solid.distance(to).0 > before_m
+        };
+        let mut near = self.nearby.update(&self.map, at).iter().map(|index| &self.map.solids[*index]);
+        near.all(|solid| solid.segment_distance_m(at, to, keep_m) >= enough_m || leads_away(solid))
+    }
+}
+
+/// The edges of a wall as solids without thickness.
+fn edges_of(wall: &Boundary) -> Vec<Solid> {
+    let corners = match wall {
+        Boundary::Polygon { vertices } => vertices.clone(),
+        Boundary::Circle { radius_m } => {
+            let bearing_rad = |k: u32| TAU * f64::from(k) / f64::from(ROUND_EDGES);
+            (0..ROUND_EDGES)
+                .map(|k| Point::from(Rotation2::new(bearing_rad(k)) * Vector::x() * *radius_m))
+                .collect()
+        }
+    };
+    edges(&corners).map(|(a, b)| Solid::new(WALL, Part::segment(a, b))).collect()
+}
+
+/// Way round a solid at a distance, metres.
+fn round_m(solid: &Solid, distance_m: f64) -> f64 {
+    let corners: Vec<Point> = solid.corners().iter().map(|(corner, _)| *corner).collect();
+    let widest_m = solid.corners().iter().map(|(_, radius_m)| *radius_m).fold(0.0, f64::max);
+    edges(&corners).map(|(a, b)| (b - a).norm()).sum::<f64>() + TAU * (widest_m + distance_m)
+}
+
+/// The side is chosen anew where the robot meets something this far from where it last chose, metres.
+const CHOICE_M: f64 = 1.0;
+
+/// A robot with its hand on the outlines.
+#[derive(Debug, Clone)]
+pub struct Follow {
+    /// On which side it passes what stops it.
+    pub side: Side,
+    keep_m: f64,
+    /// The direction of the last move, while the hand is on an outline.
+    along: Option<Vector>,
+    /// Where the side was chosen last.
+    pub met: Option<Point>,
+    nearest_m: f64,
+    /// Where it came nearest to the goal, and its move from there.
+    nearest: Option<(Point, Vector)>,
+    without_gain_m: f64,
+}
+
+impl Follow {
+    /// Bound for a goal, at a distance of the robot's middle from every outline between the two given, metres: as much
+    /// as the goal leaves.
+    pub fn new(goal: Point, outline: &Outline, side: Side, least_m: f64, most_m: f64) -> Self {
+        let keep_m = outline.distance_m(goal).clamp(least_m, most_m);
+        Self {
+            side,
+            keep_m,
+            along: None,
+            met: None,
+            nearest_m: f64::INFINITY,
+            nearest: None,
+            without_gain_m: 0.0,
+        }
+    }
+
+    /// The next move, at most as long as a step, metres; `None` when there is no way.
+    pub fn step(&mut self, at: Point, goal: Point, outline: &mut Outline, step_m: f64) -> Option<Vector> {
+        let missing_m = (goal - at).norm();
+        let Some(ahead) = (goal - at).try_normalize(1e-12) else { return Some(Vector::zeros()) };
+        // Shorter steps than the distance kept, so that the hand stays where it is.
+        let step_m = step_m.min(self.keep_m / 2.0).min(missing_m);
+        let is_nearer = missing_m < self.nearest_m - ROUNDING_M;
+        self.without_gain_m = if is_nearer { 0.0 } else { self.without_gain_m + step_m };
+        self.nearest_m = self.nearest_m.min(missing_m);
+        if self.without_gain_m > ROUNDS * outline.length_m() || self.has_gone_round(at, step_m) {
+            return None;
+        }
+        let first = self.along.map_or(ahead, |way| self.hand(at, way, outline));
+        let keep_m = self.keep_m;
+        let mut is_free = |way: &Vector| outline.lets(at, way * step_m, keep_m);
+        if (is_nearer || self.along.is_none()) && is_free(&ahead) {
+            self.along = None;
+            return Some(ahead * step_m);
+        }
+        let mut tried =
+            (0..DIRECTIONS).map(|k| self.turned(first, TAU * f64::from(k) / f64::from(DIRECTIONS)));
+        let way = tried.find(|way| is_free(way))?;
+        self.along = Some(way);
+        if is_nearer {
+            self.nearest = Some((at, way));
+        }
+        Some(way * step_m)
+    }
+
+    /// Whether it is again where it came nearest, and on the same way.
+    fn has_gone_round(&self, at: Point, step_m: f64) -> bool {
+        let Some(((place, way), along)) = self.nearest.zip(self.along) else { return false };
+        let is_there = (place - at).norm() < 2.0 * step_m && way.dot(&along) > 0.5;
+        self.without_gain_m > ROUND_LEAST_M && is_there
+    }
+
+    /// Whether the last step, before which it was as given, met something that calls for a choice of side.
+    pub fn meets_something(&self, before: &Self, at: Point) -> bool {
+        let is_far = self.met.is_none_or(|met| (met - at).norm() > CHOICE_M);
+        self.along.is_some() && before.along.is_none() && is_far
+    }
+
+    /// Toward the outline under the hand: of those in reach the one that the last move was along.
+    fn hand(&self, at: Point, way: Vector, outline: &mut Outline) -> Vector {
+        let share = |away: &Vector| self.side.along(*away).dot(&way);
+        let out = outline.ways_out(at, self.keep_m + HAND_M).max_by(|a, b| share(a).total_cmp(&share(b)));
+        out.map_or_else(|| self.turned(way, -HAND_RAD), |away| -away)
+    }
+
+    /// A direction turned away from what it passes, radians.
+    fn turned(&self, way: Vector, angle_rad: f64) -> Vector {
+        Rotation2::new(self.side.sign() * angle_rad) * way
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use world::polyline;
+
+    fn outline(corners: &[(f64, f64)]) -> Outline {
+        let vertices = corners.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+        let map = KnownMap { solids: vec![], wall: Boundary::Polygon { vertices }, hull_m: 0.25 };
+        Outline::new(&map, &Clusters::new(&map, 0.1), 0.1, 0.5)
+    }
+
+    fn walked(corners: &[(f64, f64)], start: Point, goal: Point, side: Side) -> (Vec<Point>, f64) {
+        let mut outline = outline(corners);
+        let mut follow = Follow::new(goal, &outline, side, 0.27, 0.35);
+        let mut path = vec![start];
+        while let Some(step) = follow.step(path[path.len() - 1], goal, &mut outline, 0.05) {
+            path.push(path[path.len() - 1] + step);
+            if (goal - path[path.len() - 1]).norm() < 0.01 {
+                break;
+            }
+        }
+        let least_m = path.iter().map(|at| outline.distance_m(*at)).fold(f64::INFINITY, f64::min);
+        (path, least_m)
+    }
+
+    /// A floor of 8 m by 6 m with a wall of 4 m between two halves.
+    const SPUR: [(f64, f64); 8] =
+        [(0.0, 0.0), (3.9, 0.0), (3.9, 4.0), (4.1, 4.0), (4.1, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
+
+    #[test]
+    fn both_hands_lead_round_a_wall_that_hangs_on_the_outline() {
+        let (start, goal) = (Point::new(1.0, 1.0), Point::new(7.0, 1.0));
+        for (side, most_m) in [(Side::Left, 14.0), (Side::Right, 30.0)] {
+            let (path, least_m) = walked(&SPUR, start, goal, side);
+            assert!((goal - path[path.len() - 1]).norm() < 0.01, "{side:?}");
+            assert!(least_m > 0.35 - 1e-6, "{side:?} {least_m}");
+            assert!(polyline::length_m(&path) < most_m, "{side:?} {}", polyline::length_m(&path));
+        }
+    }
+
+    #[test]
+    fn without_a_way_it_goes_round_and_ends() {
+        let closed =
+            [(0.0, 0.0), (3.9, 0.0), (3.9, 5.5), (4.1, 5.5), (4.1, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
+        let (path, _) = walked(&closed, Point::new(1.0, 1.0), Point::new(7.0, 1.0), Side::Left);
+        assert!(path.iter().all(|at| at.x < 4.0));
+    }
+
+    #[test]
+    fn a_passage_little_wider_than_what_is_kept_is_gone_through() {
+        // 0.72 m wide, of which 0.70 are kept.
+        let door = [
+            (0.0, 0.0),
+            (3.9, 0.0),
+            (3.9, 5.28),
+            (6.1, 5.28),
+            (6.1, 0.0),
+            (9.0, 0.0),
+            (9.0, 6.0),
+            (0.0, 6.0),
+        ];
+        let goal = Point::new(8.0, 1.0);
+        for side in [Side::Left, Side::Right] {
+            let (path, least_m) = walked(&door, Point::new(1.0, 1.0), goal, side);
+            assert!((goal - path[path.len() - 1]).norm() < 0.01, "{side:?}");
+            assert!(least_m > 0.35 - 1e-6);
+        }
+    }
+
+    #[test]
+    fn obstacles_without_a_passage_to_the_wall_hang_on_it() {
+        let disc = |id: u32, x: f64| Solid::disc(id, Point::new(x, 3.0), 0.3);
+        let corners = SPUR.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+        let solids = vec![disc(1, 0.5), disc(2, 1.3), disc(3, 2.8)];
+        let map = KnownMap { solids, wall: Boundary::Polygon { vertices: corners }, hull_m: 0.25 };
+        let outline = Outline::new(&map, &Clusters::new(&map, 0.1), 0.1, 0.5);
+        assert_eq!([1, 2, 3].map(|id| outline.holds(id)), [true, true, false]);
+    }
+}
