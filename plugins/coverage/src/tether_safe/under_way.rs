@@ -33,8 +33,13 @@ impl<'a> Outcome<'a> {
     pub(super) fn if_shorter_than(self, new: &Worth, lead_in: &[Point]) -> Option<RepairedPlan<'a>> {
         let Self::Long(repair) = self else { return None };
         let new_m = new.length_m + polyline::length_m(lead_in);
-        (repair.0.length_m < new_m || !new.certificate.certified).then_some(repair)
+        is_kept_to(repair.0.length_m, new_m, new.certificate.certified).then_some(repair)
     }
+}
+
+/// Whether a long repair is better than a new plan with all of its way: that is longer still, or not safe for the tether.
+fn is_kept_to(repair_m: f64, new_m: f64, is_new_certified: bool) -> bool {
+    repair_m < new_m || !is_new_certified
 }
 
 /// Repairs the plan under way, if one is to be kept to.
