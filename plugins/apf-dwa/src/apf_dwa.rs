@@ -119,7 +119,9 @@ impl Planner for ApfDwa {
         let idle_s = self.stall.update(sensed.t_s, pose.position, sensed.target);
         let is_stuck = idle_s > self.stuck_s && movers.is_empty();
         let status = if is_stuck { Status::Stuck } else { Status::Moving };
-        movers.iter().for_each(|mover| mover.show(ctx));
+        for mover in &movers {
+            mover.show(ctx);
+        }
         let drive = if movers.is_empty() {
             self.drive(&pose, decision.twist)
         } else {

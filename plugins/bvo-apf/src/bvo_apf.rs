@@ -216,7 +216,9 @@ fn phase_number(phase: &Phase) -> f64 {
 }
 
 fn report(news: &[News], ctx: &Ctx<'_>) {
-    news.iter().for_each(|item| item.report(ctx));
+    for item in news {
+        item.report(ctx);
+    }
 }
 
 /// Says how a way was found that is not the method's own.

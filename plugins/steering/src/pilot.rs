@@ -126,7 +126,9 @@ impl Pilot {
         if movers.is_empty() {
             return decision.into();
         }
-        movers.iter().for_each(|mover| mover.show(ctx));
+        for mover in movers {
+            mover.show(ctx);
+        }
         let around = Around {
             movers,
             standing: tick.bodies,

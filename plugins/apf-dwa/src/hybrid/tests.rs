@@ -33,7 +33,7 @@ fn settings(by: GuideBy, transition_steps: u32) -> HybridSettings {
     }
 }
 
-fn runs(group: Group, seed: u64, settings: HybridSettings) -> (AmphibiousLayout, Run) {
+fn runs(group: Group, seed: u64, settings: &HybridSettings) -> (AmphibiousLayout, Run) {
     let layout = AmphibiousLayout::random(group, seed);
     let (corners, obstacles, water) =
         (AmphibiousLayout::corners(), layout.obstacles(), AmphibiousLayout::water());
@@ -44,7 +44,7 @@ fn runs(group: Group, seed: u64, settings: HybridSettings) -> (AmphibiousLayout,
         kind: ZoneKind::Underwater,
         shape: Shape::Polygon { vertices: water.clone() },
     };
-    let mut hybrid = Hybrid::new(settings, vec![flooded], HULL_M);
+    let mut hybrid = Hybrid::new(*settings, vec![flooded], HULL_M);
     let start = Pose { position: layout.start, heading_rad: std::f64::consts::FRAC_PI_4 };
     let run = run::<()>(&mut hybrid, start, layout.goal, 0.15, 4000, &map, || Ok(())).unwrap();
     (layout, run)
@@ -55,7 +55,7 @@ fn on_random_layouts_it_arrives_on_nearly_the_shortest_path_and_keeps_clear() {
     for group in Group::ALL {
         let mut ratios = Vec::new();
         for seed in 500..515 {
-            let (layout, run) = runs(group, seed, settings(GuideBy::Corners, 20));
+            let (layout, run) = runs(group, seed, &settings(GuideBy::Corners, 20));
             assert!(run.arrived, "{group:?} {seed} {:?}", run.path.last());
             assert!(run.path.iter().all(|p| layout.hull_clearance_m(*p) >= 0.1));
             ratios.push(polyline::length_m(&run.path) / layout.shortest_path().unwrap().length_m);
@@ -66,7 +66,7 @@ fn on_random_layouts_it_arrives_on_nearly_the_shortest_path_and_keeps_clear() {
 
 #[test]
 fn changing_over_in_twenty_steps_it_never_exceeds_its_limit_and_at_once_it_does() {
-    let over = |steps: u32| runs(Group::Free, 3, settings(GuideBy::Corners, steps)).1.overspeed_m_per_s;
+    let over = |steps: u32| runs(Group::Free, 3, &settings(GuideBy::Corners, steps)).1.overspeed_m_per_s;
     assert!(over(20) < 1e-9);
     assert!((over(0) - 0.09).abs() < 1e-6);
 }
@@ -74,7 +74,7 @@ fn changing_over_in_twenty_steps_it_never_exceeds_its_limit_and_at_once_it_does(
 #[test]
 fn the_published_square_passes_most_free_floors_and_never_touches_anything() {
     let all: Vec<(AmphibiousLayout, Run)> =
-        (700..715).map(|seed| runs(Group::Free, seed, settings(GuideBy::Square, 20))).collect();
+        (700..715).map(|seed| runs(Group::Free, seed, &settings(GuideBy::Square, 20))).collect();
     assert!(all.iter().filter(|(_, run)| run.arrived).count() >= 12);
     for (layout, run) in &all {
         assert!(run.path.iter().all(|p| layout.hull_clearance_m(*p) >= 0.1));

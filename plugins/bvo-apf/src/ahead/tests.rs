@@ -78,7 +78,9 @@ fn a_spur_of_the_outline_is_gone_round_by_every_mode_but_the_paper_s() {
 #[test]
 fn a_spur_that_is_an_obstacle_at_the_wall_is_gone_round_by_every_mode() {
     let map = map(&FLOOR, &[[3.9, 0.0, 4.1, 4.0]]);
-    Mode::ALL.iter().for_each(|mode| assert_within(*mode, &map, 20.0));
+    for mode in Mode::ALL {
+        assert_within(mode, &map, 20.0);
+    }
     assert_within(Mode::Pre, &map, 9.4);
 }
 
@@ -86,7 +88,9 @@ fn a_spur_that_is_an_obstacle_at_the_wall_is_gone_round_by_every_mode() {
 fn a_bend_of_two_spurs_is_followed() {
     let map = map(&BEND, &[]);
     assert_eq!(length_m(Mode::Literal, &map), None);
-    [Mode::Hull, Mode::Rollout].iter().for_each(|mode| assert_within(*mode, &map, 40.0));
+    for mode in [Mode::Hull, Mode::Rollout] {
+        assert_within(mode, &map, 40.0);
+    }
     // The shortest is 10.8 m.
     assert_within(Mode::Pre, &map, 11.2);
 }

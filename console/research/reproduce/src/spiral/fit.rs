@@ -8,6 +8,9 @@ use super::{
 };
 use crate::study::{Job, Row, Sample, jackknife_95};
 
+/// One figure of a plan.
+type Figure = fn(&Measured) -> f64;
+
 /// Figures this near to the printed one, as a share of it, agree.
 const NEAR: f64 = 0.05;
 
@@ -123,7 +126,7 @@ impl Planned<'_> {
             }
             for (run, plans) in of_method {
                 let printed = printed::table1(&id, run.group.column())?;
-                let figures: [(fn(&Measured) -> f64, f64); 3] = [
+                let figures: [(Figure, f64); 3] = [
                     (|plan| plan.score.precision, printed.precision),
                     (|plan| plan.score.recall, printed.recall),
                     (|plan| plan.score.rmse_m, printed.rmse_m),

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Rates are fractions from 0 to 1; means carry the plain metric id, medians end in `_median`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a column of its own")]
 pub struct Row {
     /// Name of the study.
     pub table: String,
