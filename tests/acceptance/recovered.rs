@@ -130,6 +130,6 @@ fn a_run_that_is_being_written_or_was_closed_is_not_recovered() {
     assert!(refused.code == Some(2) && refused.err.contains("nothing to recover"), "{refused:?}");
     for name in ["n.a.", "?"] {
         let refused = bench.tankops(&["recover", run.to_str().unwrap(), "--by", name]);
-        assert!(refused.code == Some(2) && refused.err.contains("name of the person"), "{refused:?}");
+        assert!(refused.code == Some(2) && refused.err.contains("name the person"), "{refused:?}");
     }
 }

@@ -232,8 +232,8 @@ fn empty_words_an_expired_certificate_and_sound_of_unknown_origin_are_not_signed
             .contains("inspector_certificate says that it is expired")
     );
     assert!(open("sound_speed = \"1180 m/s, gas oil, 14 deg\"\n", "").contains("inspection.sound_speed"));
-    assert!(open("1180 m/s, gas oil, 14 deg", "1180 m/s").contains("how that was determined"));
-    assert!(open("Port of <Rotterdam>", "n/a").contains("inspection.client says nothing"));
+    assert!(open("1180 m/s, gas oil, 14 deg", "1180 m/s").contains("how it was determined"));
+    assert!(open("Port of <Rotterdam>", "n/a").contains("inspection.client has no content"));
 }
 
 #[test]
