@@ -1,6 +1,7 @@
 //! A scenario that comes through a pipe: whoever writes it may take their time, and the user is told what is waited for.
 
 use crate::cli::Command;
+use interactive::config;
 use report::print::warn_line;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
@@ -28,7 +29,10 @@ fn files(command: Option<&Command>) -> Vec<PathBuf> {
         Some(Command::Accuracy(args)) => vec![args.scenario.clone()],
         Some(Command::Locate(args)) => vec![args.scenario.clone()],
         Some(Command::Console(args)) => args.scenario.iter().cloned().collect(),
-        Some(Command::Check { files, .. }) => files.clone(),
+        // A configuration is a regular file, or refused.
+        Some(Command::Check { files, .. }) => {
+            files.iter().filter(|file| !config::is_one(file)).cloned().collect()
+        }
         _ => Vec::new(),
     }
 }

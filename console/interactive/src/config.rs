@@ -107,16 +107,25 @@ fn name_of(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
+/// Whether a file is one of the two by its name.
+pub fn is_one(file: &Path) -> bool {
+    reader_of(file).is_some()
+}
+
+fn reader_of(file: &Path) -> Option<Read> {
+    match file.file_name()?.to_str()? {
+        SETTINGS => Some(settings::read),
+        KEYS => Some(keys::read),
+        _ => None,
+    }
+}
+
 /// Checks a file if it is one of the two by its name; what it holds.
 ///
 /// # Errors
 /// What is wrong with it, a line each.
 pub fn check(file: &Path) -> Option<Result<String, String>> {
-    let read: Read = match file.file_name()?.to_str()? {
-        SETTINGS => settings::read,
-        KEYS => keys::read,
-        _ => return None,
-    };
+    let read = reader_of(file)?;
     let text = match texts::read_regular(file) {
         Ok(text) => text,
         Err(error) => return Some(Err(format!("error: {error}"))),
