@@ -381,7 +381,7 @@ fn a_region_that_is_no_polygon_is_refused() {
     let line = abi::Outline { kind: abi::input::OUTLINE_POLYLINE, ..unsafe { *input.regions } };
     input.regions = &raw const line;
     let code = unsafe { plan::<Probe>(planner, &host(&mut sink), &input, &mut { PlanOut::UNSET }) };
-    assert_eq!((code, sink.error.contains("no polygon")), (Code::Invalid as i32, true));
+    assert_eq!((code, sink.error.contains("not a polygon")), (Code::Invalid as i32, true));
     unsafe { destroy::<Probe>(planner) };
 }
 
