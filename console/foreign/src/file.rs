@@ -62,7 +62,7 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
     read_at_most(path, MOST_TEXT_BYTES)
 }
 
-/// The text of a regular file of at most so many bytes.
+/// The text of a regular file, which may not exceed `most_bytes`.
 ///
 /// # Errors
 /// It is not a regular file, is longer, cannot be read, or is not UTF-8.
@@ -76,7 +76,7 @@ pub fn read_at_most(path: &Path, most_bytes: u64) -> io::Result<String> {
     text_of(file, most_bytes)
 }
 
-/// The text that a reader gives, of at most so many bytes.
+/// The whole text of a reader, which may not exceed `most_bytes`.
 ///
 /// # Errors
 /// It gives more, cannot be read, or is not UTF-8: what it is instead, and what to do about it.
@@ -92,7 +92,7 @@ pub fn text_of(reader: impl Read, most_bytes: u64) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))
 }
 
-/// The text of a regular file of JSON, of at most so many bytes, that is no larger in memory than a few times as much.
+/// The text of a regular JSON file, which may not exceed `most_bytes`, nor a small multiple of that in memory.
 ///
 /// # Errors
 /// See [`read_at_most`]; it holds too many values.

@@ -72,7 +72,7 @@ fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
     rewritten(text, is_plain, |plain, c| plain.push(instead(c)))
 }
 
-/// A text in which the characters that may not stay are written anew.
+/// Keeps the characters of a text that may stay and has `write` replace each of the others.
 fn rewritten(
     text: &str,
     may_stay: impl Fn(char) -> bool,

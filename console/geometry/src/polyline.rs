@@ -52,7 +52,7 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
-/// Index of the nearest of the points from `from` on, found by going on for as long as the next one is no further away.
+/// Walks from point `from` as long as the next point is at least as near to the place, and gives the index where it stops.
 /// `from` itself at the end of the list and beyond.
 ///
 /// ```

@@ -8,7 +8,7 @@ use world::StationId;
 const MOST_SQUARES: f64 = 16.0;
 /// Readings that scatter less than this many times as much as the noise, squared, do no harm.
 const HARMLESS: f64 = 1.3;
-/// A sum so many standard deviations off is not chance.
+/// A sum that deviates by more standard deviations than this is significant.
 const SIGNIFICANT: f64 = 5.0;
 
 /// Two readings of one station that are furthest apart.

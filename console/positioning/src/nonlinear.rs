@@ -136,7 +136,7 @@ fn line_of(anchors: &[Anchor]) -> (Point, Vector) {
 
 /// The place that the squared ranges give beside stations on a line, on the side of a place.
 ///
-/// The place itself is no start: on the line the cost has a saddle, on which a descent does not settle.
+/// Do not start the descent at `near` itself: the cost has a saddle on the line, where the descent does not settle.
 fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
     /// Least distance from the line, as a share of the longest range.
     const OFF_THE_SADDLE: f64 = 1e-3;

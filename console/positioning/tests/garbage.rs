@@ -1,4 +1,4 @@
-//! Whatever comes in, nothing that is not a number comes out, and nothing panics.
+//! Whatever comes in, only finite numbers come out, and nothing panics.
 
 use nalgebra::Matrix2;
 use positioning::{

@@ -1,7 +1,7 @@
 //! What people and scripts read: of a run, of several together, of a plan, of a forecast of the accuracy.
 //!
 //! [`Fold`] reads every event of a run once and gives a [`Summary`]: the object that `run --json` prints, the text of
-//! [`human()`], and what [`Expect`] holds to the bounds of a scenario. Wall-clock figures and files are no part of the events; the
+//! [`human()`], and what [`Expect`] holds to the bounds of a scenario. The events contain neither wall-clock figures nor files; the
 //! app fills them in. Plans ([`plan`]) and forecasts ([`forecast`]) are pictures, too ([`drawing`]).
 
 pub mod account;

@@ -41,7 +41,7 @@ fn next(text: &str) -> Option<(Option<char>, usize)> {
     })
 }
 
-/// The character of `\uXXXX`, or of two of them.
+/// The character of an escape such as `\u20ac`, or of a surrogate pair of two escapes.
 fn escaped(text: &str) -> (Option<char>, usize) {
     let unit = |at: usize| -> Option<u16> {
         let digits = text.get(at..at + 6)?.strip_prefix("\\u")?;

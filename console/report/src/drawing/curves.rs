@@ -7,7 +7,7 @@ use std::fmt::Write;
 const SIZE_MM: (f64, f64) = (180.0, 90.0);
 /// Left, right, top and bottom end of the plot, millimetres.
 const PLOT_MM: [f64; 4] = [16.0, 174.0, 14.0, 78.0];
-/// A curve is drawn by so many points at most: each shows the largest value of its stretch.
+/// Most points that draw a curve; each shows the largest value of its stretch.
 const MOST_POINTS: usize = 600;
 /// The axis ends above this share of all values: the others are peaks, and are cut off.
 const SHOWN: f64 = 0.98;

@@ -66,7 +66,7 @@ impl GotoLayout {
         planners.plan(method, self.start(), task, &self.site(&corners, &obstacles))
     }
 
-    /// Lets a planner fly it for so many seconds at most, at a metre a second.
+    /// Lets a planner fly it for at most this many seconds, at one metre per second.
     ///
     /// # Errors
     /// The planner is missing, refuses its parameters or broke down.

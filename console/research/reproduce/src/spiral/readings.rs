@@ -14,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 
 /// What every row of such a reading says.
 pub(super) const SELECTED: &str =
-    "selected on the printed table: compatible with it, which is no evidence of what the authors did";
+    "selected on the printed table: it shows what the table allows, not what the authors did";
 
 /// One way to decide what is open; every word is a value of a parameter of the planners.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,7 +13,7 @@ use crate::study::{Block, Job, Result, Row, Sample};
 use trials::{Sampling, precision_recall};
 use world::spiral::Spiral;
 
-/// A search holds every reading against the table on so many layouts of each distribution, from this seed on.
+/// A search compares every reading with the table on this many layouts of each distribution, starting at this seed.
 const LAYOUTS_OF_A_SEARCH: u64 = 20;
 const FIRST_OF_A_SEARCH: u64 = 7_000_000;
 

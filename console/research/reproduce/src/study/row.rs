@@ -78,7 +78,7 @@ impl Row {
         Self { paper: paper.into(), ..self }
     }
 
-    /// As one behind which a number or a layout was fitted to the printed values: agreement is no confirmation.
+    /// Marks a row whose number or layout was fitted to the printed values: its agreement confirms nothing.
     pub(crate) fn fitted(self) -> Self {
         Self { is_fitted: true, ..self }
     }
