@@ -4,8 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use planner_apf::apf::Apf;
 use planner_api::{Motion, PlanRequest, Planner, Reason, Task, testing::Bench};
 use std::hint::black_box;
-use steering::trial::exact_pose;
-use trials::{Distribution, Layout, Sampling};
+use trials::{Distribution, Layout, Sampling, exact_pose};
 
 /// Layouts that take turns.
 const LAYOUTS: u64 = 20;

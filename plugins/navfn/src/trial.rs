@@ -1,8 +1,10 @@
 //! Questions to the planners on random traps, for tests.
 
 use planner_api::{Obstacle, Plan, PlanRequest, Planner, Point2, Reason, Result, Site, Task, testing::Bench};
-use steering::trial::exact_pose;
-use trials::traps::{HULL_M, Trap};
+use trials::{
+    exact_pose,
+    traps::{HULL_M, Trap},
+};
 use world::polyline;
 
 /// A planner with these parameters, for a site.

@@ -11,8 +11,7 @@ use planner_spiral::{
     spiral_tangent::SpiralTangent,
 };
 use std::hint::black_box;
-use steering::trial::exact_pose;
-use trials::{Distribution, Layout, Sampling};
+use trials::{Distribution, Layout, Sampling, exact_pose};
 
 /// Layouts that take turns.
 const LAYOUTS: u64 = 20;

@@ -2,8 +2,7 @@
 
 use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
 use std::time::Duration;
-use steering::trial::exact_pose;
-use trials::{Distribution, Layout, Safety, Sampling, Score, floor_rmse_m, safety, score};
+use trials::{Distribution, Layout, Safety, Sampling, Score, exact_pose, floor_rmse_m, safety, score};
 
 /// Clearance of the paper's layouts in our tests, metres.
 pub(crate) const CLEARANCE_M: f64 = 0.3;

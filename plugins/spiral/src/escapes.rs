@@ -78,8 +78,7 @@ mod tests {
     use super::*;
     use crate::bench::plan;
     use planner_api::{Motion, Planner};
-    use steering::trial::{Robot, cross, fly};
-    use trials::{Distribution, Layout, Sampling, score};
+    use trials::{Distribution, Layout, Robot, Sampling, cross, fly, score};
 
     /// Wang et al. 2023, first distribution.
     const PAPER: [(&str, f64); 4] =

@@ -20,8 +20,6 @@ pub mod solid;
 pub mod stall;
 pub mod tangents;
 pub mod tick;
-#[cfg(feature = "trial")]
-pub mod trial;
 
 pub use body::{Body, solid_parts, solids};
 pub use contact::{Contact, Source, wall_contacts};

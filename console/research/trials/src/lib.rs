@@ -1,27 +1,33 @@
 //! Trials of planners: layouts drawn from a seed as the papers draw them, and the figures of a path on them.
 //!
 //! Pure: the same seed gives the same layout, everywhere. `reproduce` measures planners with it over the plugin
-//! boundary; the planners' own tests use the same layouts and the same figures.
+//! boundary; the planners' own tests use the same layouts and the same figures, and fly them ([`fly`], [`cross`]).
 //!
 //! Frame: the tank frame, metres, radians.
 #![forbid(unsafe_code)]
 
 pub mod amphibious;
+pub mod crossing;
 pub mod discs;
 pub mod entanglement;
+pub mod flight;
 pub mod paper;
 pub mod scan;
 pub mod score;
+pub mod sensed;
 pub mod spiral;
 pub mod tanks;
 pub mod traps;
 pub mod walk;
 
 pub use amphibious::AmphibiousLayout;
+pub use crossing::{Crossing, cross};
 pub use entanglement::Entanglement;
+pub use flight::{Outcome, Robot, fly};
 pub use paper::{Distribution, Sampling};
 pub use scan::Scan;
 pub use score::{Safety, Score, floor_rmse_m, precision_recall, safety, score, score_paired, targets_ahead};
+pub use sensed::{exact_pose, sensed_at_rest};
 pub use spiral::Layout;
 pub use traps::Trap;
 pub use walk::WalkOutcome;

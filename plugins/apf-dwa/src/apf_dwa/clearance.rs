@@ -3,8 +3,7 @@
 
 use super::*;
 use planner_api::{Boundary, Obstacle, Point2, Reason, Task, testing::Bench};
-use steering::trial::exact_pose;
-use trials::discs;
+use trials::{discs, exact_pose};
 
 const START: Point2<f64> = Point2::new(0.0, 0.0);
 const GOAL: Point2<f64> = Point2::new(12.0, 0.0);

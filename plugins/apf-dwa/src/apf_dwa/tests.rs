@@ -4,8 +4,10 @@ use super::*;
 use geometry::Point;
 use planner_api::{Code, Obstacle, Outline, Reason, Task, Vector2, testing::Bench};
 use proptest::prelude::*;
-use steering::trial::{cross, exact_pose};
-use trials::amphibious::{AmphibiousLayout, Group};
+use trials::{
+    amphibious::{AmphibiousLayout, Group},
+    cross, exact_pose,
+};
 
 fn with_planner<T>(
     values: &[(&str, f64)],

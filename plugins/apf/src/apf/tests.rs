@@ -4,8 +4,7 @@ use super::*;
 use planner_api::testing::Bench;
 use planner_api::{Code, Drive, LogLevel, Motion, Obstacle, Outline, Reason, StopReason, Task};
 use proptest::prelude::*;
-use steering::trial::{Outcome, Robot, cross, exact_pose, fly, sensed_at_rest};
-use trials::Layout;
+use trials::{Layout, Outcome, Robot, cross, exact_pose, fly, sensed_at_rest};
 use world::{Point, polyline};
 
 /// A robot of radius 0.25 m in a round tank of radius 8 m.

@@ -2,8 +2,7 @@
 
 use super::*;
 use planner_api::{Motion, Reason, Task, testing::Bench};
-use steering::trial::{Robot, cross, exact_pose, fly};
-use trials::spiral::Layout;
+use trials::{Robot, cross, exact_pose, fly, spiral::Layout};
 
 /// Point obstacles on a wide floor, as the paper draws them.
 fn floor(points: &[(f64, f64)]) -> Layout {

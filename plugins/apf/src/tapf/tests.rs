@@ -2,8 +2,7 @@
 
 use super::*;
 use planner_api::{Code, Motion, Reason, Task, testing::Bench};
-use steering::trial::{Robot, cross, exact_pose, fly};
-use trials::spiral::Layout;
+use trials::{Robot, cross, exact_pose, fly, spiral::Layout};
 use world::Point;
 
 /// A robot without extent on a floor of radius 90 m.

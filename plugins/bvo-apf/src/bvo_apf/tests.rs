@@ -6,7 +6,7 @@ use planner_api::{
     testing::Bench,
 };
 use std::f64::consts::PI;
-use steering::trial::exact_pose;
+use trials::exact_pose;
 use world::{Pose, Vector, geometry::wrap_angle_rad};
 
 const TICK_S: f64 = 0.1;

@@ -4,8 +4,10 @@ use planner_api::{
     Boundary, Code, Limits, Motion, Obstacle, Outline, Point2, Reason, Task, Vector2, Zone, ZoneKind,
     testing::Bench,
 };
-use steering::trial::exact_pose;
-use trials::traps::{Kind, Trap};
+use trials::{
+    exact_pose,
+    traps::{Kind, Trap},
+};
 use world::polyline;
 
 fn site<'a>(obstacles: &'a [Obstacle<'a>], zones: &'a [Zone<'a>]) -> Site<'a> {

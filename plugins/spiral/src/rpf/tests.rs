@@ -6,8 +6,7 @@ use planner_api::{
     Drawing, Drive, Layer, Motion, Obstacle, Outline, Plan, PlanRequest, Planner, Reason, Task,
 };
 use proptest::prelude::*;
-use steering::trial::{Outcome, Robot, cross, exact_pose, fly, sensed_at_rest};
-use trials::{Layout, Score, score};
+use trials::{Layout, Outcome, Robot, Score, cross, exact_pose, fly, score, sensed_at_rest};
 use world::{Point, polyline, spiral::Spiral};
 
 /// Choices by the index of their word.

@@ -4,8 +4,7 @@ use super::*;
 use crate::bench::{CLEARANCE_M, Figures, plan};
 use planner_api::{Code, Motion, PlannerError, Reason, Task, testing::Bench};
 use proptest::prelude::*;
-use steering::trial::{Robot, exact_pose, fly};
-use trials::{Distribution, Layout, Sampling, score};
+use trials::{Distribution, Layout, Robot, Sampling, exact_pose, fly, score};
 use world::{Point, Vector, spiral::Spiral};
 
 fn tank(points: &[Point]) -> Layout {

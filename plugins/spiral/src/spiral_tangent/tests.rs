@@ -6,9 +6,9 @@ use crate::spiral_lattice::SpiralLattice;
 use crate::tangent::Around;
 use planner_api::{Drive, Motion, Obstacle, Outline, testing::Bench};
 use proptest::prelude::*;
-use steering::trial::{Outcome, Robot, exact_pose, fly};
 use steering::{Keep, Side};
 use trials::{Distribution, Layout};
+use trials::{Outcome, Robot, exact_pose, fly};
 use world::{Boundary, Point, Vector};
 
 #[test]
@@ -140,7 +140,7 @@ fn a_plan_is_followed_round_an_obstacle_that_it_does_not_know() {
             t_s: f64::from(tick) * 0.1,
             pose: exact_pose(at),
             path_ahead: &plan[from..],
-            ..steering::trial::sensed_at_rest(at, &plan[from..], &discovered)
+            ..trials::sensed_at_rest(at, &plan[from..], &discovered)
         };
         let command = planner.step(&sensed, &bench.ctx()).unwrap();
         let Drive::Velocity(velocity) = command.drive else { panic!("a velocity") };

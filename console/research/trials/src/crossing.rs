@@ -1,6 +1,6 @@
 //! Something that crosses the way of a robot to its goal.
 
-use super::{exact_pose, flight};
+use crate::{exact_pose, flight};
 use geometry::{Limits, Motion, Point, Pose, Vector, wrap_angle_rad};
 use planner_api::{Boundary, Obstacle, Outline, Planner, Sensed, Site, testing::Bench};
 

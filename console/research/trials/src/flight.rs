@@ -1,5 +1,6 @@
-//! One flight.
+//! One flight of a planner in a closed loop: a robot with a noisy pose on a layout, and the mission's rule for the target.
 
+use crate::Layout;
 use geometry::{
     Drive, Limits, Motion, PathFollower, Point, Pose, Vector,
     motion::{TURN_FIRST_RAD, drive_for},
@@ -10,7 +11,6 @@ use planner_api::{Obstacle, Outline, Planner, PoseEstimate, Result, Sensed, Site
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
-use trials::Layout;
 
 /// Length of a tick, seconds.
 const TICK_S: f64 = 0.1;

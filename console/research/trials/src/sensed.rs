@@ -1,14 +1,7 @@
-//! Closed-loop trials of a planner on random layouts, for tests: a robot with a noisy pose, columns on its way, and
-//! the mission's rule for the target.
-
-pub mod crossing;
-pub mod flight;
+//! What a robot senses at the beginning of a mission, for the planners' tests.
 
 use geometry::Point;
 use planner_api::{Obstacle, PoseEstimate, Sensed};
-
-pub use crossing::{Crossing, cross};
-pub use flight::{Outcome, Robot, fly};
 
 /// A pose known exactly, looking east.
 pub fn exact_pose(position: Point) -> PoseEstimate {
