@@ -15,6 +15,7 @@ use std::io::{self, IoSlice};
 use std::mem::MaybeUninit;
 use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
+use std::sync::{Arc, Barrier};
 
 /// The socket lives above the numbers that careless plugins close; there is only this one descriptor of it.
 const SOCKET_AT: i32 = 200;
@@ -134,8 +135,14 @@ fn limit(resource: Resource, most: u64) {
 
 /// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
 /// down; also in the middle of an endless loop.
+///
+/// Returns when that thread watches. It reserves memory when it begins, which the console has to allow: a console that
+/// has asked the worker to shut down may not look any more.
 pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
+    let watches = Arc::new(Barrier::new(2));
+    let begun = Arc::clone(&watches);
     std::thread::Builder::new().name("watchdog".into()).stack_size(64 << 10).spawn(move || {
+        begun.wait();
         loop {
             let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
@@ -151,6 +158,7 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
             }
         }
     })?;
+    watches.wait();
     Ok(())
 }
 
