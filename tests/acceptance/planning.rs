@@ -173,7 +173,7 @@ fn a_start_waits_for_the_plan_and_names_the_one_that_was_seen() {
     let mut session = faulty("plan_long");
     session.see("Planning (faulty)");
     session.press("S");
-    session.see("start when the plan is ready");
+    session.see("not started; start again when the plan is ready");
     session.start();
     session.see("▶ RUN");
     // Its plan leads through a column, before which the robot is held.
@@ -193,7 +193,7 @@ fn a_start_is_refused_while_a_planner_is_being_opened_and_leaves_no_run() {
     // On a busy machine the second for which it is being opened is over.
     session.press("S\r");
     session.until("a refusal", |session| {
-        ["start when the plan is ready", "tart blocked", "make one first"]
+        ["not started; start again when the plan is ready", "tart blocked", "none; "]
             .iter()
             .any(|word| session.text().contains(word))
     });

@@ -42,7 +42,7 @@ pub(crate) struct PluginArgs {
     /// Additional folder of planner plugins, searched first; repeatable.
     #[arg(long, value_name = "DIR", global = true)]
     pub plugin_dir: Vec<PathBuf>,
-    /// Refuse planners unless the system closes off their processes wholly (Linux with Landlock and seccomp).
+    /// Refuse planners unless the system fully sandboxes their processes (Linux with Landlock and seccomp).
     #[arg(long, global = true)]
     pub require_sandbox: bool,
 }
@@ -57,7 +57,7 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Forecast the position accuracy that the stations give, and advise where to place them.
     Accuracy(AccuracyArgs),
-    /// Show what becomes of an occupancy map: the floor, its outlines and convex pieces.
+    /// Show how an occupancy map is read: the floor, its outlines and convex pieces.
     Map(MapArgs),
     /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
     Import(ImportArgs),
@@ -74,7 +74,7 @@ pub(crate) enum Command {
         /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
-        /// For plugins: check what every planner must do, and fly each of theirs in so many random tanks beside the planners that
+        /// For plugins: check what every planner must do, and fly each of their planners in N random tanks beside those that
         /// are installed.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
         fly: Option<u64>,
@@ -92,9 +92,9 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Optimize planner parameters on one set of layouts, and evaluate them on another.
     Tune(TuneArgs),
-    /// Play a past run back in the console; no order can be given.
+    /// Play a past run back in the console; read-only.
     Replay(ReplayArgs),
-    /// Fly many missions, here or on a cluster, and compare what comes of them.
+    /// Fly many missions, here or on a cluster, and compare the results.
     #[command(subcommand)]
     Campaign(CampaignCommand),
     /// List past runs.
@@ -116,7 +116,7 @@ pub(crate) enum Command {
         #[command(flatten)]
         logs: LogsArg,
     },
-    /// Close a run that was killed: fix what is there by digests, so that it can be part of a signed report.
+    /// Close a run that was killed: record the SHA-256 of its files, so that it can be part of a signed report.
     Recover {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,

@@ -54,7 +54,7 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     }
     let stop = || stops_in.map(|tick| format!("it stops in tick {tick}"));
     if let Some(why) = reader.truncated().map(str::to_owned).or_else(stop) {
-        warn_line(&format!("note: the journal has no end: {why}"));
+        warn_line(&format!("note: the journal is incomplete: {why}"));
     }
     Ok(ExitCode::from(COMPLETE))
 }

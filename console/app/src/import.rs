@@ -93,5 +93,5 @@ fn human(plan: &FloorPlan) -> String {
         0 => String::new(),
         n => format!(", {n} plates"),
     };
-    format!("{tank}, {obstacles} obstacles, {no_go} no-go areas{plates}")
+    format!("{tank}, {obstacles} obstacles, {no_go} no-go zones{plates}")
 }

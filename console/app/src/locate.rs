@@ -48,6 +48,8 @@ struct Figures<'a> {
     /// Stations with several readings in one emission.
     repeated_readings: Option<RepeatedReadings<'a>>,
     sides: Sides,
+    /// Fixes that contradict the measured motion, and all that can be tested, if the motion is therefore not used.
+    motion_contradicted: Option<[u64; 2]>,
     /// Readings that no place in the tank explains.
     impossible: Vec<Impossible<'a>>,
     /// The first time of the file, in UTC, where times have dates.
@@ -60,6 +62,8 @@ struct Figures<'a> {
 struct Session<'a> {
     /// By which share all ranges are too long.
     scale: Option<TooLong>,
+    /// By how many metres all ranges are too long; absent without the time of emission.
+    offset_m: Option<TooLong>,
     /// By how many metres those of each station are too long.
     stations_m: BTreeMap<&'a str, TooLong>,
 }
@@ -203,6 +207,7 @@ fn figures<'a>(
             by_start_and_track: doubts.sides_by_track,
             undecided: doubts.sides_open,
         },
+        motion_contradicted: survey.contradicted.map(|found| [found.contradicting, found.sound]),
         impossible: impossible(scenario, doubts),
         first_time: survey.dates.as_ref().map(|[first, _]| first.as_str()),
         tally,
@@ -220,6 +225,7 @@ fn session<'a>(scenario: &'a Scenario, survey: &Survey) -> Session<'a> {
     let station = |(id, wrong): &(StationId, Wrong)| (name_of(scenario, id.0), of(wrong));
     Session {
         scale: verdict.scale.as_ref().map(of),
+        offset_m: verdict.offset_m.as_ref().map(of),
         stations_m: verdict.stations.iter().map(station).collect(),
     }
 }

@@ -63,7 +63,7 @@ pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<Ex
         say_line(&format!("  {missing}"))?;
     }
     say_line(
-        "journal and recording are fixed by their SHA-256 in report.json; the run can be part of a signed report",
+        "the SHA-256 of journal and recording are now in report.json; the run can be part of a signed report",
     )?;
     Ok(ExitCode::from(COMPLETE))
 }

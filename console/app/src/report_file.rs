@@ -55,7 +55,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
     };
     let (flown, located) = (of_kind(false), of_kind(true));
     let past: Vec<PastRun> = read.into_iter().map(|past| past.run).collect();
-    chain.compare(&past);
+    chain.compare(&folders, &past, &register());
     let signature = args.sign.as_deref().map(signature);
     let context = Context {
         inspection,

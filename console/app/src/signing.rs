@@ -10,7 +10,9 @@ use report::{
     print::{say_line, warn_line},
 };
 use review::register;
-use runs::{Register, SIGNED_FILE, Signatures, add_signed, signatures, utc_minute};
+use runs::{
+    Register, SIGNED_FILE, Signatures, add_signed, signatures, signed_under_another_name, utc_minute,
+};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -43,12 +45,16 @@ impl Chain {
         chain
     }
 
-    /// Adds what speaks against runs that are not those that were signed.
-    pub(crate) fn compare(&mut self, past: &[PastRun]) {
+    /// Adds what speaks against runs that are not those that were signed, or were signed under another name.
+    pub(crate) fn compare(&mut self, folders: &[PathBuf], past: &[PastRun], register: &Register) {
         let now: Vec<SignedRun> = past.iter().flat_map(SignedRun::names_of).collect();
         let doubts =
             self.revisions.iter().flat_map(|revision| now.iter().filter_map(|run| revision.doubt(run)));
-        let doubts = doubts.collect();
+        let renamed = folders
+            .iter()
+            .zip(past)
+            .filter_map(|(folder, past)| signed_under_another_name(folder, register, &SignedRun::of(past)));
+        let doubts = doubts.chain(renamed).collect();
         self.doubt(doubts);
     }
 

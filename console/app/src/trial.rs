@@ -23,6 +23,12 @@ pub(crate) fn fly(
     json: bool,
     keep: Option<&Path>,
 ) -> anyhow::Result<ExitCode> {
+    if let Some(file) = files.iter().find(|file| file.extension().is_some_and(|end| end == "toml")) {
+        return Err(bad_input(format!(
+            "{}: --fly tries plugins; to fly a scenario, use `tankops run {0}`",
+            file.display()
+        )));
+    }
     let mut trials = Vec::new();
     let shipped: Vec<String> =
         planners::found(&PluginDirs::standard(&[])).planners.into_iter().map(|info| info.id).collect();

@@ -119,7 +119,7 @@ impl fmt::Display for Findings {
         let gave_up: Vec<Arm> =
             shown.iter().filter(|arm| arm.complete.hits < arm.complete.n).cloned().collect();
         if !gave_up.is_empty() {
-            writeln!(f, "\nMeans over the missions flown that are not complete: no measure of the task")?;
+            writeln!(f, "\nMeans over missions that are not complete (not comparable)")?;
             let means = |arm: &Arm| {
                 let Share { hits, n, .. } = arm.complete;
                 cells(Share::of(n - hits, n), &arm.means_of_incomplete)

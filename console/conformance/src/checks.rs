@@ -72,13 +72,13 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
             named(flown, first_seed, |flown| flown.misbehaved.as_deref()),
         ),
         Check {
-            what: "does not give up everywhere",
+            what: "does not give up in every tank",
             failure: gives_up(flown, first_seed),
             warning: completes_none(flown),
         },
         check("answers steps in time", in_time(flown)),
         check("flies the same flight twice", subject.twice()),
-        check("takes the least and the greatest parameters", subject.extremes()),
+        check("works at the limits of its parameters", subject.extremes()),
         check("stops planning when it is asked to", subject.stops()),
         check("takes over under way", subject.takes_over()),
     ];
@@ -86,7 +86,7 @@ pub(crate) fn all(subject: &Subject<'_>, flown: &[Flown], first_seed: u64) -> Ve
         checks.push(check("continues from its saved state", subject.restores()));
     }
     checks.extend([
-        check("keeps no memory for ever", subject.hoards()),
+        check("does not leak memory", subject.hoards()),
         check("ends when told to", named(flown, first_seed, |flown| flown.bad_end.as_deref())),
         Check { what: "leaves no thread behind", failure: None, warning: threads_left(flown) },
     ]);

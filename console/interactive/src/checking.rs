@@ -2,7 +2,6 @@
 
 use super::{desk::Tools, inbox::RunOutbox, line::EngineHandle};
 use mission::{Check, CheckOutcome};
-use recording::sha256;
 use runs::{check_recorder, free_bytes};
 use std::{
     path::Path,
@@ -46,11 +45,7 @@ fn plugins(tools: &Tools) -> Check {
     let planners = &found.planners;
     let changed: Vec<&str> = planners
         .iter()
-        .filter(|info| {
-            let file =
-                tools.plugins.folders.iter().map(|dir| dir.join(&info.plugin)).find(|file| file.is_file());
-            file.and_then(|file| sha256(&file).ok()).as_deref() != Some(&info.sha256)
-        })
+        .filter(|info| tools.plugins.sha256_of(&info.plugin).as_deref() != Some(&info.sha256))
         .map(|info| info.id.as_str())
         .collect();
     if changed.is_empty() {

@@ -1,6 +1,9 @@
 //! Times with a date, as instruments write them (RFC 3339).
 
-use jiff::{Timestamp, civil::DateTime};
+use jiff::{
+    Timestamp,
+    civil::{DateTime, Time},
+};
 
 /// A time as it is to be written.
 pub(crate) const EXAMPLE: &str = "2026-10-25T02:59:58.250Z";
@@ -9,6 +12,13 @@ pub(crate) const EXAMPLE: &str = "2026-10-25T02:59:58.250Z";
 pub(crate) fn is_date(cell: &str) -> bool {
     let bytes = cell.as_bytes();
     bytes.len() >= 8 && bytes[..4].iter().all(u8::is_ascii_digit) && bytes[4] == b'-'
+}
+
+/// Seconds since midnight of a time of day, as `07:40:12.250` or `07:40:12,250`; `None` if it is not one.
+pub(crate) fn seconds_of_day(cell: &str) -> Option<f64> {
+    let time: Time = cell.replace(',', ".").parse().ok().filter(|_| cell.matches(':').count() == 2)?;
+    let whole = f64::from(time.hour()) * 3600.0 + f64::from(time.minute()) * 60.0 + f64::from(time.second());
+    Some(whole + f64::from(time.subsec_nanosecond()) * 1e-9)
 }
 
 /// Seconds since 1970 of a time with date and zone.
@@ -44,6 +54,15 @@ mod tests {
             assert_eq!(seconds(text), Ok(1_792_897_198.25), "{text}");
         }
         assert_eq!(written(1_792_897_198.25), "2026-10-25T02:59:58.25Z");
+    }
+
+    #[test]
+    fn times_of_day_are_seconds_since_midnight() {
+        assert_eq!(seconds_of_day("07:40:12,250"), Some(27_612.25));
+        assert_eq!(seconds_of_day("00:00:00"), Some(0.0));
+        for text in ["7.5", "07:40", "25:00:00", "2026-10-25T02:59:58Z", ""] {
+            assert_eq!(seconds_of_day(text), None, "{text}");
+        }
     }
 
     #[test]

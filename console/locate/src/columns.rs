@@ -287,6 +287,10 @@ impl Columns {
         if [T, ARRIVAL, EMITTED].contains(&column) && clock::is_date(text) {
             return clock::seconds(text).map(Some).map_err(|what| self.problem(line, column, what));
         }
+        if let Some(seconds) = clock::seconds_of_day(text).filter(|_| [T, ARRIVAL, EMITTED].contains(&column))
+        {
+            return Ok(Some(seconds));
+        }
         let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
         // What an instrument writes for no range is a range that cannot be, and not a bad row.
         let is_word = [RANGE, ARRIVAL, DIFFERENCE].contains(&column) && (column != ARRIVAL || self.has(T));

@@ -1,7 +1,8 @@
 //! What could not be decided, or was left out, while readings were located.
 
 use positioning::{Impossible, Sides};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use world::StationId;
 
 /// Ranges of a station that no place in the tank explains.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +20,8 @@ pub struct Refused {
 /// What was decided how, and what was left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Doubts {
+    /// Stations that were heard where a fix has a mirror image.
+    pub mirrored_by: BTreeSet<u32>,
     /// Fixes whose mirror image lies behind the wall.
     pub sides_by_walls: u64,
     /// Fixes whose mirror image is too far from where the robot was before: the start and the track decide.
@@ -32,7 +35,10 @@ pub struct Doubts {
 }
 
 impl Doubts {
-    pub(crate) fn take(&mut self, t_s: f64, sides: Sides, impossible: &[Impossible]) {
+    pub(crate) fn take(&mut self, t_s: f64, sides: Sides, heard: &[StationId], impossible: &[Impossible]) {
+        if sides != Sides::One {
+            self.mirrored_by.extend(heard.iter().map(|station| station.0));
+        }
         match sides {
             Sides::One => {}
             Sides::ByWalls => self.sides_by_walls += 1,

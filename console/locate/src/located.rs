@@ -15,10 +15,10 @@ use mission::{
     Event, EventKind, Locator, MissionConfig, Outcome, PlannerChoice,
     event::{Asked, Measured, ToolTrack},
 };
-use positioning::{Doubt, Possible, RangeNoise, SolverKind, Verdict};
+use positioning::{Agreement, Doubt, Possible, RangeNoise, SolverKind, Verdict};
 use scenario::Scenario;
 use std::path::Path;
-use world::{CoverageGrid, ObstacleMap, Tool};
+use world::{CoverageGrid, ObstacleMap, RangeSet, StationId, Tool};
 
 mod learning;
 
@@ -28,6 +28,11 @@ const LISTED: usize = 10;
 const GAP: f64 = 5.0;
 /// Distances in time of so many motions are looked at to know the usual one.
 const INTERVALS: usize = 4_096;
+
+/// Measured motion that this many fixes contradict, and at least one in so many, is not used: a wrong sign or unit, or a robot that
+/// was carried. A wrong start is contradicted by three.
+const CONTRADICTING: u64 = 4;
+const CONTRADICTING_OF: u64 = 4;
 
 /// What is to be located, and how.
 #[derive(Debug, Clone, Copy)]
@@ -55,8 +60,10 @@ pub struct Task<'a> {
 pub struct Survey {
     /// What the readings are.
     pub kind: Kind,
-    /// Whether the motion between them was measured.
+    /// Whether the motion between them was measured, and is used.
     pub has_motion: bool,
+    /// How far fixes and motion agree, if they contradict each other so often that the motion is not used.
+    pub contradicted: Option<Agreement>,
     /// Rows, bad ones among them.
     pub rows: u64,
     /// Rows that are left out.
@@ -151,18 +158,21 @@ impl Task<'_> {
             return Err(bad_input(self.listed(&problems, bad)));
         }
         let (first, last) = first.zip(last).ok_or_else(|| bad_input(format!("{}: no rows", self.shown)))?;
-        let calibration = self.found(&columns)?;
+        let calibration = self.found(&columns, &repeats)?;
         let assumed = match calibration {
-            None if self.scenario.mission.locating.calibrate_sound_speed => self.found_under_way(&columns)?,
+            None if self.scenario.mission.locating.calibrate_sound_speed => {
+                self.found_under_way(&columns, &repeats)?
+            }
             found => found,
         };
-        let verdict = self.judged(&columns, assumed.as_ref())?.verdict();
+        let verdict = self.judged((&columns, &repeats), assumed.as_ref())?.verdict();
         intervals_s.sort_by(f64::total_cmp);
         let tool_on = tool_on.or_else(|| columns.has_tool().then(|| stretches.finish()));
         let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
-        Ok(Survey {
+        let mut survey = Survey {
             kind: columns.kind(),
             has_motion: columns.has_motion() && moved_s.is_some(),
+            contradicted: None,
             rows: moments.count,
             bad: bad + moments.left_behind,
             problems,
@@ -174,7 +184,27 @@ impl Task<'_> {
             first_s: first.t_s,
             dates: first.is_dated.then(|| [first.t_s, last.t_s].map(crate::clock::written)),
             gap_s: intervals_s.get(intervals_s.len() / 2).map_or(f64::INFINITY, |usual_s| GAP * usual_s),
-        })
+        };
+        if survey.has_motion {
+            let agreement = self.track(&survey, None, |_| {})?.locator.agreement();
+            let Agreement { sound, contradicting } = agreement;
+            let is_contradicted = contradicting >= CONTRADICTING && contradicting * CONTRADICTING_OF >= sound;
+            survey.contradicted = Some(agreement).filter(|_| is_contradicted);
+            survey.has_motion = !is_contradicted;
+        }
+        Ok(survey)
+    }
+
+    /// The moments of the file. Readings that repeat each other count as one.
+    fn moments(&self, repeats: &Repeats) -> anyhow::Result<impl Iterator<Item = Moment> + use<>> {
+        let are_one = repeats.are_narrow();
+        let counted = move |mut moment: Moment| {
+            if are_one {
+                moment.ranges.iter_mut().for_each(as_one);
+            }
+            moment
+        };
+        Ok(self.open()?.0.flatten().map(counted))
     }
 
     /// The stretches of the file that says when the tool was on.
@@ -209,7 +239,6 @@ impl Task<'_> {
     /// # Errors
     /// The file cannot be read any more.
     pub fn locate(&self, survey: &Survey, mut take: impl FnMut(&[Event])) -> anyhow::Result<Doubts> {
-        let (moments, _) = self.open()?;
         let config = self.config(survey);
         let mut opened = Flight::prepare(self.scenario, false).opened();
         let mut tool = None;
@@ -231,6 +260,22 @@ impl Task<'_> {
             tool = survey.tool_on_s.is_some().then(passes);
             run.measured = Some(measured);
         }
+        take(&[opened]);
+        let swept = tool.map(|(track, grid)| Swept { tool: config.tool(), track, grid });
+        let track = self.track(survey, swept, &mut take)?;
+        let reason = format!("end of {}", self.shown);
+        take(&[track.event(EventKind::Ended { outcome: Outcome::Complete, reason })]);
+        Ok(track.doubts)
+    }
+
+    /// The track, and with it the floor that was swept; gives the events of each moment.
+    fn track(
+        &self,
+        survey: &Survey,
+        swept: Option<Swept>,
+        mut take: impl FnMut(&[Event]),
+    ) -> anyhow::Result<Track> {
+        let config = self.config(survey);
         let drawing = self.scenario.sim.world.as_drawn();
         let mut track = Track {
             locator: Locator::new(&config, &drawing),
@@ -238,33 +283,32 @@ impl Task<'_> {
             most_m_per_s: config.limits.v_max_m_per_s,
             most_rad_per_s: config.limits.w_max_rad_per_s,
             gap_s: survey.gap_s,
+            has_motion: survey.has_motion,
             has_moved: false,
             doubts: Doubts::default(),
             radius_m: config.limits.radius_m,
-            swept: tool.map(|(track, grid)| Swept { tool: config.tool(), track, grid }),
+            swept,
             tick: 0,
             t_s: 0.0,
         };
-        take(&[opened]);
         let scatter = self.scatter(survey.kind);
         let scale = survey.verdict.scale;
         let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         let likely_ratio = scale.filter(|scale| !scale.is_proven).map_or(0.0, |scale| scale.likely());
-        for mut moment in moments.flatten() {
+        for mut moment in self.moments(&survey.repeats)? {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
                 calibration.correct(&mut moment.ranges);
             }
             let repeats = survey.repeats.doubt_m(&moment, &scatter);
             let is_suspect = repeats.is_some() || survey.verdict.is_wrong();
-            let sigma_m = repeats.unwrap_or_default();
+            let offset = survey.verdict.offset_m.filter(|offset| offset.is_proven);
+            let sigma_m = repeats.unwrap_or_default().hypot(offset.map_or(0.0, |offset| offset.value));
             let likely_m = survey.repeats.likely_m(&moment, &scatter);
             track.locator.doubt(Doubt { ratio, likely_ratio, sigma_m, likely_m, is_suspect });
             take(&track.events(&moment));
         }
-        let reason = format!("end of {}", self.shown);
-        take(&[track.event(EventKind::Ended { outcome: Outcome::Complete, reason })]);
-        Ok(track.doubts)
+        Ok(track)
     }
 
     /// The mission as far as locating goes.
@@ -286,12 +330,21 @@ impl Task<'_> {
     }
 }
 
+/// Makes the readings of a station in an emission one: their mean.
+fn as_one(set: &mut RangeSet) {
+    let mean_m = set.ranges_m.iter().sum::<f64>() / set.ranges_m.len().max(1) as f64;
+    set.ranges_m = vec![mean_m];
+}
+
+/// Where the robot was, moment by moment.
 struct Track {
     locator: Locator,
     map: ObstacleMap,
     most_m_per_s: f64,
     most_rad_per_s: f64,
     gap_s: f64,
+    /// Whether measured motion is used.
+    has_motion: bool,
     /// Whether any motion was measured yet.
     has_moved: bool,
     doubts: Doubts,
@@ -327,11 +380,12 @@ impl Track {
     fn events(&mut self, moment: &Moment) -> Vec<Event> {
         let waited_s = moment.t_s - self.t_s;
         self.t_s = moment.t_s;
-        let is_measured = moment.odometry.is_some() && (!self.has_moved || waited_s <= self.gap_s);
+        let odometry = moment.odometry.filter(|_| self.has_motion);
+        let is_measured = odometry.is_some() && (!self.has_moved || waited_s <= self.gap_s);
         if !is_measured && waited_s > 0.0 {
             self.locator.wander(self.most_m_per_s * waited_s, self.most_rad_per_s * waited_s);
         }
-        self.has_moved |= moment.odometry.is_some();
+        self.has_moved |= odometry.is_some();
         let truth = moment.truth.map(|pose| EventKind::Truth {
             pose,
             clearance_m: self.map.clearance_m(pose.position) - self.radius_m,
@@ -340,12 +394,13 @@ impl Track {
         let readings = world::Readings {
             ranging_cycle: !moment.ranges.is_empty(),
             ranges: moment.ranges.clone(),
-            odometry: moment.odometry.unwrap_or_default(),
+            odometry: odometry.unwrap_or_default(),
             ..world::Readings::default()
         };
         let located = self.locator.take(&readings);
         if readings.ranging_cycle {
-            self.doubts.take(self.t_s, self.locator.sides(), self.locator.impossible());
+            let heard: Vec<StationId> = readings.ranges.iter().map(|set| set.station).collect();
+            self.doubts.take(self.t_s, self.locator.sides(), &heard, self.locator.impossible());
         }
         let mut events: Vec<Event> = truth.into_iter().chain(located).map(|kind| self.event(kind)).collect();
         if let Some(swept) = &mut self.swept {

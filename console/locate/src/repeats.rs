@@ -8,6 +8,9 @@ use world::StationId;
 const MOST_SQUARES: f64 = 16.0;
 /// Readings that scatter less than this many times as much as the noise, squared, do no harm.
 const HARMLESS: f64 = 1.3;
+/// Readings that scatter less than this share of the noise, squared, are one reading that was written several times, or have their error
+/// in common: together they are no better than one.
+const NARROW: f64 = 0.25;
 /// A sum that deviates by more standard deviations than this is significant.
 const SIGNIFICANT: f64 = 5.0;
 
@@ -130,6 +133,13 @@ impl Repeats {
         let degrees = f64::from(self.degrees);
         let limit = (1.0 + SIGNIFICANT * (2.0 / degrees).sqrt()).max(HARMLESS);
         self.degrees > 0 && self.sum > limit * degrees
+    }
+
+    /// Whether they scatter so little that they are not independent readings.
+    pub fn are_narrow(&self) -> bool {
+        let degrees = f64::from(self.degrees);
+        let limit = (1.0 - SIGNIFICANT * (2.0 / degrees).sqrt()).min(NARROW);
+        self.degrees > 0 && self.sum < limit * degrees
     }
 
     /// By how much a position from an emission with several readings of a station is likely to be off although nothing is proven,

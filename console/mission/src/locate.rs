@@ -3,8 +3,8 @@
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
 use positioning::{
-    Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner, PositionerConfig,
-    RangeNoise, Sides,
+    Agreement, Doubt, Exclusion, Fix, FixError, Impossible, Integrity, MotionNoise, Positioner,
+    PositionerConfig, RangeNoise, Sides,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -88,6 +88,11 @@ impl Locator {
     /// Ranges of the last cycle that no place in the tank explains.
     pub fn impossible(&self) -> &[Impossible] {
         &self.impossible
+    }
+
+    /// How far fixes and measured motion agreed so far.
+    pub fn agreement(&self) -> Agreement {
+        self.positioner.agreement()
     }
 
     /// What decided between the last fix and its mirror image.

@@ -51,6 +51,12 @@ impl PluginDirs {
         Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
+    /// SHA-256 of the plugin file of this name that is used, hexadecimal; none if it cannot be read. Linkers leave holes in libraries.
+    pub fn sha256_of(&self, plugin: &str) -> Option<String> {
+        let file = self.folders.iter().map(|dir| dir.join(plugin)).find(|file| file.is_file())?;
+        read_bytes(&file).ok().map(|bytes| sha256_hex(&bytes))
+    }
+
     /// The paths of all files that are named like a plugin, folder by folder.
     pub(crate) fn candidates(&self) -> Vec<PathBuf> {
         self.folders.iter().flat_map(|dir| named_like_plugins(dir)).collect()
@@ -207,6 +213,17 @@ mod tests {
         for other in ["libapf.so", "libplanner_apf.rlib", "planner_apf.so", "libplanner_apf.d"] {
             assert!(!is_plugin_name(Path::new(other)), "{other}");
         }
+    }
+
+    #[test]
+    fn a_library_with_a_hole_has_a_digest() {
+        let folder = tempfile::tempdir().unwrap();
+        let name = "libplanner_sparse.so";
+        let file = std::fs::File::create(folder.path().join(name)).unwrap();
+        file.set_len(1 << 20).unwrap();
+        let dirs = PluginDirs::of(vec![PathBuf::from("nowhere"), folder.path().to_owned()]);
+        assert_eq!(dirs.sha256_of(name), Some(sha256_hex(&vec![0; 1 << 20])));
+        assert_eq!(dirs.sha256_of("libplanner_none.so"), None);
     }
 
     #[test]

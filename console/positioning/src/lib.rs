@@ -49,7 +49,7 @@ pub use linear::LinearLs;
 pub use noise::{RangeNoise, Timing};
 pub use nonlinear::Nls;
 pub use particle::{Particles, ParticlesConfig};
-pub use positioner::{CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
+pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, PositionerConfig};
 pub use possible::{Impossible, Possible};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;

@@ -62,6 +62,15 @@ pub struct Estimate {
     pub covariance: Matrix3<f64>,
 }
 
+/// How far fixes and measured motion agree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Agreement {
+    /// Fixes that can be tested and passed.
+    pub sound: u64,
+    /// Those among them that contradict where motion has brought the robot since the ones before.
+    pub contradicting: u64,
+}
+
 /// What a ranging cycle brought.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleResult {
@@ -95,6 +104,9 @@ pub struct Positioner {
     refused_in_a_row: u32,
     /// The first of the refused fixes in a row, and where the filter was then.
     first_refused: Option<(Fix, Pose)>,
+    agreement: Agreement,
+    /// What fixes have in common with each other, so that many of them know it no better than one, square metres.
+    common: Matrix2<f64>,
 }
 
 impl Positioner {
@@ -117,6 +129,8 @@ impl Positioner {
             knows_side: true,
             refused_in_a_row: 0,
             first_refused: None,
+            agreement: Agreement::default(),
+            common: Matrix2::zeros(),
         }
     }
 
@@ -167,6 +181,7 @@ impl Positioner {
         self.widen(&mut rangings);
         result.fix = self.solve(&rangings, &result.impossible);
         if let Ok(fix) = &mut result.fix {
+            self.common = self.in_common(fix);
             self.allow_for_likely(fix);
         }
         if let (SolverKind::Differences, Ok(fix)) = (self.config.solver, &result.fix) {
@@ -213,6 +228,20 @@ impl Positioner {
         }
     }
 
+    /// The part of the error of a fix that it has in common with the fixes after it, as a covariance, square metres: what is wrong
+    /// with the scale of all ranges, and with all of them.
+    fn in_common(&self, fix: &Fix) -> Matrix2<f64> {
+        let PositionerConfig { stations, solver, scale_sigma_ratio, .. } = &self.config;
+        let Doubt { ratio, likely_ratio, likely_m, sigma_m, .. } = self.doubt;
+        let share = scale_sigma_ratio.hypot(ratio).hypot(likely_ratio);
+        let everywhere = Matrix2::identity() * (likely_m.powi(2) + sigma_m.powi(2));
+        if share == 0.0 {
+            return everywhere;
+        }
+        let shift = shift_by_scale(fix, stations, *solver == SolverKind::Differences);
+        shift.map_or(everywhere, |shift| everywhere + shift * shift.transpose() * share.powi(2))
+    }
+
     /// Widens a fix by what is likely: along the line on which it moves with the scale of all ranges, and in every direction.
     fn allow_for_likely(&self, fix: &mut Fix) {
         let PositionerConfig { stations, solver, .. } = &self.config;
@@ -225,6 +254,11 @@ impl Positioner {
         fix.covariance += Matrix2::identity() * likely_m.powi(2);
     }
 
+    /// How far fixes and measured motion agreed so far; of fixes that are not in doubt for another reason.
+    pub fn agreement(&self) -> Agreement {
+        self.agreement
+    }
+
     /// Trusts the ranges of the next cycles less.
     pub fn doubt(&mut self, doubt: Doubt) {
         self.doubt = doubt;
@@ -232,12 +266,15 @@ impl Positioner {
 
     /// Where the robot is believed to be.
     pub fn estimate(&self) -> Estimate {
-        Estimate { pose: self.filter.pose(), covariance: self.filter.covariance() }
+        let mut covariance = self.filter.covariance();
+        let mut position = covariance.fixed_view_mut::<2, 2>(0, 0);
+        position += self.common;
+        Estimate { pose: self.filter.pose(), covariance }
     }
 
     /// Longer half axis of the 95 % ellipse of the position, metres.
     pub fn error_95_m(&self) -> f64 {
-        self.filter.error_95_m()
+        ellipse_95(&(self.filter.position_covariance() + self.common)).0
     }
 
     fn prior(&self) -> Prior {
@@ -293,13 +330,16 @@ impl Positioner {
         if let Sides::Open { other, contradicts } = sides {
             return self.take_both(fix, other, contradicts);
         }
+        let is_sound = fix.integrity == Integrity::Ok;
+        let counts = u64::from(is_sound && !self.doubt.is_any());
+        self.agreement.sound += counts;
         if self.filter_accepts(fix, rangings) {
             (self.refused_in_a_row, self.first_refused) = (0, None);
             (self.is_confirmed, self.knows_side) = (true, true);
             return true;
         }
         // A fix that can be tested and passed speaks against the filter; others do not.
-        let is_sound = fix.integrity == Integrity::Ok;
+        self.agreement.contradicting += counts;
         fix.integrity = Integrity::Suspect;
         if !is_sound {
             return false;

@@ -1,7 +1,7 @@
 //! What the residuals of a whole session say about the speed of sound and about single stations.
 //!
 //! One fix hides most of such an error in its position; what it leaves in the residuals adds up over fixes. For each error that may be
-//! there (all ranges too long by a share; one station's ranges too long by a length) the score and its information are summed over the
+//! there (all ranges too long by a share, or by a length; one station's ranges too long by a length) the score and its information are summed over the
 //! fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for single readings).
 
 use crate::{
@@ -11,13 +11,18 @@ use crate::{
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 use world::{Station, StationId};
 
-/// An error of more standard deviations than this is significant: chance gives one in one honest session of 15 000.
-const SIGNIFICANT: f64 = 4.0;
+/// An error of more standard deviations than this is significant. Up to there fixes allow for what was found ([`Wrong::likely`]): of
+/// 200 sets with a wrong speed of sound 93.0 % of truths lie in the ellipses of the fixes that are ok. With 4 it would be 92.2 %: the
+/// errors that are left are those that chance hides.
+const SIGNIFICANT: f64 = 5.0;
 /// An error that moves fixes by less than this, squared and in their own standard deviations, does no harm: 93.5 % of truths still lie in
 /// the 95 % ellipse.
 const HARMLESS: f64 = 0.2;
 /// Least information of an error, as a share of what it would have if positions were known: below it cannot be seen.
 const LEAST_SEEN: f64 = 1e-6;
+
+/// The error of all ranges by a share; those of the stations follow, and that of all ranges by a length.
+const SCALE: usize = 0;
 
 /// The sums over a session.
 #[derive(Debug, Clone)]
@@ -52,21 +57,24 @@ pub struct Verdict {
     pub fixes: u64,
     /// By which share all ranges are too long; `None` if that cannot be seen.
     pub scale: Option<Wrong>,
+    /// By how many metres all ranges are too long; `None` if that cannot be seen, as without the time of emission.
+    pub offset_m: Option<Wrong>,
     /// By how many metres the ranges of each station are too long; without those for which that cannot be seen.
     pub stations: Vec<(StationId, Wrong)>,
 }
 
 impl Wrong {
-    /// How large the error is likely to be, as a standard deviation: the square of what was found, less that of chance.
+    /// How large the error is likely to be, as a standard deviation: what was found, which chance makes larger as often as smaller.
     pub fn likely(&self) -> f64 {
-        (self.value.powi(2) - self.sigma.powi(2)).max(0.0).sqrt()
+        self.value.abs()
     }
 }
 
 impl Verdict {
     /// Whether an error is proven.
     pub fn is_wrong(&self) -> bool {
-        self.scale.is_some_and(|scale| scale.is_proven)
+        let common = [self.scale, self.offset_m];
+        common.into_iter().flatten().any(|wrong| wrong.is_proven)
             || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
     }
 }
@@ -74,7 +82,7 @@ impl Verdict {
 impl Session {
     /// A session without fixes.
     pub fn new(stations: &[Station], is_emission_free: bool) -> Self {
-        let n = stations.len() + 1;
+        let n = stations.len() + 2;
         Self {
             stations: stations.to_vec(),
             is_emission_free,
@@ -91,20 +99,20 @@ impl Session {
         let seen = seen(fix, &self.stations, self.is_emission_free);
         let Some(free) = Free::of(&seen, self.is_emission_free) else { return };
         self.fixes += 1;
-        // Error 0 is the scale, and after it one for each station.
-        let mut pulls: Vec<(usize, Vector3<f64>)> = Vec::with_capacity(seen.len() + 1);
-        pulls.push((0, seen.iter().map(|s| s.by * (s.weight * s.distance_m)).sum()));
-        pulls.extend(seen.iter().map(|s| (s.error, s.by * s.weight)));
+        let mut pulls = vec![Vector3::zeros(); self.score.len()];
         for s in &seen {
-            self.score[0] += s.weight * s.distance_m * s.residual_m;
-            self.score[s.error] += s.weight * s.residual_m;
-            self.information[(0, 0)] += s.weight * s.distance_m * s.distance_m;
-            self.information[(s.error, s.error)] += s.weight;
-            self.information[(0, s.error)] += s.weight * s.distance_m;
-            self.information[(s.error, 0)] += s.weight * s.distance_m;
-            self.whole[0] += s.weight * s.distance_m * s.distance_m;
-            self.whole[s.error] += s.weight;
+            let longer = self.longer(s);
+            for (i, by_i) in longer {
+                self.score[i] += s.weight * by_i * s.residual_m;
+                self.whole[i] += s.weight * by_i * by_i;
+                pulls[i] += s.by * (s.weight * by_i);
+                for (j, by_j) in longer {
+                    self.information[(i, j)] += s.weight * by_i * by_j;
+                }
+            }
         }
+        let pulls: Vec<(usize, Vector3<f64>)> =
+            pulls.into_iter().enumerate().filter(|(_, pull)| *pull != Vector3::zeros()).collect();
         for (i, pull) in &pulls {
             let moved = free.inverse * pull;
             self.shift[*i] += free.squared_shift(&moved);
@@ -114,9 +122,19 @@ impl Session {
         }
     }
 
+    /// By how much each error of 1 that concerns a range makes it longer, metres.
+    fn longer(&self, range: &Seen) -> [(usize, f64); 3] {
+        [(SCALE, range.distance_m), (range.error, 1.0), (self.offset(), 1.0)]
+    }
+
+    /// The error of all ranges by a length: the last one.
+    fn offset(&self) -> usize {
+        self.stations.len() + 1
+    }
+
     /// By which share all ranges are too long, and its standard deviation, if that can be seen.
     pub fn scale(&self) -> Option<(f64, f64)> {
-        self.alone(0)
+        self.alone(SCALE)
     }
 
     fn alone(&self, error: usize) -> Option<(f64, f64)> {
@@ -143,7 +161,8 @@ impl Session {
     pub fn verdict(&self) -> Verdict {
         let explained =
             |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));
-        let first = (0..self.score.len()).max_by(|a, b| explained(*a).total_cmp(&explained(*b))).unwrap_or(0);
+        let n = self.score.len() - usize::from(self.is_emission_free);
+        let first = (0..n).max_by(|a, b| explained(*a).total_cmp(&explained(*b))).unwrap_or(0);
         let first =
             Some(first).filter(|first| self.alone(*first).is_some_and(|found| self.is_proven(*first, found)));
         let wrong = |error: usize| {
@@ -159,7 +178,8 @@ impl Session {
         };
         Verdict {
             fixes: self.fixes,
-            scale: wrong(0),
+            scale: wrong(SCALE),
+            offset_m: Some(self.offset()).filter(|_| !self.is_emission_free).and_then(wrong),
             stations: self
                 .stations
                 .iter()
@@ -243,8 +263,17 @@ mod tests {
         fix::PositionSolver,
     };
 
-    /// The verdict on a session of so many fixes, all ranges too long by a share and those of station 3 by a length.
-    fn verdict(fixes: u32, scale: f64, bias_m: f64, is_emission_free: bool, seed: u64) -> Verdict {
+    /// What is wrong with the ranges of a session: all too long by a share and by a length, those of station 3 by a length.
+    #[derive(Clone, Copy, Default)]
+    struct Errors {
+        scale: f64,
+        offset_m: f64,
+        bias_m: f64,
+    }
+
+    /// The verdict on a session of so many fixes.
+    fn verdict(fixes: u32, errors: Errors, is_emission_free: bool, seed: u64) -> Verdict {
+        let Errors { scale, offset_m, bias_m } = errors;
         let stations = ring(8, 10.0);
         let mut draws = Draws::new(0.0, 1, seed);
         let mut session = Session::new(&stations, is_emission_free);
@@ -256,8 +285,8 @@ mod tests {
                     let distance_m = (truth - station.position).norm();
                     let bias_m = if station.id == StationId(3) { bias_m } else { 0.0 };
                     let excess_m = if is_emission_free { 20.0 } else { 0.0 };
-                    let range_m =
-                        distance_m * (1.0 + 0.01 * draws.bell()) * (1.0 + scale) + bias_m + excess_m;
+                    let excess_m = excess_m + offset_m + bias_m;
+                    let range_m = distance_m * (1.0 + 0.01 * draws.bell()) * (1.0 + scale) + excess_m;
                     Ranging::single(station.id, range_m, 0.01 * range_m)
                 })
                 .collect();
@@ -274,7 +303,7 @@ mod tests {
     #[test]
     fn a_wrong_speed_of_sound_is_found_with_its_error_with_and_without_the_time_of_emission() {
         for (is_free, scale) in [(false, 0.01), (true, 0.01), (true, -0.02), (true, 0.05)] {
-            let verdict = verdict(400, scale, 0.0, is_free, 3);
+            let verdict = verdict(400, Errors { scale, ..Errors::default() }, is_free, 3);
             let found = verdict.scale.unwrap();
             // With ranges that err by a share, stations all round hold a fix in its place.
             assert!(found.is_proven || !is_free, "{verdict:?}");
@@ -288,9 +317,23 @@ mod tests {
     }
 
     #[test]
+    fn ranges_that_are_all_too_long_by_a_length_are_named_as_that() {
+        let with_offset = |offset_m| verdict(100, Errors { offset_m, ..Errors::default() }, false, 5);
+        let late = with_offset(0.4);
+        let offset = late.offset_m.unwrap();
+        assert!(offset.is_proven && (offset.value - 0.4).abs() < 0.05, "{late:?}");
+        assert!(late.is_wrong() && late.stations.iter().all(|(_, wrong)| !wrong.is_proven), "{late:?}");
+        let sound = with_offset(0.0);
+        assert!(!sound.is_wrong() && !sound.offset_m.unwrap().is_proven, "{sound:?}");
+        // Without the time of emission every fix takes such a length out.
+        let free = verdict(100, Errors { offset_m: 0.4, ..Errors::default() }, true, 5);
+        assert!(free.offset_m.is_none() && !free.is_wrong(), "{free:?}");
+    }
+
+    #[test]
     fn a_station_that_is_always_late_is_named() {
         for is_free in [false, true] {
-            let verdict = verdict(400, 0.0, 0.15, is_free, 4);
+            let verdict = verdict(400, Errors { bias_m: 0.15, ..Errors::default() }, is_free, 4);
             let proven: Vec<StationId> =
                 verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven).map(|(id, _)| *id).collect();
             assert_eq!(proven, [StationId(3)], "{verdict:?}");
@@ -300,7 +343,8 @@ mod tests {
 
     #[test]
     fn sound_sessions_are_not_blamed() {
-        let blamed = (0..200).filter(|seed| verdict(40, 0.0, 0.0, seed % 2 == 0, *seed).is_wrong()).count();
+        let blamed =
+            (0..200).filter(|seed| verdict(40, Errors::default(), seed % 2 == 0, *seed).is_wrong()).count();
         assert!(blamed <= 1, "{blamed} of 200");
     }
 

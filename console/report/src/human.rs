@@ -45,7 +45,7 @@ pub fn human(run: &Summary) -> String {
 }
 
 /// What was checked before the start: how much passed, every warning, and every point that was ticked by hand.
-fn pre_flight(checks: &[Check]) -> Option<String> {
+pub(crate) fn pre_flight(checks: &[Check]) -> Option<String> {
     let of = |outcome| checks.iter().filter(move |check| check.outcome == outcome);
     let passed = of(CheckOutcome::Passed).count();
     let warnings =

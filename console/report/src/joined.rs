@@ -77,7 +77,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
     require_one_kind(runs)?;
     let (last, before) = runs.split_last().ok_or("no run to report")?;
     if let Some(other) = runs.iter().find(|past| !before.is_empty() && !past.fold.has_floor_to_scan()) {
-        return Err(format!("run {} was not there to scan the floor: report it alone", other.name));
+        return Err(format!("run {} was not a scan; it needs a report of its own", other.name));
     }
     let mut all = alone(last)?;
     require_different(runs)?;

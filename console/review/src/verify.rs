@@ -26,7 +26,7 @@ use recording::{
     journal_of,
 };
 use report::document::{Recovered, Revision, SignedRun};
-use runs::{Past, Signatures, end_is_missing, signatures};
+use runs::{Past, Signatures, end_is_missing, signatures, signed_under_another_name};
 use scenario::Scenario;
 use std::{
     collections::BTreeMap,
@@ -146,6 +146,7 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
 fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
     let Signatures { revisions, mut doubts } = signatures(folder, &register());
     doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
+    doubts.extend(now.iter().find_map(|run| signed_under_another_name(folder, &register(), run)));
     let line = |revision: &Revision| {
         let (letter, signature) = (&revision.revision, &revision.signature);
         format!("signed: revision {letter} by {}, {} UTC: {}", signature.by, signature.at, revision.file)
@@ -190,7 +191,7 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
         lines.push(format!("note: the run was killed, and recovered {recovered}"));
     }
     if let Some(why) = no_end {
-        lines.push(format!("note: the journal has no end ({why}); what it holds before is compared"));
+        lines.push(format!("note: the journal is incomplete ({why}); what it holds before is compared"));
     }
     if let Some(Difference { tick, recorded, computed }) = difference {
         lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
@@ -241,7 +242,7 @@ fn proven(planners: Option<&Asked>) -> String {
         0 => String::new(),
         n => format!(", {n} of a planner that failed earlier than in the run cannot be compared"),
     };
-    format!("{same} answers of planners are the same again{refused}{failed}")
+    format!("{same} planner answers are the same{refused}{failed}")
 }
 
 /// The run of a journal, ready to be flown again.

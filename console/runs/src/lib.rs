@@ -35,6 +35,6 @@ pub use past::Past;
 pub use recover::recover;
 pub use register::Register;
 pub use report_file::{end_is_missing, journal_doubt};
-pub use signed::{SIGNED_FILE, Signatures, add_signed, signatures, signed_list};
+pub use signed::{SIGNED_FILE, Signatures, add_signed, signatures, signed_list, signed_under_another_name};
 pub use standing::{Standing, standing};
 pub use whole::{write_by_draft, write_whole};

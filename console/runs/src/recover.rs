@@ -9,7 +9,7 @@ use report::{Logs, Summary, document::Recovered};
 use std::{path::Path, time::SystemTime};
 
 /// What the process that was killed would have added at the end.
-const BY_THE_CLOCK: &str = "the figures by the wall clock: computing time, calls of planners, stops";
+const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
 /// What a recording lacks that nobody has closed.
 const OF_RECORDING: &str = "the index of the recording, and what it had not written yet: up to 5 s";
 

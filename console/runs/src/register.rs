@@ -3,7 +3,7 @@
 
 use crate::error::RunError;
 use foreign::read_regular;
-use report::document::Revision;
+use report::document::{Revision, SignedRun};
 use std::{
     fs::{self, OpenOptions},
     io::{self, Write},
@@ -36,6 +36,14 @@ impl Register {
     /// # Errors
     /// The register cannot be read.
     pub(crate) fn of(&self, names: &[String]) -> Result<Vec<Revision>, RunError> {
+        self.about(|run| names.contains(&run.run))
+    }
+
+    /// The signed reports that are about a run of this kind.
+    ///
+    /// # Errors
+    /// The register cannot be read.
+    pub(crate) fn about(&self, is_meant: impl Fn(&SignedRun) -> bool) -> Result<Vec<Revision>, RunError> {
         let Some(file) = &self.0 else { return Ok(Vec::new()) };
         let text = match read_regular(file) {
             Ok(text) => text,
@@ -53,7 +61,7 @@ impl Register {
                 file: file.clone(),
                 why: format!("line {number}: {error}"),
             })?;
-            if signed.runs.iter().any(|of| names.contains(&of.run)) {
+            if signed.runs.iter().any(&is_meant) {
                 found.push(signed);
             }
         }
@@ -82,7 +90,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use report::document::{Signature, SignedRun};
+    use report::document::Signature;
 
     fn signed(run: &str, sha256: &str) -> Revision {
         Revision {

@@ -4,8 +4,8 @@ mod figures;
 
 use crate::{budget::Budget, files::REPORT_FILE};
 use foreign::{plain_json, read_json};
-use mission::{Event, EventKind};
-use recording::{RECORDING_FILE, journal_of, read_ending, sha256_of};
+use mission::{Event, EventKind, event::JOURNAL_VERSION};
+use recording::{JournalReader, RECORDING_FILE, journal_of, read_ending, sha256_of};
 use report::{Summary, document::Recovered};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -89,6 +89,9 @@ const NOT_THE_ONE: &str =
 /// What is said of a recording that its report was not made with.
 const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; put the file back, or write another one with `tankops export`";
 
+/// What is said of a report without the digest that every report is written with.
+const NO_SEAL: &str = "report.json was changed after the run ended: its line report_sha256 is missing";
+
 /// What is known of the digest of a recording.
 pub(crate) enum Now<'a> {
     /// It was computed; `None` if the file cannot be read.
@@ -129,6 +132,9 @@ impl Reported {
             .map_err(|error| damaged(&error))?;
         let summary: Box<Summary> = serde_json::from_value(report).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
+        if self.source.report_sha256.is_none() && is_todays(&journal_of(folder)) {
+            return Err(NO_SEAL.to_owned());
+        }
         // A report that says itself that the journal is not whole claims nothing about it.
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
         let path = journal_of(folder);
@@ -198,9 +204,12 @@ impl Reported {
     /// What speaks against its figures: the journal gives others, or the file was changed. `figures`: those that the journal
     /// gives; `None` for a journal of another version, whose figures may be defined otherwise.
     pub(crate) fn figures_doubt(&self, figures: Option<&Summary>) -> Option<String> {
-        // Older reports have no digest, and some of their figures are defined otherwise; those of a journal that is not whole
-        // are few.
-        self.source.report_sha256.as_ref().and(self.source.events_sha256.as_ref())?;
+        // Older reports have no digest, and some of their figures are defined otherwise.
+        if self.source.report_sha256.is_none() {
+            return figures.map(|_| NO_SEAL.to_owned());
+        }
+        // Those of a journal that is not whole are few.
+        let figures = figures.filter(|_| self.source.events_sha256.is_some());
         let reported: Summary = match serde_json::from_str(&self.text) {
             Ok(reported) => reported,
             Err(error) => return Some(damaged(&error)),
@@ -220,6 +229,15 @@ impl Reported {
             )
         })
     }
+}
+
+/// Whether a journal is of the version that is written today.
+fn is_todays(journal: &Path) -> bool {
+    let version = JournalReader::open(journal).ok().and_then(|mut reader| {
+        reader.next_line().ok()?;
+        reader.version()
+    });
+    version == Some(JOURNAL_VERSION)
 }
 
 fn damaged(error: &serde_json::Error) -> String {

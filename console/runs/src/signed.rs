@@ -3,7 +3,11 @@
 use crate::{error::RunError, register::Register, report_file::Reported, whole::write_whole};
 use foreign::read_json;
 use recording::sha256;
-use report::{Difference, document::Revision, first_difference};
+use report::{
+    Difference,
+    document::{Revision, SignedRun},
+    first_difference,
+};
 use std::{
     io,
     path::{Path, PathBuf},
@@ -60,6 +64,28 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let lost: Vec<String> = lost.collect();
     found.doubts.extend(lost);
     found
+}
+
+/// What the register has of these very files under a name that the run in this folder does not have any more. Journals of equal
+/// runs are equal; no two recordings are, because they hold the time of day.
+pub fn signed_under_another_name(folder: &Path, register: &Register, now: &SignedRun) -> Option<String> {
+    now.recording_sha256.as_ref()?;
+    let names = names_of(folder);
+    let is_it = |then: &SignedRun| {
+        let files = |run: &SignedRun| (run.journal_sha256.clone(), run.recording_sha256.clone());
+        !names.contains(&then.run) && files(then) == files(now)
+    };
+    let entry = register.about(is_it).ok()?.into_iter().next()?;
+    let then = entry.runs.iter().find(|then| is_it(then))?;
+    Some(format!(
+        "run {} has the files of run {}, which was signed as revision {} by {} at {} UTC, as {} says; give its folder that name again",
+        names[0],
+        then.run,
+        entry.revision,
+        entry.signature.by,
+        entry.signature.at,
+        register.shown()
+    ))
 }
 
 /// The names of a run: of its folder, and what that was called when the run was closed.
@@ -161,7 +187,7 @@ mod tests {
 
     use super::*;
     use recording::sha256_of;
-    use report::document::{Signature, SignedRun};
+    use report::document::Signature;
     use std::fs;
 
     /// A run with one signed report, which the register has, too.
@@ -272,6 +298,28 @@ mod tests {
         fs::write(renamed.path().join("report.json"), report).unwrap();
         let Signatures { doubts, .. } = signatures(renamed.path(), &signed.register);
         assert!(doubts.len() == 1 && doubts[0].contains("signed.json is missing"), "{doubts:?}");
+    }
+
+    #[test]
+    fn the_files_of_a_signed_run_are_known_under_any_name() {
+        let signed = Signed::new();
+        let files = |recording: &str| SignedRun {
+            run: "renamed".into(),
+            journal_sha256: Some("5a".into()),
+            recording_sha256: Some(recording.into()),
+        };
+        let entry =
+            Revision { runs: vec![SignedRun { run: "a".into(), ..files("6b") }], ..signed.revision() };
+        signed.register.add(&entry).unwrap();
+        let doubt = |now: &SignedRun| signed_under_another_name(&signed.run(), &signed.register, now);
+        let found = doubt(&files("6b")).unwrap();
+        assert!(
+            found.contains("has the files of run a, which was signed as revision A by L. Kern"),
+            "{found}"
+        );
+        // A mission that was flown again has the same journal, and another recording.
+        assert_eq!(doubt(&files("7c")), None);
+        assert_eq!(doubt(&SignedRun { recording_sha256: None, ..files("6b") }), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{
     Scenario,
-    checks::{Site, cell_m, check_lanes, check_period, check_ticks},
+    checks::{Site, cell_m, check_lanes, check_period, check_position_limit, check_ticks},
     expect, floor, inspection, layout,
     problem::{Complaint, Problem},
     ranging,
@@ -263,6 +263,12 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     };
     if let Some(pose) = start {
         complain(&sections.robot, "start_m", pose.position);
+        if let Some(section) = sections.robot.as_ref().filter(|robot| robot.has("start_m"))
+            && site.objection(pose.position).is_none()
+            && let Some(what) = site.objection_to_start(pose.position)
+        {
+            section.complain("start_m", what);
+        }
     }
     if let Some(TaskConfig::Goto { goal, .. }) = task {
         complain(&sections.mission, "goal_m", *goal);
@@ -337,6 +343,9 @@ impl Rest {
         let cell_m = cell_m(mission, floor.boundary.as_ref());
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
         let position_limit_m = mission.number("position_limit_m");
+        if let (Some(boundary), Some(limit_m)) = (&floor.boundary, position_limit_m) {
+            check_position_limit(mission, boundary, limit_m);
+        }
         let scan = scan(mission, swath_m);
         if let (Some(boundary), Some(swath_m), Some(scan), Some("cover")) =
             (&floor.boundary, swath_m, &scan, mission.word("kind"))

@@ -15,6 +15,10 @@ pub(crate) const MOST_TICKS: f64 = 1e7;
 /// Slack for numbers that were written down rounded, metres.
 pub(crate) const ROUNDING_M: f64 = 1e-6;
 
+/// Room that a robot needs where it starts, millimetres: what is seen is kept off by as much. An estimate that is only a little wrong
+/// would lie within anything nearer, and the mission could not tell moving off from running into it.
+const START_ROOM_MM: f64 = 10.0;
+
 /// What a robot of some radius may run into.
 pub(crate) struct Site<'a> {
     /// The wall.
@@ -31,6 +35,22 @@ impl Site<'_> {
     /// Why the robot cannot stand at a place, if it cannot.
     pub(crate) fn objection(&self, place: Point) -> Option<Complaint> {
         self.wall(place).or_else(|| self.obstacle(place)).or_else(|| self.no_go(place))
+    }
+
+    /// Why the robot cannot start at a place where it can stand, if it cannot.
+    pub(crate) fn objection_to_start(&self, place: Point) -> Option<Complaint> {
+        let wall = ("the wall".to_owned(), self.boundary.wall_distance_m(place));
+        let obstacle = |obstacle: &Obstacle| {
+            (format!("obstacle \"{}\"", obstacle.name), obstacle.shape.distance_m(place))
+        };
+        let all = std::iter::once(wall).chain(self.obstacles.iter().map(obstacle));
+        let (what, distance_m) = all.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        let room_mm = (distance_m - self.radius_m).max(0.0) * 1e3;
+        (room_mm < START_ROOM_MM).then_some(Complaint::NoRoomToStart {
+            what,
+            room_mm,
+            needed_mm: START_ROOM_MM,
+        })
     }
 
     fn wall(&self, place: Point) -> Option<Complaint> {
@@ -61,6 +81,15 @@ impl Site<'_> {
     fn no_go(&self, place: Point) -> Option<Complaint> {
         let forbids = |zone: &&Zone| zone.kind == ZoneKind::NoGo && zone.shape.distance_m(place) < 0.0;
         self.zones.iter().find(forbids).map(|zone| Complaint::InNoGo { name: zone.name.clone() })
+    }
+}
+
+/// Complains about a limit beyond which a position counts as lost, metres, that no position in the tank exceeds.
+pub(crate) fn check_position_limit(mission: &Section<'_>, boundary: &Boundary, limit_m: f64) {
+    let (low, high) = boundary.bounds();
+    let most_m = (high - low).min() / 2.0;
+    if limit_m > most_m {
+        mission.complain("position_limit_m", Complaint::LimitOfTank { limit_m, most_m });
     }
 }
 

@@ -172,6 +172,24 @@ pub enum Complaint {
         /// Which.
         name: String,
     },
+    /// A start from which the robot can hardly move without touching something.
+    #[error("the hull would stand {room_mm:.3} mm from {what}")]
+    NoRoomToStart {
+        /// What stands there.
+        what: String,
+        /// Between it and the hull, millimetres.
+        room_mm: f64,
+        /// How much is needed, millimetres.
+        needed_mm: f64,
+    },
+    /// A position error that would be accepted although it says nothing in a tank of this size.
+    #[error("with a limit of {limit_m} m a robot that may be anywhere in this tank would not count as lost")]
+    LimitOfTank {
+        /// What is written, metres.
+        limit_m: f64,
+        /// The largest that is accepted, metres.
+        most_m: f64,
+    },
     /// A spiral that does not fit into the tank.
     #[error("larger than the tank less the robot's radius: {fits_m} m fit")]
     SpiralTooLarge {
@@ -256,6 +274,12 @@ impl Complaint {
             }
             Self::InObstacle { .. } | Self::InNoGo { .. } | Self::OutsideTank { .. } => {
                 "choose a place on the free floor".into()
+            }
+            Self::NoRoomToStart { needed_mm, .. } => {
+                format!("leave {needed_mm} mm, so that the robot can move off without touching it")
+            }
+            Self::LimitOfTank { most_m, .. } => {
+                format!("at most {most_m:.3} m, half the width of the tank; 0.5 is usual")
             }
             Self::SpiralTooLarge { fits_m } => format!("write outer_radius_m = {fits_m}"),
             Self::PathInWall { .. } => "keep the robot's radius away from the wall".into(),

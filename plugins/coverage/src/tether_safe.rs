@@ -37,7 +37,7 @@ pub struct TetherSafe {
 impl Planner for TetherSafe {
     const ID: &'static str = "tether-safe";
     const NAME: &'static str = "Tether-safe coverage";
-    const ABOUT: &'static str = "Scans all floor in reach and never crosses a cut, so that the tether always comes in: \
+    const ABOUT: &'static str = "Scans all reachable floor and never crosses a cut, so that the tether can always be reeled in: \
                                  lanes of a simply connected domain, toured by local search, with a certificate; \
                                  takes what moves as standing.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// What to do with a campaign.
 #[derive(Debug, Subcommand)]
 pub(crate) enum CampaignCommand {
-    /// Fly a campaign and show what comes of it; what is already flown is kept.
+    /// Fly a campaign and show the results; missions already flown are kept.
     Run(RunCampaignArgs),
     /// Check a plan and freeze it with its scenarios, so that several machines can work on it.
     Prepare(OutArgs),

@@ -25,13 +25,13 @@ pub(crate) struct LocateArgs {
     /// When the tool was on, as CSV with `from_s` and `to_s` by the clock of the readings, if they have no column `tool_on`.
     #[arg(long, value_name = "FILE")]
     pub tool_on: Option<PathBuf>,
-    /// Leave bad rows out instead of refusing the file.
+    /// Skip bad rows instead of refusing the file.
     #[arg(long)]
     pub skip_bad_rows: bool,
     /// Write fixes and track as CSV to this file.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long, requires = "output")]
     pub force: bool,
     /// Write neither journal nor recording.
@@ -67,7 +67,7 @@ pub(crate) struct MapArgs {
     /// Draw wall and pieces to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long, requires = "svg")]
     pub force: bool,
 }
@@ -83,7 +83,7 @@ pub(crate) struct ImportArgs {
     /// Inner radius of the tank of a list of columns, in metres.
     #[arg(long, value_name = "M", value_parser = length)]
     pub tank_radius: Option<f64>,
-    /// Unit of the drawing; needed if its header names none, and counts more than the header.
+    /// Unit of the drawing; required if its header names none; overrides the header.
     #[arg(long, value_name = "UNIT")]
     pub units: Option<UnitArg>,
     /// What a layer of the drawing holds: SHELL, COLUMNS, PIPES, SUMP, NOGO, PLATES or IGNORE, as in COLUMNS=Posts; repeatable. A
@@ -96,7 +96,7 @@ pub(crate) struct ImportArgs {
     /// Draw the floor to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
 }

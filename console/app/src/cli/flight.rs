@@ -35,7 +35,7 @@ pub(crate) struct ShadowArgs {
     /// Set a parameter of the planner in shadow.
     #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
     pub shadow_set: Vec<String>,
-    /// Have the planner in shadow take over so often, in seconds of mission time; the one before it then flies in shadow.
+    /// Have the planner in shadow take over every so many seconds of mission time; the one before it then flies in shadow.
     #[arg(long, value_name = "SECONDS", requires = "shadow", value_parser = seconds, allow_negative_numbers = true)]
     pub promote_every: Option<f64>,
 }
@@ -55,7 +55,7 @@ pub(crate) struct PlanArgs {
     /// Write the plan to this file: .csv (points), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
 }
@@ -72,7 +72,7 @@ pub(crate) struct AccuracyArgs {
     /// Draw the forecast to this file.
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long, requires = "svg")]
     pub force: bool,
     /// Find the best places on the wall for this many stations, 3 to 32.

@@ -54,7 +54,7 @@ pub(crate) struct RescanArgs {
     /// Scenario file to write.
     #[arg(short = 'o', long, value_name = "SCENARIO")]
     pub output: PathBuf,
-    /// Write over files that are there already.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
     /// Ignore missed areas smaller than this, in square metres; areas close together count as one.
@@ -75,10 +75,10 @@ pub(crate) struct ReportArgs {
     /// Write the inspection report to this file: .html, .json, .csv (several files), .geojson or .dxf.
     #[arg(short = 'o', long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Facts for `[inspection]` that were not known before the run, as a TOML file; they take the place of the scenario's.
+    /// Facts for `[inspection]` that were not known before the run, as a TOML file; they override the scenario's.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub inspection: Option<PathBuf>,
-    /// Indications of the instrument as CSV: `t_s`, and `left_m`, `ahead_m`, kind, `size_mm`, `depth_mm`, note if there are.
+    /// Indications of the instrument as CSV: `t_s`, and optionally `left_m`, `ahead_m`, kind, `size_mm`, `depth_mm`, note.
     #[arg(long, value_name = "FILE", requires = "output")]
     pub indications: Option<PathBuf>,
     /// Sign the report (.html): needs every item of the gate answered; a signed report is never changed, the next one is

@@ -3,7 +3,7 @@
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
 use ::locate::{Doubts, Survey, Tally};
-use positioning::Wrong;
+use positioning::{Agreement, Wrong};
 use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
@@ -91,8 +91,16 @@ fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
     if !survey.ignored.is_empty() {
         text.line("ignored columns", survey.ignored.join(", "));
     }
-    if !survey.has_motion {
-        text.line("motion", "not measured; up to the robot's maximum speed in any direction");
+    if let Some(Agreement { sound, contradicting }) = survey.contradicted {
+        text.line(
+            "motion",
+            format!(
+                "not used: {contradicting} of {sound} fixes contradict it; check the sign and the unit of forward_m, sideways_m and \
+                 turn_rad, the robot's start heading, and the stations"
+            ),
+        );
+    } else if !survey.has_motion {
+        text.line("motion", "not measured; assumed up to the robot's maximum speed in any direction");
     }
 }
 
@@ -138,6 +146,15 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
              --find sound-speed"
         ));
     }
+    if let Some(offset) = survey.verdict.offset_m.filter(|offset| offset.is_proven) {
+        let long = if offset.value > 0.0 { "too long" } else { "too short" };
+        lines.push(format!(
+            "all ranges are {long} by {:.3} ± {:.3} m: no fix is ok; correct the clocks or the height of the sensors, or find the \
+             offset with --find clock-offset",
+            offset.value.abs(),
+            offset.sigma
+        ));
+    }
     let harmless = |scale: &Wrong| !scale.is_proven && scale.value.abs() > SURE_SIGMAS * scale.sigma;
     if let Some(scale) = survey.verdict.scale.filter(harmless).filter(|_| !survey.verdict.is_wrong()) {
         lines.push(format!(
@@ -162,6 +179,13 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
 /// Stations that were read several times in one emission, and scatter too much for repetitions.
 fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let repeats = &survey.repeats;
+    if repeats.are_narrow() {
+        return vec![format!(
+            "the readings of one station in one emission scatter {:.2} times as far as the noise of the scenario: they count as one \
+             reading",
+            repeats.factor()
+        )];
+    }
     let Some(worst) = repeats.worst.filter(|_| repeats.are_wide() || repeats.wide > 0) else {
         return Vec::new();
     };
@@ -208,12 +232,14 @@ fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
 
 /// What decides between fixes and their mirror images.
 fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
-    let Doubts { sides_by_walls, sides_by_track, sides_open, .. } = *doubts;
+    let &Doubts { sides_by_walls, sides_by_track, sides_open, .. } = doubts;
     let all = sides_by_walls + sides_by_track + sides_open;
     if all == 0 {
         return Vec::new();
     }
-    let line = line_of_stations(&scenario.sim.world.stations);
+    let stations =
+        scenario.sim.world.stations.iter().filter(|station| doubts.mirrored_by.contains(&station.id.0));
+    let line = line_of_stations(&stations.cloned().collect::<Vec<_>>());
     let mut lines =
         vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits as well")];
     if sides_by_walls > 0 {

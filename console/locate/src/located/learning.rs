@@ -5,6 +5,7 @@ use crate::{
     columns::{Columns, Kind},
     found::Found,
     moments::Moment,
+    repeats::Repeats,
 };
 use flight::failure::bad_input;
 use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
@@ -41,12 +42,12 @@ impl Task<'_> {
     }
 
     /// What the session says of clocks and sound, if it was asked for.
-    pub(super) fn found(&self, columns: &Columns) -> anyhow::Result<Option<Found>> {
+    pub(super) fn found(&self, columns: &Columns, repeats: &Repeats) -> anyhow::Result<Option<Found>> {
         if !self.finds() {
             return Ok(None);
         }
         if columns.kind() == Kind::Differences {
-            return self.scale_of_differences(columns).map(Some);
+            return self.scale_of_differences((columns, repeats)).map(Some);
         }
         let unknowns = Unknowns {
             sound_sigma_ratio: if self.finds_sound_speed { SOUND_SIGMA_RATIO } else { 0.0 },
@@ -54,25 +55,29 @@ impl Task<'_> {
             offset_sigma_m: if self.finds_clock_offset { OFFSET_SIGMA_M } else { 0.0 },
         };
         let calibration = Calibration::new(&self.scenario.sim.world.stations, unknowns);
-        self.calibrated(calibration).map(|calibration| Some(Found::from(&calibration)))
+        self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
     }
 
     /// What the locator is going to find out about the speed of sound by itself.
-    pub(super) fn found_under_way(&self, columns: &Columns) -> anyhow::Result<Option<Found>> {
+    pub(super) fn found_under_way(
+        &self,
+        columns: &Columns,
+        repeats: &Repeats,
+    ) -> anyhow::Result<Option<Found>> {
         if columns.kind() == Kind::Differences {
             return Ok(None);
         }
         let calibration = Calibration::new(&self.scenario.sim.world.stations, Unknowns::default());
-        self.calibrated(calibration).map(|calibration| Some(Found::from(&calibration)))
+        self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
     }
 
     /// What the session says of clocks and sound, taken again until it no longer changes.
-    fn calibrated(&self, mut calibration: Calibration) -> anyhow::Result<Calibration> {
+    fn calibrated(&self, mut calibration: Calibration, repeats: &Repeats) -> anyhow::Result<Calibration> {
         let possible = self.possible();
         for _ in 0..ROUNDS {
             let before = (calibration.scale().0, calibration.offset_m().0);
             calibration = calibration.again();
-            for moment in self.open()?.0.flatten() {
+            for moment in self.moments(repeats)? {
                 // A cycle without a position contributes nothing; its fix states why there is none.
                 let _ = calibration.take(&self.rangings(&possible, &moment, Kind::Ranges), None);
             }
@@ -88,11 +93,11 @@ impl Task<'_> {
     }
 
     /// The share by which all ranges are too long, from differences of arrivals alone.
-    fn scale_of_differences(&self, columns: &Columns) -> anyhow::Result<Found> {
+    fn scale_of_differences(&self, readings: (&Columns, &Repeats)) -> anyhow::Result<Found> {
         let (mut scale, mut sigma) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {
             let found = Found::of_scale((scale, 0.0));
-            let Some((step, step_sigma)) = self.judged(columns, Some(&found))?.scale() else { break };
+            let Some((step, step_sigma)) = self.judged(readings, Some(&found))?.scale() else { break };
             scale = ((1.0 + scale) * (1.0 + step) - 1.0).clamp(-MOST_TOO_LONG, MOST_TOO_LONG);
             sigma = step_sigma * (1.0 + scale);
             if step.abs() <= SETTLED * step_sigma {
@@ -115,14 +120,18 @@ impl Task<'_> {
     }
 
     /// What the residuals of all fixes say, with what was found out taken out of the ranges.
-    pub(super) fn judged(&self, columns: &Columns, found: Option<&Found>) -> anyhow::Result<Session> {
+    pub(super) fn judged(
+        &self,
+        (columns, repeats): (&Columns, &Repeats),
+        found: Option<&Found>,
+    ) -> anyhow::Result<Session> {
         let kind = columns.kind();
         let stations = &self.scenario.sim.world.stations;
         let mut session = Session::new(stations, kind == Kind::Differences);
         let locating = &self.scenario.mission.locating;
         let solver = if kind == Kind::Differences { SolverKind::Differences } else { locating.solver };
         let possible = self.possible();
-        for moment in self.open()?.0.flatten() {
+        for moment in self.moments(repeats)? {
             let mut rangings = self.rangings(&possible, &moment, kind);
             if let Some(found) = found {
                 found.corrected(&mut rangings);

@@ -3,7 +3,10 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
-use std::{f64::consts::TAU, fmt::Write as _};
+use std::{
+    f64::consts::{PI, TAU},
+    fmt::Write as _,
+};
 use world::{Point, Pose, Vector};
 
 /// Metres per second at which sound runs.
@@ -32,10 +35,16 @@ pub(crate) enum Kind {
     Jitter,
     Quantised,
     QuantisedDifferences,
+    /// Each reading is written ten times.
+    Copied,
+    /// All ranges are too long or too short by one length.
+    Offset,
+    /// Measured motion with another sign or in another unit.
+    WrongMotion,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 19] = [
         Self::Sound,
         Self::SoundDifferences,
         Self::NoOdometry,
@@ -52,6 +61,9 @@ impl Kind {
         Self::Jitter,
         Self::Quantised,
         Self::QuantisedDifferences,
+        Self::Copied,
+        Self::Offset,
+        Self::WrongMotion,
     ];
 
     /// Whether nothing is wrong with the readings that the scenario does not say.
@@ -112,7 +124,8 @@ impl Draw {
         };
         let noise = ["gaussian", "uniform", "triangular"][(seed % 3) as usize];
         let ratio = rng.random_range(0.005..0.03);
-        let repetitions = if kind == Kind::Twice { 1 } else { [1, 4, 10][(seed / 3 % 3) as usize] };
+        let is_once = matches!(kind, Kind::Twice | Kind::Copied);
+        let repetitions = if is_once { 1 } else { [1, 4, 10][(seed / 3 % 3) as usize] };
         Self { rng, radius_m, stations, ratio, noise, repetitions }
     }
 
@@ -208,6 +221,14 @@ impl Set {
             _ => 0.0,
         };
         let late_m = if kind == Kind::LateStation { draw.rng.random_range(0.03..0.4) } else { 0.0 };
+        let offset_m = if kind == Kind::Offset { draw.rng.random_range(-0.6..0.6) } else { 0.0 };
+        let (way, turn) = match (kind, seed % 4) {
+            (Kind::WrongMotion, 0) => (1.0, -1.0),
+            (Kind::WrongMotion, 1) => (-1.0, 1.0),
+            (Kind::WrongMotion, 2) => (1.0, 180.0 / PI),
+            (Kind::WrongMotion, _) => (1.0 / 0.3048, 1.0),
+            _ => (1.0, 1.0),
+        };
         let has_gap = |k: u32| kind == Kind::OdometryGap && (200..400).contains(&k);
         let mut text = String::from(if kind.is_differences() {
             "t_s,emission,station,arrival_s,forward_m,sideways_m,turn_rad,true_x_m,true_y_m\n"
@@ -219,7 +240,8 @@ impl Set {
             let t_s = f64::from(k) / 10.0;
             let Pose { position: at, .. } = *pose;
             let forward_m = if k > 0 { speed_m_s * 0.1 * (1.0 + 0.02 * draw.normal()) } else { 0.0 };
-            let turn_rad = turn_rad * (1.0 + 0.02 * draw.normal());
+            let turn_rad = turn * turn_rad * (1.0 + 0.02 * draw.normal());
+            let forward_m = way * forward_m;
             if has_gap(k) {
                 let _ = writeln!(text, "{t_s},{},,,,,{},{}", e(k), at.x, at.y);
             } else {
@@ -241,6 +263,7 @@ impl Set {
                 let station = draw.stations[index];
                 for _ in 0..draw.repetitions {
                     let mut range_m = (at - station).norm() * (1.0 + draw.error()) + jitter_m * draw.normal();
+                    range_m += offset_m;
                     if index == 0 {
                         range_m += late_m;
                     }
@@ -255,7 +278,10 @@ impl Set {
                     };
                     // A second emission under the time of the first.
                     let t_s = if twice { f64::from(k - 10) / 10.0 } else { t_s };
-                    let _ = writeln!(text, "{t_s},{}S{index},{reading},,,,,", e(k));
+                    let copies = if kind == Kind::Copied { 10 } else { 1 };
+                    (0..copies).for_each(|_| {
+                        let _ = writeln!(text, "{t_s},{}S{index},{reading},,,,,", e(k));
+                    });
                 }
             }
         }

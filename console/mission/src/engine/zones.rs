@@ -28,7 +28,7 @@ impl Mission {
         }
         let room_m = self.config.room_m();
         let is_within = |place: Point| shape.distance_m(place) < room_m;
-        let must_keep = format!("{room_m:.2} m (hull radius and clearance) have to be left");
+        let must_keep = format!("{room_m:.2} m (hull radius and clearance) must stay clear");
         let here = self.locator.position();
         if is_within(here) {
             return Err(format!("the robot stands in the zone or beside it: {must_keep}"));
@@ -49,7 +49,7 @@ impl Mission {
         let is_way = |floor: &GrownFloor, to| floor.shortest(here, to, &mut || true).is_ok();
         let is_closed = |place: Point| !is_way(&behind, place) && is_way(&before, place);
         match places.iter().find(|(_, place)| is_closed(*place)) {
-            Some((what, _)) => Err(format!("the zone closes every way from the robot to the {what}")),
+            Some((what, _)) => Err(format!("the zone would block every way from the robot to the {what}")),
             None => Ok(()),
         }
     }

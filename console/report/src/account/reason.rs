@@ -71,7 +71,9 @@ impl Explained for MissReason {
             Self::FoundObstacle => format!("{} from {near}, found during the run", measure.range()),
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
-                format!("{value_m:.2} m beyond lanes of {limit_m:.2} m, the swath less the overlap")
+                format!(
+                    "{value_m:.2} m outside the nearest lane (lanes are {limit_m:.2} m wide: the swath less the overlap)"
+                )
             }
             Self::Clearance => {
                 format!("not planned: {} from {near}, hull and clearance {limit_m:.2} m", measure.range())

@@ -173,7 +173,7 @@ fn calibration(document: &Document) -> Answered {
 
 /// The answer of a report on a run that was not there to scan, to what is asked of scans.
 fn no_scan() -> Answered {
-    ("the mission was not to scan the floor".to_owned(), Vec::new())
+    ("scanning the floor was not part of the mission".to_owned(), Vec::new())
 }
 
 /// Whether a text gives a number, and says more than it and its unit.

@@ -126,9 +126,16 @@ pub fn located_json(document: &Document) -> serde_json::Result<Value> {
         object.remove("is_whole_floor");
     }
     for run in all["runs"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
-        for of_mission in
-            ["seed", "parameters", "drivers", "clearance_m", "clearance_min_m", "collisions", "tether"]
-        {
+        for of_mission in [
+            "seed",
+            "parameters",
+            "drivers",
+            "pre_flight",
+            "clearance_m",
+            "clearance_min_m",
+            "collisions",
+            "tether",
+        ] {
             run.remove(of_mission);
         }
     }

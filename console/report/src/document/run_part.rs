@@ -1,6 +1,7 @@
 //! What a report says of each of its runs.
 
 use crate::{
+    human::pre_flight,
     joined::PastRun,
     record::{Incident, StationRecord},
     summary::{Accuracy, Positioning, Summary, Tether},
@@ -109,6 +110,8 @@ pub struct RunPart {
     pub outcome: Option<Outcome>,
     /// Why, as a sentence.
     pub reason: Option<String>,
+    /// What was checked before the start: how much passed, and every warning; absent for a run without an operator.
+    pub pre_flight: Option<String>,
     /// Mission time, seconds.
     pub mission_time_s: f64,
     /// Way by the true position, metres.
@@ -158,6 +161,7 @@ impl RunPart {
             seed: run.seed,
             outcome: summary.outcome,
             reason: summary.reason.clone(),
+            pre_flight: pre_flight(&summary.checks),
             mission_time_s: summary.mission_time_s.unwrap_or(0.0),
             path_length_m: summary.path_length_m,
             clearance_min_m: summary.clearance_min_m.filter(|_| is_flown),

@@ -435,7 +435,7 @@ fn a_run_that_was_not_there_to_scan_is_reported_alone() {
     let mut goto = past_of(run, &[]);
     goto.name = "other".into();
     let refused = Document::new(&[past(), goto], Context::default()).unwrap_err();
-    assert_eq!(refused, "run other was not there to scan the floor: report it alone");
+    assert_eq!(refused, "run other was not a scan; it needs a report of its own");
 }
 
 #[test]

@@ -103,10 +103,10 @@ impl Model {
             (_, Some(busy)) => check(
                 "plan",
                 CheckOutcome::Failed,
-                format!("{}: start when the plan is ready", busy.how_far()),
+                format!("{}: not started; start again when the plan is ready", busy.how_far()),
             ),
             (_, None) if standing.readiness == Readiness::Preparing => {
-                check("plan", CheckOutcome::Failed, "being made: start when it is ready".into())
+                check("plan", CheckOutcome::Failed, "being made; start again when it is ready".into())
             }
             (Some(plan), None) if plan.complete => {
                 check("plan", CheckOutcome::Passed, format!("{:.1} m, the whole task", plan.length_m))
@@ -114,7 +114,7 @@ impl Model {
             (Some(plan), None) => {
                 check("plan", CheckOutcome::Warning, format!("{:.1} m, only part of the task", plan.length_m))
             }
-            (None, None) => check("plan", CheckOutcome::Failed, "none yet; make one first".into()),
+            (None, None) => check("plan", CheckOutcome::Failed, "none; `:plan-again` makes one".into()),
         }
     }
 

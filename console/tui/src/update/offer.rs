@@ -132,7 +132,7 @@ fn accept(model: &Model) -> Result<(), String> {
     if matches!(model.ui.overlay, Overlay::Preflight { .. }) {
         return demand(model.n_by_hand() > 0, "nothing is ticked by hand in this scenario");
     }
-    demand(model.ui.overlay != Overlay::None || opens, "Enter has nothing to open here")
+    demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
 }
 
 /// Whether there is another pane to go to.
@@ -256,7 +256,7 @@ fn start(model: &Model) -> Result<(), String> {
     demand(!model.live.preflight.is_starting, "already checking for the start; Esc: cancel")?;
     demand(model.live.asked.is_none(), "start already requested; space: HOLD")?;
     if let Some(busy) = model.live.busy.as_ref().filter(|_| model.live.waits()) {
-        return Err(format!("{}: start when the plan is ready", busy.how_far()));
+        return Err(format!("{}: not started; start again when the plan is ready", busy.how_far()));
     }
     let plan = model.live.run.standing.ready_plan();
     accepted(model, &Ask::Start(plan).order())?;
@@ -345,7 +345,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("space: HOLD"),
-        Refusal::Ended(_) => Some("<home>: open another one"),
+        Refusal::Ended(_) => Some("<home> opens another one"),
         Refusal::NoShadow => Some(":shadow NAME flies one"),
         // These say themselves what would be right, as far as there is anything.
         Refusal::Planning

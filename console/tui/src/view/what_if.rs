@@ -98,7 +98,7 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     });
     let basis = (
         Role::Dim,
-        "From the estimate and the map as it is known: obstacles that were not found yet are not in it. The mission and its \
+        "From the estimate and the map as it is known: obstacles not found yet are not included. The mission and its \
          recording are not affected; choosing another planner asks first and does not move the robot."
             .to_owned(),
     );

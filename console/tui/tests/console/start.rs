@@ -39,12 +39,12 @@ fn while_a_plan_is_made_a_start_is_refused_and_says_what_to_wait_for() {
     assert!(why(&screen).contains("the plan is not ready yet"), "{}", why(&screen));
     screen.hear(RunMsg::Busy(Some(("Planning (rpf)".into(), Some(60.0)))));
     screen.hear(RunMsg::BusyAt { share: 0.234, what: String::new() });
-    assert_eq!(why(&screen), "Planning (rpf) 23 %: start when the plan is ready");
+    assert_eq!(why(&screen), "Planning (rpf) 23 %: not started; start again when the plan is ready");
     assert_eq!(screen.press([Key::Char('S'), Key::Enter]), []);
     assert_eq!(screen.model.ui.overlay, Overlay::None);
     assert_eq!(
         check(&screen, "plan"),
-        (CheckOutcome::Failed, "Planning (rpf) 23 %: start when the plan is ready".into())
+        (CheckOutcome::Failed, "Planning (rpf) 23 %: not started; start again when the plan is ready".into())
     );
     screen.hear(RunMsg::Busy(None));
     let events = screen.mission.planned_ahead();

@@ -13,7 +13,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::time::Instant;
 
 /// How a worker ended that had to be killed.
-const LATE: &str = "did not end within 0.1 s";
+const LATE: &str = "took more than 0.1 s to shut down";
 
 impl Worker {
     /// Kills the process for this failure.

@@ -50,7 +50,7 @@ fn p95_cm(document: &Document) -> Option<f64> {
 fn verdict(document: &Document, located: &Located) -> Verdict {
     let error = p95_cm(document).map_or_else(
         || "The position error is not known.".to_owned(),
-        |p95_cm| format!("95 % of the time the position is known to within {p95_cm:.1} cm (95 % error)."),
+        |p95_cm| format!("For 95 % of the time the 95 % error of the position was at most {p95_cm:.1} cm."),
     );
     let floor = match located.tool_on_s {
         Some(on_s) => format!(

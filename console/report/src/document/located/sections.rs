@@ -139,7 +139,7 @@ fn limitations(document: &Document) -> Vec<Block> {
     let mut items = vec![
         format!("The positions of {runs} were computed from readings that others measured. This program neither moved nor saw the robot."),
         "The readings are taken as they were exported: their clock, their stations and the state of the tool are not checked.".to_owned(),
-        "Obstacles are those of the drawing; what stands there otherwise is not in this report.".to_owned(),
+        "Only obstacles on the drawing are shown.".to_owned(),
         "\u{201c}Scanned\u{201d} does not say that a defect would have been detected; that rests on the instrument, its calibration and the \
          surface."
             .to_owned(),
@@ -150,8 +150,7 @@ fn limitations(document: &Document) -> Vec<Block> {
     ];
     if has_truth {
         items.push(
-            "The readings hold true places. Where these come from a simulator, the readings do as well."
-                .to_owned(),
+            "The readings hold true places. If these come from a simulator, so do the readings.".to_owned(),
         );
     }
     let code = Value::fact(document.inspection.code.as_ref(), "code");

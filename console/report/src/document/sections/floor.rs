@@ -119,7 +119,7 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
                 format!("; {} fixes from {mean:.1} stations on average, {least} at least", a.fixes)
             });
             let how = format!(
-                "covariance of every tick; limit {} cm, above it on {} % of the way{}",
+                "covariance of every tick; limit {} cm, exceeded on {} % of the way{}",
                 number(100.0 * a.limit_m, 0),
                 per_cent(a.over_limit),
                 stations.unwrap_or_default()

@@ -30,6 +30,9 @@ pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
             clock(run.mission_time_s),
             clearance(run)
         )));
+        blocks.extend(
+            run.pre_flight.as_ref().map(|checks| Block::Text(format!("Before the start: {checks}."))),
+        );
         let [track, tether, over_time] = figures;
         blocks.push(Block::Pair(track.iter().chain(tether).map(picture).collect()));
         blocks.extend(run.tether.as_ref().map(|tether| Block::Table(tether_table(tether))));

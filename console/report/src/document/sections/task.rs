@@ -35,13 +35,13 @@ pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
         Some(other) => {
             format!("Not complete: {what}. The mission ended ({}).", other.word().replace('_', " "))
         }
-        None => format!("Not complete: {what}. The recording stops before the end of the mission."),
+        None => format!("Not complete: {what}. The journal stops before the end of the mission."),
     };
     let is_complete = outcome == Some(Outcome::Complete);
     let reason = run.and_then(|run| run.reason.clone()).filter(|_| !is_complete);
     Verdict {
         class: if is_complete { "" } else { "bad" },
-        lead: lead + " It was not there to scan the floor: no floor was missed.",
+        lead: lead + " Scanning the floor was not part of this mission: no floor was missed.",
         cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
     }
 }
