@@ -2,8 +2,12 @@
 
 use crate::cli::{CampaignCommand, Command};
 use anyhow::anyhow;
-use std::sync::{Mutex, PoisonError};
-use std::thread::{self, available_parallelism};
+use std::{
+    fs,
+    sync::{Mutex, PoisonError},
+    thread::{self, available_parallelism},
+    time::{Duration, Instant},
+};
 
 /// Threads and processes at once, besides the first thread, counted with `prlimit --nproc`. What planners start beyond their
 /// process is counted only where something else needs it: ours do without where they get none.
@@ -26,6 +30,8 @@ mod each {
     pub(super) const CONSOLE: usize = 5;
 }
 
+/// Within this the system has cleared away threads that have ended, even on a busy machine.
+const CLEARED_WITHIN: Duration = Duration::from_secs(1);
 /// They do nothing.
 const STACK_BYTES: usize = 64 << 10;
 
@@ -93,6 +99,7 @@ fn cores() -> usize {
 /// # Errors
 /// It does not; the sentence names the limit.
 pub(crate) fn check(needed: usize) -> anyhow::Result<()> {
+    let before = running();
     let gate = Mutex::new(());
     let closed = gate.lock().unwrap_or_else(PoisonError::into_inner);
     let wait = || drop(gate.lock());
@@ -107,5 +114,16 @@ pub(crate) fn check(needed: usize) -> anyhow::Result<()> {
             "this command needs {} threads and processes, and the system grants fewer ({error}): `ulimit -u` limits them",
             needed + 1
         )
-    })
+    })?;
+    // Who has ended counts until the system has cleared it away.
+    let until = Instant::now() + CLEARED_WITHIN;
+    while running() > before && Instant::now() < until {
+        thread::sleep(Duration::from_micros(50));
+    }
+    Ok(())
+}
+
+/// Threads of this process, where the system says so.
+fn running() -> usize {
+    fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
 }

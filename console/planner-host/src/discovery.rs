@@ -219,7 +219,7 @@ mod tests {
     fn a_library_with_a_hole_has_a_digest() {
         let folder = tempfile::tempdir().unwrap();
         let name = "libplanner_sparse.so";
-        let file = std::fs::File::create(folder.path().join(name)).unwrap();
+        let file = File::create(folder.path().join(name)).unwrap();
         file.set_len(1 << 20).unwrap();
         let dirs = PluginDirs::of(vec![PathBuf::from("nowhere"), folder.path().to_owned()]);
         assert_eq!(dirs.sha256_of(name), Some(sha256_hex(&vec![0; 1 << 20])));
