@@ -73,7 +73,7 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
         (zone((1.0, 1.0), (1.0, 2.0)), "enclose"),
         (zone((1.0, 1.0), (1e308, 1e308)), "at most 10000 m"),
         (zone((15.0, 15.0), (16.0, 16.0)), "outside the tank"),
-        (zone((-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "closes every way"),
+        (zone((-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "would block every way"),
     ];
     for (order, why) in orders {
         let events = flight.tick(std::slice::from_ref(&order));
