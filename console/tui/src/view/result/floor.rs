@@ -17,7 +17,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let mut rows: Vec<Parts> = Vec::new();
     match &result.summary.floor {
-        None => rows.push(vec![(Role::Dim, " Scanning the floor was not part of this mission.".into())]),
+        None => rows.push(vec![(Role::Dim, " Scanning was not part of this mission.".into())]),
         Some(account) => {
             rows.push(vec![(Role::Dim, head(columns))]);
             rows.push(vec![(Role::Text, shares("whole floor", &account.whole, columns))]);
