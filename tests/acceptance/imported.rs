@@ -26,7 +26,7 @@ fn a_drawing_with_layers_of_other_names_becomes_a_mission_that_is_flown() {
     let imported = bench.tankops(&[&["import", "floor.dxf", "-o", "floor.toml"], &named[..]].concat());
     assert_eq!(imported.code, Some(0), "{imported:?}");
     assert!(
-        imported.out.contains("round tank of 6.000 m radius, 4 obstacles, 0 no-go areas"),
+        imported.out.contains("round tank of 6.000 m radius, 4 obstacles, 0 no-go zones"),
         "{imported:?}"
     );
     assert!(imported.out.contains("note: not used: layer Text: TEXT, 1 of them"), "{imported:?}");

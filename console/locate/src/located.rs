@@ -294,7 +294,9 @@ impl Task<'_> {
         let scatter = self.scatter(survey.kind);
         let scale = survey.verdict.scale;
         let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
-        let likely_ratio = scale.filter(|scale| !scale.is_proven).map_or(0.0, |scale| scale.likely());
+        let is_emission_free = survey.kind == Kind::Differences;
+        let likely_ratio =
+            scale.filter(|scale| !scale.is_proven).map_or(0.0, |scale| scale.likely(is_emission_free));
         for mut moment in self.moments(&survey.repeats)? {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {

@@ -64,9 +64,11 @@ pub struct Verdict {
 }
 
 impl Wrong {
-    /// How large the error is likely to be, as a standard deviation: what was found, which chance makes larger as often as smaller.
-    pub fn likely(&self) -> f64 {
-        self.value.abs()
+    /// How large the error is likely to be, as a standard deviation: what was found beyond chance, or all of that where the time of
+    /// emission is unknown, because chance then hides as much of an error as it shows.
+    pub fn likely(&self, is_emission_free: bool) -> f64 {
+        let by_chance = if is_emission_free { 0.0 } else { self.sigma };
+        (self.value.powi(2) - by_chance.powi(2)).max(0.0).sqrt()
     }
 }
 
