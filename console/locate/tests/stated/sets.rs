@@ -72,6 +72,17 @@ impl Kind {
         matches!(self, Sound | SoundDifferences | NoOdometry | Jitter | Quantised | QuantisedDifferences)
     }
 
+    /// By what ways and turns are multiplied where they are written.
+    fn units_of_motion(self, seed: u64) -> (f64, f64) {
+        match (self, seed % 4) {
+            (Self::WrongMotion, 0) => (1.0, -1.0),
+            (Self::WrongMotion, 1) => (-1.0, 1.0),
+            (Self::WrongMotion, 2) => (1.0, 180.0 / PI),
+            (Self::WrongMotion, _) => (1.0 / 0.3048, 1.0),
+            _ => (1.0, 1.0),
+        }
+    }
+
     fn is_differences(self) -> bool {
         use Kind::{FoundSpeed, QuantisedDifferences, SentinelArrivals, SoundDifferences, WrongSpeed};
         matches!(self, SoundDifferences | WrongSpeed | FoundSpeed | QuantisedDifferences | SentinelArrivals)
@@ -222,13 +233,7 @@ impl Set {
         };
         let late_m = if kind == Kind::LateStation { draw.rng.random_range(0.03..0.4) } else { 0.0 };
         let offset_m = if kind == Kind::Offset { draw.rng.random_range(-0.6..0.6) } else { 0.0 };
-        let (way, turn) = match (kind, seed % 4) {
-            (Kind::WrongMotion, 0) => (1.0, -1.0),
-            (Kind::WrongMotion, 1) => (-1.0, 1.0),
-            (Kind::WrongMotion, 2) => (1.0, 180.0 / PI),
-            (Kind::WrongMotion, _) => (1.0 / 0.3048, 1.0),
-            _ => (1.0, 1.0),
-        };
+        let (way, turn) = kind.units_of_motion(seed);
         let has_gap = |k: u32| kind == Kind::OdometryGap && (200..400).contains(&k);
         let mut text = String::from(if kind.is_differences() {
             "t_s,emission,station,arrival_s,forward_m,sideways_m,turn_rad,true_x_m,true_y_m\n"

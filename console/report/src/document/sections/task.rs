@@ -101,7 +101,7 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
 fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
     let run = document.runs.first().map_or("", |run| run.run.as_str());
     vec![Block::Text(format!(
-        "Scenario {}: {}. From 1 run: {run}. The mission was not there to scan the floor, so nothing of the floor counts as \
+        "Scenario {}: {}. From 1 run: {run}. Scanning the floor was not part of the mission, so no floor counts as \
          missed, and no coverage is claimed.",
         document.scenario,
         task.words()
