@@ -163,4 +163,10 @@ fn a_figure_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_the_s
     std::fs::write(&file, text.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();
     let doubt = "report.json was changed: collisions is 1, the journal gives 0";
     assert_doubted(&bench, &run, &path, [doubt, "report.json was changed after the run ended"]);
+    // Nor does it help to take the digest out that shows the change.
+    let unsealed = text.lines().filter(|line| !line.contains("\"report_sha256\""));
+    let unsealed = unsealed.collect::<Vec<_>>().join("\n").replace(",\n}", "\n}");
+    std::fs::write(&file, unsealed.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();
+    let doubt = "report.json was changed after the run ended: its line report_sha256 is missing";
+    assert_doubted(&bench, &run, &path, [doubt; 2]);
 }

@@ -36,6 +36,19 @@ fn a_scan_by_a_robot_that_brakes_slowly_is_complete_and_touches_nothing() {
 }
 
 #[test]
+fn a_robot_that_knows_the_shell_only_by_its_position_keeps_off_it() {
+    let set = [
+        "robot.speed_max_m_per_s=0.344",
+        "robot.acceleration_m_per_s2=0.862",
+        "mission.tick_s=0.279",
+        "robot.turn_rate_max_deg_per_s=94.356",
+        "mission.clearance_m=0.019",
+    ];
+    let flown = fly("cover-circle.toml", "tether-safe", 1, &set.map(str::to_owned)).json();
+    assert_eq!((&flown["outcome"], &flown["collisions"]), (&"complete".into(), &0.into()), "{flown}");
+}
+
+#[test]
 fn whatever_the_robot_can_do_it_touches_nothing_that_is_drawn() {
     let cases = [
         ("goto-single-obstacle.toml", "apf"),

@@ -29,9 +29,9 @@ const GAP: f64 = 5.0;
 /// Distances in time of so many motions are looked at to know the usual one.
 const INTERVALS: usize = 4_096;
 
-/// Measured motion that this many fixes contradict, and at least one in so many, is not used: a wrong sign or unit, or a robot that
-/// was carried. A wrong start is contradicted by three.
+/// `locate` ignores measured motion that at least this many fixes contradict. A wrong start alone makes three fixes contradict it.
 const CONTRADICTING: u64 = 4;
+/// It also takes at least one contradicting fix in this many fixes.
 const CONTRADICTING_OF: u64 = 4;
 
 /// What is to be located, and how.

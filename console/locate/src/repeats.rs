@@ -8,8 +8,8 @@ use world::StationId;
 const MOST_SQUARES: f64 = 16.0;
 /// Readings that scatter less than this many times as much as the noise, squared, do no harm.
 const HARMLESS: f64 = 1.3;
-/// Readings that scatter less than this share of the noise, squared, are one reading that was written several times, or have their error
-/// in common: together they are no better than one.
+/// Readings whose variance is below this share of the noise variance are not independent: they are copies of one reading, or share its
+/// error. They count as one reading.
 const NARROW: f64 = 0.25;
 /// A sum that deviates by more standard deviations than this is significant.
 const SIGNIFICANT: f64 = 5.0;

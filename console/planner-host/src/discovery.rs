@@ -51,7 +51,8 @@ impl PluginDirs {
         Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
-    /// SHA-256 of the plugin file of this name that is used, hexadecimal; none if it cannot be read. Linkers leave holes in libraries.
+    /// SHA-256 of the first plugin file with this name, hexadecimal; `None` if it cannot be read. The file may have holes: linkers leave
+    /// them.
     pub fn sha256_of(&self, plugin: &str) -> Option<String> {
         let file = self.folders.iter().map(|dir| dir.join(plugin)).find(|file| file.is_file())?;
         read_bytes(&file).ok().map(|bytes| sha256_hex(&bytes))

@@ -105,7 +105,7 @@ pub struct Positioner {
     /// The first of the refused fixes in a row, and where the filter was then.
     first_refused: Option<(Fix, Pose)>,
     agreement: Agreement,
-    /// What fixes have in common with each other, so that many of them know it no better than one, square metres.
+    /// Covariance of the error that all fixes share, square metres; averaging over fixes does not reduce it.
     common: Matrix2<f64>,
 }
 

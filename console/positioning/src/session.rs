@@ -1,8 +1,9 @@
 //! What the residuals of a whole session say about the speed of sound and about single stations.
 //!
 //! One fix hides most of such an error in its position; what it leaves in the residuals adds up over fixes. For each error that may be
-//! there (all ranges too long by a share, or by a length; one station's ranges too long by a length) the score and its information are summed over the
-//! fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for single readings).
+//! there (all ranges too long by a share, or by a length; one station's ranges too long by a length) the score and its information are
+//! summed over the fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for
+//! single readings).
 
 use crate::{
     fix::{Fix, Residual},
@@ -273,7 +274,7 @@ mod tests {
         bias_m: f64,
     }
 
-    /// The verdict on a session of so many fixes.
+    /// Simulates a session with `fixes` fixes and returns its verdict.
     fn verdict(fixes: u32, errors: Errors, is_emission_free: bool, seed: u64) -> Verdict {
         let Errors { scale, offset_m, bias_m } = errors;
         let stations = ring(8, 10.0);

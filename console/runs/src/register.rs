@@ -39,7 +39,7 @@ impl Register {
         self.about(|run| names.contains(&run.run))
     }
 
-    /// The signed reports that are about a run of this kind.
+    /// The signed reports on runs that `is_meant` accepts.
     ///
     /// # Errors
     /// The register cannot be read.

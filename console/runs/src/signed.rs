@@ -66,8 +66,9 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     found
 }
 
-/// What the register has of these very files under a name that the run in this folder does not have any more. Journals of equal
-/// runs are equal; no two recordings are, because they hold the time of day.
+/// Finds a signed report on these files in the register, under a name that the run in this folder no longer has; as a sentence.
+///
+/// Both digests must agree: equal runs have equal journals, but each recording holds its own time of day.
 pub fn signed_under_another_name(folder: &Path, register: &Register, now: &SignedRun) -> Option<String> {
     now.recording_sha256.as_ref()?;
     let names = names_of(folder);

@@ -18,8 +18,9 @@ use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
-/// Clearance that is kept at least where ranges scatter, metres.
-const LEAST_CLEARANCE_M: f64 = 0.05;
+/// Clearance that is kept at least where ranges scatter, metres. With 0.05 one of 1,293 robots drawn by seed touched the shell, which it knows only
+/// by its position: the 95 % error was 0.047 m, the error 0.063 m.
+const LEAST_CLEARANCE_M: f64 = 0.08;
 
 /// A start this near to the first path point stands on it, metres.
 const ON_PATH_M: f64 = 1e-3;
@@ -256,22 +257,18 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     let (Some(boundary), Some(robot)) = (&floor.boundary, &floor.robot) else { return };
     let radius_m = robot.limits.radius_m;
     let site = Site { boundary, obstacles: &floor.obstacles, zones: &floor.zones, radius_m };
-    let complain = |section: &Option<Section<'_>>, name: &str, place: Point| {
-        if let (Some(section), Some(what)) = (section, site.objection(place)) {
+    let complain = |section: &Option<Section<'_>>, name: &str, what: Option<Complaint>| {
+        if let (Some(section), Some(what)) = (section, what) {
             section.complain(name, what);
         }
     };
-    if let Some(pose) = start {
-        complain(&sections.robot, "start_m", pose.position);
-        if let Some(section) = sections.robot.as_ref().filter(|robot| robot.has("start_m"))
-            && site.objection(pose.position).is_none()
-            && let Some(what) = site.objection_to_start(pose.position)
-        {
-            section.complain("start_m", what);
-        }
+    if let Some(Pose { position, .. }) = start {
+        let is_chosen = sections.robot.as_ref().is_some_and(|robot| robot.has("start_m"));
+        let too_near = || site.objection_to_start(position).filter(|_| is_chosen);
+        complain(&sections.robot, "start_m", site.objection(position).or_else(too_near));
     }
     if let Some(TaskConfig::Goto { goal, .. }) = task {
-        complain(&sections.mission, "goal_m", *goal);
+        complain(&sections.mission, "goal_m", site.objection(*goal));
     }
 }
 

@@ -35,7 +35,7 @@ pub(crate) struct ShadowArgs {
     /// Set a parameter of the planner in shadow.
     #[arg(long, value_name = "KEY=VALUE", requires = "shadow")]
     pub shadow_set: Vec<String>,
-    /// Have the planner in shadow take over every so many seconds of mission time; the one before it then flies in shadow.
+    /// Swap the driving planner and the planner in shadow at this interval, in seconds of mission time.
     #[arg(long, value_name = "SECONDS", requires = "shadow", value_parser = seconds, allow_negative_numbers = true)]
     pub promote_every: Option<f64>,
 }

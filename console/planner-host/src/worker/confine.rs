@@ -136,8 +136,8 @@ fn limit(resource: Resource, most: u64) {
 /// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
 /// down; also in the middle of an endless loop.
 ///
-/// Returns when that thread watches. It reserves memory when it begins, which the console has to allow: a console that
-/// has asked the worker to shut down may not look any more.
+/// Returns when that thread is watching. Its start reserves memory, and the console must allow that; a console that has already
+/// asked the worker to shut down may no longer answer.
 pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     let watches = Arc::new(Barrier::new(2));
     let begun = Arc::clone(&watches);

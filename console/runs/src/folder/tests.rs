@@ -179,6 +179,13 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
         figures(&summary).as_deref(),
         Some("report.json was changed: holds is 1, the journal gives 0")
     );
+    let text = fs::read_to_string(folder.join(REPORT_FILE)).unwrap();
+    let mut unsealed: Vec<&str> = text.lines().filter(|line| !line.contains("report_sha256")).collect();
+    let last = unsealed.len() - 2;
+    unsealed[last] = unsealed[last].trim_end_matches(',');
+    fs::write(folder.join(REPORT_FILE), unsealed.join("\n")).unwrap();
+    assert!(figures(&summary).is_some_and(|doubt| doubt.contains("its line report_sha256 is missing")));
+    assert_eq!(doubt_with(None), None, "reports of earlier versions had none");
     // Whoever changes a figure may change the digest, too.
     let other = Summary { holds: 1, ..summary.clone() };
     let text = ReportFile::text("a", &other, [None; 2], None).unwrap();
