@@ -150,13 +150,17 @@ fn check_refuses_a_planner_that_is_not_there() {
 fn check_warns_of_a_clearance_within_the_position_error() {
     let bench = Bench::new();
     let scan = std::fs::read_to_string(scenario("cover-circle.toml")).unwrap();
-    assert!(scan.contains("clearance_m = 0.1"));
-    for (clearance, is_warned) in [("clearance_m = 0.1", false), ("clearance_m = 0.02", true)] {
-        let file = bench.file("scan.toml", scan.replace("clearance_m = 0.1", clearance));
+    assert!(scan.contains("clearance_m = 0.1") && scan.contains("repetitions = 20"));
+    for (clearance, repetitions, is_warned) in
+        [(0.1, 20, false), (0.02, 20, false), (0.02, 4, true), (0.3, 4, false)]
+    {
+        let scan = scan.replace("clearance_m = 0.1", &format!("clearance_m = {clearance}"));
+        let scan = scan.replace("repetitions = 20", &format!("repetitions = {repetitions}"));
+        let file = bench.file("scan.toml", scan);
         let checked = bench.tankops(&["check", file.to_str().unwrap()]);
         assert_eq!(checked.code, Some(0), "{checked:?}");
         assert_eq!(
-            checked.err.contains("the hull keeps 0.05 m from solids (mission.clearance_m"),
+            checked.err.contains("the hull keeps 0.08 m from solids (mission.clearance_m"),
             is_warned,
             "{checked:?}"
         );

@@ -348,8 +348,9 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         let mut session = Session::open(&arguments, 120, 36);
         session.see("IDLE");
         if *moment == "IN_THREAD" {
-            // It attacks from its first moment on: there is no plan to start with.
-            session.see("FAILED: planner hostile");
+            // It attacks from its first moment on: there is no plan to start with. What strikes while the plugin is loaded is
+            // said of the plugin, what strikes later of the planner.
+            session.see("FAILED: pl");
             session.press("S");
             session.see("tart blocked");
             session.press_until("1", "1 Home");

@@ -5,7 +5,7 @@ use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
 use planner_api::{Limits, Motion, TetherLimits};
 use positioning::{Aggregation, Forecast, RangeNoise, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
-use world::{Point, Pose, coverage::Tool, tether};
+use world::{Point, Pose, PressureSensor, coverage::Tool, tether};
 
 /// What is to be achieved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -199,6 +199,9 @@ pub struct MissionConfig {
     /// What it takes for floor to count as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
+    /// The sensor by which an amphibious robot knows its medium; without it the zone at its estimated place counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<PressureSensor>,
     /// The tether; `None` for a robot without one.
     #[serde(default)]
     pub tether: Option<TetherConfig>,

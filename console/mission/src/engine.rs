@@ -208,6 +208,7 @@ impl Mission {
         let before = self.locator.pose();
         let located = self.locator.take(input.readings);
         self.happened.extend(located);
+        self.take_pressure(input.readings.pressure_pa);
         let map_changed = self.look_around(input.readings);
         self.scan_from(before);
         let reached = self.drag_tether(map_changed, input.readings.paid_out_m);
@@ -285,9 +286,11 @@ impl Mission {
         (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
     }
 
-    /// Whether the robot stands because it has no plan, or no planner, yet.
+    /// Whether the robot stands because it has no plan, or no planner, yet, or does not know whether to walk or to swim.
     fn robot_waits(&self) -> bool {
-        self.active.is_being_prepared() || self.candidate.as_ref().is_some_and(|slot| slot.robot_waits)
+        !self.knows_medium()
+            || self.active.is_being_prepared()
+            || self.candidate.as_ref().is_some_and(|slot| slot.robot_waits)
     }
 }
 

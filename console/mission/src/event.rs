@@ -32,7 +32,7 @@ use planner_api::{Command, Drawing, Leg, LegTag, LogLevel, PoseEstimate, Reason}
 use positioning::{Exclusion, Fix, FixError, Ranging};
 use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
-use world::{CellRun, KindRun, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
+use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
 
 /// Version of the journal's form; raised when an old reader could not read a new journal.
 pub const JOURNAL_VERSION: u32 = 5;
@@ -284,6 +284,15 @@ pub enum EventKind {
         sent_m_per_s: f64,
         /// What the robot would need to stop from the speed asked for, metres.
         needs_m: f64,
+    },
+    /// The robot stands until its pressure sensor has decided whether the floor under it is flooded; reported once.
+    MediumAwaited,
+    /// The pressure sensor has decided whether the floor under the robot is flooded, for the first time or differently than before.
+    MediumKnown {
+        /// What it has decided.
+        medium: Medium,
+        /// The reading that decided, pascals.
+        pressure_pa: f64,
     },
     /// The planner explained itself in drawings.
     Drawn {

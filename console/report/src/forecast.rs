@@ -158,7 +158,7 @@ pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<Str
     let expected_m = FILTERED * ForecastReport::new("", mission, drawing, &map, None).p95_error_95_m?;
     (clearance_m < expected_m).then(|| {
         format!(
-            "the hull keeps {clearance_m:.2} m from solids (mission.clearance_m; at least 0.05 m where ranges are noisy), but the \
+            "the hull keeps {clearance_m:.2} m from solids (mission.clearance_m; at least 0.08 m where ranges are noisy), but the \
              position will be off by up to about {expected_m:.2} m, so that it may touch a wall; give more clearance or better \
              stations (`tankops accuracy`)"
         )

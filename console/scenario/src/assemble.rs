@@ -2,7 +2,7 @@
 
 use super::{
     Scenario,
-    checks::{Site, cell_m, check_lanes, check_period, check_position_limit, check_ticks},
+    checks::{Site, cell_m, check_lanes, check_period, check_position_limit, check_pressure, check_ticks},
     expect, floor, inspection, layout,
     problem::{Complaint, Problem},
     ranging,
@@ -98,6 +98,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     let mission = MissionConfig {
         task: task?,
         tether,
+        pressure: robot.pressure,
         start,
         start_sigma_m: robot.start_sigma_m,
         tick_s: rest.tick_s,
@@ -337,6 +338,9 @@ impl Rest {
         if let (Some(tick_s), Some(section), Some(ae)) = (tick, &sections.ae, &floor.ae) {
             check_period(section, tick_s, ae.period_s);
         }
+        if let (Some(tick_s), Some(section), Some(robot)) = (tick, &sections.robot, &floor.robot) {
+            check_pressure(section, tick_s, robot.pressure);
+        }
         let cell_m = cell_m(mission, floor.boundary.as_ref());
         let (swath_m, clearance_m) = (mission.number("swath_m"), mission.number("clearance_m"));
         let position_limit_m = mission.number("position_limit_m");
@@ -401,5 +405,6 @@ fn truth(robot: &Robot, start: Pose) -> RobotConfig {
         odometry_sigma_ratio: robot.odometry_sigma_ratio,
         gyro_bias_rad_per_s: robot.gyro_bias_rad_per_s,
         amphibious: robot.limits.amphibious,
+        pressure: robot.pressure,
     }
 }

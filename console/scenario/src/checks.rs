@@ -1,7 +1,7 @@
 //! Whether the sections fit together: start, goal, sizes of the grid and of the run.
 
 use super::{problem::Complaint, section::Section};
-use world::{Boundary, Floor, Obstacle, Point, Zone, ZoneKind};
+use world::{Boundary, Floor, Obstacle, Point, PressureSensor, Zone, ZoneKind};
 
 /// Cells that a coverage grid may have.
 pub(crate) const MOST_CELLS: f64 = Floor::MOST_CELLS as f64;
@@ -18,6 +18,9 @@ pub(crate) const ROUNDING_M: f64 = 1e-6;
 /// Room that a robot needs where it starts, millimetres: what is seen is kept off by as much. An estimate that is only a little wrong
 /// would lie within anything nearer, and the mission could not tell moving off from running into it.
 const START_ROOM_MM: f64 = 10.0;
+
+/// Time that a robot may need on average to know its medium, seconds.
+const LONGEST_WAIT_S: f64 = 10.0;
 
 /// What a robot of some radius may run into.
 pub(crate) struct Site<'a> {
@@ -90,6 +93,21 @@ pub(crate) fn check_position_limit(mission: &Section<'_>, boundary: &Boundary, l
     let most_m = (high - low).min() / 2.0;
     if limit_m > most_m {
         mission.complain("position_limit_m", Complaint::LimitOfTank { limit_m, most_m });
+    }
+}
+
+/// Complains about a pressure sensor that scatters so much that the robot would wait too long at the start.
+pub(crate) fn check_pressure(robot: &Section<'_>, tick_s: f64, sensor: Option<PressureSensor>) {
+    let Some(sensor) = sensor else { return };
+    let most = LONGEST_WAIT_S / tick_s;
+    if sensor.readings_to_decide() > most {
+        // Rounded down, so that the number offered is accepted.
+        let most_pa = PressureSensor::largest_sigma_pa(sensor.depth_m, most.max(1.0)).floor();
+        let must_be = format!(
+            "at most {most_pa} Pa at pressure_depth_m = {}: the robot would wait over {LONGEST_WAIT_S} s for its readings to decide",
+            sensor.depth_m
+        );
+        robot.complain("pressure_sigma_pa", Complaint::OutOfRange(must_be));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
-use world::{Amphibious, Pace, Point};
+use world::{Amphibious, Pace, Point, PressureSensor};
 
 /// `[robot]` as read; the start may still follow from the mission.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +25,8 @@ pub(crate) struct Robot {
     pub odometry_sigma_ratio: f64,
     /// Constant error of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
+    /// The pressure sensor of an amphibious robot, if it has one.
+    pub pressure: Option<PressureSensor>,
 }
 
 impl Robot {
@@ -68,6 +70,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
     let amphibious = amphibious?;
+    let pressure = if amphibious.is_some() { pressure(section)? } else { None };
     // Planners get the faster of both paces; the zones specify where the slower one applies.
     let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
@@ -90,12 +93,14 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
         slip_sigma: slip_sigma?,
         odometry_sigma_ratio: odometry_sigma_ratio?,
         gyro_bias_rad_per_s: gyro_bias_deg?.to_radians(),
+        pressure,
     })
 }
 
 /// The limits that hold everywhere, and those that hold by zone.
 const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_rate_max_deg_per_s"];
 const ON_LAND: [&str; 2] = ["land_speed_max_m_per_s", "land_turn_rate_max_deg_per_s"];
+const PRESSURE: [&str; 2] = ["pressure_sigma_pa", "pressure_depth_m"];
 const UNDERWATER: [&str; 2] = ["underwater_speed_max_m_per_s", "underwater_turn_rate_max_deg_per_s"];
 
 /// How a robot walks and swims, if its motion is that; keys that do not go with the motion are refused.
@@ -105,12 +110,24 @@ fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
         section.refuse(&ON_LAND, &beside);
         section.refuse(&UNDERWATER, &beside);
         section.refuse(&["transition_ticks"], &beside);
+        section.refuse(&PRESSURE, &beside);
         return None;
     }
     section.refuse(&ONE_PACE, &beside);
     let (land, underwater) = (pace(section, ON_LAND), pace(section, UNDERWATER));
     let transition_steps = section.whole("transition_ticks")? as u32;
     Some(Amphibious { land: land?, underwater: underwater?, transition_steps })
+}
+
+/// The pressure sensor, if there is one.
+fn pressure(section: &Section<'_>) -> Option<Option<PressureSensor>> {
+    let depth_m = section.number("pressure_depth_m");
+    if !section.has("pressure_sigma_pa") {
+        section.refuse(&["pressure_depth_m"], "no pressure_sigma_pa");
+        return Some(None);
+    }
+    let sigma_pa = section.number("pressure_sigma_pa");
+    Some(Some(PressureSensor { depth_m: depth_m?, sigma_pa: sigma_pa? }))
 }
 
 fn pace(section: &Section<'_>, keys: [&'static str; 2]) -> Option<Pace> {

@@ -310,6 +310,9 @@ static ROBOT: &[Key] = &[
     number("underwater_speed_max_m_per_s", "m/s", above(0.0).up_to(10.0)).or(0.23),
     number("underwater_turn_rate_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
     key("transition_ticks", "", Kind::Whole(0, 10_000)).or_whole(20),
+    number("pressure_sigma_pa", "Pa", above(0.0).up_to(1e6))
+        .or_none("no sensor: the zone at the estimated place"),
+    number("pressure_depth_m", "m", above(0.0).up_to(100.0)).or(0.3),
     number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
     number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
     point("start_m").or_none("the first point of the path"),
@@ -478,7 +481,7 @@ mod tests {
 
     #[test]
     fn a_key_with_a_unit_ends_in_it() {
-        let suffix = |unit: &str| unit.replace("m/s²", "m_per_s2").replace('/', "_per_");
+        let suffix = |unit: &str| unit.replace("m/s²", "m_per_s2").replace('/', "_per_").to_lowercase();
         for (_, keys) in sections() {
             for key in keys.iter().filter(|key| !key.unit.is_empty()) {
                 assert!(key.name.ends_with(&format!("_{}", suffix(key.unit))), "{}", key.name);

@@ -72,6 +72,27 @@ fn an_amphibious_robot_has_the_papers_limits_and_planners_get_the_faster_ones() 
 }
 
 #[test]
+fn a_pressure_sensor_that_scatters_too_much_to_decide_is_refused_with_one_that_does_not() {
+    let with = |keys: &str| {
+        let keys = format!("start_m = [-3, 0]\nmotion = \"amphibious\"\n{keys}");
+        Scenario::parse(&SMALL.replacen("start_m = [-3, 0]", &keys, 1), "x.toml")
+    };
+    let sensor = with("pressure_sigma_pa = 200").expect("right").mission.pressure.expect("a sensor");
+    assert_eq!((sensor.depth_m, sensor.sigma_pa), (0.3, 200.0));
+    let said = with("pressure_sigma_pa = 9000\npressure_depth_m = 0.2").expect_err("too noisy").render();
+    let most = said.split("at most ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+    assert!(said.contains("robot.pressure_sigma_pa = 9000: must be at most"), "{said}");
+    assert!(with(&format!("pressure_sigma_pa = {most}\npressure_depth_m = 0.2")).is_ok(), "{most}");
+    assert!(with("pressure_depth_m = 0.2").is_err());
+    let walks = SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\npressure_sigma_pa = 200", 1);
+    let said = Scenario::parse(&walks, "x.toml").expect_err("a robot that does not swim").render();
+    assert!(
+        said.contains("robot.pressure_sigma_pa = 200: means nothing with motion = \"unicycle\""),
+        "{said}"
+    );
+}
+
+#[test]
 fn the_demo_has_columns_on_the_drawing_and_surprises() {
     let demo = read(DEMO);
     assert_eq!(demo.sim.world.obstacles.iter().filter(|o| o.known).count(), 8);

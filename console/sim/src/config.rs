@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use world::{Amphibious, ObstacleId, Point, Pose, StationId, World};
+use world::{Amphibious, ObstacleId, Point, Pose, PressureSensor, StationId, World};
 
 /// How ranges scatter about the true distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -152,6 +152,9 @@ pub struct RobotConfig {
     /// For a robot that walks and swims: the limits that replace those above, depending on its zone.
     #[serde(default)]
     pub amphibious: Option<Amphibious>,
+    /// The sensor by which it knows whether the floor under it is flooded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<PressureSensor>,
 }
 
 /// An obstacle that moves.

@@ -29,6 +29,8 @@ pub(crate) struct RandomStreams {
     pub survey: Pcg64,
     /// Errors of times.
     pub timing: Pcg64,
+    /// Errors of the pressure sensor.
+    pub pressure: Pcg64,
 }
 
 impl RandomStreams {
@@ -42,6 +44,7 @@ impl RandomStreams {
             disturbance: stream(5),
             survey: stream(6),
             timing: stream(7),
+            pressure: stream(8),
         }
     }
 }

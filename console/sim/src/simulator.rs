@@ -73,6 +73,10 @@ impl Simulator {
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
         let at = self.pose.position;
         let ranges = self.sounder.as_mut().and_then(|sounder| sounder.due_cycle(t_s, at));
+        let pressure_pa = self.config.robot.pressure.map(|sensor| {
+            let mean_pa = sensor.expected_pa(Medium::at(&world.zones, at));
+            bounded(mean_pa + sensor.sigma_pa * normal(&mut self.streams.pressure))
+        });
         let robot = &self.config.robot;
         let reach_m = bounded(robot.radius_m.max(0.0) + robot.sensing_range_m.max(0.0));
         Readings {
@@ -82,6 +86,7 @@ impl Simulator {
             sightings: sightings(&self.map, &world.boundary, &world.obstacles, &self.pose, reach_m),
             contact: self.in_contact,
             paid_out_m: self.cable.as_ref().map(Cable::length_m),
+            pressure_pa,
         }
     }
 

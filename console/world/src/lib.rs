@@ -22,7 +22,7 @@ pub use coverage::{
 };
 /// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};
-pub use medium::{Medium, Mode};
+pub use medium::{Medium, Mode, PressureSensor, SensedMedium};
 pub use obstacles::{Near, ObstacleMap};
 pub use plates::{DrawnPlate, NO_PLATE, Plate, PlateKind, PlateLayout, PlateMap, RegularPlates};
 pub use readings::{Odometry, RangeSet, Readings, Sighting};

@@ -20,6 +20,107 @@ pub struct Mode {
     weight: f64,
 }
 
+/// Gauge pressure under one metre of fresh water, pascals.
+const PA_PER_M: f64 = 9_806.65;
+/// Evidence that decides the medium, as the logarithm of a ratio of likelihoods: one decision in a million is wrong.
+const DECIDED: f64 = 13.815_510_558;
+
+/// A pressure sensor, by which an amphibious robot knows whether the floor under it is flooded (Yang et al. 2021, Fig. 6).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PressureSensor {
+    /// Depth of the sensor below the surface where the floor is flooded, metres.
+    pub depth_m: f64,
+    /// Standard deviation of one reading, pascals; greater than 0.
+    pub sigma_pa: f64,
+}
+
+/// The medium by the readings of a pressure sensor.
+///
+/// Readings add up until they decide (a sequential test of the two expected pressures, Wald 1945). What they have decided stands until
+/// later readings decide otherwise, so that noise at the waterline changes nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SensedMedium {
+    known: Option<Medium>,
+    /// For water where positive.
+    evidence: f64,
+}
+
+impl PressureSensor {
+    /// Gauge pressure that the sensor reads in a medium, but for its noise, pascals.
+    ///
+    /// ```
+    /// use world::{Medium, PressureSensor};
+    /// let sensor = PressureSensor { depth_m: 0.3, sigma_pa: 200.0 };
+    /// assert!((sensor.expected_pa(Medium::Underwater) - 2_942.0).abs() < 0.1);
+    /// assert_eq!(sensor.expected_pa(Medium::Land), 0.0);
+    /// ```
+    pub fn expected_pa(&self, medium: Medium) -> f64 {
+        if medium == Medium::Underwater { PA_PER_M * self.depth_m } else { 0.0 }
+    }
+
+    /// The mean number of readings that it takes to know the medium at the start; a change takes twice as many.
+    ///
+    /// ```
+    /// use world::PressureSensor;
+    /// let noisy = PressureSensor { depth_m: 0.3, sigma_pa: 2_942.0 };
+    /// assert!((noisy.readings_to_decide() - 27.6).abs() < 0.1);
+    /// ```
+    pub fn readings_to_decide(&self) -> f64 {
+        let apart = self.expected_pa(Medium::Underwater) / self.sigma_pa;
+        (2.0 * DECIDED / (apart * apart)).max(1.0)
+    }
+
+    /// The largest standard deviation with which so many readings decide, pascals.
+    ///
+    /// ```
+    /// use world::PressureSensor;
+    /// let sensor = PressureSensor { depth_m: 0.3, sigma_pa: PressureSensor::largest_sigma_pa(0.3, 100.0) };
+    /// assert!((sensor.readings_to_decide() - 100.0).abs() < 1e-9);
+    /// ```
+    pub fn largest_sigma_pa(depth_m: f64, readings: f64) -> f64 {
+        PA_PER_M * depth_m * (readings / (2.0 * DECIDED)).sqrt()
+    }
+
+    fn evidence_for_water(&self, pressure_pa: f64) -> f64 {
+        let flooded_pa = self.expected_pa(Medium::Underwater);
+        (pressure_pa - 0.5 * flooded_pa) * flooded_pa / self.sigma_pa.powi(2)
+    }
+}
+
+impl SensedMedium {
+    /// The medium; `None` while the readings have not decided.
+    ///
+    /// ```
+    /// assert_eq!(world::SensedMedium::default().known(), None);
+    /// ```
+    pub fn known(&self) -> Option<Medium> {
+        self.known
+    }
+
+    /// Takes in a reading, pascals; returns the medium if it is now known, or known to be another one.
+    ///
+    /// ```
+    /// use world::{Medium, PressureSensor, SensedMedium};
+    /// let sensor = PressureSensor { depth_m: 0.3, sigma_pa: 200.0 };
+    /// let mut medium = SensedMedium::default();
+    /// assert_eq!(medium.take(&sensor, 2_900.0), Some(Medium::Underwater));
+    /// assert_eq!(medium.take(&sensor, 3_000.0), None);
+    /// ```
+    pub fn take(&mut self, sensor: &PressureSensor, pressure_pa: f64) -> Option<Medium> {
+        let evidence = sensor.evidence_for_water(pressure_pa);
+        if !evidence.is_finite() {
+            return None;
+        }
+        self.evidence = (self.evidence + evidence).clamp(-DECIDED, DECIDED);
+        let says = match self.evidence {
+            evidence if evidence >= DECIDED => Medium::Underwater,
+            evidence if evidence <= -DECIDED => Medium::Land,
+            _ => return None,
+        };
+        (self.known.replace(says) != Some(says)).then_some(says)
+    }
+}
+
 impl Medium {
     /// The medium at a point, tank frame: that of the last zone of either kind around it; dry floor without one.
     ///
@@ -34,6 +135,18 @@ impl Medium {
         let here = zones.iter().rev().filter(|zone| zone.kind != ZoneKind::NoGo);
         let kind = here.filter(|zone| zone.shape.distance_m(place) <= 0.0).map(|zone| zone.kind).next();
         if kind == Some(ZoneKind::Underwater) { Self::Underwater } else { Self::Land }
+    }
+
+    /// What the floor is: `dry` or `flooded`.
+    ///
+    /// ```
+    /// assert_eq!(world::Medium::Underwater.word(), "flooded");
+    /// ```
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Land => "dry",
+            Self::Underwater => "flooded",
+        }
     }
 }
 
@@ -105,5 +218,39 @@ mod tests {
         }
         assert!(mode.weight.abs() < 1e-12);
         assert_eq!(mode.toward(Medium::Underwater, 0), Mode::of(Medium::Underwater));
+    }
+
+    /// Readings of a seed, pascals, by a sum of twelve uniform numbers.
+    fn readings(mean_pa: f64, sigma_pa: f64, seed: u64) -> impl Iterator<Item = f64> {
+        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+        let mut uniform = move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        std::iter::repeat_with(move || mean_pa + sigma_pa * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0))
+    }
+
+    #[test]
+    fn a_noisy_sensor_decides_rightly_in_the_time_that_it_states() {
+        let sensor = PressureSensor { depth_m: 0.3, sigma_pa: 3_000.0 };
+        for medium in [Medium::Land, Medium::Underwater] {
+            let mut taken = 0;
+            for seed in 1..=300 {
+                let mut sensed = SensedMedium::default();
+                let mut all = readings(sensor.expected_pa(medium), sensor.sigma_pa, seed);
+                let decided = all.find_map(|pressure_pa| {
+                    taken += 1;
+                    sensed.take(&sensor, pressure_pa)
+                });
+                assert_eq!(decided, Some(medium));
+                // What noise says in the next minute changes nothing.
+                assert_eq!(all.take(600).find_map(|pressure_pa| sensed.take(&sensor, pressure_pa)), None);
+            }
+            let mean = f64::from(taken) / 300.0;
+            let stated = sensor.readings_to_decide();
+            assert!((mean / stated - 1.0).abs() < 0.15, "{mean} {stated}");
+        }
     }
 }

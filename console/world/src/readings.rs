@@ -54,4 +54,7 @@ pub struct Readings {
     /// Length of tether that the reel has paid out, by its encoder, metres; `None` without a tether or an encoder.
     #[serde(default)]
     pub paid_out_m: Option<f64>,
+    /// Gauge pressure at the hull, pascals; `None` without a pressure sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_pa: Option<f64>,
 }

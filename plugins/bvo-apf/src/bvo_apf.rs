@@ -54,7 +54,7 @@ impl Planner for BvoApf {
     const ID: &'static str = "bvo-apf";
     const NAME: &'static str = "Field with virtual obstacles";
     const ABOUT: &'static str = "Leaves traps, closes them with virtual obstacles and goes round, after Xu et al. 2022; \
-                                 by default the detour begins before the trap is entered.";
+                                 by default the detour begins before the trap is entered. Evades what moves.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 

@@ -97,7 +97,8 @@ impl Mission {
             return self.ask_for_snapshot();
         }
         let robot_waits = self.candidate.as_ref().is_some_and(|slot| slot.robot_waits);
-        let is_step_due = is_running && !robot_waits && self.active.stepped_at != Some(self.tick);
+        let is_step_due =
+            is_running && !robot_waits && self.knows_medium() && self.active.stepped_at != Some(self.tick);
         is_step_due.then(|| self.ask_for_step()).flatten()
     }
 

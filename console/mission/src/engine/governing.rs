@@ -8,7 +8,7 @@ use crate::{
 };
 use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
-use world::{Medium, Mode, Zone};
+use world::{Medium, Mode, SensedMedium, Zone};
 
 /// A planner that is slowed down for this long is named, seconds.
 const NAMED_AFTER_S: f64 = 2.0;
@@ -23,6 +23,9 @@ pub(super) struct Governor {
     momentum: Momentum,
     /// Whether an amphibious robot walks or swims.
     mode: Mode,
+    /// The medium by the pressure sensor of a robot that has one.
+    sensed: SensedMedium,
+    has_said_that_it_waits: bool,
     limited: Limited,
 }
 
@@ -53,7 +56,13 @@ impl Governor {
     /// That of a robot at rest at its start.
     pub(super) fn new(config: &MissionConfig, zones: &[Zone]) -> Self {
         let mode = Mode::of(Medium::at(zones, config.start.position));
-        Self { momentum: Momentum::NONE, mode, limited: Limited::default() }
+        Self {
+            momentum: Momentum::NONE,
+            mode,
+            sensed: SensedMedium::default(),
+            has_said_that_it_waits: false,
+            limited: Limited::default(),
+        }
     }
 
     /// The robot stands.
@@ -98,11 +107,32 @@ impl Mission {
         self.governor.momentum = self.governor.momentum.after(drive, &here);
     }
 
+    /// Takes in what the pressure sensor reads.
+    pub(super) fn take_pressure(&mut self, pressure_pa: Option<f64>) {
+        let (Some(sensor), Some(pressure_pa)) = (self.config.pressure, pressure_pa) else { return };
+        let is_first = !self.knows_medium();
+        let Some(medium) = self.governor.sensed.take(&sensor, pressure_pa) else { return };
+        if is_first {
+            self.governor.mode = Mode::of(medium);
+        }
+        self.happened.push(EventKind::MediumKnown { medium, pressure_pa });
+    }
+
+    /// Whether the robot may move: one with a pressure sensor waits until that has decided how it has to.
+    pub(super) fn knows_medium(&self) -> bool {
+        self.config.pressure.is_none() || self.governor.sensed.known().is_some()
+    }
+
     /// Walks or swims as the floor under the robot demands.
     pub(super) fn update_mode(&mut self) {
-        if let Some(amphibious) = self.config.limits.amphibious {
-            let medium = Medium::at(&self.chart.world().zones, self.locator.position());
+        let Some(amphibious) = self.config.limits.amphibious else { return };
+        let by_place = || Medium::at(&self.chart.world().zones, self.locator.position());
+        let medium =
+            if self.config.pressure.is_some() { self.governor.sensed.known() } else { Some(by_place()) };
+        if let Some(medium) = medium {
             self.governor.mode = self.governor.mode.toward(medium, amphibious.transition_steps);
+        } else if self.is_running() && !std::mem::replace(&mut self.governor.has_said_that_it_waits, true) {
+            self.happened.push(EventKind::MediumAwaited);
         }
     }
 

@@ -23,7 +23,10 @@ use crate::{
 use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
 use std::sync::Arc;
 use world::tether::Cable;
-use world::{Boundary, Obstacle, ObstacleId, Odometry, Pose, RangeSet, Shape, Sighting, Station, StationId};
+use world::{
+    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Odometry, Pose, PressureSensor, RangeSet, Shape,
+    Sighting, Station, StationId,
+};
 
 /// A planner that drives straight to its target, and otherwise behaves as the test demands.
 #[derive(Default)]
@@ -237,6 +240,7 @@ fn config() -> MissionConfig {
         locating: crate::Locating::default(),
         scan: ScanConfig::default(),
         planner: PlannerChoice { id: "straight".into(), parameters: Parameters::new() },
+        pressure: None,
         tether: None,
         fallback: None,
         attended: true,
@@ -257,6 +261,8 @@ struct Flight {
     silent: bool,
     /// Metres by which the ranges of the first stations are too long.
     excess_range_m: Vec<f64>,
+    /// What the pressure sensor reads, pascals.
+    pressure_pa: Option<f64>,
     /// The true cable, among what stands there unseen; `None` without an encoder.
     reel: Option<Cable>,
     /// Metres that the reel has paid out beyond that.
@@ -285,6 +291,7 @@ impl Flight {
             moved: Odometry::default(),
             silent: false,
             excess_range_m: vec![],
+            pressure_pa: None,
             reel: None,
             caught_m: 0.0,
             sightings: vec![],
@@ -313,6 +320,7 @@ impl Flight {
             sightings: std::mem::take(&mut self.sightings),
             contact: false,
             paid_out_m: self.reel.as_ref().map(|cable| cable.length_m() + self.caught_m),
+            pressure_pa: self.pressure_pa,
         };
         self.mission.sense(&Input { readings: &readings, orders });
         self.inputs.push((readings, orders.to_vec()));
@@ -407,6 +415,37 @@ fn a_goto_mission_ends_complete_at_its_goal() {
     });
     let swept = (5.8 * 0.5) / (std::f64::consts::PI * 25.0);
     assert!(covered.is_some_and(|share| (share - swept).abs() < 0.02), "{covered:?} of {swept}");
+}
+
+#[test]
+fn a_robot_with_a_pressure_sensor_waits_until_its_medium_is_known() {
+    let sensor = PressureSensor { depth_m: 0.3, sigma_pa: 2_000.0 };
+    let limits = Limits { amphibious: Some(Amphibious::YANG_2021), ..config().limits };
+    let mut flight = Flight::new(MissionConfig { limits, pressure: Some(sensor), ..config() });
+    flight.tick(&[Order::Start]);
+    // Half way between both expected pressures: readings that decide nothing.
+    flight.pressure_pa = Some(0.5 * sensor.expected_pa(Medium::Underwater));
+    flight.fly(30);
+    assert_eq!(flight.pose, config().start);
+    let awaited = flight.events.iter().filter(|event| event.kind == EventKind::MediumAwaited).count();
+    assert_eq!(awaited, 1);
+    flight.pressure_pa = Some(sensor.expected_pa(Medium::Underwater));
+    flight.fly(40);
+    let known: Vec<Medium> = flight.events.iter().filter_map(medium_of).collect();
+    assert_eq!(known, [Medium::Underwater]);
+    assert!(flight.pose.position.x > config().start.position.x + 0.1, "{:?}", flight.pose);
+    // Readings of dry floor count against those of before.
+    flight.pressure_pa = Some(0.0);
+    flight.fly(60);
+    let known: Vec<Medium> = flight.events.iter().filter_map(medium_of).collect();
+    assert_eq!(known, [Medium::Underwater, Medium::Land]);
+}
+
+fn medium_of(event: &Event) -> Option<Medium> {
+    match event.kind {
+        EventKind::MediumKnown { medium, .. } => Some(medium),
+        _ => None,
+    }
 }
 
 #[test]

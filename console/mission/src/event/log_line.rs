@@ -108,6 +108,16 @@ impl Event {
                     "speed limited to {sent_m_per_s:.2} m/s: from {asked_m_per_s:.2} m/s the robot needs {needs_m:.2} m to stop"
                 ),
             ),
+            EventKind::MediumAwaited => line(
+                Severity::Info,
+                "robot",
+                "waiting for the pressure sensor to show whether the floor is flooded".into(),
+            ),
+            EventKind::MediumKnown { medium, pressure_pa } => line(
+                Severity::Info,
+                "robot",
+                format!("floor {}: pressure {:.0} Pa", medium.word(), pressure_pa),
+            ),
             EventKind::Resumed => line(Severity::Info, "mission", "resumed".into()),
             EventKind::Ended { outcome, reason } => {
                 let severity = if *outcome == Outcome::Complete { Severity::Info } else { Severity::Warn };

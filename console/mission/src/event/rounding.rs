@@ -116,6 +116,7 @@ impl EventKind {
             Self::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => {
                 [asked_m_per_s, sent_m_per_s, needs_m].into_iter().for_each(round);
             }
+            Self::MediumKnown { pressure_pa, .. } => round(pressure_pa),
             Self::Ranged { ranges } => ranges.iter_mut().for_each(round_ranging),
             Self::Fixed { fix } => round_fix(fix),
             Self::Estimated { pose: PoseEstimate { position, heading_rad, covariance } } => {

@@ -368,6 +368,7 @@ fn opened() -> RunOpened {
             range_sigma_ratio: 0.01,
             locating: mission::Locating::default(),
             planner: PlannerChoice { id: "rpf".into(), parameters: Parameters::new() },
+            pressure: None,
             tether: None,
             fallback: None,
             attended: false,

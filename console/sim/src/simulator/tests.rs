@@ -3,8 +3,8 @@ use crate::config::{Mover, Track};
 use crate::{AeConfig, Disturbances, NoiseModel, RobotConfig, TimingErrors};
 use proptest::prelude::*;
 use world::{
-    Amphibious, Boundary, Obstacle, ObstacleId, Point, Shape, Station, StationId, Vector, World, Zone,
-    ZoneKind, geometry::wrap_angle_rad,
+    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Point, PressureSensor, Shape, Station, StationId,
+    Vector, World, Zone, ZoneKind, geometry::wrap_angle_rad,
 };
 
 fn robot() -> RobotConfig {
@@ -20,6 +20,7 @@ fn robot() -> RobotConfig {
         odometry_sigma_ratio: 0.02,
         gyro_bias_rad_per_s: 0.001,
         amphibious: None,
+        pressure: None,
     }
 }
 
@@ -140,6 +141,7 @@ proptest! {
             acceleration_m_per_s2: n(3), sensing_range_m: n(4), slip_mean: n(5), slip_sigma: n(6),
             odometry_sigma_ratio: n(7), gyro_bias_rad_per_s: n(8),
             amphibious: None,
+            pressure: Some(PressureSensor { depth_m: n(1), sigma_pa: n(2) }),
         };
         config.tick_s = n(9);
         config.ae = Some(AeConfig {
@@ -322,6 +324,23 @@ fn an_amphibious_robot_swims_faster_than_it_walks_and_brakes_at_the_waterline() 
     let instant = speeds_across_the_waterline(0);
     let first = instant.iter().find(|(x, _)| *x > 0.0).map(|(_, speed)| speed - 0.13);
     assert!(first.is_some_and(|over| over > 0.08), "{first:?}");
+}
+
+#[test]
+fn a_pressure_sensor_reads_the_medium_under_the_true_place() {
+    let sensor = PressureSensor { depth_m: 0.5, sigma_pa: 100.0 };
+    let mut config = config();
+    let shape = Shape::Disc { center: Point::origin(), radius_m: 2.0 };
+    config.world.zones = vec![Zone { name: "sump".into(), kind: ZoneKind::Underwater, shape }];
+    let mean_pa = |x: f64| {
+        let robot = RobotConfig { start: Pose::new(x, 0.0, 0.0), pressure: Some(sensor), ..robot() };
+        let mut simulator = Simulator::new(SimConfig { robot, ..config.clone() }, 3);
+        (0..400).filter_map(|_| simulator.sense().pressure_pa).sum::<f64>() / 400.0
+    };
+    // Four standard deviations of a mean of 400.
+    assert!((mean_pa(0.0) - sensor.expected_pa(Medium::Underwater)).abs() < 20.0, "{}", mean_pa(0.0));
+    assert!(mean_pa(4.0).abs() < 20.0, "{}", mean_pa(4.0));
+    assert_eq!(Simulator::new(config.clone(), 3).sense().pressure_pa, None);
 }
 
 #[test]

@@ -118,6 +118,8 @@ impl Run {
             | EventKind::Snapshotted { .. }
             | EventKind::Discarded { .. }
             | EventKind::SpeedLimited { .. }
+            | EventKind::MediumAwaited
+            | EventKind::MediumKnown { .. }
             | EventKind::PlannerLogged { .. }
             | EventKind::Uncounted { .. } => {}
         }

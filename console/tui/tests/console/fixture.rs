@@ -99,6 +99,7 @@ pub(crate) fn config() -> MissionConfig {
         range_sigma_ratio: 0.01,
         locating: mission::Locating::default(),
         planner: choice("rpf"),
+        pressure: None,
         tether: None,
         fallback: None,
         attended: true,

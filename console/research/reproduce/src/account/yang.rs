@@ -81,9 +81,9 @@ const ITEMS: &[Item] = &[
     item(
         "Fig. 6",
         "a pressure sensor decides the medium, and the robot waits until it is known",
-        Absent,
-        "",
-        "no such sensor: the medium is that of the drawing at the estimated place",
+        Read,
+        "tankops run scenarios/papers/yang-hybrid-free.toml",
+        "pressure_sigma_pa and pressure_depth_m; the text gives neither noise nor threshold: a sequential test decides",
     ),
     item("Fig. 6", "transition of 20 steps", Reproduced, HYBRID, ""),
     item(

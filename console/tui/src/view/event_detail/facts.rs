@@ -45,6 +45,8 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
         EventKind::SpeedLimited { .. } => "speed limited",
+        EventKind::MediumAwaited => "waiting for the pressure sensor",
+        EventKind::MediumKnown { .. } => "floor dry or flooded",
         EventKind::Held { .. } => "mission held",
         EventKind::Resumed => "mission resumed",
         EventKind::Ended { .. } => "mission ended",
@@ -86,6 +88,12 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
             ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
             ("to stop", format!("{} from the speed asked for", metres(*needs_m))),
         ],
+        EventKind::MediumKnown { medium, pressure_pa } => {
+            vec![
+                ("floor", medium.word().to_owned()),
+                ("pressure", format!("{} Pa", text::number(*pressure_pa, 0))),
+            ]
+        }
         EventKind::PositionRegained { error_m } => vec![("error", metres(*error_m) + " (95 %)")],
         EventKind::RangesInconsistent { chi2, degrees_of_freedom } => {
             let limit = positioning::alarm_limit((*degrees_of_freedom).max(1));
