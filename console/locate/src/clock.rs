@@ -8,6 +8,37 @@ use jiff::{
 /// A time as it is to be written.
 pub(crate) const EXAMPLE: &str = "2026-10-25T02:59:58.250Z";
 
+/// How a time is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Written {
+    /// As a number of seconds, or of parts of a second.
+    Number,
+    /// As a time of day: seconds since midnight.
+    OfDay,
+    /// With a date: seconds since 1970.
+    Dated,
+}
+
+impl Written {
+    /// How a cell has its time.
+    pub(crate) fn of(cell: &str) -> Self {
+        match cell {
+            cell if is_date(cell) => Self::Dated,
+            cell if seconds_of_day(cell).is_some() => Self::OfDay,
+            _ => Self::Number,
+        }
+    }
+
+    /// A time as the file has it.
+    pub(crate) fn shown(self, seconds: f64) -> String {
+        match self {
+            Self::Number => format!("{seconds} s"),
+            Self::OfDay => written_of_day(seconds),
+            Self::Dated => written(seconds),
+        }
+    }
+}
+
 /// Whether a cell begins with a date.
 pub(crate) fn is_date(cell: &str) -> bool {
     let bytes = cell.as_bytes();
@@ -30,6 +61,27 @@ pub(crate) fn seconds(cell: &str) -> Result<f64, String> {
         )),
         Err(_) => Err(format!("`{cell}` is not a time; write date, time and zone, as {EXAMPLE}")),
     }
+}
+
+/// A time in any form in which readings have it, seconds: a number, a time of day, or a date.
+pub(crate) fn time_s(cell: &str, has_commas: bool) -> Result<f64, String> {
+    if is_date(cell) {
+        return seconds(cell);
+    }
+    let number = if has_commas { cell.replace(',', ".").parse() } else { cell.parse() };
+    let number = number.ok().filter(|number: &f64| number.is_finite());
+    seconds_of_day(cell).or(number).ok_or_else(|| {
+        format!(
+            "`{cell}` is not a time; write seconds, a time of day as 07:40:12.250, or a date as {EXAMPLE}"
+        )
+    })
+}
+
+/// Seconds since midnight as a time of day.
+fn written_of_day(seconds: f64) -> String {
+    let ms = (seconds * 1e3).round() as i64;
+    let (hours, minutes, rest) = (ms / 3_600_000, ms / 60_000 % 60, ms % 60_000);
+    format!("{hours:02}:{minutes:02}:{:02}.{:03}", rest / 1000, rest % 1000)
 }
 
 /// Seconds since 1970 as a time of UTC.
@@ -60,6 +112,7 @@ mod tests {
     fn times_of_day_are_seconds_since_midnight() {
         assert_eq!(seconds_of_day("07:40:12,250"), Some(27_612.25));
         assert_eq!(seconds_of_day("00:00:00"), Some(0.0));
+        assert_eq!(written_of_day(86_399.9), "23:59:59.900");
         for text in ["7.5", "07:40", "25:00:00", "2026-10-25T02:59:58Z", ""] {
             assert_eq!(seconds_of_day(text), None, "{text}");
         }

@@ -1,6 +1,9 @@
 //! The columns of a file of readings, and what a row of cells says.
 
-use crate::{clock, problem::Problem};
+use crate::{
+    clock::{self, Written},
+    problem::Problem,
+};
 use csv::StringRecord;
 use report::document::csv::cell;
 use std::collections::HashMap;
@@ -82,8 +85,8 @@ pub(crate) struct Columns {
 pub(crate) struct Row {
     pub line: u64,
     pub t_s: f64,
-    /// Whether the time was written with a date: seconds since 1970.
-    pub is_dated: bool,
+    /// How the time was written.
+    pub written: Written,
     /// Rows of one emission belong together.
     pub emission: Option<String>,
     pub range: Option<Heard>,
@@ -212,18 +215,13 @@ impl Columns {
         Ok(Row {
             line,
             t_s,
-            is_dated: clock::is_date(self.cell(cells, time_cell)),
+            written: Written::of(self.cell(cells, time_cell)),
             emission: Some(self.cell(cells, EMISSION)).filter(|text| !text.is_empty()).map(str::to_owned),
             range: self.heard(cells, line, range_m)?,
             motion,
             truth: truth.map(|(x, y)| Pose { position: Point::new(x, y), heading_rad }),
             tool_on: self.tool_on(cells, line)?,
         })
-    }
-
-    /// Whether the file says when the tool was on.
-    pub(crate) fn has_tool(&self) -> bool {
-        self.has(TOOL_ON)
     }
 
     fn tool_on(&self, cells: &StringRecord, line: u64) -> Result<Option<bool>, Problem> {

@@ -1,6 +1,7 @@
 //! A file of readings, located.
 
 use crate::{
+    clock::{self, Written},
     columns::{Columns, Kind},
     doubts::Doubts,
     found::Found,
@@ -125,7 +126,7 @@ impl Task<'_> {
     /// It cannot be read, or has bad rows and those are not to be left out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
-        let tool_on = self.tool_on(&columns)?;
+        let in_file = self.tool_on_in_file()?;
         let mut stretches = Stretches::default();
         self.check_findable(&columns)?;
         let (mut problems, mut bad) = (Vec::new(), 0);
@@ -167,7 +168,7 @@ impl Task<'_> {
         };
         let verdict = self.judged((&columns, &repeats), assumed.as_ref())?.verdict();
         intervals_s.sort_by(f64::total_cmp);
-        let tool_on = tool_on.or_else(|| columns.has_tool().then(|| stretches.finish()));
+        let tool_on = self.tool_on(in_file, stretches, [first.t_s, last.t_s])?;
         let from_first = |[from_s, to_s]: [f64; 2]| [from_s - first.t_s, to_s - first.t_s];
         let mut survey = Survey {
             kind: columns.kind(),
@@ -182,7 +183,7 @@ impl Task<'_> {
             verdict,
             repeats,
             first_s: first.t_s,
-            dates: first.is_dated.then(|| [first.t_s, last.t_s].map(crate::clock::written)),
+            dates: (first.written == Written::Dated).then(|| [first.t_s, last.t_s].map(clock::written)),
             gap_s: intervals_s.get(intervals_s.len() / 2).map_or(f64::INFINITY, |usual_s| GAP * usual_s),
         };
         if survey.has_motion {
@@ -208,16 +209,31 @@ impl Task<'_> {
     }
 
     /// The stretches of the file that says when the tool was on.
-    fn tool_on(&self, columns: &Columns) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
-        let Some(file) = self.tool_on else { return Ok(None) };
-        if columns.has_tool() {
+    fn tool_on_in_file(&self) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
+        let read =
+            |file: &Path| tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())));
+        self.tool_on.map(read).transpose()
+    }
+
+    /// When the tool was on, by that file or by the readings, which span the times of `span`, seconds.
+    fn tool_on(
+        &self,
+        in_file: Option<Vec<[f64; 2]>>,
+        of_readings: Stretches,
+        span: [f64; 2],
+    ) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
+        let of_readings = of_readings.finish();
+        let (Some(file), Some(stretches)) = (self.tool_on, in_file) else { return Ok(of_readings) };
+        if of_readings.is_some() {
             let (readings, file) = (self.file.display(), file.display());
             return Err(bad_input(format!(
                 "{readings} has a column tool_on, and {file} states it, too; keep one of the two"
             )));
         }
-        let stretches = tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())))?;
-        Ok(Some(stretches))
+        match tool::outside(&stretches, span) {
+            Some(wrong) => Err(bad_input(format!("{}: {wrong}", file.display()))),
+            None => Ok(Some(stretches)),
+        }
     }
 
     fn listed(&self, problems: &[Problem], bad: u64) -> String {
@@ -295,8 +311,7 @@ impl Task<'_> {
         let scale = survey.verdict.scale;
         let ratio = scale.filter(|scale| scale.is_proven).map_or(0.0, |scale| scale.value.abs());
         let is_emission_free = survey.kind == Kind::Differences;
-        let likely_ratio =
-            scale.filter(|scale| !scale.is_proven).map_or(0.0, |scale| scale.likely(is_emission_free));
+        let likely_errors = survey.verdict.likely_errors(is_emission_free);
         for mut moment in self.moments(&survey.repeats)? {
             moment.t_s -= survey.first_s;
             if let Some(calibration) = &survey.calibration {
@@ -307,7 +322,7 @@ impl Task<'_> {
             let offset = survey.verdict.offset_m.filter(|offset| offset.is_proven);
             let sigma_m = repeats.unwrap_or_default().hypot(offset.map_or(0.0, |offset| offset.value));
             let likely_m = survey.repeats.likely_m(&moment, &scatter);
-            track.locator.doubt(Doubt { ratio, likely_ratio, sigma_m, likely_m, is_suspect });
+            track.locator.doubt(Doubt { ratio, likely_errors, sigma_m, likely_m, is_suspect });
             take(&track.events(&moment));
         }
         Ok(track)

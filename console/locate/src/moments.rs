@@ -1,7 +1,7 @@
 //! Rows of one time or emission put together.
 
 use crate::{
-    clock,
+    clock::{self, Written},
     columns::{Columns, Heard, Kind, Row},
     problem::Problem,
     rows::Rows,
@@ -12,6 +12,9 @@ use world::{Odometry, Pose, RangeSet};
 
 /// Differences of arrival times become ranges by adding this to the time since the first arrival, metres: a range is positive.
 const BASE_M: f64 = 100.0;
+
+/// A time of day that falls by more than this has passed midnight, seconds.
+const HALF_A_DAY_S: f64 = 43_200.0;
 
 /// What was measured at one time.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +31,8 @@ pub(crate) struct Moment {
     pub truth: Option<Pose>,
     /// Whether the tool is on from here on; none if no row says it. Rows that contradict each other: it is off.
     pub tool_on: Option<bool>,
-    /// Whether the time is written with a date.
-    pub is_dated: bool,
+    /// How the time is written.
+    pub written: Written,
 }
 
 /// The moments of a file, and between them what is wrong with rows.
@@ -131,11 +134,16 @@ impl Moments {
     fn told(&mut self, back: &Back) -> Problem {
         let Back { first, before, last_line, rows } = *back;
         self.left_behind += rows - 1;
-        let as_text = |t_s: f64| {
-            let is_dated = self.open.as_ref().is_some_and(|(row, _)| row.is_dated);
-            if is_dated { clock::written(t_s) } else { format!("{t_s} s") }
-        };
-        let (earlier, later) = (as_text(first.t_s), as_text(before.t_s));
+        let written = self.open.as_ref().map_or(Written::Number, |(row, _)| row.written);
+        let (earlier, later) = (written.shown(first.t_s), written.shown(before.t_s));
+        if written == Written::OfDay && before.t_s - first.t_s > HALF_A_DAY_S {
+            let what = format!(
+                "{earlier} comes after {later} in line {}: times of day pass midnight here; write them with their dates, as {}",
+                before.line,
+                clock::EXAMPLE
+            );
+            return self.columns.wrong_time(first.line, what);
+        }
         let until = match rows {
             1 => String::new(),
             _ => format!("; the {rows} rows up to line {last_line} are earlier than that"),
@@ -201,7 +209,7 @@ impl Moment {
             heard: Vec::new(),
             odometry: None,
             truth: None,
-            is_dated: first.is_dated,
+            written: first.written,
             tool_on: None,
         };
         moment.add(first);

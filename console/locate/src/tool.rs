@@ -1,7 +1,7 @@
 //! When the tool was on: a column of the readings, or a file of its own.
 
-use csv::{ReaderBuilder, StringRecord, Trim};
-use foreign::read_regular;
+use crate::{clock, rows::Rows};
+use csv::StringRecord;
 use std::path::Path;
 
 /// Stretches of time in which the tool was on, put together out of moments.
@@ -9,6 +9,7 @@ use std::path::Path;
 pub(crate) struct Stretches {
     all: Vec<[f64; 2]>,
     is_on: bool,
+    is_said: bool,
 }
 
 impl Stretches {
@@ -21,33 +22,45 @@ impl Stretches {
             self.all.push([t_s, t_s]);
         }
         self.is_on = tool_on.unwrap_or(self.is_on);
+        self.is_said |= tool_on.is_some();
     }
 
-    /// The stretches, in order.
-    pub(crate) fn finish(self) -> Vec<[f64; 2]> {
-        self.all
+    /// The stretches, in order; `None` if no moment says anything of the tool.
+    pub(crate) fn finish(self) -> Option<Vec<[f64; 2]>> {
+        self.is_said.then_some(self.all)
     }
 }
 
-/// Reads a file of stretches: CSV with the columns `from_s` and `to_s`, by the clock of the readings.
+/// Reads a file of stretches: a table with the columns `from_s` and `to_s` (or `from` and `to`), by the clock of the readings and in any
+/// form in which readings have their times.
 ///
 /// # Errors
 /// It cannot be read; a stretch that ends before it begins, or that begins before the one before it ends: with the line.
 pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
-    let text = read_regular(file).map_err(|error| error.to_string())?;
-    let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let mut rows = Rows::open(file)?;
+    let header = rows.header().clone();
     let column = |name: &str| {
-        let at = header.iter().position(|head| head.to_lowercase() == name);
-        at.ok_or_else(|| format!("line 1: no column {name}; the columns are from_s and to_s, seconds by the clock of the readings"))
+        let is_it = |head: &str| {
+            let head = head.to_lowercase();
+            head == name || head.strip_suffix("_s") == Some(name)
+        };
+        let at = header.iter().position(is_it);
+        at.ok_or_else(|| {
+            format!(
+                "line 1: no column {name}_s; the columns are from_s and to_s, by the clock of the readings"
+            )
+        })
     };
-    let columns = [("from_s", column("from_s")?), ("to_s", column("to_s")?)];
+    let columns = [("from_s", column("from")?), ("to_s", column("to")?)];
+    let has_commas = rows.has_commas();
+    let mut cells = StringRecord::new();
     let mut all: Vec<[f64; 2]> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| error.to_string())?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let [from_s, to_s] = columns.map(|(name, at)| number(&record, line, name, at));
-        let stretch = [from_s?, to_s?];
+    while let Some(line) = rows.next(&mut cells).map_err(|problem| problem.to_string())? {
+        let time = |(name, at): (&str, usize)| {
+            let text = cells.get(at).unwrap_or_default();
+            clock::time_s(text, has_commas).map_err(|what| format!("line {line}: {name}: {what}"))
+        };
+        let stretch = [time(columns[0])?, time(columns[1])?];
         if stretch[1] <= stretch[0] {
             return Err(format!("line {line}: to_s {} must be later than from_s {}", stretch[1], stretch[0]));
         }
@@ -62,10 +75,14 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
     Ok(all)
 }
 
-fn number(record: &StringRecord, line: u64, name: &str, at: usize) -> Result<f64, String> {
-    let text = record.get(at).unwrap_or_default();
-    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("line {line}: {name}: `{text}` is not a number of seconds"))
+/// A stretch that no reading belongs to, with what the readings span: the file is by another clock.
+pub(crate) fn outside(stretches: &[[f64; 2]], span: [f64; 2]) -> Option<String> {
+    let [first_s, last_s] = span;
+    let [from_s, to_s] = stretches.iter().find(|[from_s, to_s]| *to_s < first_s || *from_s > last_s)?;
+    Some(format!(
+        "the stretch from {from_s} to {to_s} s lies outside the readings, which run from {first_s} to {last_s} s; both files must \
+         have the same clock"
+    ))
 }
 
 #[cfg(test)]
@@ -81,7 +98,8 @@ mod tests {
         for (t_s, said) in (0_u8..).zip(said) {
             stretches.take(f64::from(t_s), said);
         }
-        assert_eq!(stretches.finish(), [[1.0, 4.0], [6.0, 6.0]]);
+        assert_eq!(stretches.finish(), Some(vec![[1.0, 4.0], [6.0, 6.0]]));
+        assert_eq!(Stretches::default().finish(), None);
     }
 
     #[test]
@@ -94,6 +112,11 @@ mod tests {
         };
         assert_eq!(of("# tool\nfrom_s, to_s\n1, 2.5\n2.5, 4\n").unwrap(), [[1.0, 2.5], [2.5, 4.0]]);
         assert_eq!(of("to_s,from_s\n").unwrap(), Vec::<[f64; 2]>::new());
+        // In the forms in which readings have their times.
+        assert_eq!(of("from;to\n1,5;2,5\n").unwrap(), [[1.5, 2.5]]);
+        assert_eq!(of("from,to\n07:40:00,07:40:01.5\n").unwrap(), [[27_600.0, 27_601.5]]);
+        let dated = of("from_s,to_s\n1970-01-01T00:00:10Z,1970-01-01T00:00:12Z\n").unwrap();
+        assert_eq!(dated, [[10.0, 12.0]]);
         assert!(of("from_s\n1\n").unwrap_err().starts_with("line 1: no column to_s"));
         assert_eq!(of("from_s,to_s\n1,2\n3,3\n").unwrap_err(), "line 3: to_s 3 must be later than from_s 3");
         assert!(
@@ -101,7 +124,14 @@ mod tests {
         );
         assert_eq!(
             of("from_s,to_s\nsoon,2\n").unwrap_err(),
-            "line 2: from_s: `soon` is not a number of seconds"
+            "line 2: from_s: `soon` is not a time; write seconds, a time of day as 07:40:12.250, or a date as 2026-10-25T02:59:58.250Z"
         );
+    }
+
+    #[test]
+    fn stretches_by_another_clock_are_named() {
+        assert_eq!(outside(&[[28_770.0, 28_780.0], [28_800.0, 28_900.0]], [28_770.0, 28_830.0]), None);
+        let said = outside(&[[10.0, 20.0]], [28_770.0, 28_830.0]).unwrap();
+        assert!(said.starts_with("the stretch from 10 to 20 s lies outside the readings"), "{said}");
     }
 }

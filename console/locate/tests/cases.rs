@@ -143,6 +143,17 @@ fn two_emissions_under_one_time_are_asked_about() {
 }
 
 #[test]
+fn times_of_day_that_pass_midnight_ask_for_dates() {
+    let scenario = scenario(AROUND, [0.0, 0.0]);
+    let text = "time,station,range_m\n23:59:59.5,A0,4.5\n23:59:59.9,A1,3\n00:00:00,A0,4.5\n00:00:00.5,A1,3\n";
+    let refused = run(&scenario, text.as_bytes(), |_| {}).err().unwrap();
+    assert!(
+        refused.contains("line 4, time: 00:00:00.000 comes after 23:59:59.900 in line 3: times of day pass midnight here; write them with"),
+        "{refused}"
+    );
+}
+
+#[test]
 fn time_that_goes_back_is_one_error_that_names_both_rows() {
     let scenario = scenario(AROUND, [0.0, 0.0]);
     let text =

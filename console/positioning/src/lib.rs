@@ -53,7 +53,7 @@ pub use positioner::{Agreement, CycleResult, Doubt, Estimate, Positioner, Positi
 pub use possible::{Impossible, Possible};
 pub use quality::{alarm_limit, scatter_limit};
 pub use screened::Screened;
-pub use session::{Session, Verdict, Wrong};
+pub use session::{CommonError, Session, Verdict, Wrong};
 pub use sides::{Sides, mirrored};
 pub use solver_kind::SolverKind;
 pub use weighted::WeightedLinear;

@@ -10,7 +10,7 @@ use crate::{
     ekf::Ekf,
     fix::{Exclusion, Fix, FixError, Integrity, Prior, Ranging, ellipse_95},
     possible::{Impossible, Possible},
-    session::shift_by_scale,
+    session::{CommonError, shift_by},
     sides::{Sides, both, is_behind},
     solver_kind::SolverKind,
 };
@@ -36,9 +36,8 @@ const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 pub struct Doubt {
     /// What may be wrong with all ranges, as a share of the distance.
     pub ratio: f64,
-    /// What all ranges are likely to be wrong by, as a share of the distance and a standard deviation: fixes are wider, but not
-    /// suspect.
-    pub likely_ratio: f64,
+    /// What all ranges are likely to be wrong by, as a standard deviation: fixes are wider, but not suspect.
+    pub likely_errors: [CommonError; 2],
     /// By how much a position is likely to be off in any direction, metres, as a standard deviation: fixes are wider, but not suspect.
     pub likely_m: f64,
     /// What may be wrong with all ranges, metres.
@@ -231,26 +230,25 @@ impl Positioner {
     /// The part of the error of a fix that it has in common with the fixes after it, as a covariance, square metres: what is wrong
     /// with the scale of all ranges, and with all of them.
     fn in_common(&self, fix: &Fix) -> Matrix2<f64> {
-        let PositionerConfig { stations, solver, scale_sigma_ratio, .. } = &self.config;
-        let Doubt { ratio, likely_ratio, likely_m, sigma_m, .. } = self.doubt;
-        let share = scale_sigma_ratio.hypot(ratio).hypot(likely_ratio);
+        let Doubt { ratio, likely_errors, likely_m, sigma_m, .. } = self.doubt;
+        let share = CommonError::Share(self.config.scale_sigma_ratio.hypot(ratio));
         let everywhere = Matrix2::identity() * (likely_m.powi(2) + sigma_m.powi(2));
-        if share == 0.0 {
-            return everywhere;
-        }
-        let shift = shift_by_scale(fix, stations, *solver == SolverKind::Differences);
-        shift.map_or(everywhere, |shift| everywhere + shift * shift.transpose() * share.powi(2))
+        everywhere + self.spread_by(&[share], fix) + self.spread_by(&likely_errors, fix)
     }
 
-    /// Widens a fix by what is likely: along the line on which it moves with the scale of all ranges, and in every direction.
+    /// What errors of all ranges, as standard deviations, add to the covariance of a fix, square metres.
+    fn spread_by(&self, errors: &[CommonError], fix: &Fix) -> Matrix2<f64> {
+        let is_emission_free = self.config.solver == SolverKind::Differences;
+        let present = errors.iter().filter(|error| error.size() > 0.0);
+        let shifts =
+            present.filter_map(|error| shift_by(*error, fix, &self.config.stations, is_emission_free));
+        shifts.map(|shift| shift * shift.transpose()).sum()
+    }
+
+    /// Widens a fix by what is likely: along the lines on which it moves with the likely errors of all ranges, and in every direction.
     fn allow_for_likely(&self, fix: &mut Fix) {
-        let PositionerConfig { stations, solver, .. } = &self.config;
-        let is_emission_free = *solver == SolverKind::Differences;
-        let Doubt { likely_ratio: ratio, likely_m, .. } = self.doubt;
-        if let (true, Some(shift)) = (ratio > 0.0, shift_by_scale(fix, stations, is_emission_free)) {
-            let shift = shift * ratio;
-            fix.covariance += shift * shift.transpose();
-        }
+        let Doubt { likely_errors, likely_m, .. } = self.doubt;
+        fix.covariance += self.spread_by(&likely_errors, fix);
         fix.covariance += Matrix2::identity() * likely_m.powi(2);
     }
 

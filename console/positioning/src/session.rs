@@ -51,6 +51,39 @@ pub struct Wrong {
     pub is_proven: bool,
 }
 
+/// An error that all ranges have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CommonError {
+    /// They are too long by this share.
+    Share(f64),
+    /// They are too long by this length, metres.
+    Length(f64),
+}
+
+impl Default for CommonError {
+    /// None.
+    fn default() -> Self {
+        Self::Length(0.0)
+    }
+}
+
+impl CommonError {
+    /// How large it is, as a share or in metres.
+    pub(crate) fn size(self) -> f64 {
+        match self {
+            Self::Share(size) | Self::Length(size) => size.abs(),
+        }
+    }
+
+    /// By how much it makes the range over a distance longer, metres.
+    fn longer_m(self, distance_m: f64) -> f64 {
+        match self {
+            Self::Share(share) => share * distance_m,
+            Self::Length(length_m) => length_m,
+        }
+    }
+}
+
 /// What a session says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
@@ -79,6 +112,15 @@ impl Verdict {
         let common = [self.scale, self.offset_m];
         common.into_iter().flatten().any(|wrong| wrong.is_proven)
             || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
+    }
+
+    /// The errors of all ranges that are not proven, but likely, as standard deviations.
+    pub fn likely_errors(&self, is_emission_free: bool) -> [CommonError; 2] {
+        let likely = |wrong: Option<Wrong>| {
+            let unproven = wrong.filter(|wrong| !wrong.is_proven);
+            unproven.map_or(0.0, |wrong| wrong.likely(is_emission_free))
+        };
+        [CommonError::Share(likely(self.scale)), CommonError::Length(likely(self.offset_m))]
     }
 }
 
@@ -193,15 +235,15 @@ impl Session {
     }
 }
 
-/// How far a fix lies from where it would be if all ranges were longer by their whole length: by a share of that if they are too
-/// long by that share. `None` if the fix leaves nothing to choose.
-pub(crate) fn shift_by_scale(
+/// By how much an error that all ranges have in common moves a fix, metres. `None` if the fix leaves nothing to choose.
+pub(crate) fn shift_by(
+    error: CommonError,
     fix: &Fix,
     stations: &[Station],
     is_emission_free: bool,
 ) -> Option<Vector2<f64>> {
     let seen = seen(fix, stations, is_emission_free);
-    let pull: Vector3<f64> = seen.iter().map(|s| s.by * (s.weight * s.distance_m)).sum();
+    let pull: Vector3<f64> = seen.iter().map(|s| s.by * (s.weight * error.longer_m(s.distance_m))).sum();
     Some((Free::of(&seen, is_emission_free)?.inverse * pull).xy())
 }
 

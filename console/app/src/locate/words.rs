@@ -263,13 +263,20 @@ fn tool(survey: &Survey) -> String {
         return "not known when it was on, so no coverage is stated (add a column tool_on, or --tool-on FILE)"
             .into();
     };
+    if stretches.is_empty() {
+        return "never on, so no floor is scanned".into();
+    }
     let on_s: f64 = stretches.iter().map(|[from_s, to_s]| to_s - from_s).sum();
     let heading = if survey.has_motion {
         ""
     } else {
         "; without measured motion the heading is not known, so that no floor counts"
     };
-    format!("on for {on_s:.1} s in {} stretches{heading}", stretches.len())
+    let stretches = match stretches.len() {
+        1 => "1 stretch".to_owned(),
+        n => format!("{n} stretches"),
+    };
+    format!("on for {on_s:.1} s in {stretches}{heading}")
 }
 
 /// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong and the robot
