@@ -19,7 +19,7 @@ use std::process::ExitCode;
 /// `tankops accuracy`.
 pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
-    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
+    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &[&args.scenario]))?;
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let forecast = forecast(mission, &drawing);
     let map = AccuracyMap::new(&drawing, &forecast);

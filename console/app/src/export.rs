@@ -19,7 +19,7 @@ pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
     let to = &args.to;
     for file in [&to.rrd, &to.mcap, &to.ranges].into_iter().flatten() {
-        check_free(file, None)?;
+        check_free(file, None, &[])?;
     }
     let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
         let written = write(&folder, file);

@@ -22,7 +22,7 @@ const LISTED: usize = 10;
 pub(crate) fn import(args: &ImportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
     for file in [Some(output), args.svg.as_ref()].into_iter().flatten() {
-        check_free(file, Some(args.force))?;
+        check_free(file, Some(args.force), &[&args.file])?;
     }
     let input = Input::read(&args.file).map_err(|error| bad_input(error.to_string()))?;
     let plan = read(args, &input)?;

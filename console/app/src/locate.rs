@@ -25,7 +25,7 @@ use std::{
     collections::BTreeMap,
     fs::File,
     io::{self, BufWriter},
-    path::Path,
+    path::{Path, PathBuf},
     process::ExitCode,
 };
 use world::StationId;
@@ -126,7 +126,9 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
         skips_bad_rows: args.skip_bad_rows,
         tool_on: args.tool_on.as_deref(),
     };
-    args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
+    let inputs: Vec<&Path> =
+        [&args.readings, &args.scenario].into_iter().chain(&args.tool_on).map(PathBuf::as_path).collect();
+    args.output.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &inputs))?;
     let survey = task.survey()?;
     let (tally, doubts, kept) = located(args, &task, &survey)?;
     if args.json {

@@ -12,7 +12,7 @@ use world::{Obstacle, ObstacleId, Point, Shape, World};
 
 /// `tankops map`.
 pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
-    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force)))?;
+    args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &[&args.map]))?;
     let map = OccupancyMap::read(&args.map).map_err(|error| bad_input(error.to_string()))?;
     let start = args.start.map(|[x, y]| Point::new(x, y));
     if let Some(solid) = start.filter(|start| !map.is_free_at(*start)) {

@@ -3,9 +3,12 @@
 use anyhow::Context;
 use flight::failure::bad_input;
 use foreign::{plain_json, plain_lines};
+use report::document::Revision;
 use report::print::say_line;
+use review::register;
+use runs::is_run;
 use serde::Serialize;
-use std::{borrow::Cow, fs, io, path::Path};
+use std::{borrow::Cow, fs, io, os::unix::fs::MetadataExt, path::Path};
 
 /// A value as JSON for people to read, in plain characters; `name` is what an error calls it.
 pub(crate) fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String> {
@@ -20,20 +23,43 @@ pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()>
 }
 
 /// Makes sure that a file that the user asked for may be written: what is there is never written over, also behind a link, unless
-/// that is asked for; `force` is `None` where a command has no `--force`. Pipes and devices are written to as they are.
+/// that is asked for; `force` is `None` where a command has no `--force`. What the command itself reads (`inputs`), a signed report and
+/// a file of a run are never written over. Pipes and devices are written to as they are.
 ///
 /// # Errors
 /// There is a file, or a link that leads nowhere yet.
-pub(crate) fn check_free(file: &Path, force: Option<bool>) -> anyhow::Result<()> {
+pub(crate) fn check_free(file: &Path, force: Option<bool>, inputs: &[&Path]) -> anyhow::Result<()> {
     let is_free = match fs::symlink_metadata(file) {
         Err(_) => true,
         Ok(_) => fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()),
     };
+    if let Some(why) = never_replaced(file, inputs).filter(|_| !is_free) {
+        return Err(bad_input(format!("{} {why}; choose another name", file.display())));
+    }
     if is_free || force == Some(true) {
         return Ok(());
     }
     let instead = if force.is_some() { "choose another name, or --force" } else { "choose another name" };
     Err(bad_input(format!("{} already exists; {instead}", file.display())))
+}
+
+/// Why a file that is there is not written over even by force.
+fn never_replaced(file: &Path, inputs: &[&Path]) -> Option<String> {
+    let path = fs::canonicalize(file).ok()?;
+    if inputs.iter().any(|input| is_same(&path, input)) {
+        return Some("is what this command reads".into());
+    }
+    if let Some(Revision { revision, .. }) = register().signed_as(&path) {
+        return Some(format!("is the signed revision {revision}, which is never changed"));
+    }
+    let is_page = path.extension().is_some_and(|suffix| suffix == "html");
+    (!is_page && path.parent().is_some_and(is_run)).then(|| "is a file of the run".into())
+}
+
+/// Whether two paths lead to one file, by whatever links.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let id = |path: &Path| fs::metadata(path).map(|file| (file.dev(), file.ino())).ok();
+    id(one).is_some_and(|one| id(other) == Some(one))
 }
 
 /// Writes a file that the user asked for ([`check_free`]), whole or not at all; `name` is what an error calls it.
@@ -75,13 +101,34 @@ mod tests {
         symlink(&file, &link).unwrap();
         symlink(folder.path().join("none"), &nowhere).unwrap();
         for there in [file.as_path(), &link, &nowhere, folder.path()] {
-            let refused = check_free(there, Some(false)).unwrap_err().to_string();
+            let refused = check_free(there, Some(false), &[]).unwrap_err().to_string();
             assert!(refused.ends_with("already exists; choose another name, or --force"), "{refused}");
-            assert!(check_free(there, None).unwrap_err().to_string().ends_with("choose another name"));
-            assert!(check_free(there, Some(true)).is_ok());
+            assert!(check_free(there, None, &[]).unwrap_err().to_string().ends_with("choose another name"));
+            assert!(check_free(there, Some(true), &[]).is_ok());
         }
-        assert!(check_free(Path::new("/dev/null"), None).is_ok());
-        assert!(check_free(&folder.path().join("new"), None).is_ok());
+        assert!(check_free(Path::new("/dev/null"), None, &[]).is_ok());
+        assert!(check_free(&folder.path().join("new"), None, &[]).is_ok());
+    }
+
+    #[test]
+    fn what_a_command_reads_and_the_files_of_runs_are_never_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, linked, journal, page] =
+            ["readings.csv", "linked.csv", recording::JOURNAL_FILE, "page.html"]
+                .map(|name| folder.path().join(name));
+        fs::write(&file, "readings").unwrap();
+        fs::hard_link(&file, &linked).unwrap();
+        for there in [&file, &linked] {
+            let refused = check_free(there, Some(true), &[&file]).unwrap_err().to_string();
+            assert!(refused.ends_with("is what this command reads; choose another name"), "{refused}");
+        }
+        assert!(check_free(&file, Some(true), &[&page]).is_ok());
+        fs::write(&journal, "").unwrap();
+        let refused = check_free(&journal, Some(true), &[]).unwrap_err().to_string();
+        assert!(refused.ends_with("is a file of the run; choose another name"), "{refused}");
+        // A page is none of them.
+        fs::write(&page, "").unwrap();
+        assert!(check_free(&page, Some(true), &[]).is_ok());
     }
 
     #[test]

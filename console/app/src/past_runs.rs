@@ -94,7 +94,11 @@ fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
         Again::Different { line, recorded, computed } => {
             format!("different from line {line} on\n  recorded: {recorded}\n  computed: {computed}")
         }
-        Again::NoReadings(why) => format!("note: not computed again from the readings: {why}"),
+        Again::NoReadings(why) => {
+            format!(
+                "not proven: the positions cannot be computed again; put the readings back where they were: {why}"
+            )
+        }
     })?;
-    Ok(!matches!(again, Again::Different { .. }))
+    Ok(matches!(again, Again::Equal(_)))
 }

@@ -25,7 +25,7 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let format = args.output.as_deref().map(format_of).transpose()?;
     for file in [&args.output, &args.svg].into_iter().flatten() {
-        check_free(file, Some(args.force))?;
+        check_free(file, Some(args.force), &[&args.scenario])?;
     }
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     let planned = Planned::new(mission, &drawing, make_plan(&scenario, plugins)?);

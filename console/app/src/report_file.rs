@@ -39,7 +39,7 @@ pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> a
         args.runs.iter().map(|run| find(run, &args.logs.folder())).collect::<Result<_, _>>()?;
     let mut chain = Chain::of(&folders, &register());
     for file in names(output, format) {
-        may_write(&file, args.force, (&chain.revisions, &folders))?;
+        may_write(&file, args, &chain.revisions)?;
     }
     let read = review::read_all(&args.runs, &args.logs.folder())?;
     let inspection = inspection(args, read.last())?;
@@ -101,15 +101,8 @@ fn names(output: &Path, format: &str) -> Vec<PathBuf> {
     csv::SUFFIXES.iter().map(|suffix| output.with_file_name(format!("{stem}{suffix}.csv"))).collect()
 }
 
-/// Refuses to write over what is there, and ever over a signed report or a file of one of the runs.
-fn may_write(
-    output: &Path,
-    force: bool,
-    (revisions, folders): (&[Revision], &[PathBuf]),
-) -> anyhow::Result<()> {
-    if !output.exists() {
-        return check_free(output, Some(force));
-    }
+/// Refuses to write over what is there, and ever over a signed report of these runs ([`check_free`] knows those of the register).
+fn may_write(output: &Path, args: &ReportArgs, revisions: &[Revision]) -> anyhow::Result<()> {
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
         let letter = &revision.revision;
@@ -117,12 +110,9 @@ fn may_write(
             "{path} is the signed revision {letter}, which is never changed; choose another name"
         )));
     }
-    let is_in =
-        |folder: &PathBuf| fs::canonicalize(folder).is_ok_and(|run| Path::new(&path).starts_with(run));
-    if output.extension().is_none_or(|suffix| suffix != "html") && folders.iter().any(is_in) {
-        return Err(bad_input(format!("{path} is a file of the run; choose another name")));
-    }
-    check_free(output, Some(force))
+    let inputs: Vec<&Path> =
+        [&args.inspection, &args.indications].into_iter().flatten().map(PathBuf::as_path).collect();
+    check_free(output, Some(args.force), &inputs)
 }
 
 /// The facts of the scenario, and those of the file in their place.

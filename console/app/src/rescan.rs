@@ -17,7 +17,7 @@ use std::{path::Path, process::ExitCode};
 /// `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let (output, min_area_m2) = (&args.output, args.min_area_m2);
-    check_free(output, Some(args.force))?;
+    check_free(output, Some(args.force), &[])?;
     if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
         return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
     }

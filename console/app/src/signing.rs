@@ -33,7 +33,7 @@ impl Chain {
     pub(crate) fn of(folders: &[PathBuf], register: &Register) -> Self {
         let mut chain = Self::default();
         for folder in folders {
-            let Signatures { revisions, doubts } = signatures(folder, register);
+            let Signatures { revisions, doubts, .. } = signatures(folder, register);
             for revision in revisions {
                 if !chain.revisions.contains(&revision) {
                     chain.revisions.push(revision);

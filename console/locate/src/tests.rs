@@ -378,7 +378,9 @@ fn floor_counts_as_scanned_only_while_the_tool_was_on() {
     assert_eq!(on_s, Some(vec![[20.0, 40.5]]));
     assert!(times.len() > 30 && times.iter().all(|t_s| (20.0..=40.5).contains(t_s)), "{times:?}");
     let (on_s, times) = covered(&walk_with_tool(|_| ""));
-    assert_eq!((on_s, times), (Some(vec![]), vec![]), "never said to be on");
+    assert_eq!((on_s, times), (None, vec![]), "a column without an entry says nothing");
+    let (on_s, times) = covered(&walk_with_tool(|_| "0"));
+    assert_eq!((on_s, times), (Some(vec![]), vec![]), "never on");
     let text = walk_with_tool(|_| "");
     let (on_s, times) = covered(&text.replace(",tool_on", ",other"));
     assert_eq!((on_s, times), (None, vec![]), "nothing says it");

@@ -16,6 +16,8 @@ const CELLS: f64 = 80.0;
 /// The largest error of a whole scan, fixes and odometry filtered, as a share of a single fix's 95 % error; as measured in
 /// flights.
 const FILTERED: f64 = 0.65;
+/// A robot that sees no farther than this from its hull knows what is near by its position alone, metres.
+const SHORT_SIGHTED_M: f64 = 0.5;
 /// Places beyond the limit that people are shown.
 const MOST_SHOWN: usize = 12;
 
@@ -147,19 +149,22 @@ impl<'a> ForecastReport<'a> {
     }
 }
 
-/// Warns of a scan with so little clearance that the position error may use it up: the robot sees how far off columns are,
-/// but not walls.
+/// Warns of so little clearance that the position error may use it up: of a scan, because the robot sees how far off columns are, but
+/// not walls, and of any mission of a robot that hardly sees farther than its hull.
 ///
 /// Costs as much as the map: one forecast for each of some thousand places.
 pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
-    let TaskConfig::Cover { .. } = mission.task else { return None };
-    let clearance_m = mission.clearance_m;
+    let (clearance_m, sensed_m) = (mission.clearance_m, mission.limits.sensing_range_m);
+    let knows_by_position = matches!(mission.task, TaskConfig::Cover { .. }) || sensed_m < SHORT_SIGHTED_M;
+    if !knows_by_position {
+        return None;
+    }
     let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
     let expected_m = FILTERED * ForecastReport::new("", mission, drawing, &map, None).p95_error_95_m?;
     (clearance_m < expected_m).then(|| {
         format!(
             "the hull keeps {clearance_m:.2} m from solids (mission.clearance_m; at least 0.08 m where ranges are noisy), but the \
-             position will be off by up to about {expected_m:.2} m, so that it may touch a wall; give more clearance or better \
+             position will be off by up to about {expected_m:.2} m, so that it may touch what it does not sense; give more clearance or better \
              stations (`tankops accuracy`)"
         )
     })

@@ -55,7 +55,8 @@ pub(crate) fn pre_flight(checks: &[Check]) -> Option<String> {
         format!("; by hand: {}{who}", check.what)
     });
     let rest: String = warnings.chain(ticked).collect();
-    (!checks.is_empty()).then(|| format!("{passed} of {} checks passed{rest}", checks.len()))
+    let automatic = checks.len() - of(CheckOutcome::Ticked).count();
+    (!checks.is_empty()).then(|| format!("{passed} of {automatic} automatic checks passed{rest}"))
 }
 
 fn title(run: &Summary) -> String {

@@ -2,6 +2,7 @@
 
 use crate::{difference::first_difference, document::Inspection, joined::PastRun};
 use mission::RunOpened;
+use planner_api::Motion;
 use serde::{Deserialize, Serialize};
 use world::{Boundary, PlateLayout, Shape, Zone};
 
@@ -77,7 +78,7 @@ pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<St
     Some(format!("{} is {}, in the scenario of the run {}", found.key, found.one, found.other))
 }
 
-/// Everything that identifies a floor, as messages name it.
+/// Everything that identifies a floor and what counts as scanned on it, as messages name it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Identity {
     inspection: FloorFacts,
@@ -87,6 +88,19 @@ struct Identity {
     plates: Option<PlateLayout>,
     #[serde(rename = "mission.cell_m")]
     cell_m: f64,
+    // What a page states once for all of its runs.
+    #[serde(rename = "mission.swath_m")]
+    swath_m: f64,
+    #[serde(rename = "mission.overlap_m")]
+    overlap_m: f64,
+    #[serde(rename = "mission.scan_position_limit_m")]
+    scan_limit_m: f64,
+    #[serde(rename = "robot.motion")]
+    motion: Motion,
+    #[serde(rename = "robot.radius_m")]
+    radius_m: f64,
+    #[serde(rename = "mission.clearance_m")]
+    clearance_m: f64,
 }
 
 /// An obstacle, whether the robot knew it or had to find it.
@@ -109,6 +123,12 @@ impl Identity {
             zones: run.world.zones.clone(),
             plates: run.plates.clone(),
             cell_m: run.floor.cell_m,
+            swath_m: run.mission.swath_m,
+            overlap_m: run.mission.scan.overlap_m,
+            scan_limit_m: run.mission.scan_limit_m(),
+            motion: run.mission.limits.motion,
+            radius_m: run.mission.limits.radius_m,
+            clearance_m: run.mission.clearance_m,
         }
     }
 
@@ -154,7 +174,7 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// Refuses runs that are not all of one floor: the first thing that differs, with both values. A run of another scenario
+/// Refuses runs that are not all of one floor, or by which not the same counts as scanned: the first thing that differs, with both values. A run of another scenario
 /// must be a re-scan that names the journal of one of the others.
 pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     let all: Vec<Candidate<'_>> =

@@ -100,7 +100,7 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
         past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
     if past.files.are_as_reported == Some(true) {
         lines.push(
-            "equal: journal, recording and report.json are as they were when the readings were located"
+            "equal: journal and recording have the digests that report.json names; the readings decide what they prove"
                 .into(),
         );
     }
@@ -144,14 +144,15 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
 /// The signed reports on a run as lines, and everything that speaks against them or against the run being the one that was
 /// signed.
 fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
-    let Signatures { revisions, mut doubts } = signatures(folder, &register());
+    let Signatures { revisions, mut doubts, notes } = signatures(folder, &register());
     doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
     doubts.extend(now.iter().find_map(|run| signed_under_another_name(folder, &register(), run)));
     let line = |revision: &Revision| {
         let (letter, signature) = (&revision.revision, &revision.signature);
         format!("signed: revision {letter} by {}, {} UTC: {}", signature.by, signature.at, revision.file)
     };
-    (revisions.iter().map(line).collect(), doubts)
+    let notes = notes.into_iter().map(|note| format!("note: {note}"));
+    (revisions.iter().map(line).chain(notes).collect(), doubts)
 }
 
 impl Findings {

@@ -21,6 +21,11 @@ const SIGNS: [&str; 5] = [JOURNAL_FILE, PLAIN_JOURNAL_FILE, REPORT_FILE, LOCK_FI
 /// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
 const REPORT_RESERVE: usize = 256 << 10;
 
+/// Whether a folder is that of a run.
+pub fn is_run(folder: &Path) -> bool {
+    SIGNS.iter().any(|name| folder.join(name).exists())
+}
+
 /// The folder of a run that is being written; nobody else writes to it.
 pub struct RunFolder {
     path: PathBuf,
@@ -116,10 +121,8 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     }
     let reading = format!("reading the folder of runs: {}", logs.display());
     let entries = fs::read_dir(logs).map_err(RunError::during(reading))?;
-    let mut folders: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| SIGNS.iter().any(|name| path.join(name).exists()))
-        .collect();
+    let mut folders: Vec<PathBuf> =
+        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| is_run(path)).collect();
     folders.sort();
     for same_second in folders.chunk_by_mut(|a, b| second_of(a) == second_of(b)) {
         if same_second.len() > 1 {

@@ -25,7 +25,7 @@ mod whole;
 
 pub use error::RunError;
 pub use files::{utc, utc_minute};
-pub use folder::{RunFolder, find};
+pub use folder::{RunFolder, find, is_run};
 pub use kept::Kept;
 pub use list::{Listed, list, table};
 pub use log::{CLOSE_TIMEOUT, Closed, RunLog};

@@ -68,6 +68,12 @@ impl Register {
         Ok(found)
     }
 
+    /// The signed report that was written to a file, by its absolute path; none where the register cannot be read.
+    pub fn signed_as(&self, file: &Path) -> Option<Revision> {
+        let all = self.about(|_| true).unwrap_or_default();
+        all.into_iter().find(|revision| Path::new(&revision.file) == file)
+    }
+
     /// Its file, for people.
     pub(crate) fn shown(&self) -> String {
         self.0.as_ref().map(|file| file.display().to_string()).unwrap_or_default()

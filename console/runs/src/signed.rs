@@ -40,6 +40,8 @@ pub struct Signatures {
     pub revisions: Vec<Revision>,
     /// What speaks against them, as sentences that name the file.
     pub doubts: Vec<String>,
+    /// What only another register shows, as sentences.
+    pub notes: Vec<String>,
 }
 
 /// The signed reports of the run in a folder, and what speaks against them: a file that has another digest than when it was
@@ -63,6 +65,12 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let lost = registered.iter().filter(|entry| !is_listed(entry)).map(|entry| lost(entry, folder, register));
     let lost: Vec<String> = lost.collect();
     found.doubts.extend(lost);
+    for revision in found.revisions.iter().filter(|revision| entry(revision).is_none()) {
+        // Who keeps this register has signed this run, but not this report.
+        let is_invented = registered.iter().any(|entry| entry.signature.by == revision.signature.by);
+        let to = if is_invented { &mut found.doubts } else { &mut found.notes };
+        to.push(unregistered(revision, is_invented, register));
+    }
     found
 }
 
@@ -132,6 +140,23 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
         Err(error) => Some(format!(
             "signed revision {letter} cannot be read: {file}: {error}; expected a file with SHA-256 {then}"
         )),
+    }
+}
+
+/// A listed report that the register does not have.
+fn unregistered(listed: &Revision, is_invented: bool, register: &Register) -> String {
+    let Revision { revision: letter, signature, .. } = listed;
+    let of = register.shown();
+    if is_invented {
+        format!(
+            "{SIGNED_FILE} lists revision {letter} by {}, {} UTC, and {of} has other reports that {} signed on this run, but not this one",
+            signature.by, signature.at, signature.by
+        )
+    } else {
+        format!(
+            "whether {} signed revision {letter} only the register of {} shows; it is not in this one ({of})",
+            signature.by, signature.by
+        )
     }
 }
 
@@ -243,10 +268,15 @@ mod tests {
     #[test]
     fn a_signed_report_that_was_changed_or_moved_is_named() {
         let (signed, none) = (Signed::new(), Register::at(None));
-        let clean = Signatures { revisions: vec![signed.revision()], doubts: vec![] };
-        for register in [&signed.register, &none] {
-            assert_eq!(signatures(&signed.run(), register), clean);
-        }
+        let clean = Signatures { revisions: vec![signed.revision()], ..Signatures::default() };
+        assert_eq!(signatures(&signed.run(), &signed.register), clean);
+        // Another register cannot know it.
+        let Signatures { doubts, notes, .. } = signatures(&signed.run(), &none);
+        assert!(
+            doubts.is_empty()
+                && notes[0].starts_with("whether L. Kern signed revision A only the register of L. Kern"),
+            "{notes:?}"
+        );
         fs::write(&signed.file, "forged").unwrap();
         let doubt = signed.doubt(&signed.register);
         assert!(doubt.starts_with("signed revision A was changed after it was signed: "), "{doubt}");
@@ -275,6 +305,20 @@ mod tests {
         fs::write(&signed.file, "forged").unwrap();
         let Signatures { doubts, .. } = signatures(&signed.run(), &signed.register);
         assert!(doubts.len() == 2 && doubts[1].starts_with("signed revision A was changed"), "{doubts:?}");
+    }
+
+    #[test]
+    fn a_report_that_its_signer_never_signed_is_named() {
+        let signed = Signed::new();
+        let mut list = signed_list(&signed.run()).unwrap();
+        list.push(Revision { revision: "B".into(), ..signed.revision() });
+        write_list(&signed.run(), &list).unwrap();
+        let doubt = signed.doubt(&signed.register);
+        assert!(
+            doubt.starts_with("signed.json lists revision B by L. Kern")
+                && doubt.ends_with("but not this one"),
+            "{doubt}"
+        );
     }
 
     #[test]

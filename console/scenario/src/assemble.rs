@@ -13,7 +13,7 @@ use super::{
     task, tether,
 };
 use mission::{BetterPlan, Locating, MissionConfig, ScanConfig, TaskConfig, TetherConfig};
-use planner_api::{Limits, Motion};
+use planner_api::Limits;
 use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
@@ -220,7 +220,7 @@ fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
 
 /// The clearance that is kept: a hull whose place is only estimated would touch what it passes without any.
 fn kept_clearance_m(clearance_m: f64, robot: &Robot, ae: &AeConfig) -> f64 {
-    let is_exact = robot.limits.motion == Motion::Point || ae.noise == NoiseModel::None;
+    let is_exact = robot.limits.radius_m == 0.0 || ae.noise == NoiseModel::None;
     if is_exact { clearance_m } else { clearance_m.max(LEAST_CLEARANCE_M) }
 }
 

@@ -34,7 +34,7 @@ impl Role {
             "COLUMN" | "OBSTACLE" => Some(Self::Columns),
             "PIPE" => Some(Self::Pipes),
             "SUMP" => Some(Self::Sump),
-            "NOGO" => Some(Self::NoGo),
+            "NOGO" | "NOGOZONE" => Some(Self::NoGo),
             "PLATE" => Some(Self::Plates),
             "IGNORE" => Some(Self::Ignored),
             _ => None,
@@ -101,6 +101,13 @@ pub(super) fn list(all: &[Drawn]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_layers_that_reports_have_are_known() {
+        for (layer, role) in [("NO_GO_ZONES", Role::NoGo), ("no-go", Role::NoGo), ("PLATES", Role::Plates)] {
+            assert_eq!(Layers::default().roles(layer), [role], "{layer}");
+        }
+    }
 
     #[test]
     fn a_word_of_the_name_counts_unless_somebody_says_otherwise() {

@@ -324,7 +324,7 @@ fn hashes(document: &Document) -> Answered {
         }
         if files.are_as_reported.is_none() {
             let close = if run.outcome.is_none() {
-                format!("; if it was killed, `tankops recover {}` closes it", run.run)
+                format!("; if it was killed, `tankops recover {} --by NAME` closes it", run.run)
             } else {
                 String::new()
             };

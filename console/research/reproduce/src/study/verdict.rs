@@ -79,7 +79,9 @@ fn verdict(row: &Row, paper: f64) -> (Verdict, String) {
     };
     let off = ours - paper;
     let is_within = row.interval_95.is_some_and(|[low, high]| (low..=high).contains(&paper));
-    if off.abs() <= (NEAR * paper.abs()).max(EQUAL) || (is_within && row.is_of_one_draw) {
+    // A printed 0 is one of a few digits; a printed size counts by its own size, however small it is.
+    let is_near = off.abs() <= if paper == 0.0 { EQUAL } else { NEAR * paper.abs() };
+    if is_near || (is_within && row.is_of_one_draw) {
         return (if row.is_fitted { Verdict::Fitted } else { Verdict::Reproduced }, String::new());
     }
     if row.is_claim && ours * paper < 0.0 {
