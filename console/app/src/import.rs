@@ -93,5 +93,6 @@ fn human(plan: &FloorPlan) -> String {
         0 => String::new(),
         n => format!(", {n} plates"),
     };
-    format!("{tank}, {obstacles} obstacles, {no_go} no-go zones{plates}")
+    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    format!("{tank}, {}, {}{plates}", counted(obstacles, "obstacle"), counted(no_go, "no-go zone"))
 }

@@ -33,7 +33,7 @@ pub use task::TaskPart;
 pub use words::{is_placeholder, says_nothing};
 
 use crate::{
-    account::{Account, account},
+    account::Account,
     identity::{Stated, contradiction},
     joined::{Joined, PastRun, joined_or_located},
     record::Record,
@@ -231,7 +231,7 @@ impl Document {
         let Joined { run, scanned, evidence } = &all;
         let known = past.first().and_then(|only| only.summary.floor.as_ref()).filter(|_| past.len() == 1);
         let is_to_scan = past.iter().all(|past| past.fold.has_floor_to_scan());
-        let floor = known.cloned().unwrap_or_else(|| account(run, scanned, evidence));
+        let floor = known.cloned().unwrap_or_else(|| all.account(past));
         let tool_is_known = located.as_ref().is_none_or(|located| located.tool_on_s.is_some());
         let floor = match &located {
             Some(_) => located::without_task(floor, tool_is_known),

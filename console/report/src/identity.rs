@@ -91,10 +91,6 @@ struct Identity {
     // What a page states once for all of its runs.
     #[serde(rename = "mission.swath_m")]
     swath_m: f64,
-    #[serde(rename = "mission.overlap_m")]
-    overlap_m: f64,
-    #[serde(rename = "mission.scan_position_limit_m")]
-    scan_limit_m: f64,
     #[serde(rename = "robot.motion")]
     motion: Motion,
     #[serde(rename = "robot.radius_m")]
@@ -124,8 +120,6 @@ impl Identity {
             plates: run.plates.clone(),
             cell_m: run.floor.cell_m,
             swath_m: run.mission.swath_m,
-            overlap_m: run.mission.scan.overlap_m,
-            scan_limit_m: run.mission.scan_limit_m(),
             motion: run.mission.limits.motion,
             radius_m: run.mission.limits.radius_m,
             clearance_m: run.mission.clearance_m,

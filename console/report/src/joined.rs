@@ -1,7 +1,7 @@
 //! Several runs on one floor as if they were one.
 
 use crate::{
-    account::{Evidence, Solid},
+    account::{Account, Evidence, Solid, account},
     document::Files,
     fold::Fold,
     identity::require_one_floor,
@@ -45,6 +45,16 @@ pub(crate) struct Joined<'a> {
     pub(crate) run: &'a RunOpened,
     pub(crate) scanned: Cow<'a, Scanned>,
     pub(crate) evidence: Cow<'a, Evidence>,
+}
+
+impl Joined<'_> {
+    /// The account of the floor over all of the runs. What counted in any of them counts: the loosest limit of the position error is
+    /// the one that holds for all of it.
+    pub(crate) fn account(&self, runs: &[PastRun]) -> Account {
+        let limits = runs.iter().filter_map(|past| Some(past.fold.run.as_ref()?.mission.scan_limit_m()));
+        let position_limit_m = limits.fold(0.0, f64::max);
+        Account { position_limit_m, ..account(self.run, &self.scanned, &self.evidence) }
+    }
 }
 
 /// Refuses a run that was not there to scan the floor: nothing of it was missed.

@@ -2,12 +2,12 @@
 
 pub use crate::joined::PastRun;
 use crate::{
-    account::{Account, account},
+    account::Account,
     human::{
         floor,
         text::{Text, overlap, percent},
     },
-    joined::{Joined, joined, require_scans},
+    joined::{joined, require_scans},
     summary::{Coverage, Summary},
 };
 use serde::Serialize;
@@ -46,7 +46,7 @@ pub struct MergedRun {
 /// No run, a run given twice, a mission that scans no floor, other cells, or another tank.
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     require_scans(runs)?;
-    let Joined { run, scanned, evidence } = joined(runs)?;
+    let all = joined(runs)?;
     let opened = |past: &PastRun| past.fold.run.as_ref().map(|run| run.mission.clone());
     let listed = runs.iter().filter_map(|past| {
         let mission = opened(past)?;
@@ -60,13 +60,7 @@ pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
         })
     });
     let listed: Vec<MergedRun> = listed.collect();
-    // What counted in any of the runs counts: the loosest limit is the one that holds for all of it.
-    let position_limit_m = listed.iter().map(|run| run.position_limit_m).fold(0.0, f64::max);
-    Ok(Merged {
-        coverage: scanned.coverage(true),
-        floor: Account { position_limit_m, ..account(run, &scanned, &evidence) },
-        runs: listed,
-    })
+    Ok(Merged { coverage: all.scanned.coverage(true), floor: all.account(runs), runs: listed })
 }
 
 impl Merged {

@@ -130,7 +130,7 @@ impl Planned {
     pub fn human(&self) -> String {
         let reason = self.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
         format!(
-            "planner   {}\nlength    {:.2} m, {} points\n{}time      {}\ncomplete  {}\n{reason}{}{}{}",
+            "planner   {}\nlength    {:.2} m, {} points\n{}computed  in {}\ncomplete  {}\n{reason}{}{}{}",
             self.planner,
             self.length_m,
             self.path.len(),

@@ -60,6 +60,7 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let changed = |revision| list_change(revision, entry(revision)?, register);
     found.doubts.extend(found.revisions.iter().filter_map(changed));
     found.doubts.extend(found.revisions.iter().filter_map(|revision| file_doubt(revision, entry(revision))));
+    found.doubts.extend(found.revisions.iter().find_map(|revision| renamed(revision, folder)));
     let is_listed =
         |entry: &&Revision| found.revisions.iter().any(|revision| is_same_report(entry, revision));
     let lost = registered.iter().filter(|entry| !is_listed(entry)).map(|entry| lost(entry, folder, register));
@@ -141,6 +142,19 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
             "signed revision {letter} cannot be read: {file}: {error}; expected a file with SHA-256 {then}"
         )),
     }
+}
+
+/// That the folder is none of those that a report on it names: it was renamed, or copied.
+fn renamed(listed: &Revision, folder: &Path) -> Option<String> {
+    let name = folder.file_name()?.to_string_lossy();
+    let signed: Vec<&str> = listed.runs.iter().map(|run| run.run.as_str()).collect();
+    (!signed.is_empty() && !signed.contains(&&*name)).then(|| {
+        format!(
+            "the folder is called {name}, and revision {} was signed on {}; give it that name again",
+            listed.revision,
+            signed.join(" and ")
+        )
+    })
 }
 
 /// A listed report that the register does not have.
@@ -305,6 +319,14 @@ mod tests {
         fs::write(&signed.file, "forged").unwrap();
         let Signatures { doubts, .. } = signatures(&signed.run(), &signed.register);
         assert!(doubts.len() == 2 && doubts[1].starts_with("signed revision A was changed"), "{doubts:?}");
+    }
+
+    #[test]
+    fn a_signed_run_under_another_name_is_named() {
+        let (signed, copy) = (Signed::new(), tempfile::tempdir().unwrap());
+        fs::copy(signed.run().join(SIGNED_FILE), copy.path().join(SIGNED_FILE)).unwrap();
+        let Signatures { doubts, .. } = signatures(copy.path(), &signed.register);
+        assert!(doubts.len() == 1 && doubts[0].starts_with("the folder is called "), "{doubts:?}");
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub fn rescan(
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
     let names: Vec<&str> = runs.iter().map(|run| run.name).collect();
-    document["about"] = value(format!("What {} missed", names.join(" and ")));
+    document["about"] = value(foreign::plain(&format!("What {} missed", names.join(" and "))).into_owned());
     document["continues_sha256"] = value(runs.iter().map(|run| run.journal_sha256).collect::<Array>());
     document.remove("expect");
     let start = opened.mission.start;

@@ -70,7 +70,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let odometry_sigma_ratio = section.number("odometry_sigma_ratio");
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
     let amphibious = amphibious?;
-    let pressure = if amphibious.is_some() { pressure(section)? } else { None };
+    let pressure = if amphibious.is_some() { pressure(section) } else { None };
     // Planners get the faster of both paces; the zones specify where the slower one applies.
     let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
@@ -120,14 +120,14 @@ fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
 }
 
 /// The pressure sensor, if there is one.
-fn pressure(section: &Section<'_>) -> Option<Option<PressureSensor>> {
+fn pressure(section: &Section<'_>) -> Option<PressureSensor> {
     let depth_m = section.number("pressure_depth_m");
     if !section.has("pressure_sigma_pa") {
         section.refuse(&["pressure_depth_m"], "no pressure_sigma_pa");
-        return Some(None);
+        return None;
     }
     let sigma_pa = section.number("pressure_sigma_pa");
-    Some(Some(PressureSensor { depth_m: depth_m?, sigma_pa: sigma_pa? }))
+    Some(PressureSensor { depth_m: depth_m?, sigma_pa: sigma_pa? })
 }
 
 fn pace(section: &Section<'_>, keys: [&'static str; 2]) -> Option<Pace> {

@@ -117,7 +117,7 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
         let causes = causes.iter().filter(|(length_m, _)| *length_m >= 0.05);
         let causes: Vec<String> = causes.map(|(length_m, why)| format!("{length_m:.1} m {why}")).collect();
         lines.push(format!(
-            "shell: along {open_m:.1} m of it not scanned as near as elsewhere: {}",
+            "shell: not scanned up to the usual distance along {open_m:.1} m: {}",
             causes.join(", ")
         ));
     }

@@ -2,7 +2,7 @@
 
 use super::text::counted;
 use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
-use world::coverage::percent_text;
+use world::{Point, coverage::percent_text};
 
 /// Areas out of reach that are listed; the report as JSON has all of them.
 const MOST_AREAS: usize = 10;
@@ -76,13 +76,22 @@ fn critical_zone(account: &Account) -> String {
     format!("critical zone, {:.0} mm along the shell: {state}", 1000.0 * zone.width_m)
 }
 
+/// A place to the decimetre, metres.
+fn place(at: Point) -> String {
+    // What is added makes a zero of either sign a positive one.
+    let [x, y] = [at.x, at.y].map(|c| (10.0 * c).round() / 10.0 + 0.0);
+    format!("{x:.1}, {y:.1}")
+}
+
 /// The longest arcs of the critical zone that are not done.
 fn arcs(account: &Account) -> Option<String> {
     let mut arcs: Vec<_> = account.critical_zone.arcs.iter().collect();
     arcs.sort_by(|a, b| b.not_done_m.total_cmp(&a.not_done_m));
     let listed = arcs.iter().take(MOST_ARCS).map(|arc| {
-        let (from, to) = (arc.from, arc.to);
-        format!("{:.1} m from {:.1}, {:.1} to {:.1}, {:.1}", arc.not_done_m, from.x, from.y, to.x, to.y)
+        if arc.from == arc.to {
+            return format!("{:.1} m, the whole shell", arc.not_done_m);
+        }
+        format!("{:.1} m from {} to {}", arc.not_done_m, place(arc.from), place(arc.to))
     });
     let listed = listed.collect::<Vec<_>>().join("; ");
     let more = arcs.len().saturating_sub(MOST_ARCS);
@@ -121,9 +130,9 @@ mod tests {
     #[test]
     fn one_area_more_is_one_area() {
         let area = || Area {
-            at: world::Point::origin(),
-            low: world::Point::origin(),
-            high: world::Point::origin(),
+            at: Point::origin(),
+            low: Point::origin(),
+            high: Point::origin(),
             area_m2: 0.02,
             plate: None,
             plates: Vec::new(),

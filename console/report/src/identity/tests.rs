@@ -104,15 +104,13 @@ fn change(run: &mut RunOpened, which: usize, by: f64, word: &str) -> &'static st
         }
         17 => run.floor.cell_m += by,
         18 => run.mission.swath_m += by,
-        19 => run.mission.scan.overlap_m += by,
-        20 => run.mission.scan.position_limit_m = Some(0.01 * by),
-        21 => run.mission.limits.radius_m += by,
+        19 => run.mission.limits.radius_m += by,
         _ => run.mission.clearance_m += by,
     }
     KEYS[which]
 }
 
-const KEYS: [&str; 23] = [
+const KEYS: [&str; 21] = [
     "inspection.tank_id",
     "inspection.site",
     "inspection.drawing",
@@ -132,8 +130,6 @@ const KEYS: [&str; 23] = [
     "plates.annular_m",
     "mission.cell_m",
     "mission.swath_m",
-    "mission.overlap_m",
-    "mission.scan_position_limit_m",
     "robot.radius_m",
     "mission.clearance_m",
 ];
