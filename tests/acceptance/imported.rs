@@ -153,7 +153,7 @@ fn the_standard_input_is_a_scenario_a_drawing_or_a_list() {
     assert!(code == Some(0) && told.contains(", 8 plates"), "{told}");
     let list = b"x_m;y_m;radius_m\n1;2;0,3\n";
     let (code, told) = piped(&["import", "-", "-o", "l.toml", "--tank-radius", "6"], list);
-    assert!(code == Some(0) && told.contains("1 obstacles"), "{told}");
+    assert!(code == Some(0) && told.contains("1 obstacle, "), "{told}");
     let (code, told) = piped(&["import", "-", "-o", "none.toml", "--tank-radius", "6"], b"");
     assert!(code == Some(2) && told.contains("standard input: is empty"), "{told}");
 }

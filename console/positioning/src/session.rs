@@ -19,6 +19,8 @@ const SIGNIFICANT: f64 = 5.0;
 /// An error that moves fixes by less than this, squared and in their own standard deviations, does no harm: 93.5 % of truths still lie in
 /// the 95 % ellipse.
 const HARMLESS: f64 = 0.2;
+/// An offset of fewer standard deviations than this is taken for chance: most sessions have none.
+const BEYOND_CHANCE: f64 = 2.0;
 /// Least information of an error, as a share of what it would have if positions were known: below it cannot be seen.
 const LEAST_SEEN: f64 = 1e-6;
 
@@ -120,7 +122,8 @@ impl Verdict {
             let unproven = wrong.filter(|wrong| !wrong.is_proven);
             unproven.map_or(0.0, |wrong| wrong.likely(is_emission_free))
         };
-        [CommonError::Share(likely(self.scale)), CommonError::Length(likely(self.offset_m))]
+        let beyond_chance = self.offset_m.filter(|wrong| wrong.value.abs() > BEYOND_CHANCE * wrong.sigma);
+        [CommonError::Share(likely(self.scale)), CommonError::Length(likely(beyond_chance))]
     }
 }
 

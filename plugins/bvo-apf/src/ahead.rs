@@ -1,6 +1,7 @@
 //! Mode pre: a way that begins its detours before it enters a trap, walked in thought and pulled taut.
 //!
-//! Where the walk is trapped, the simpler modes try in turn, and at last the outlines are followed from the start.
+//! Where the walk is trapped, the simpler modes try in turn, and at last the outlines are followed from the start; on maps of many parts
+//! the outlines come before the simpler modes.
 
 use crate::{
     machine::{Machine, News},
@@ -25,6 +26,12 @@ pub enum By {
 /// What is tried, in this order.
 const ATTEMPTS: [By; 5] =
     [By::Thought, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal), By::Outlines];
+
+/// The order on a map of many parts, where each of the simpler modes takes a long time to find out that a room holds it.
+const ATTEMPTS_IN_ROOMS: [By; 5] =
+    [By::Thought, By::Outlines, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal)];
+/// A map of more parts than this has many.
+const MANY_PARTS: usize = 200;
 
 /// Where the outlines were followed on a map of up to so many parts, the paper's own result is shown beside.
 const SHOWN_PARTS: usize = 1000;
@@ -66,7 +73,8 @@ pub fn of_traps<E>(
 ) -> Result<Ahead, E> {
     let mut tried = Vec::new();
     let mut first = None;
-    for by in ATTEMPTS {
+    let attempts = if machine.map.solids.len() > MANY_PARTS { ATTEMPTS_IN_ROOMS } else { ATTEMPTS };
+    for by in attempts {
         let (outcome, mut walked, news) = attempt(by, machine, start, goal, tolerance_m, &mut check)?;
         tried.push(outcome);
         if !walked.arrived {

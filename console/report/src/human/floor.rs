@@ -23,8 +23,8 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     lines.push(("floor", basis(account)));
     lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));
     lines.extend(slivers(&account.slivers).into_iter().map(|line| ("missed", line)));
-    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
-    lines.extend(slivers(&account.unreachable_slivers).into_iter().map(|line| ("unreachable", line)));
+    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("out of reach", line)));
+    lines.extend(slivers(&account.unreachable_slivers).into_iter().map(|line| ("out of reach", line)));
     lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
     lines
 }
