@@ -73,7 +73,10 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     bench.fly(&scenario("cover-circle.toml"), &["--seed", "2", "--set", "mission.time_limit_s=60"]);
     let other = bench.runs().into_iter().find(|other| *other != run).unwrap();
     let over = bench.tankops(&["report", other.to_str().unwrap(), "-o", "a.html", "--force"]);
-    assert!(over.code == Some(2) && over.err.contains("is the signed revision A, which is never changed"), "{over:?}");
+    assert!(
+        over.code == Some(2) && over.err.contains("is the signed revision A, which is never changed"),
+        "{over:?}"
+    );
 
     let list = run.join("signed.json");
     let kept = std::fs::read_to_string(&list).unwrap();

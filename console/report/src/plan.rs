@@ -243,8 +243,8 @@ mod tests {
             Planned::new(&run.mission, &run.world, made)
         };
         assert_eq!(planned(0.014).plan_time_ms, None);
-        assert!(planned(0.014).human().contains("time      under 0.05 ms\n"));
-        assert!(planned(1.5).human().contains("time      1.50 ms\n"));
+        assert!(planned(0.014).human().contains("computed  in under 0.05 ms\n"));
+        assert!(planned(1.5).human().contains("computed  in 1.50 ms\n"));
         // A plan without a path has no length, and no sign either.
         assert!(planned(1.5).length_m.is_sign_positive());
     }
