@@ -88,7 +88,12 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
 
     let renamed = run.with_file_name("20300101T000000Z-cover-circle-tether-safe-1");
     std::fs::rename(&run, &renamed).unwrap();
-    assert_refused(&sign(&bench, &renamed, "b.html"), "its folder was renamed");
+    assert_refused(&sign(&bench, &renamed, "b.html"), "give it that name again");
+    let verified = bench.verify(&renamed, &["--from-journal"]);
+    assert!(
+        verified.code == Some(1) && verified.out.contains("NOT AS SIGNED: the folder is called 20300101"),
+        "{verified:?}"
+    );
     std::fs::rename(&renamed, &run).unwrap();
 
     // Another run under the name of the one that was signed.
