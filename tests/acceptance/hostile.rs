@@ -348,8 +348,8 @@ fn the_console_hears_space_whatever_a_planner_does_for_long() {
         let mut session = Session::open(&arguments, 120, 36);
         session.see("IDLE");
         if *moment == "IN_THREAD" {
-            // It attacks from its first moment on: there is no plan to start with. What strikes while the plugin is loaded is
-            // said of the plugin, what strikes later of the planner.
+            // It attacks as soon as it is loaded, so that no plan exists. The message names the plugin if the attack comes while it
+            // loads, and the planner if it comes later.
             session.see("FAILED: pl");
             session.press("S");
             session.see("tart blocked");

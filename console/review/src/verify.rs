@@ -99,10 +99,7 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
     let mut lines: Vec<String> =
         past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
     if past.files.are_as_reported == Some(true) {
-        lines.push(
-            "equal: journal and recording have the digests that report.json names; the readings decide what they prove"
-                .into(),
-        );
+        lines.push("equal: journal and recording have the SHA-256 that report.json names".into());
     }
     if past.files.are_as_reported.is_none() {
         lines.push(

@@ -99,10 +99,11 @@ pub(crate) fn check_position_limit(mission: &Section<'_>, boundary: &Boundary, l
 /// Complains about a pressure sensor that scatters so much that the robot would wait too long at the start.
 pub(crate) fn check_pressure(robot: &Section<'_>, tick_s: f64, sensor: Option<PressureSensor>) {
     let Some(sensor) = sensor else { return };
-    let most = LONGEST_WAIT_S / tick_s;
+    // One reading always counts, however long a tick is.
+    let most = (LONGEST_WAIT_S / tick_s).max(1.0);
     if sensor.readings_to_decide() > most {
         // Rounded down, so that the number offered is accepted.
-        let most_pa = PressureSensor::largest_sigma_pa(sensor.depth_m, most.max(1.0)).floor();
+        let most_pa = (PressureSensor::largest_sigma_pa(sensor.depth_m, most) * 1e3).floor() / 1e3;
         let must_be = format!(
             "at most {most_pa} Pa at pressure_depth_m = {}: the robot would wait over {LONGEST_WAIT_S} s for its readings to decide",
             sensor.depth_m

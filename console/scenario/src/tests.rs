@@ -83,6 +83,9 @@ fn a_pressure_sensor_that_scatters_too_much_to_decide_is_refused_with_one_that_d
     let most = said.split("at most ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
     assert!(said.contains("robot.pressure_sigma_pa = 9000: must be at most"), "{said}");
     assert!(with(&format!("pressure_sigma_pa = {most}\npressure_depth_m = 0.2")).is_ok(), "{most}");
+    let said = with("pressure_sigma_pa = 200\npressure_depth_m = 0.00001").expect_err("too shallow").render();
+    let most = said.split("at most ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+    assert!(with(&format!("pressure_sigma_pa = {most}\npressure_depth_m = 0.00001")).is_ok(), "{most}");
     assert!(with("pressure_depth_m = 0.2").is_err());
     let walks = SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\npressure_sigma_pa = 200", 1);
     let said = Scenario::parse(&walks, "x.toml").expect_err("a robot that does not swim").render();

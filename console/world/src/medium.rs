@@ -58,7 +58,7 @@ impl PressureSensor {
         if medium == Medium::Underwater { PA_PER_M * self.depth_m } else { 0.0 }
     }
 
-    /// The mean number of readings that it takes to know the medium at the start; a change takes twice as many.
+    /// The mean number of readings until the medium is known at the start. A later change takes twice as many.
     ///
     /// ```
     /// use world::PressureSensor;
@@ -70,7 +70,7 @@ impl PressureSensor {
         (2.0 * DECIDED / (apart * apart)).max(1.0)
     }
 
-    /// The largest standard deviation with which so many readings decide, pascals.
+    /// The largest standard deviation of a reading, pascals, with which the given number of readings decides the medium on average.
     ///
     /// ```
     /// use world::PressureSensor;
