@@ -196,11 +196,13 @@ impl Part {
         }
     }
 
-    fn pieces(&self) -> Vec<(Point, Point)> {
-        match self {
-            Self::Capsule { a, b, .. } => vec![(*a, *b)],
-            Self::Polygon { vertices } => edges(vertices).collect(),
-        }
+    /// The centre line of a capsule, the edges of a polygon.
+    fn pieces(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
+        let (line, ring): (_, &[Point]) = match self {
+            Self::Capsule { a, b, .. } => (Some((*a, *b)), &[]),
+            Self::Polygon { vertices } => (None, vertices),
+        };
+        line.into_iter().chain(edges(ring))
     }
 }
 

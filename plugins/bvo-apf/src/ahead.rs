@@ -73,9 +73,12 @@ pub fn of_traps<E>(
 ) -> Result<Ahead, E> {
     let mut tried = Vec::new();
     let mut first = None;
+    // All attempts share the steps that may be walked in thought for a choice of side.
+    let mut thought_left = machine.thought_left;
     let attempts = if machine.map.solids.len() > MANY_PARTS { ATTEMPTS_IN_ROOMS } else { ATTEMPTS };
     for by in attempts {
-        let (outcome, mut walked, news) = attempt(by, machine, start, goal, tolerance_m, &mut check)?;
+        let (outcome, mut walked, news) =
+            attempt(by, machine, start, goal, tolerance_m, &mut thought_left, &mut check)?;
         tried.push(outcome);
         if !walked.arrived {
             first.get_or_insert((walked, news));
@@ -83,7 +86,7 @@ pub fn of_traps<E>(
         }
         if follows(&news) && by == By::Thought && machine.map.solids.len() <= SHOWN_PARTS {
             let paper = By::Mode(Mode::Literal);
-            tried.push(attempt(paper, machine, start, goal, tolerance_m, &mut check)?.0);
+            tried.push(attempt(paper, machine, start, goal, tolerance_m, &mut thought_left, &mut check)?.0);
         }
         // A goal too near to something is reached within its tolerance.
         let end = walked.path[walked.path.len() - 1];
@@ -105,14 +108,17 @@ fn attempt<E>(
     start: Point,
     goal: Point,
     tolerance_m: f64,
+    thought_left: &mut usize,
     check: impl FnMut() -> Result<(), E>,
 ) -> Result<(Tried, Walked, Vec<News>), E> {
     let settings = by.settings(&machine.settings);
     let mut thought = machine.set_to(settings);
+    thought.thought_left = *thought_left;
     if by == By::Outlines {
         thought.follow_outlines(start, goal);
     }
     let walked = walk(&mut thought, start, goal, tolerance_m.max(settings.step_m / 2.0), check)?;
+    *thought_left = thought.thought_left;
     let (length_m, end) = (polyline::length_m(&walked.path), walked.path[walked.path.len() - 1]);
     Ok((Tried { by, arrived: walked.arrived, length_m, end }, walked, thought.news))
 }

@@ -12,20 +12,28 @@ pub struct Clusters {
 impl Clusters {
     /// Joins solids whose gap is narrower than the hull and a margin on both sides; costs `n^2` once per map.
     pub fn new(map: &KnownMap, margin_m: f64) -> Self {
-        let n_solids = map.solids.len();
+        let mut clusters = Self { of: Vec::new() };
+        clusters.take_in(map, margin_m);
+        clusters
+    }
+
+    /// Joins the solids that were added at the end of the map since; costs the number of the new ones times all.
+    pub fn take_in(&mut self, map: &KnownMap, margin_m: f64) {
         let passage_m = 2.0 * (map.hull_m + margin_m);
-        let mut of: Vec<usize> = (0..n_solids).collect();
-        for i in 0..n_solids {
-            for j in i + 1..n_solids {
-                let (a, b) = (&map.solids[i], &map.solids[j]);
-                if a.id == b.id || gap_m(a, b, passage_m) < passage_m {
-                    let (from, to) = (root(&of, i).max(root(&of, j)), root(&of, i).min(root(&of, j)));
-                    of[from] = to;
+        for new in self.of.len()..map.solids.len() {
+            self.of.push(new);
+            let solid = &map.solids[new];
+            for (known, other) in map.solids[..new].iter().enumerate() {
+                let (a, b) = (root(&self.of, known), root(&self.of, new));
+                if a != b && (solid.id == other.id || gap_m(other, solid, passage_m) < passage_m) {
+                    self.of[a.max(b)] = a.min(b);
                 }
             }
         }
-        let of = (0..n_solids).map(|index| root(&of, index)).collect();
-        Self { of }
+        // A root never has a larger index than what hangs on it.
+        for index in 0..self.of.len() {
+            self.of[index] = self.of[self.of[index]];
+        }
     }
 
     /// Every solid in the cluster of a solid.
@@ -63,6 +71,7 @@ pub fn gap_m(a: &Solid, b: &Solid, enough_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use world::{Boundary, Point};
 
     #[test]
@@ -74,5 +83,24 @@ mod tests {
         assert_eq!(clusters.members(3), [0, 2, 3]);
         assert_eq!(clusters.members(1), [1]);
         assert_eq!(clusters.closure(&map, &BTreeSet::from([4, 2])), [0, 1, 2, 3]);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_added_later_is_joined_as_if_it_had_been_there(
+            discs in prop::collection::vec((0_u32..30, -5.0..5.0_f64, -5.0..5.0_f64), 1..30),
+            first in 0_usize..30,
+        ) {
+            let solids: Vec<Solid> =
+                discs.iter().map(|(id, x, y)| Solid::disc(*id, Point::new(*x, *y), 0.3)).collect();
+            let map = |solids: &[Solid]| KnownMap {
+                solids: solids.to_vec(),
+                wall: Boundary::Circle { radius_m: 20.0 },
+                hull_m: 0.1,
+            };
+            let mut grown = Clusters::new(&map(&solids[..first.min(solids.len())]), 0.2);
+            grown.take_in(&map(&solids), 0.2);
+            prop_assert_eq!(grown, Clusters::new(&map(&solids), 0.2));
+        }
     }
 }

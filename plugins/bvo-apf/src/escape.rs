@@ -29,6 +29,8 @@ pub struct Escape {
     walked_m: f64,
     looked: Option<(Point, Look)>,
     checked_m: f64,
+    /// The member that barred the straight way when that was last examined: it is asked first.
+    barring: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +54,7 @@ impl Escape {
             walked_m: 0.0,
             looked: None,
             checked_m: 0.0,
+            barring: 0,
         };
         escape.measure(map);
         escape
@@ -100,8 +103,18 @@ impl Escape {
             self.hugs = true;
         }
         let keep_m = map.hull_m + margin_m;
-        (goal - at).norm() < self.until_m
-            && self.members.iter().all(|m| map.solids[*m].segment_distance_m(at, goal, keep_m) >= keep_m)
+        (goal - at).norm() < self.until_m && !self.is_barred(at, goal, map, keep_m)
+    }
+
+    /// Whether a member comes nearer than this to the straight way.
+    fn is_barred(&mut self, at: Point, goal: Point, map: &KnownMap, keep_m: f64) -> bool {
+        let bars = |m: &usize| map.solids[*m].segment_distance_m(at, goal, keep_m) < keep_m;
+        if self.members.get(self.barring).is_some_and(bars) {
+            return true;
+        }
+        let first = self.members.iter().position(bars);
+        self.barring = first.unwrap_or(self.barring);
+        first.is_some()
     }
 
     /// Unit vector of the way round.
@@ -167,7 +180,9 @@ impl Escape {
         let tangent = tangents::to_disc(at, corner.0, corner.1 + reach_m, self.side);
         let touch = at + tangent.direction * tangent.length_m.min(AHEAD_M);
         let keep_m = map.hull_m + 0.5 * margin_m;
-        let others = (0..map.solids.len()).filter(|index| !self.members.contains(index));
+        let mut is_member = vec![false; map.solids.len()];
+        self.members.iter().for_each(|index| is_member[*index] = true);
+        let others = (0..map.solids.len()).filter(|index| !is_member[*index]);
         others
             .map(|index| (index, map.solids[index].segment_distance_m(at, touch, keep_m)))
             .filter(|(_, distance_m)| *distance_m < keep_m)

@@ -20,6 +20,10 @@ use world::{Point, Vector};
 
 /// A way round may take this many times the circle about the group before it counts as leading nowhere.
 const ROUNDS: f64 = 2.5;
+/// Steps of rollouts on one map: about a second where many parts are near.
+const THOUGHT_MOST: usize = 30_000;
+/// Steps of the rollouts for one choice of side.
+const CHOICE_MOST: usize = 4_000;
 /// A robot in thought stops at once.
 const IN_THOUGHT: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.0 };
 
@@ -76,6 +80,8 @@ pub struct Machine {
     next_id: u32,
     /// Whether this is a rollout: it asks for no further ones.
     in_thought: bool,
+    /// Steps of rollouts that are left; without any the side is not chosen in thought.
+    pub(crate) thought_left: usize,
 }
 
 impl Machine {
@@ -97,6 +103,7 @@ impl Machine {
             news: Vec::new(),
             next_id: next_id.unwrap_or(FIRST_VIRTUAL),
             in_thought: false,
+            thought_left: THOUGHT_MOST,
             settings,
             map,
         }
@@ -171,6 +178,10 @@ impl Machine {
 
     fn map_changed(&mut self) {
         self.clusters = Clusters::new(&self.map, self.settings.margin_m);
+        self.clusters_changed();
+    }
+
+    fn clusters_changed(&mut self) {
         self.nearby.forget();
         self.sides.forget();
         match &mut self.phase {

@@ -91,16 +91,23 @@ impl Outline {
         near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
     }
 
-    /// Whether a step keeps a distance from every outline, metres, or leads away from what is nearer.
-    fn lets(&mut self, at: Point, step: Vector, keep_m: f64) -> bool {
-        let to = at + step;
+    /// Which steps of a length from a place keep a distance from every outline, both in metres, or lead away from what
+    /// is nearer.
+    fn steps(&mut self, at: Point, step_m: f64, keep_m: f64) -> impl Fn(&Vector) -> bool + use<'_> {
+        let (map, nearby) = (&self.map, &mut self.nearby);
+        let near = nearby.update(map, at).iter().map(|index| &map.solids[*index]);
+        let reach_m = keep_m + step_m + ROUNDING_M;
+        let near =
+            near.map(|solid| (solid, solid.distance(at).0)).filter(|(_, before_m)| *before_m < reach_m);
+        let near: Vec<(&Solid, f64)> = near.collect();
         let enough_m = keep_m - ROUNDING_M;
-        let leads_away = |solid: &Solid| {
-            let before_m = solid.distance(at).0;
-            before_m < enough_m && solid.distance(to).0 > before_m
-        };
-        let mut near = self.nearby.update(&self.map, at).iter().map(|index| &self.map.solids[*index]);
-        near.all(|solid| solid.segment_distance_m(at, to, keep_m) >= enough_m || leads_away(solid))
+        move |way| {
+            let to = at + way * step_m;
+            near.iter().all(|(solid, before_m)| {
+                let leads_away = || *before_m < enough_m && solid.distance(to).0 > *before_m;
+                solid.segment_distance_m(at, to, keep_m) >= enough_m || leads_away()
+            })
+        }
     }
 }
 
@@ -174,7 +181,7 @@ impl Follow {
         }
         let first = self.along.map_or(ahead, |way| self.hand(at, way, outline));
         let keep_m = self.keep_m;
-        let mut is_free = |way: &Vector| outline.lets(at, way * step_m, keep_m);
+        let is_free = outline.steps(at, step_m, keep_m);
         if (is_nearer || self.along.is_none()) && is_free(&ahead) {
             self.along = None;
             return Some(ahead * step_m);

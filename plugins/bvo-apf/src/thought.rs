@@ -11,6 +11,8 @@ const PATIENCE: f64 = 4.0;
 /// A walk may be this many times as long as the straight way, and some more for short ways.
 const DETOUR: f64 = 15.0;
 const SPARE_M: f64 = 60.0;
+/// Whether to stop is asked after this many steps, each of which may walk two detours in thought.
+const CHECKED_STEPS: usize = 16;
 
 /// A walk as it came out.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +44,7 @@ pub fn walk<E>(
         if (goal - at).norm() <= tolerance_m {
             return Ok(Walked { path, arrived: true });
         }
-        if step % 64 == 0 {
+        if step % CHECKED_STEPS == 0 {
             check()?;
         }
         match machine.next(at, goal) {
@@ -55,34 +57,132 @@ pub fn walk<E>(
     Ok(Walked { path, arrived: false })
 }
 
-/// The side on which the detour that begins now is shorter: until it is over, and straight on from there.
-pub fn shorter_side(machine: &Machine, at: Point, goal: Point) -> Side {
-    let cost_m = |side: Side| detour_m(machine, at, goal, side);
-    let (left_m, right_m) = (cost_m(Side::Left), cost_m(Side::Right));
-    if right_m < left_m { Side::Right } else { Side::Left }
-}
-
-/// Length of a detour on one side, metres; infinite if it leads nowhere.
-fn detour_m(machine: &Machine, start: Point, goal: Point, side: Side) -> f64 {
-    let step_m = machine.settings.step_m.max(COARSE_M);
-    let mut thought = machine.thought(step_m);
-    thought.take_side(side);
-    let round_m = thought.going_round().map_or(0.0, |(_, round_m)| round_m);
-    let steps = (PATIENCE * (round_m + 2.0) / step_m) as usize;
-    let mut at = start;
-    for step in 0..steps {
-        let follows = matches!(thought.phase(), Phase::Follow(_));
-        if follows && (goal - at).norm() <= step_m {
-            return step as f64 * step_m;
+/// The side on which the detour that begins now is shorter: until it is over, and straight on from there; and the steps
+/// that finding out took, at most `steps_most`. Where neither side is over by then it is the left one.
+pub fn shorter_side(machine: &Machine, at: Point, goal: Point, steps_most: usize) -> (Side, usize) {
+    let mut sides = [Side::Left, Side::Right].map(|side| Detour::new(machine, at, side));
+    let mut steps = 0;
+    // Both sides step by turns: when one is over, the other need not go on for longer than that.
+    while steps < steps_most {
+        let costs_m = sides.each_ref().map(|detour| detour.cost_m.unwrap_or(f64::INFINITY));
+        let least_m = costs_m[0].min(costs_m[1]);
+        let open = sides.iter_mut().filter(|detour| detour.cost_m.is_none());
+        let mut open = open.filter(|detour| detour.at_least_m(goal) < least_m).peekable();
+        if open.peek().is_none() {
+            break;
         }
-        if thought.going_round().is_none_or(|(going, _)| going != side) {
-            let is_over = matches!(thought.phase(), Phase::Approach);
-            return if is_over { step as f64 * step_m + (goal - at).norm() } else { f64::INFINITY };
-        }
-        match thought.next(at, goal) {
-            Next::By(way) => at += way,
-            Next::Back(_) | Next::Nowhere => return f64::INFINITY,
+        for detour in open {
+            detour.advance(goal);
+            steps += 1;
         }
     }
-    f64::INFINITY
+    let [left_m, right_m] = sides.map(|detour| detour.cost_m.unwrap_or(f64::INFINITY));
+    (if right_m < left_m { Side::Right } else { Side::Left }, steps)
+}
+
+/// A detour on one side, walked in thought.
+struct Detour {
+    thought: Machine,
+    side: Side,
+    at: Point,
+    step_m: f64,
+    walked_m: f64,
+    most_m: f64,
+    /// Its length once it is over, and the straight way from there, metres; infinite if it leads nowhere.
+    cost_m: Option<f64>,
+}
+
+impl Detour {
+    fn new(machine: &Machine, at: Point, side: Side) -> Self {
+        let step_m = machine.settings.step_m.max(COARSE_M);
+        let mut thought = machine.thought(step_m);
+        thought.take_side(side);
+        let round_m = thought.going_round().map_or(0.0, |(_, round_m)| round_m);
+        let most_m = PATIENCE * (round_m + 2.0);
+        Self { thought, side, at, step_m, walked_m: 0.0, most_m, cost_m: None }
+    }
+
+    /// What it costs at least, metres.
+    fn at_least_m(&self, goal: Point) -> f64 {
+        self.walked_m + (goal - self.at).norm()
+    }
+
+    fn advance(&mut self, goal: Point) {
+        let follows = matches!(self.thought.phase(), Phase::Follow(_));
+        if follows && (goal - self.at).norm() <= self.step_m {
+            self.cost_m = Some(self.walked_m);
+        } else if self.thought.going_round().is_none_or(|(going, _)| going != self.side) {
+            let is_over = matches!(self.thought.phase(), Phase::Approach);
+            self.cost_m = Some(if is_over { self.at_least_m(goal) } else { f64::INFINITY });
+        } else {
+            match self.thought.next(self.at, goal) {
+                Next::By(way) if self.walked_m < self.most_m => {
+                    self.at += way;
+                    self.walked_m += self.step_m;
+                }
+                Next::By(_) | Next::Back(_) | Next::Nowhere => self.cost_m = Some(f64::INFINITY),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{machine::tests::settings, settings::Mode};
+    use proptest::prelude::*;
+    use steering::{KnownMap, Solid};
+    use world::Boundary;
+
+    const GOAL: Point = Point::new(7.0, 1.0);
+
+    /// A robot that follows the outlines of a floor of 8 m by 6 m, with a disc before it.
+    fn following(start: Point, disc: (f64, f64, f64)) -> Machine {
+        let corners = [(0.0, 0.0), (8.0, 0.0), (8.0, 6.0), (0.0, 6.0)];
+        let map = KnownMap {
+            solids: vec![Solid::disc(1, Point::new(disc.0, disc.1), disc.2)],
+            wall: Boundary::Polygon { vertices: corners.iter().map(|(x, y)| Point::new(*x, *y)).collect() },
+            hull_m: 0.25,
+        };
+        let mut machine = Machine::new(settings(Mode::Rollout).for_trip((GOAL - start).norm()), map);
+        machine.follow_outlines(start, GOAL);
+        machine
+    }
+
+    /// A side, walked to its end by itself: what it costs, metres, and its steps.
+    fn walked_out(machine: &Machine, start: Point, side: Side) -> (f64, usize) {
+        let mut detour = Detour::new(machine, start, side);
+        let mut steps = 0;
+        while detour.cost_m.is_none() {
+            detour.advance(GOAL);
+            steps += 1;
+        }
+        (detour.cost_m.unwrap_or(f64::INFINITY), steps)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn by_turns_the_same_side_is_found_as_by_walking_both_out(
+            y in 0.5..5.5_f64,
+            disc in (2.5..5.5_f64, -0.5..6.0_f64, 0.3..1.5_f64),
+        ) {
+            let start = Point::new(0.6, y);
+            let machine = following(start, disc);
+            let [left, right] = [Side::Left, Side::Right].map(|side| walked_out(&machine, start, side));
+            let (side, steps) = shorter_side(&machine, start, GOAL, usize::MAX);
+            prop_assert_eq!(side, if right.0 < left.0 { Side::Right } else { Side::Left });
+            prop_assert!(steps <= left.1 + right.1);
+        }
+    }
+
+    #[test]
+    fn no_more_steps_are_taken_than_are_left_and_then_it_is_the_left_side() {
+        // The right side is the shorter one.
+        let start = Point::new(0.6, 1.0);
+        let machine = following(start, (4.0, 2.6, 1.5));
+        assert_eq!(shorter_side(&machine, start, GOAL, 1_000).0, Side::Right);
+        let (side, steps) = shorter_side(&machine, start, GOAL, 10);
+        assert!(side == Side::Left && steps <= 11, "{steps}");
+    }
 }

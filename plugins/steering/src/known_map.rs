@@ -138,7 +138,8 @@ impl Nearby {
     pub fn update(&mut self, map: &KnownMap, at: Point) -> &[usize] {
         if self.looked_from.is_none_or(|from| (from - at).norm_squared() > SLACK_M * SLACK_M) {
             self.looked_from = Some(at);
-            let is_near = |s: &Solid| s.distance(at).0 < self.reach_m + SLACK_M;
+            let near_m = self.reach_m + SLACK_M;
+            let is_near = |s: &Solid| !s.is_beyond(at, near_m) && s.distance(at).0 < near_m;
             self.indices.clear();
             self.indices.extend((0..map.solids.len()).filter(|index| is_near(&map.solids[*index])));
             self.wall_m = map.wall.wall_distance_m(at);

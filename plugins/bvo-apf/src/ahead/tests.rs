@@ -76,6 +76,15 @@ fn a_spur_of_the_outline_is_gone_round_by_every_mode_but_the_paper_s() {
 }
 
 #[test]
+fn a_bend_is_left_even_where_no_side_can_be_chosen_in_thought() {
+    let map = map(&BEND, &[]);
+    let mut machine = Machine::new(settings(Mode::Pre).for_trip((GOAL - START).norm()), map.clone());
+    machine.thought_left = 0;
+    let ahead = of_traps::<()>(&machine, START, GOAL, 0.1, || Ok(())).unwrap();
+    assert!(ahead.walked.arrived && map.path_clearance_m(&ahead.walked.path, 1.0) > 0.0);
+}
+
+#[test]
 fn a_spur_that_is_an_obstacle_at_the_wall_is_gone_round_by_every_mode() {
     let map = map(&FLOOR, &[[3.9, 0.0, 4.1, 4.0]]);
     for mode in Mode::ALL {

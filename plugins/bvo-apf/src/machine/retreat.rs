@@ -58,6 +58,7 @@ impl Machine {
         self.news.push(News::Sealed { circles: circles.len() });
         self.next_id += circles.len() as u32;
         self.map.solids.extend(circles);
-        self.map_changed();
+        self.clusters.take_in(&self.map, self.settings.margin_m);
+        self.clusters_changed();
     }
 }

@@ -1,6 +1,6 @@
 //! What holds the robot, and how it leaves.
 
-use super::{Machine, News, Next, Phase, ROUNDS, Retreat};
+use super::{CHOICE_MOST, Machine, News, Next, Phase, ROUNDS, Retreat};
 use crate::{
     escape::Escape,
     mouth::Mouth,
@@ -108,7 +108,7 @@ impl Machine {
         if follow.meets_something(&before, at) && self.rolls_out() {
             before.met = Some(at);
             self.phase = Phase::Follow(before);
-            let side = thought::shorter_side(self, at, goal);
+            let side = self.shorter_side(at, goal);
             self.take_side(side);
             let (Phase::Follow(follow), Some(outline)) = (&mut self.phase, &mut self.outline) else {
                 return Next::Nowhere;
@@ -148,14 +148,20 @@ impl Machine {
     }
 
     /// Left, as in the paper, or the side that is shorter in thought.
-    fn first_side(&self, at: Point, goal: Point) -> Side {
+    fn first_side(&mut self, at: Point, goal: Point) -> Side {
         let goes_round = self.going_round().is_some();
-        if goes_round && self.rolls_out() { thought::shorter_side(self, at, goal) } else { Side::Left }
+        if goes_round && self.rolls_out() { self.shorter_side(at, goal) } else { Side::Left }
+    }
+
+    fn shorter_side(&mut self, at: Point, goal: Point) -> Side {
+        let (side, steps) = thought::shorter_side(self, at, goal, self.thought_left.min(CHOICE_MOST));
+        self.thought_left = self.thought_left.saturating_sub(steps);
+        side
     }
 
     /// Whether it walks both sides in thought before it takes one.
     fn rolls_out(&self) -> bool {
-        matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought
+        matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought && self.thought_left > 0
     }
 
     pub(super) fn count_escape(&mut self, at: Point) {
