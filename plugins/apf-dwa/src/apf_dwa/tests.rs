@@ -111,6 +111,22 @@ fn in_flight_it_arrives_though_it_must_discover_everything_and_is_swapped_on_the
 }
 
 #[test]
+fn a_robot_turns_as_briskly_for_its_turn_rate_as_the_one_of_the_paper() {
+    let turning = |w_max_rad_per_s: f64, values: &[(&str, f64)]| {
+        with_planner(values, 3, |_, site, bench| {
+            let limits = Limits { amphibious: None, w_max_rad_per_s, ..site.limits };
+            let planner: ApfDwa = bench.configure(values, &Site { limits, ..*site }).unwrap();
+            planner.settings.window.turn_acceleration_rad_per_s2
+        })
+    };
+    assert_eq!(turning(0.12, &[]), 0.4);
+    assert!((turning(1.2, &[]) - 4.0).abs() < 1e-12);
+    assert_eq!(turning(1.2, &[("turn_acceleration_rad_per_s2", 0.7)]), 0.7);
+    let paper = with_planner(&[], 3, |planner, _, _| planner.settings.window.turn_acceleration_rad_per_s2);
+    assert_eq!(paper, 0.4);
+}
+
+#[test]
 fn what_crosses_its_way_is_met_where_it_will_be() {
     for from_y_m in [-5.0, -4.0, -3.5, -3.0, 3.0, 3.5, 4.0, 5.0] {
         for guide in [0.0, 1.0] {
