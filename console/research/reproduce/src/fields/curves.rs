@@ -65,8 +65,10 @@ pub(super) fn distances(job: &Job<'_>) -> Result<Vec<Row>> {
         let trip = Trip { start, goal: layout.goal, tolerance_m: 0.15, most_s: DISTANCES_S };
         let flown = fly(planners, method, &site, &trip)?;
         let names: Vec<&str> = flown.figures.keys().map(String::as_str).collect();
-        let shown: Vec<&str> =
+        let mut shown: Vec<&str> =
             names.into_iter().filter(|name| name.starts_with(NEAREST) || *name == SAFE).collect();
+        // Number 2 before number 10.
+        shown.sort_by_key(|name| (*name == SAFE, name.len()));
         draw(job, (group.id(), *seed, &method.id), "distance, m", &flown, &shown);
         Ok(flown)
     })?;
@@ -112,11 +114,9 @@ fn share(is: bool) -> f64 {
 /// Draws some of the figures of a flight, if pictures are asked for.
 fn draw(job: &Job<'_>, name: (&str, u64, &str), unit: &str, flown: &Flown, shown: &[&str]) {
     let Some(gallery) = job.runner.gallery() else { return };
-    let curves: Vec<Curve<'_>> = shown
-        .iter()
-        .filter_map(|name| flown.figures.get_key_value(*name))
-        .map(|(name, points)| Curve { name, points })
-        .collect();
+    let figures = shown.iter().filter_map(|name| flown.figures.get_key_value(*name));
+    let figures: Vec<_> = figures.map(|(name, points)| (name.replace('_', " "), points)).collect();
+    let curves: Vec<Curve<'_>> = figures.iter().map(|(name, points)| Curve { name, points }).collect();
     let title = format!("{}, {}", name.0, name.2);
     let drawn = Curves { title: &title, along: "time, s", values: unit, curves: &curves };
     gallery.add_curves(name, &drawn);
