@@ -185,25 +185,6 @@ fn every_objection_of_a_planner_is_reported_at_its_line() {
 }
 
 #[test]
-fn an_old_parameter_is_answered_with_the_name_that_its_planner_has_today() {
-    let bench = Bench::new();
-    let listed = bench.tankops(&["planners", "--json"]).json().to_string();
-    let renamed = [
-        ("tether-safe", "sum_wrap_deg", "wrap_total_deg"),
-        ("apf-dwa", "land_speed_m_per_s", "land_speed_max_m_per_s"),
-        ("apf-dwa", "underwater_speed_m_per_s", "underwater_speed_max_m_per_s"),
-    ];
-    let demo = scenario("demo.toml");
-    for (planner, old, new) in renamed {
-        let set = format!("{old}=1");
-        let answer = bench.tankops(&["plan", demo.to_str().unwrap(), "--planner", planner, "--set", &set]);
-        let wanted = format!("parameter `{old}` of planner {planner} is now called `{new}`");
-        assert!(answer.code == Some(2) && answer.err.contains(&wanted), "{answer:?}");
-        assert!(listed.contains(&format!("\"{new}\"")) && !listed.contains(&format!("\"{old}\"")), "{new}");
-    }
-}
-
-#[test]
 fn a_plugin_folder_that_does_not_exist_is_an_error() {
     let answer = Bench::new().tankops(&["planners", "--plugin-dir", "no/such/folder"]);
     assert!(answer.code == Some(2) && answer.err.contains("no/such/folder"), "{answer:?}");

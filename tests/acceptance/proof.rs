@@ -1,7 +1,7 @@
 //! What `verify` proves, and what it refuses to call equal.
 
 use crate::{
-    bench::{Bench, change_journal, journal, journal_text, scenario, workspace},
+    bench::{Bench, change_journal, journal, journal_text, scenario},
     faults::compile,
 };
 use mission::event::JOURNAL_VERSION;
@@ -160,44 +160,24 @@ fn a_run_whose_planner_is_not_installed_is_proven_from_its_journal() {
 }
 
 #[test]
-fn runs_of_earlier_versions_are_listed_reported_exported_and_rescanned_but_not_recomputed() {
-    for (version, end, ticks) in [(2, "complete", 45), (3, "time_limit", 60), (4, "time_limit", 60)] {
-        let bench = Bench::new();
-        let logs = workspace().join(format!("tests/acceptance/fixtures/v{version}"));
-        let at = ["--logs", logs.to_str().unwrap()];
-        let listed = bench.tankops(&[&["runs", "--json"][..], &at].concat()).json();
-        assert_eq!((listed.as_array().unwrap().len(), &listed[0]["end"]), (1, &end.into()), "{listed}");
-        let name = listed[0]["name"].as_str().unwrap();
-        let reported = bench.tankops(&[&["report", name, "--json"][..], &at].concat());
-        let report = reported.json();
-        assert_eq!((&report["outcome"], &report["ticks"]), (&end.into(), &ticks.into()), "{reported:?}");
-        let then = std::fs::read_to_string(logs.join(name).join("report.json")).unwrap();
-        let then = recording::with_todays_names(serde_json::from_str(&then).unwrap());
-        for key in
-            ["planner", "parameters", "path_length_m", "positioning", "tether", "events_sha256", "violations"]
-        {
-            assert_eq!(report[key], then[key], "{key}");
-        }
-        // Overlap is by the estimate now, by which it was not counted then.
-        for share in ["reachable", "whole"] {
-            assert_eq!(report["coverage"][share], then["coverage"][share], "{share}");
-        }
-        let exported = bench.tankops(&[&["export", name, "--rrd", "again.rrd"][..], &at].concat());
-        assert_eq!(exported.code, Some(0), "{exported:?}");
-        assert!(!recording::inspect(&bench.path().join("again.rrd")).unwrap().entities.is_empty());
-        for more in [&[][..], &["--from-journal"]] {
-            let refused = bench.tankops(&[&["verify", name][..], &at, more].concat());
-            assert_eq!(refused.code, Some(2), "{refused:?}");
+fn a_journal_of_another_version_is_refused_by_every_command_that_reads_it() {
+    let bench = Bench::new();
+    bench.fly(&scenario("goto-single-obstacle.toml"), &[]);
+    let run = bench.runs().remove(0);
+    for version in [JOURNAL_VERSION - 1, JOURNAL_VERSION + 1] {
+        let text = journal_text(&run);
+        let at = text.find("\"journal_version\":").unwrap() + "\"journal_version\":".len();
+        let end = at + text[at..].find(',').unwrap();
+        change_journal(&run, &[&text[..at], &version.to_string(), &text[end..]].concat());
+        for command in [&["verify"][..], &["report"], &["export", "--mcap", "run.mcap"], &["events"]] {
+            let refused = bench.tankops(&[command, &[run.file_name().unwrap().to_str().unwrap()]].concat());
+            assert_eq!(refused.code, Some(2), "{command:?} {refused:?}");
             let is_clear = refused.err.contains(&format!("the journal has version {version}"))
-                && refused.err.contains(&format!("version {JOURNAL_VERSION}"));
-            assert!(is_clear, "{refused:?}");
-            assert_eq!((refused.err.trim().lines().count(), refused.out.as_str()), (1, ""), "{refused:?}");
+                && refused.err.contains(&format!("reads version {JOURNAL_VERSION}"));
+            assert!(is_clear && refused.err.trim().lines().count() == 1, "{command:?} {refused:?}");
         }
-        let rescan = bench.tankops(&[&["rescan", name, "-o", "again.toml"][..], &at].concat());
-        let is_follow = name.contains("tether-out-and-back");
-        assert_eq!(rescan.code, Some(if version == 2 || is_follow { 2 } else { 0 }), "{rescan:?}");
-        let why = "scans no floor: its task is to follow a preset path";
-        assert_eq!(rescan.err.contains(why), version != 2 && is_follow, "{rescan:?}");
+        let listed = bench.tankops(&["runs"]);
+        assert!(listed.code == Some(0) && listed.out.contains("goto-single-obstacle"), "{listed:?}");
     }
 }
 

@@ -56,26 +56,12 @@ pub struct Limits {
     /// Range at which it sees obstacles, metres.
     pub sensing_range_m: f64,
     /// Largest change of its speed, metres per second squared.
-    #[cfg_attr(feature = "serde", serde(default = "usual_acceleration"))]
     pub acceleration_m_per_s2: f64,
     /// Length of a tick, seconds: a command takes effect for so long before the next one can.
-    #[cfg_attr(feature = "serde", serde(default = "usual_tick"))]
     pub tick_s: f64,
     /// For a robot that walks and swims: what holds in each mode. What is above are the larger limits of both.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub amphibious: Option<Amphibious>,
-}
-
-/// That of a robot whose scenario does not give it; journals of before do not say it, metres per second squared.
-#[cfg(feature = "serde")]
-fn usual_acceleration() -> f64 {
-    0.5
-}
-
-/// The same for the length of a tick, seconds.
-#[cfg(feature = "serde")]
-fn usual_tick() -> f64 {
-    0.1
 }
 
 /// How a robot is to move until the next tick.

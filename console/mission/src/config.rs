@@ -212,11 +212,10 @@ pub struct MissionConfig {
     /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
-    /// Whether an order to start names the plan that the operator saw, and no other plan begins the mission; journals of
-    /// before do not say.
+    /// Whether an order to start names the plan that the operator saw, and no other plan begins the mission.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub start_names_plan: bool,
-    /// What becomes of a plan for all that is left that is better than a repaired one; journals of before have none.
+    /// What becomes of a plan for all that is left that is better than a repaired one.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,
 }

@@ -98,7 +98,6 @@ pub enum EventKind {
         /// Length of the way back along the cable, metres; absent if the hull does not fit.
         return_length_m: Option<f64>,
         /// The points between the anchor and the robot at which the taut cable bends.
-        #[serde(alias = "line")]
         bends: Vec<Point>,
     },
     /// The cable comes near to a limit, or has reached it.

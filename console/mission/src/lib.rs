@@ -37,7 +37,7 @@ pub use plan_extent::check_extent;
 pub use plan_id::{PlanId, PlanSeen};
 pub use planner::{
     Cause, During, Fault, ParamInfo, ParamKind, ParamValue, Parameters, PlannerChoice, PlannerInfo,
-    RefusedPlugin, Sandbox, todays_parameter,
+    RefusedPlugin, Sandbox,
 };
 pub use preview::preview;
 pub use standing::{FoldedStanding, PositionTrust, Readiness, Refusal, Standing};

@@ -1,9 +1,7 @@
 //! Planners as the mission knows them: who they are, what parameters they take, how they fail.
 
-mod renamed;
 mod sandbox;
 
-pub use renamed::todays_parameter;
 pub use sandbox::Sandbox;
 
 use serde::{Deserialize, Serialize};

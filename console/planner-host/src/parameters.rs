@@ -1,8 +1,6 @@
 //! Parameter values against their declarations: unknown keys, wrong types, ranges.
 
-use mission::{
-    ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, spelling::nearest, todays_parameter,
-};
+use mission::{ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, spelling::nearest};
 
 /// Checks values set by hand against a planner's parameters.
 ///
@@ -60,9 +58,6 @@ pub(crate) fn numbers(planner: &PlannerInfo, parameters: &Parameters) -> Result<
 /// The parameter of this name.
 pub(crate) fn find<'a>(planner: &'a PlannerInfo, key: &str) -> Result<&'a ParamInfo, String> {
     planner.parameters.iter().find(|param| param.key == key).ok_or_else(|| {
-        if let Some(new) = todays_parameter(&planner.id, key) {
-            return format!("parameter `{key}` of planner {} is now called `{new}`", planner.id);
-        }
         let keys = planner.parameters.iter().map(|param| param.key.as_str());
         let hint = nearest(key, keys).map(|known| format!("; did you mean `{known}`?"));
         let all = || match planner.parameters.as_slice() {
@@ -173,21 +168,6 @@ mod tests {
         assert_eq!(message, "planner apf has no parameter `k_rpe`; did you mean `k_rep`?");
         let message = refused("colour", ParamValue::Int(1));
         assert_eq!(message, "planner apf has no parameter `colour`; it has k_rep, n, improved, mode");
-    }
-
-    #[test]
-    fn an_old_name_is_answered_with_the_new_one_of_that_planner_only() {
-        let own = |id: &str| PlannerInfo { id: id.into(), ..planner() };
-        let message = |id| find(&own(id), "sum_wrap_deg").map(|_| ()).expect_err("an old name");
-        assert_eq!(
-            message("tether-safe"),
-            "parameter `sum_wrap_deg` of planner tether-safe is now called `wrap_total_deg`"
-        );
-        assert!(
-            message("apf").starts_with("planner apf has no parameter `sum_wrap_deg`"),
-            "{}",
-            message("apf")
-        );
     }
 
     #[test]

@@ -14,13 +14,11 @@ mod plain;
 mod reader;
 mod ticks;
 mod unpacker;
-mod upgrade;
 mod writer;
 
 pub use ending::{events_sha256, events_sha256_while, read_ending};
 pub use reader::{JournalLine, JournalPlace, JournalReader};
 pub use ticks::{Difference, RecordedTick, Ticks};
-pub use upgrade::with_todays_names;
 pub use writer::{JournalEnd, JournalWriter};
 
 use crate::file::FileChange;
@@ -28,10 +26,10 @@ use std::path::{Path, PathBuf};
 
 /// Name of the journal in the folder of a run.
 pub const JOURNAL_FILE: &str = "events.jsonl.zst";
-/// Its name up to version 4, when its lines were not compressed.
+/// Its name where somebody has uncompressed it.
 pub const PLAIN_JOURNAL_FILE: &str = "events.jsonl";
 
-/// The journal in the folder of a run, of any version; where there is none, the path that it would have.
+/// The journal in the folder of a run, compressed or not; where there is none, the path that it would have.
 pub fn journal_of(folder: &Path) -> PathBuf {
     let (packed, plain) = (folder.join(JOURNAL_FILE), folder.join(PLAIN_JOURNAL_FILE));
     if !packed.exists() && plain.exists() { plain } else { packed }
@@ -91,35 +89,16 @@ pub enum JournalError {
         /// Which file.
         path: PathBuf,
     },
-    /// It was written by a newer tankops.
+    /// It was written by a tankops whose journals have another version.
     #[error(
-        "the journal has version {theirs} and this tankops reads up to {ours}; use the tankops that wrote it \
-         or a newer one: {}",
+        "the journal has version {theirs}, and this tankops reads version {ours}; use the tankops that wrote it: {}",
         path.display()
     )]
-    Newer {
+    OtherVersion {
         /// Version of the journal.
         theirs: u32,
         /// Version that this tankops reads.
         ours: u32,
-        /// Which file.
-        path: PathBuf,
-    },
-    /// It was written by an older tankops, and this one does not understand it.
-    #[error(
-        "the journal has version {theirs}, and line {line} of it cannot be read by this tankops, which writes version \
-         {ours} ({why}); use the tankops that wrote it: {}",
-        path.display()
-    )]
-    Older {
-        /// Version of the journal.
-        theirs: u32,
-        /// Version that this tankops writes.
-        ours: u32,
-        /// Which line, from 1.
-        line: usize,
-        /// What is wrong with it.
-        why: String,
         /// Which file.
         path: PathBuf,
     },

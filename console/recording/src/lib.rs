@@ -33,7 +33,7 @@ pub use inspect::{Summary, inspect};
 pub use journal::{
     Difference, JOURNAL_FILE, JournalEnd, JournalError, JournalLine, JournalPlace, JournalReader,
     JournalWriter, PLAIN_JOURNAL_FILE, RecordedTick, Ticks, events_sha256, events_sha256_while, journal_of,
-    read_ending, with_todays_names,
+    read_ending,
 };
 pub use marker::{FAILURE_FILE, recorded_failure, remove_reserve};
 pub use recorder::{RECORDING_FILE, Recorder};

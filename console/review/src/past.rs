@@ -8,7 +8,7 @@ use report::{
     human, merged,
 };
 use runs::{Past, find, signed_list};
-use scenario::{Scenario, with_todays_keys};
+use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 /// Past runs that the user named: folders, or names in the folder of the runs.
@@ -64,8 +64,7 @@ pub fn report_page(folder: &Path) -> anyhow::Result<String> {
 /// # Errors
 /// The scenario in its journal is refused.
 pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
-    let scenario =
-        Scenario::recorded(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    let scenario = Scenario::recorded(&opened.scenario_toml, "the scenario in the journal");
     Ok(scenario.map_err(|errors| bad_input(errors.render()))?.inspection)
 }
 
@@ -74,8 +73,7 @@ pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
 /// # Errors
 /// The scenario in its journal is refused.
 pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
-    let scenario =
-        Scenario::recorded(&with_todays_keys(&opened.scenario_toml), "the scenario in the journal");
+    let scenario = Scenario::recorded(&opened.scenario_toml, "the scenario in the journal");
     let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
     // The bounds belong to missions; located readings are not a mission.
     let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };

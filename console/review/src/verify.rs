@@ -14,10 +14,7 @@ pub(crate) mod planners;
 use crate::register;
 use anyhow::Context;
 use flight::{Flight, failure::bad_input, hosts::host, planners::found};
-use mission::{
-    PlannerInfo,
-    event::{JOURNAL_VERSION, Measured},
-};
+use mission::{PlannerInfo, event::Measured};
 use planner_host::PluginDirs;
 use planners::{Asked, BEHIND, Replayed};
 use recording::{
@@ -252,19 +249,9 @@ pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenar
             path.display()
         )));
     }
-    if opened.journal_version != JOURNAL_VERSION {
-        return Err(bad_input(format!(
-            "the journal has version {}, and this tankops verifies only version {JOURNAL_VERSION}: verify the run with the \
-             tankops that flew it; report, export, rescan and runs still read it: {}",
-            opened.journal_version,
-            path.display()
-        )));
-    }
     let mut scenario = Scenario::recorded(&opened.scenario_toml, "the scenario in the journal")
         .map_err(|errors| bad_input(errors.render()))?;
-    // Runs of before this key made no better plans.
-    scenario.mission.better_plan = opened.mission.better_plan;
-    // In runs of before this key a start did not name its plan.
+    // Only an operator at the console sees the plan before the start.
     scenario.mission.start_names_plan = opened.mission.start_names_plan;
     let flight = Flight::prepare(&scenario, opened.mission.attended);
     Ok((scenario, flight))

@@ -5,7 +5,7 @@ use crate::{
     report_file::{Now, Reported},
     standing::is_locked,
 };
-use mission::{Event, EventKind, RunOpened, event::JOURNAL_VERSION};
+use mission::{Event, EventKind, RunOpened};
 use recording::{
     JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of,
     sha256_while,
@@ -128,13 +128,12 @@ fn files(
 ) -> Files {
     let (journal, recording) = (journal_of(folder), folder.join(RECORDING_FILE));
     let bytes = |file: &Path| fs::metadata(file).ok().map(|file| file.len());
-    let is_todays = opened.journal_version == JOURNAL_VERSION;
     let (reported, damage) = Reported::read(folder).map_or_else(|why| (None, Some(why)), |read| (read, None));
     let doubts_of = |reported: &Reported| {
         [
             reported.journal_doubt(journal_sha256.as_deref()),
             reported.recording_doubt(folder, &Now::Is(recording_sha256.as_deref())),
-            reported.figures_doubt(is_todays.then_some(summary)),
+            reported.figures_doubt(summary),
         ]
     };
     let doubts = reported.as_ref().map(doubts_of).into_iter().flatten();

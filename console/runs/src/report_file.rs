@@ -4,8 +4,8 @@ mod figures;
 
 use crate::{budget::Budget, files::REPORT_FILE};
 use foreign::{plain_json, read_json};
-use mission::{Event, EventKind, event::JOURNAL_VERSION};
-use recording::{JournalReader, RECORDING_FILE, journal_of, read_ending, sha256_of};
+use mission::{Event, EventKind};
+use recording::{RECORDING_FILE, journal_of, read_ending, sha256_of};
 use report::{Summary, document::Recovered};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -127,14 +127,8 @@ impl Reported {
     /// # Errors
     /// Why it is not believed, as a sentence.
     pub(crate) fn summary(&self, folder: &Path, budget: &Budget) -> Result<Box<Summary>, String> {
-        let report = serde_json::from_str(&self.text)
-            .map(recording::with_todays_names)
-            .map_err(|error| damaged(&error))?;
-        let summary: Box<Summary> = serde_json::from_value(report).map_err(|error| damaged(&error))?;
+        let summary: Box<Summary> = serde_json::from_str(&self.text).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
-        if self.source.report_sha256.is_none() && is_todays(&journal_of(folder)) {
-            return Err(NO_SEAL.to_owned());
-        }
         // A report that says itself that the journal is not whole claims nothing about it.
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
         let path = journal_of(folder);
@@ -143,7 +137,7 @@ impl Reported {
         if !untouched && budget.events_sha256(&path).map_err(no_journal)? != *then {
             return Err(NOT_THE_ONE.to_owned());
         }
-        if untouched && self.source.report_sha256.is_some() {
+        if untouched {
             // Report and journal are as they were written together.
             return Ok(summary);
         }
@@ -154,7 +148,7 @@ impl Reported {
         }
     }
 
-    /// Name of the run's folder when the run was closed; older reports do not say.
+    /// Name of the run's folder when the run was closed.
     pub(crate) fn closed_as(&self) -> Option<&str> {
         self.source.run.as_deref()
     }
@@ -201,15 +195,13 @@ impl Reported {
         }
     }
 
-    /// What speaks against its figures: the journal gives others, or the file was changed. `figures`: those that the journal
-    /// gives; `None` for a journal of another version, whose figures may be defined otherwise.
-    pub(crate) fn figures_doubt(&self, figures: Option<&Summary>) -> Option<String> {
-        // Older reports have no digest, and some of their figures are defined otherwise.
+    /// What speaks against its figures: the journal gives others (`figures`), or the file was changed.
+    pub(crate) fn figures_doubt(&self, figures: &Summary) -> Option<String> {
         if self.source.report_sha256.is_none() {
-            return figures.map(|_| NO_SEAL.to_owned());
+            return self.seal_doubt();
         }
         // Those of a journal that is not whole are few.
-        let figures = figures.filter(|_| self.source.events_sha256.is_some());
+        let figures = Some(figures).filter(|_| self.source.events_sha256.is_some());
         let reported: Summary = match serde_json::from_str(&self.text) {
             Ok(reported) => reported,
             Err(error) => return Some(damaged(&error)),
@@ -220,24 +212,16 @@ impl Reported {
             .or_else(|| self.seal_doubt())
     }
 
-    /// What speaks against a report that does not have the digest any more that it was written with.
+    /// What speaks against a report that no longer has the digest that it was written with.
     fn seal_doubt(&self) -> Option<String> {
-        let (then, now) = (self.source.report_sha256.as_ref()?, digest_of_lines(&self.text));
+        let Some(then) = &self.source.report_sha256 else { return Some(NO_SEAL.to_owned()) };
+        let now = digest_of_lines(&self.text);
         (*then != now).then(|| {
             format!(
                 "{REPORT_FILE} was changed after the run ended: its lines have the SHA-256 {now}, expected {then}"
             )
         })
     }
-}
-
-/// Whether a journal is of the version that is written today.
-fn is_todays(journal: &Path) -> bool {
-    let version = JournalReader::open(journal).ok().and_then(|mut reader| {
-        reader.next_line().ok()?;
-        reader.version()
-    });
-    version == Some(JOURNAL_VERSION)
 }
 
 fn damaged(error: &serde_json::Error) -> String {

@@ -17,7 +17,6 @@ mod planner_keys;
 mod problem;
 mod ranging;
 mod readable;
-mod renamed;
 mod render;
 mod rescan;
 mod robot;
@@ -31,7 +30,6 @@ mod tether;
 
 pub use inspection::inspection;
 pub use problem::{Complaint, Problem, ScenarioErrors};
-pub use renamed::with_todays_keys;
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 

@@ -1,6 +1,5 @@
 //! The scenario that scans again what runs have missed.
 
-use crate::renamed::with_todays_keys;
 use mission::RunOpened;
 use std::collections::BTreeSet;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, TomlError, Value, value};
@@ -27,9 +26,8 @@ pub fn rescan(
     found: &BTreeSet<ObstacleId>,
     drawn: &[Zone],
 ) -> Result<String, TomlError> {
-    // Older runs may have names that would be refused now.
-    let text = with_todays_keys(&opened.scenario_toml);
-    let mut document: DocumentMut = foreign::plain_lines(&text).parse()?;
+    // The journals of other programs may have names that a scenario may not have.
+    let mut document: DocumentMut = foreign::plain_lines(&opened.scenario_toml).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
     let names: Vec<&str> = runs.iter().map(|run| run.name).collect();

@@ -1,9 +1,6 @@
 //! What was probably meant by a key that does not exist.
 
-use super::{
-    renamed::{renamed_keys, todays_name},
-    schema::{Key, sections},
-};
+use super::schema::{Key, sections};
 use mission::spelling::nearest;
 
 /// Units people write, as the end of a key, with the unit they measure in and how many of that they are.
@@ -48,9 +45,7 @@ const UNITS: &[(&str, &str, f64)] = &[
 pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
     // Names are compared letter by letter; nobody means a known key by a page of text.
     let short: String = unknown.chars().take(64).collect();
-    let renamed = todays_name(section, &short).map(|name| format!("the key is now called `{name}`"));
-    renamed
-        .or_else(|| same_quantity(section, keys, &short, value))
+    same_quantity(keys, &short, value)
         .or_else(|| {
             nearest(&short, keys.iter().map(|key| key.name)).map(|name| format!("did you mean `{name}`?"))
         })
@@ -58,12 +53,10 @@ pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: 
         .unwrap_or_else(|| all_names(section, keys))
 }
 
-/// The same key, by its name of today or an old one, with another unit, or without one.
-fn same_quantity(section: &str, keys: &[Key], unknown: &str, value: Option<f64>) -> Option<String> {
+/// The same key with another unit, or without one.
+fn same_quantity(keys: &[Key], unknown: &str, value: Option<f64>) -> Option<String> {
     let (stem, unit) = split_unit(unknown);
-    let old = renamed_keys(section).find(|(old, _)| split_unit(old).0 == stem).map(|(_, new)| new);
-    let is_meant = |key: &&Key| split_unit(key.name).0 == stem || Some(key.name) == old;
-    let right = keys.iter().filter(|key| !key.unit.is_empty()).find(is_meant)?;
+    let right = keys.iter().find(|key| !key.unit.is_empty() && split_unit(key.name).0 == stem)?;
     let converted = match (unit, value) {
         (Some((unit, factor)), Some(value)) if unit == right.unit && (factor - 1.0).abs() > 0.0 => {
             format!(": write {} = {}", right.name, rounded(value * factor))
@@ -115,21 +108,6 @@ mod tests {
             remedy("robot", keys("robot"), "speed_max_kmh", Some(3.6)),
             "`speed_max_m_per_s` is the key, in m/s: write speed_max_m_per_s = 1"
         );
-    }
-
-    #[test]
-    fn a_renamed_key_gets_its_new_name() {
-        let remedy = remedy("tether", keys("tether"), "reel_m", Some(9.0));
-        assert_eq!(remedy, "the key is now called `reel_length_m`");
-    }
-
-    #[test]
-    fn a_renamed_key_with_another_unit_is_converted() {
-        let tether = |unknown| remedy("tether", keys("tether"), unknown, Some(9000.0));
-        assert_eq!(tether("reel_mm"), "`reel_length_m` is the key, in m: write reel_length_m = 9");
-        assert_eq!(tether("max_wrap"), "`wrap_max_deg` is the key, in deg");
-        let robot = remedy("robot", keys("robot"), "land_speed_kmh", Some(3.6));
-        assert_eq!(robot, "`land_speed_max_m_per_s` is the key, in m/s: write land_speed_max_m_per_s = 1");
     }
 
     #[test]

@@ -99,10 +99,10 @@ mod tests {
     #[test]
     fn both_readers_read_the_same() {
         let pose = json!({ "position": [1.25, -0.1], "heading_rad": 0.3 });
-        let covariance = [0.01, 0.0, 0.0, 0.0, 0.02, 0.0, 0.0, 0.0, 0.001];
+        let covariance = [0.01, 0.0, 0.0, 0.02, 0.0, 0.001];
         let estimate = json!({ "position": [1.0, 2.0], "heading_rad": 0.5, "covariance": covariance });
         let fix = json!({
-            "position": [1.0, 2.0], "covariance": [0.01, 0.0, 0.0, 0.02], "used": [1, 2, 3],
+            "position": [1.0, 2.0], "covariance": [0.01, 0.0, 0.02], "used": [1, 2, 3],
             "residuals": [{ "station": 1, "residual_m": -0.02, "sigma_m": 0.05 }],
             "excluded": [[4, { "residual": { "residual_m": 0.6, "gate_m": 0.2 } }]], "degrees_of_freedom": 1,
             "chi2": 1.5, "gdop": 1.2, "conditioning": 1.4, "mirror": null, "protection_level_m": 0.3, "integrity": "ok",

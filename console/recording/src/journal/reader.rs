@@ -8,7 +8,6 @@ use super::{
     lines::{Lines, is_packed},
     plain,
     unpacker::FrameStart,
-    upgrade,
 };
 use foreign::open_regular;
 use mission::{Event, EventKind, event::JOURNAL_VERSION};
@@ -35,7 +34,6 @@ pub struct JournalPlace {
     pub bytes: u64,
     /// Lines before it.
     lines: usize,
-    version: Option<u32>,
     /// From where on the file is read to get there.
     frame: FrameStart,
 }
@@ -59,7 +57,6 @@ pub struct JournalReader {
     /// Bytes of the lines that were read.
     bytes: u64,
     line: usize,
-    version: Option<u32>,
     ended: bool,
     truncated: Option<String>,
     unended_bytes: u64,
@@ -108,13 +105,13 @@ impl JournalReader {
     /// # Errors
     /// [`JournalError::Read`] if there is none any more.
     pub fn open_at(path: &Path, place: JournalPlace) -> Result<Self, JournalError> {
-        let JournalPlace { bytes, lines, version, frame } = place;
+        let JournalPlace { bytes, lines, frame } = place;
         let failed = |error| read_error(path, &error);
         let mut file = open_regular(path).map_err(failed)?;
         file.seek(SeekFrom::Start(frame.file)).map_err(failed)?;
         let mut reader = Self::of(file, path, frame)?;
         io::copy(&mut reader.lines.text().take(bytes - frame.content), &mut io::sink()).map_err(failed)?;
-        Ok(Self { bytes, line: lines, version, ..reader })
+        Ok(Self { bytes, line: lines, ..reader })
     }
 
     /// Opens a journal somewhat before its end, for who wants to know how far it goes; its first line is not among what is read,
@@ -129,13 +126,13 @@ impl JournalReader {
         let file = open_regular(path).map_err(failed)?;
         if is_packed(path) {
             let starts = frames::starts(&file).map_err(failed)?;
-            return Self::open_at(path, place_in(starts.last().copied().unwrap_or_default(), reader.version));
+            return Self::open_at(path, place_in(starts.last().copied().unwrap_or_default()));
         }
         let length = file.metadata().map_err(failed)?.len();
         if length <= END_BYTES {
             return Self::open(path);
         }
-        let mut end = Self::open_at(path, place_in(length - END_BYTES, reader.version))?;
+        let mut end = Self::open_at(path, place_in(length - END_BYTES))?;
         // It begins within a line.
         let mut cut = end.lines.text().take(MOST_LINE_BYTES as u64);
         cut.skip_until(b'\n').map_err(failed)?;
@@ -155,14 +152,14 @@ impl JournalReader {
         reader.next_line()?;
         let failed = |error| read_error(path, &error);
         let starts = frames::starts(&open_regular(path).map_err(failed)?).map_err(failed)?;
-        let place = |file| place_in(file, reader.version);
         let (mut first, mut after) = (0, starts.len());
         while first + 1 < after {
             let middle = usize::midpoint(first, after);
-            let begin = Self::open_at(path, place(starts[middle]))?.next_line()?.map(|line| line.event.t_s);
+            let begin =
+                Self::open_at(path, place_in(starts[middle]))?.next_line()?.map(|line| line.event.t_s);
             *(if begin.is_some_and(|begin_s| begin_s < t_s) { &mut first } else { &mut after }) = middle;
         }
-        Self::open_at(path, place(starts.get(first).copied().unwrap_or_default()))
+        Self::open_at(path, place_in(starts.get(first).copied().unwrap_or_default()))
     }
 
     /// Bytes of the lines that were read.
@@ -173,7 +170,7 @@ impl JournalReader {
     /// Where the next event begins.
     pub fn place(&self) -> JournalPlace {
         let frame = self.lines.frame_before(self.bytes);
-        JournalPlace { bytes: self.bytes, lines: self.line, version: self.version, frame }
+        JournalPlace { bytes: self.bytes, lines: self.line, frame }
     }
 
     fn of(bytes: impl Read + Send + 'static, path: &Path, at: FrameStart) -> Result<Self, JournalError> {
@@ -186,7 +183,6 @@ impl JournalReader {
             is_verbatim: false,
             bytes: 0,
             line: 0,
-            version: None,
             ended: false,
             truncated: None,
             unended_bytes: 0,
@@ -212,12 +208,6 @@ impl JournalReader {
             }
         }
     }
-
-    /// Version of the format; known after the first event.
-    pub fn version(&self) -> Option<u32> {
-        self.version
-    }
-
     /// After the end: what is missing, if the journal is empty or its last line is cut off.
     pub fn truncated(&self) -> Option<&str> {
         self.truncated.as_deref()
@@ -256,7 +246,7 @@ impl JournalReader {
         }
         match self.parse() {
             Ok(event) => Ok(Some(event)),
-            Err(error @ JournalError::Newer { .. }) => Err(error),
+            Err(error @ JournalError::OtherVersion { .. }) => Err(error),
             Err(_) if !whole => Ok(None),
             Err(error) => Err(error),
         }
@@ -278,25 +268,21 @@ impl JournalReader {
 
     fn parse(&mut self) -> Result<Event, JournalError> {
         if self.line == 1 {
-            self.version = Some(self.check_head()?);
+            self.check_head()?;
         }
-        let is_old = self.version.is_some_and(|version| version < upgrade::RENAMED_IN);
         let plain = if self.is_verbatim { None } else { plain::line(&self.text) };
         let text = plain.as_deref().unwrap_or(&self.text);
-        let quick = if is_old || !limits::is_bearable(text) { None } else { fast::event(text) };
+        let quick = if !limits::is_bearable(text) { None } else { fast::event(text) };
         let mut event = match quick {
             Some(event) => event,
             None if !limits::is_light(text) => {
                 return Err(self.damaged(1, "the line holds more values than any event does".to_owned()));
             }
-            None if is_old => upgrade::event(text).map_err(|error| self.misunderstood(&error))?,
-            None => serde_json::from_slice(text).map_err(|error| self.misunderstood(&error))?,
+            None => serde_json::from_slice(text)
+                .map_err(|error| self.damaged(error.column().max(1), without_position(&error)))?,
         };
         if let (EventKind::RunOpened(run), true) = (&mut event.kind, plain.is_some()) {
             run.scenario_toml = self.scenario_as_written().unwrap_or_default();
-        }
-        if self.version.is_some_and(|version| version < upgrade::LINES_WITHOUT_ENDS_SINCE) {
-            upgrade::cut_ends(&mut event);
         }
         self.pace.take(&event, self.text.len()).map_err(|why| self.damaged(1, why))?;
         Ok(event)
@@ -322,29 +308,19 @@ impl JournalReader {
         read_error(&self.path, error)
     }
 
-    fn misunderstood(&self, error: &serde_json::Error) -> JournalError {
-        let (line, why, path) = (self.line, without_position(error), self.path.clone());
-        match self.version {
-            Some(theirs) if theirs < JOURNAL_VERSION && error.is_data() => {
-                JournalError::Older { theirs, ours: JOURNAL_VERSION, line, why, path }
-            }
-            _ => self.damaged(error.column().max(1), why),
-        }
-    }
-
-    /// The version that the first line names.
-    fn check_head(&self) -> Result<u32, JournalError> {
+    /// Whether the first line opens a run, in the version that is read.
+    fn check_head(&self) -> Result<(), JournalError> {
         let refuse = |why| JournalError::NotAJournal { why, path: self.path.clone() };
         let head: Head =
             serde_json::from_slice(&self.text).map_err(|error| refuse(without_position(&error)))?;
         if head.event != "run_opened" {
             return Err(refuse(format!("it is {}", head.event)));
         }
-        if head.journal_version > JOURNAL_VERSION {
-            let theirs = head.journal_version;
-            return Err(JournalError::Newer { theirs, ours: JOURNAL_VERSION, path: self.path.clone() });
+        let (theirs, ours) = (head.journal_version, JOURNAL_VERSION);
+        if theirs != ours {
+            return Err(JournalError::OtherVersion { theirs, ours, path: self.path.clone() });
         }
-        Ok(head.journal_version)
+        Ok(())
     }
 }
 
@@ -363,8 +339,8 @@ fn without_position(error: &serde_json::Error) -> String {
 }
 
 /// A place in a file of which nothing is known of the lines before.
-fn place_in(file: u64, version: Option<u32>) -> JournalPlace {
-    JournalPlace { frame: FrameStart { file, content: 0 }, bytes: 0, lines: usize::from(file > 0), version }
+fn place_in(file: u64) -> JournalPlace {
+    JournalPlace { frame: FrameStart { file, content: 0 }, bytes: 0, lines: usize::from(file > 0) }
 }
 
 fn read_error(path: &Path, error: &io::Error) -> JournalError {
