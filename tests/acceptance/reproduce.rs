@@ -143,3 +143,16 @@ fn a_search_with_a_folder_gives_what_one_without_gives_and_computes_nothing_twic
     assert_eq!(first.json()["parameters"], alone["parameters"]);
     assert_eq!(first.json()["training_loss"], alone["training_loss"]);
 }
+
+#[test]
+fn a_tankops_without_the_program_of_the_studies_says_how_to_build_it() {
+    let bench = Bench::new();
+    let alone = bench.path().join("tankops");
+    std::fs::copy(env!("CARGO_BIN_EXE_tankops"), &alone).unwrap();
+    for words in [&["reproduce"][..], &["tune", "--planner", "rpf", "--on", "wang-d1"]] {
+        let ended = std::process::Command::new(&alone).args(words).output().unwrap();
+        let why = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(2), "{ended:?}");
+        assert!(why.contains("tankops-research") && why.contains("cargo build --release --workspace"), "{why}");
+    }
+}

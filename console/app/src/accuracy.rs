@@ -2,8 +2,9 @@
 
 use crate::{
     cli::AccuracyArgs,
-    output::{check_free, say_json, write_file},
+    output::{check_free, write_file},
 };
+use command::json::say_json;
 use flight::{
     failure::{COMPLETE, bad_input},
     scenarios,

@@ -9,16 +9,14 @@ mod work;
 
 use crate::{
     cli::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs},
-    output::say_json,
-    reproduce::shown,
     stop_signal::{self, StopSignal},
 };
 use ::campaign::{Campaign, Row, Status, compare};
+use command::{bar::shown, here::Here, json::say_json};
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
 use folder::Folder;
 use indicatif::ProgressBar;
 use planner_host::PluginDirs;
-pub(crate) use prepare::Here;
 use prepare::freeze;
 use report::print::{say, say_line, warn_line};
 use std::{path::Path, process::ExitCode, thread::available_parallelism};

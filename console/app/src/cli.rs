@@ -8,7 +8,6 @@ mod files;
 mod flight;
 mod logs;
 mod past;
-mod research;
 
 pub(crate) use author::{Lang, NewPlannerArgs, ReplayWorkerArgs};
 pub(crate) use campaign::{CampaignCommand, CompareArgs, Engine, OutArgs, RunCampaignArgs, WorkArgs};
@@ -18,9 +17,9 @@ pub(crate) use files::{FindArg, ImportArgs, LocateArgs, MapArgs};
 pub(crate) use flight::{AccuracyArgs, PlanArgs, RunArgs, ShadowArgs};
 pub(crate) use logs::LogsArg;
 pub(crate) use past::{EventsArgs, ExportArgs, ReportArgs, RescanArgs};
-pub(crate) use research::{ReproduceArgs, TuneArgs};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
+use command::arguments::{PluginArgs, ReproduceArgs, TuneArgs};
 use std::path::PathBuf;
 
 /// Console for robots that inspect the floors of oil storage tanks.
@@ -33,18 +32,6 @@ pub(crate) struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub plugins: PluginArgs,
-}
-
-/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`, and when they are
-/// refused.
-#[derive(Debug, Clone, Default, Args)]
-pub(crate) struct PluginArgs {
-    /// Additional folder of planner plugins, searched first; repeatable.
-    #[arg(long, value_name = "DIR", global = true)]
-    pub plugin_dir: Vec<PathBuf>,
-    /// Refuse planners unless the system fully sandboxes their processes (Linux with Landlock and seccomp).
-    #[arg(long, global = true)]
-    pub require_sandbox: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -3,12 +3,12 @@
 use crate::{
     accuracy::warn_of_positions,
     cli::{LogsArg, RunArgs},
-    output::pretty_json,
     planners::warn_of_shadowed,
     progress,
     shadowing::Shadowing,
     stop_signal::{self, StopSignal},
 };
+use command::json::pretty_json;
 use flight::{
     Flight,
     answers::{InOrder, Window, Windowed},

@@ -5,9 +5,10 @@ mod words;
 use crate::{
     cli::{FindArg, LocateArgs},
     input,
-    output::{check_free, say_json},
+    output::check_free,
 };
 use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
+use command::json::say_json;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
     scenarios,

@@ -9,7 +9,6 @@ mod headless;
 mod import;
 mod input;
 mod locate;
-mod machine;
 mod manual;
 mod map;
 mod new_planner;
@@ -20,28 +19,25 @@ mod planners;
 mod progress;
 mod replay_worker;
 mod report_file;
-mod reproduce;
 mod rescan;
+mod research;
 mod shadowing;
-mod shared_folder;
 mod signing;
 mod stop_signal;
-mod study_folder;
 mod threads;
 mod trial;
-mod tune;
 mod waiting;
 
 use clap::Parser;
 use cli::{Cli, Command, ConsoleArgs, LogsArg};
-use flight::{
-    failure::{BAD_INPUT, INTERNAL, bad_input, is_input},
-    scenarios,
+use command::{
+    machine,
+    start::{close_memory, fail, survive_file_size_limit},
 };
+use flight::scenarios;
 use planner_host::PluginDirs;
-use report::print::warn_line;
 use scenario::Settings;
-use std::{io::IsTerminal, process::ExitCode, sync::Arc};
+use std::{io::IsTerminal, process::ExitCode};
 
 fn main() -> ExitCode {
     if let Err(error) = machine::check_stack() {
@@ -59,18 +55,6 @@ fn main() -> ExitCode {
     dispatch(cli).unwrap_or_else(|error| fail(&error))
 }
 
-/// Reports a failure on stderr; the exit code distinguishes input errors from internal ones.
-fn fail(error: &anyhow::Error) -> ExitCode {
-    if is_input(error) {
-        let text = error.to_string();
-        let prefix = if text.starts_with("error") { "" } else { "error: " };
-        warn_line(&format!("{prefix}{}", text.trim_end()));
-        return ExitCode::from(BAD_INPUT);
-    }
-    warn_line(&format!("error: {error:#}"));
-    ExitCode::from(INTERNAL)
-}
-
 /// Has the allocator give large blocks back to the system at once, and all threads share one heap: with a heap for each
 /// thread and blocks kept for later, a console holds twice what it uses. Headless runs do without: at full speed their threads would wait for each other.
 fn keep_memory_small() {
@@ -86,35 +70,11 @@ fn keep_memory_small() {
     }
 }
 
-/// Keeps other processes of the same user, planners among them, from reading or changing this one; leaves no core dump.
-fn close_memory() {
-    #[cfg(target_os = "linux")]
-    {
-        use rustix::process::{DumpableBehavior, set_dumpable_behavior};
-        // Where the system refuses, planners are still closed off.
-        let _ = set_dumpable_behavior(DumpableBehavior::NotDumpable);
-    }
-}
-
-/// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.
-///
-/// A handler that does nothing, because ignoring the signal would be inherited by the planners' processes.
-fn survive_file_size_limit() {
-    // Without a handler the signal ends the process, as it does by default.
-    let _ = signal_hook::flag::register(libc::SIGXFSZ, Arc::default());
-}
-
 fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
-    if let Some(missing) = cli.plugins.plugin_dir.iter().find(|dir| !dir.is_dir()) {
-        return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
-    }
+    let plugins = cli.plugins.dirs()?;
     machine::check()?;
-    threads::check(threads::needed(cli.command.as_ref()))?;
+    command::threads::check(threads::needed(cli.command.as_ref()))?;
     let _pipes = waiting::for_pipes(cli.command.as_ref());
-    let plugins = PluginDirs {
-        requires_sandbox: cli.plugins.require_sandbox,
-        ..PluginDirs::standard(&cli.plugins.plugin_dir)
-    };
     match cli.command {
         None => by_default(&plugins),
         Some(Command::Console(args)) => interactive::open(&args.into(), &plugins),
@@ -129,8 +89,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
             trial::fly(&files, &plugins, (n, seed), json, keep.as_deref())
         }
         Some(Command::Check { files, .. }) => planners::check(&files, &plugins),
-        Some(Command::Reproduce(args)) => reproduce::reproduce(&args, &plugins),
-        Some(Command::Tune(args)) => tune::tune(&args, &plugins),
+        Some(Command::Reproduce(_) | Command::Tune(_)) => research::hand_over(),
         Some(Command::Replay(args)) => interactive::open(&args.into(), &plugins),
         Some(Command::Campaign(command)) => campaign::campaign(&command, &plugins),
         Some(Command::Runs { json, logs }) => past_runs::list(&logs, json),

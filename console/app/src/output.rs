@@ -1,26 +1,11 @@
-//! Results as JSON and as files.
+//! Results as files.
 
-use anyhow::Context;
 use flight::failure::bad_input;
 use foreign::{plain_json, plain_lines};
 use report::document::Revision;
-use report::print::say_line;
 use review::register;
 use runs::is_run;
-use serde::Serialize;
 use std::{borrow::Cow, fs, io, os::unix::fs::MetadataExt, path::Path};
-
-/// A value as JSON for people to read, in plain characters; `name` is what an error calls it.
-pub(crate) fn pretty_json(name: &str, value: &impl Serialize) -> anyhow::Result<String> {
-    let text = serde_json::to_string_pretty(value).with_context(|| format!("writing {name} as JSON"))?;
-    Ok(plain_json(&text).into_owned() + "\n")
-}
-
-/// Writes a value to stdout as a line of JSON; `name` is what an error calls it.
-pub(crate) fn say_json(name: &str, value: &impl Serialize) -> anyhow::Result<()> {
-    let text = serde_json::to_string(value).with_context(|| format!("writing {name} as JSON"))?;
-    Ok(say_line(&plain_json(&text))?)
-}
 
 /// Makes sure that a file that the user asked for may be written: what is there is never written over, also behind a link, unless
 /// that is asked for; `force` is `None` where a command has no `--force`. What the command itself reads (`inputs`), a signed report and

@@ -2,10 +2,10 @@
 
 use crate::{
     cli::{LogsArg, ReportArgs},
-    output::pretty_json,
     report_file,
 };
 use ::locate::Again;
+use command::json::pretty_json;
 use flight::failure::{COMPLETE, ENDED_OTHERWISE, bad_input};
 use planner_host::PluginDirs;
 use report::{

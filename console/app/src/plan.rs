@@ -2,9 +2,10 @@
 
 use crate::{
     cli::PlanArgs,
-    output::{check_free, say_json, write_file},
+    output::{check_free, write_file},
     progress,
 };
+use command::json::say_json;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},
     hosts, planners, scenarios,

@@ -1,6 +1,7 @@
 //! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
 
-use crate::{accuracy::warn_of_positions, output::pretty_json};
+use crate::accuracy::warn_of_positions;
+use command::json::pretty_json;
 use flight::{
     failure::{BAD_INPUT, COMPLETE, is_input},
     planners::{self, check_installed},

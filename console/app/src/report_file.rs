@@ -2,12 +2,13 @@
 
 use crate::{
     cli::ReportArgs,
-    output::{check_free, pretty_json, write_file},
+    output::{check_free, write_file},
     signing::{
         Chain, refuse_doubts, refuse_not_located_again, refuse_not_recomputed, refuse_open_items,
         refuse_other_signer, seal, signature,
     },
 };
+use command::json::pretty_json;
 use flight::{
     failure::{COMPLETE, bad_input},
     texts,

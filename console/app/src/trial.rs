@@ -1,6 +1,7 @@
 //! `tankops check PLUGIN --fly N`: what a planner must do, and how it flies beside the others.
 
-use crate::output::{pretty_json, write_file};
+use crate::output::write_file;
+use command::json::pretty_json;
 use conformance::{Lost, Others, Trial};
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input},

@@ -1,8 +1,8 @@
 //! The folder of a campaign: what is frozen, the parts, what they cost, and who works on what.
 
-use crate::shared_folder::SharedFolder;
 use anyhow::Context;
 use campaign::{Campaign, Table, TableError, part};
+use command::shared_folder::SharedFolder;
 use flight::failure::bad_input;
 use foreign::{open_regular, read_regular};
 use std::{

@@ -1,64 +1,15 @@
 //! From a plan to a frozen campaign: everything is checked before the first mission.
 
-use anyhow::{Context, anyhow};
-use campaign::{Campaign, Plan, PlanKey, Program, ScenarioText, table::hex};
+use campaign::{Campaign, Plan, PlanKey, ScenarioText, table::hex};
+use command::here::Here;
 use flight::{
     failure::bad_input,
     planners::{Found, check_choices, choice_of},
     texts,
 };
-use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_limits};
 use scenario::{Scenario, Settings};
 use sha2::{Digest, Sha256};
-use std::{collections::BTreeMap, fs, path::Path};
-
-/// What flies a campaign here, found once for a process.
-pub(crate) struct Here {
-    pub program: Program,
-    pub found: Found,
-}
-
-impl Here {
-    /// Looks at the program and at every plugin.
-    pub(crate) fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
-        check_limits(plugins).map_err(anyhow::Error::msg)?;
-        let worker = WorkerCommand::default();
-        let surveyor = Surveyor::new(plugins, &worker);
-        let survey = surveyor.survey();
-        if let Some(why) = surveyor.no_worker() {
-            return Err(anyhow!("a planner plugin {why}"));
-        }
-        let program = std::env::current_exe().and_then(fs::read).context("reading the program itself")?;
-        let sound = survey.plugins.iter().filter(|plugin| plugin.refused.is_none());
-        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let program = Program {
-            tankops_version: env!("CARGO_PKG_VERSION").to_owned(),
-            tankops_sha256: hex(&Sha256::digest(&program)),
-            plugins_sha256: sound.map(|plugin| (name(&plugin.path), plugin.sha256.clone())).collect(),
-        };
-        Ok(Self { program, found: Found::from(&survey) })
-    }
-
-    /// Makes sure that a campaign was frozen with what is here.
-    pub(crate) fn check(&self, campaign: &Campaign) -> anyhow::Result<()> {
-        if campaign.program == self.program {
-            return Ok(());
-        }
-        let plugins = &self.program.plugins_sha256;
-        let differs = |(name, sha256): &(&String, &String)| plugins.get(*name) != Some(*sha256);
-        let other = campaign.program.plugins_sha256.iter().find(differs).map(|(name, _)| name.as_str());
-        let what = match other {
-            Some(plugin) => format!("plugin {plugin} is not the one"),
-            None if campaign.program.tankops_sha256 != self.program.tankops_sha256 => {
-                "tankops is not the one".to_owned()
-            }
-            None => "there are other plugins than those".to_owned(),
-        };
-        Err(bad_input(format!(
-            "{what} that the campaign was prepared with; prepare it again, with another --out"
-        )))
-    }
-}
+use std::{collections::BTreeMap, path::Path};
 
 /// Reads a plan and freezes it with the texts of its scenarios.
 pub(crate) fn freeze(file: &Path, here: &Here) -> anyhow::Result<Campaign> {

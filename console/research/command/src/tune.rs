@@ -1,10 +1,11 @@
 //! `tankops tune`: better parameters, evaluated on layouts that they were not tuned on.
 
-use crate::{cli::TuneArgs, output::say_json, reproduce::shown, study_folder::StudyFolder};
+use crate::study_folder::StudyFolder;
 use ::reproduce::{
     Parts, Runner,
     tune::{Tuned, Tuning},
 };
+use command::{arguments::TuneArgs, bar::shown, json::say_json};
 use flight::{
     failure::{COMPLETE, bad_input},
     planners,

@@ -19,31 +19,34 @@ const CLAIMS: &str = "claims";
 
 /// A folder that processes share.
 #[derive(Debug, Clone)]
-pub(crate) struct SharedFolder(PathBuf);
+pub struct SharedFolder(PathBuf);
 
 impl SharedFolder {
-    pub(crate) fn new(path: &Path) -> Self {
+    /// The folder at a path.
+    pub fn new(path: &Path) -> Self {
         Self(path.to_owned())
     }
 
-    pub(crate) fn path(&self) -> &Path {
+    /// Its path.
+    pub fn path(&self) -> &Path {
         &self.0
     }
 
     /// Makes the folder with these folders in it, and one for claims, where they are missing.
-    pub(crate) fn make(&self, inner: &[&str]) -> anyhow::Result<()> {
+    pub fn make(&self, inner: &[&str]) -> anyhow::Result<()> {
         for folder in inner.iter().chain([&CLAIMS]).map(|inner| self.0.join(inner)) {
             fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         }
         Ok(())
     }
 
-    pub(crate) fn has(&self, name: &Path) -> bool {
+    /// Whether it holds a file or a folder of this name.
+    pub fn has(&self, name: &Path) -> bool {
         self.0.join(name).exists()
     }
 
     /// The bytes of a regular file, if it is there.
-    pub(crate) fn read(&self, name: &Path) -> io::Result<Option<Vec<u8>>> {
+    pub fn read(&self, name: &Path) -> io::Result<Option<Vec<u8>>> {
         let mut bytes = Vec::new();
         match open_regular(&self.0.join(name)).and_then(|mut file| file.read_to_end(&mut bytes)) {
             Ok(_) => Ok(Some(bytes)),
@@ -53,7 +56,7 @@ impl SharedFolder {
     }
 
     /// Writes a file whole or not at all: under another name, to the disk, then renamed.
-    pub(crate) fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    pub fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let file = self.0.join(name);
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_nanos();
         let draft = file.with_extension(format!("draft-{}-{now}", std::process::id()));
@@ -61,7 +64,7 @@ impl SharedFolder {
     }
 
     /// Removes what killed processes have left in these folders; what others are writing now stays.
-    pub(crate) fn tidy(&self, inner: &[&str]) {
+    pub fn tidy(&self, inner: &[&str]) {
         let now = self.now();
         for folder in inner.iter().map(|inner| self.0.join(inner)) {
             let files = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -87,12 +90,12 @@ impl SharedFolder {
     }
 
     /// Where a claim is; it holds the machine and the process.
-    pub(crate) fn claim_file(&self, name: &str) -> PathBuf {
+    pub fn claim_file(&self, name: &str) -> PathBuf {
         self.0.join(CLAIMS).join(name)
     }
 
     /// Takes something for this process alone; false if another one has it.
-    pub(crate) fn claim(&self, name: &str) -> bool {
+    pub fn claim(&self, name: &str) -> bool {
         let claim = self.claim_file(name);
         if claim.exists() && is_void(&claim, self.now()) {
             // Two that find it void do at worst the same work twice.
@@ -109,7 +112,7 @@ impl SharedFolder {
     }
 
     /// Says that the holder of a claim is alive.
-    pub(crate) fn keep_claim(&self, name: &str) {
+    pub fn keep_claim(&self, name: &str) {
         let now = Timespec { tv_sec: 0, tv_nsec: UTIME_NOW };
         let touched = File::options().write(true).open(self.claim_file(name));
         // Without it the work is at worst done twice.
@@ -117,7 +120,7 @@ impl SharedFolder {
     }
 
     /// Gives something back.
-    pub(crate) fn release(&self, name: &str) {
+    pub fn release(&self, name: &str) {
         // A claim that stays is void after a while.
         let _ = fs::remove_file(self.claim_file(name));
     }

@@ -12,7 +12,7 @@ const STACK: u64 = 1 << 20;
 ///
 /// # Errors
 /// It does not; the sentence names the limit.
-pub(crate) fn check_stack() -> anyhow::Result<()> {
+pub fn check_stack() -> anyhow::Result<()> {
     enough(getrlimit(Resource::Stack).current, STACK, "stack", 's').map_err(|why| anyhow!(why))
 }
 
@@ -20,7 +20,7 @@ pub(crate) fn check_stack() -> anyhow::Result<()> {
 ///
 /// # Errors
 /// It does not; the sentence names the limit.
-pub(crate) fn check() -> anyhow::Result<()> {
+pub fn check() -> anyhow::Result<()> {
     enough(getrlimit(Resource::As).current, ADDRESS_SPACE, "address space", 'v').map_err(|why| anyhow!(why))
 }
 

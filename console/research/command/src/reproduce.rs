@@ -1,16 +1,17 @@
 //! `tankops reproduce`: the papers' tables, ours beside the printed values.
 
-use crate::{cli::ReproduceArgs, output::say_json, study_folder::StudyFolder};
+use crate::study_folder::StudyFolder;
 use ::reproduce::{
     Gallery, Options, Parts, Runner,
     account::{PAPERS, Paper},
     csv, gallery, studies, study, table,
 };
+use command::{arguments::ReproduceArgs, bar::shown, json::say_json};
 use flight::failure::{COMPLETE, bad_input};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use planner_host::PluginDirs;
 use report::print::say;
-use std::{io::IsTerminal, process::ExitCode};
+use std::process::ExitCode;
 
 /// A list of cases has so many parts at most: few files, and work for many machines.
 const MOST_PARTS: usize = 256;
@@ -85,13 +86,4 @@ fn list(json: bool) -> anyhow::Result<()> {
     };
     let all: Vec<serde_json::Value> = studies.chain(PAPERS.iter().flat_map(of_paper)).collect();
     say_json("the list", &all)
-}
-
-/// Shows work on stderr, if that is a terminal: rows on stdout, for people or as JSON, do not suffer from it.
-pub(crate) fn shown(bar: ProgressBar, name: &'static str, template: &str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    bar.with_prefix(name).with_style(style)
 }

@@ -1,7 +1,7 @@
 //! The folder of a study or a search: what was asked for, and the answers so far. The same command with the same folder
 //! resumes, and shares the work with those that run at the same time.
 
-use crate::{campaign::Here, shared_folder::SharedFolder};
+use command::{here::Here, shared_folder::SharedFolder};
 use flight::failure::bad_input;
 use planner_host::PluginDirs;
 use report::print::warn_line;

@@ -1,10 +1,38 @@
-//! Studies of papers, and the search for parameters.
+//! Options that both programs read: where planners are, and what a study or a search takes.
 
 use clap::Args;
+use flight::failure::bad_input;
+use planner_host::PluginDirs;
 use std::path::PathBuf;
 
+/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`, and when they are
+/// refused.
+#[derive(Debug, Clone, Default, Args)]
+pub struct PluginArgs {
+    /// Additional folder of planner plugins, searched first; repeatable.
+    #[arg(long, value_name = "DIR", global = true)]
+    pub plugin_dir: Vec<PathBuf>,
+    /// Refuse planners unless the system fully sandboxes their processes (Linux with Landlock and seccomp).
+    #[arg(long, global = true)]
+    pub require_sandbox: bool,
+}
+
+impl PluginArgs {
+    /// The folders of plugins.
+    ///
+    /// # Errors
+    /// One that was named does not exist.
+    pub fn dirs(&self) -> anyhow::Result<PluginDirs> {
+        if let Some(missing) = self.plugin_dir.iter().find(|dir| !dir.is_dir()) {
+            return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
+        }
+        Ok(PluginDirs { requires_sandbox: self.require_sandbox, ..PluginDirs::standard(&self.plugin_dir) })
+    }
+}
+
+/// What `reproduce` takes.
 #[derive(Debug, Args)]
-pub(crate) struct ReproduceArgs {
+pub struct ReproduceArgs {
     /// What to reproduce; default: list everything.
     pub name: Option<String>,
     /// Number of layouts or draws per case; the default depends on the study.
@@ -42,8 +70,9 @@ pub(crate) struct ReproduceArgs {
     pub list: bool,
 }
 
+/// What `tune` takes.
 #[derive(Debug, Args)]
-pub(crate) struct TuneArgs {
+pub struct TuneArgs {
     /// Planner to tune.
     #[arg(long, value_name = "ID")]
     pub planner: String,

@@ -1,0 +1,24 @@
+//! `tankops reproduce` and `tankops tune` are in a program of their own, so that an operator need not wait for it to be built.
+
+use anyhow::Context;
+use flight::failure::bad_input;
+use std::{env, os::unix::process::CommandExt, process, process::ExitCode};
+
+/// The program, beside this one.
+const PROGRAM: &str = "tankops-research";
+
+/// Goes on as the other program, with the same arguments.
+///
+/// # Errors
+/// It is not there, or cannot be started.
+pub(crate) fn hand_over() -> anyhow::Result<ExitCode> {
+    let program = env::current_exe().context("finding the program itself")?.with_file_name(PROGRAM);
+    if !program.exists() {
+        return Err(bad_input(format!(
+            "this command needs the program {}, which does not exist: build it with `cargo build --release --workspace`",
+            program.display()
+        )));
+    }
+    let failed = process::Command::new(&program).args(env::args_os().skip(1)).exec();
+    Err(failed).with_context(|| format!("starting {}", program.display()))
+}
