@@ -153,6 +153,9 @@ fn a_tankops_without_the_program_of_the_studies_says_how_to_build_it() {
         let ended = std::process::Command::new(&alone).args(words).output().unwrap();
         let why = String::from_utf8_lossy(&ended.stderr).into_owned();
         assert_eq!(ended.status.code(), Some(2), "{ended:?}");
-        assert!(why.contains("tankops-research") && why.contains("cargo build --release --workspace"), "{why}");
+        assert!(
+            why.contains("tankops-research") && why.contains("cargo build --release --workspace"),
+            "{why}"
+        );
     }
 }
