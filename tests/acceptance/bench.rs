@@ -3,7 +3,7 @@
 use recording::{JOURNAL_FILE, PLAIN_JOURNAL_FILE};
 use serde_json::Value;
 use std::{
-    io::Read,
+    io::{Read, Write},
     path::{Path, PathBuf},
     process::{Command, Output},
 };
@@ -17,6 +17,16 @@ pub(crate) fn workspace() -> PathBuf {
 /// A scenario that is shipped.
 pub(crate) fn scenario(name: &str) -> PathBuf {
     workspace().join("scenarios").join(name)
+}
+
+/// Says that a test is passed over, and why; the check of the project lists these lines at its end.
+#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
+pub(crate) fn passed_over(why: &str) {
+    let line = format!("passed over: {why}");
+    eprintln!("{line}");
+    let Some(list) = std::env::var_os("TANKOPS_PASSED_OVER") else { return };
+    let list = std::fs::OpenOptions::new().create(true).append(true).open(list);
+    writeln!(list.unwrap(), "{line}").unwrap();
 }
 
 /// A fresh folder for runs and files, and the command to work in it.

@@ -1,7 +1,7 @@
 //! The lines of the guide that hand a campaign to another engine, as they stand in it.
 
 use crate::{
-    bench::{Bench, workspace},
+    bench::{Bench, passed_over, workspace},
     campaign::{campaign, plan, table},
 };
 use std::{
@@ -52,10 +52,9 @@ fn prepared(bench: &Bench) -> Vec<u8> {
 }
 
 #[test]
-#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
 fn gnu_parallel_flies_a_campaign_by_the_line_of_the_guide() {
     if !is_there("parallel", "GNU parallel") {
-        eprintln!("passed over: GNU parallel is not installed");
+        passed_over("GNU parallel is not installed");
         return;
     }
     let bench = Bench::new();
@@ -82,10 +81,9 @@ fn every_pod_of_the_kubernetes_job_of_the_guide_flies_its_block() {
 }
 
 #[test]
-#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
 fn hyperqueue_flies_a_campaign_by_the_line_of_the_guide() {
     if !is_there("hq", "hq") {
-        eprintln!("passed over: HyperQueue is not installed");
+        passed_over("HyperQueue is not installed");
         return;
     }
     let bench = Bench::new();

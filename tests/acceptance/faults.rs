@@ -1,6 +1,6 @@
 //! Planners that misbehave: the robot holds within the tick, the operator sees the reason, the mission can continue.
 
-use crate::bench::{Bench, Ended, journal, of_kind, scenario};
+use crate::bench::{Bench, Ended, journal, of_kind, passed_over, scenario};
 
 /// Flies the goto scenario with the faulty planner; `apf` is its fallback.
 fn fly_faulty(bench: &Bench, fault: &str) -> Ended {
@@ -140,7 +140,7 @@ fn a_machine_that_grants_few_threads_is_said_so_before_anything_is_begun() {
     let other = [format!("--reuid={user}"), format!("--regid={user}"), "--clear-groups".to_owned()];
     let is_possible = std::process::Command::new("setpriv").args(&other).arg("true").status();
     if !is_possible.is_ok_and(|status| status.success()) {
-        eprintln!("passed over: this is not root, or setpriv is not installed");
+        passed_over("this is not root, or setpriv is not installed");
         return;
     }
     bench.fly(&mission, &[]);

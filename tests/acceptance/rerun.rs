@@ -1,7 +1,7 @@
 //! The queries of `rerun.md`, run as they stand there on a recording of a run.
 
 use crate::{
-    bench::{Bench, Ended, scenario, workspace},
+    bench::{Bench, Ended, passed_over, scenario, workspace},
     killed::{begin_and_kill, slow_scenario},
 };
 use std::{process::Command, time::Duration};
@@ -21,7 +21,7 @@ fn the_queries_of_the_document_run_on_a_recording() {
     let bench = Bench::new();
     let has_library = "import rerun, datafusion, pandas; assert rerun.__version__ == '0.36.3'";
     if python(&bench, has_library).is_none_or(|ended| ended.code != Some(0)) {
-        eprintln!("skipped: python3 has no rerun-sdk[catalog] 0.36.3");
+        passed_over("python3 has no rerun-sdk[catalog] 0.36.3");
         return;
     }
     let flown = bench.fly(&scenario("cover-circle.toml"), &[]).json();

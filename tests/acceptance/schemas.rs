@@ -1,6 +1,6 @@
 //! The JSON Schemas in `console/docs`, with an independent validator.
 
-use crate::bench::{Bench, journal_text, scenario, workspace};
+use crate::bench::{Bench, journal_text, passed_over, scenario, workspace};
 use std::process::Command;
 
 /// Validates a file of JSON lines; nothing may be there that the schema does not name.
@@ -57,7 +57,7 @@ fn shipped_runs_are_valid_by_their_schemas() {
         .args(["-c", "import jsonschema.validators as v; v.Draft202012Validator"])
         .output();
     if !has_library.is_ok_and(|ended| ended.status.success()) {
-        eprintln!("skipped: python3 has no jsonschema");
+        passed_over("python3 has no jsonschema");
         return;
     }
     for name in

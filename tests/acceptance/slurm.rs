@@ -2,7 +2,7 @@
 //! is passed over with a line.
 
 use crate::{
-    bench::Bench,
+    bench::{Bench, passed_over},
     campaign::{campaign, plan, table},
     engines::{line_of_the_guide, with_tankops_on_the_path},
 };
@@ -138,10 +138,9 @@ fn text(output: &Output) -> String {
 }
 
 #[test]
-#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
 fn an_array_with_a_task_requeued_and_a_task_killed_gives_the_same_table() {
     let Some(slurm) = Slurm::start() else {
-        eprintln!("passed over: slurmctld, slurmd and munged are not installed, or this is not root");
+        passed_over("slurmctld, slurmd and munged are not installed, or this is not root");
         return;
     };
     let bench = Bench::new();
@@ -172,10 +171,9 @@ fn an_array_with_a_task_requeued_and_a_task_killed_gives_the_same_table() {
 }
 
 #[test]
-#[allow(clippy::print_stderr, reason = "a test that is passed over says so")]
 fn a_study_is_shared_by_the_tasks_of_an_array_by_the_line_of_the_guide() {
     let Some(slurm) = Slurm::start() else {
-        eprintln!("passed over: slurmctld, slurmd and munged are not installed, or this is not root");
+        passed_over("slurmctld, slurmd and munged are not installed, or this is not root");
         return;
     };
     let bench = Bench::new();

@@ -181,7 +181,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
 fn no_row(error: &csv::Error, line: u64) -> Wrong {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} cells, and the first line names {expected_len}")
+            format!("{len} cells, but the first line names {expected_len}")
         }
         _ => format!("not a CSV file: {error}"),
     };

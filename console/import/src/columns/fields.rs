@@ -95,7 +95,7 @@ impl Fields {
         let number = if has_commas { written.replacen(',', ".", 1).parse() } else { written.parse() };
         number.ok().filter(|number: &f64| number.is_finite()).map(|number| number * unit_m).ok_or_else(|| {
             let what = format!(
-                "`{written}` is not a number; write it without a unit and without separators of thousands"
+                "`{written}` is not a number; write it without a unit and without thousands separators"
             );
             (self.name_of(quantity), what)
         })

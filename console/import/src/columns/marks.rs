@@ -53,7 +53,7 @@ impl Marks {
             };
             let what = format!(
                 "`{}`, and `{}` in line {}: two decimal marks in one list; write one of them throughout, and no \
-                 separators of thousands",
+                 thousands separators",
                 second.written, first.written, first.line
             );
             return Some((second.line, second.field.clone(), what));
@@ -64,7 +64,7 @@ impl Marks {
             written.replace(['.', ','], ""),
         ];
         let what =
-            format!("`{written}` can mean {short} mm or {long} mm; write it without separators of thousands");
+            format!("`{written}` can mean {short} mm or {long} mm; write it without thousands separators");
         Some((line, field, what))
     }
 }
