@@ -57,12 +57,25 @@ impl Keymap {
 
     /// A sentence with the key of each action that it names as `<end>`; one without a key is called by its command.
     pub fn spelled(&self, sentence: &str) -> String {
-        let mut text = sentence.to_owned();
-        for action in ACTIONS.iter().filter(|_| sentence.contains('<')) {
-            let key = self.of(action).first().map_or_else(|| format!(":{}", action.name), Key::to_string);
-            text = text.replace(&format!("<{}>", action.name), &key);
+        let mut parts = sentence.split('<');
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let named = part.split_once('>').and_then(|(name, after)| Some((self.spelling(name)?, after)));
+            let (key, after) = named.unwrap_or_else(|| ("<".into(), part));
+            text += &key;
+            text += after;
         }
         text
+    }
+
+    /// How an action is called by the keyboard: its first key, else its command.
+    fn spelling(&self, name: &str) -> Option<String> {
+        let action = ACTIONS.iter().find(|action| action.name == name)?;
+        Some(match self.of(action).first() {
+            Some(key) => key.to_string(),
+            None if action.is_command() => format!(":{name}"),
+            None => "(no key)".into(),
+        })
     }
 
     /// A preset with the operator's own keys. What cannot be taken is left out, and its action keeps the preset's keys.

@@ -183,8 +183,8 @@ fn interrupt(model: &mut Model) -> Vec<Effect> {
     if twice {
         model.ui.overlay = Overlay::Quit;
     } else {
-        let text = format!("press Ctrl-C again within {INTERRUPT_TWICE_S} s to quit");
-        model.say_for(INTERRUPT_TWICE_S, Severity::Info, text);
+        let text = format!("press <interrupt> again within {INTERRUPT_TWICE_S} s to quit");
+        model.say_for(INTERRUPT_TWICE_S, Severity::Info, model.console.keys.spelled(&text));
     }
     effects
 }

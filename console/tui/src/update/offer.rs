@@ -166,7 +166,7 @@ fn around(model: &Model, id: ActionId) -> Result<(), String> {
         }
         ActionId::GoResult => demand(live.result.is_some(), "no run has ended yet"),
         ActionId::Reload => {
-            let why = "plugins are rescanned only while the robot is held; space: HOLD";
+            let why = "plugins are rescanned only while the robot is held; <hold>: HOLD";
             demand(!live.run.is_running(), why)
         }
         ActionId::NextMissed | ActionId::PreviousMissed => {
@@ -253,8 +253,8 @@ fn hold(model: &Model) -> Result<(), String> {
 fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
-    demand(!model.live.preflight.is_starting, "already checking for the start; Esc: cancel")?;
-    demand(model.live.asked.is_none(), "start already requested; space: HOLD")?;
+    demand(!model.live.preflight.is_starting, "already checking for the start; <cancel-plan>: cancel")?;
+    demand(model.live.asked.is_none(), "start already requested; <hold>: HOLD")?;
     if let Some(busy) = model.live.busy.as_ref().filter(|_| model.live.waits()) {
         return Err(format!("{}: not started; start again when the plan is ready", busy.how_far()));
     }
@@ -344,7 +344,7 @@ fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
-        | Refusal::SwapNeedsHold => Some("space: HOLD"),
+        | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
         Refusal::Ended(_) => Some("<home> opens another one"),
         Refusal::NoShadow => Some(":shadow NAME flies one"),
         // These say themselves what would be right, as far as there is anything.

@@ -29,7 +29,7 @@ pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {
             Some(why) => Err(why.clone()),
             None if id == ActionId::Unmark => {
                 let is_marked = replay.notes.bookmark(model.live.run.clock.t_s).is_some();
-                demand(is_marked, "no bookmark here; n N: go to one")
+                demand(is_marked, "no bookmark here; <next-bookmark> <previous-bookmark>: go to one")
             }
             None => Ok(()),
         },

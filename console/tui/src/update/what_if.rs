@@ -103,7 +103,8 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let noted = Effect::Order(Order::NoteOutlooks(what_if.outlooks()));
     if what_if.selected == 0 {
         model.ui.overlay = Overlay::None;
-        model.say(Severity::Info, format!("planner {} stays; space: resume", choice.id));
+        let text = format!("planner {} stays; <hold>: resume", choice.id);
+        model.say(Severity::Info, model.console.keys.spelled(&text));
         return vec![noted];
     }
     std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()

@@ -50,6 +50,11 @@ impl Look<'_> {
         Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
     }
 
+    /// A sentence with the keys that the operator has for the actions that it names as `<end>`.
+    pub(super) fn keys(&self, sentence: &str) -> String {
+        self.model.console.keys.spelled(sentence)
+    }
+
     pub(super) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
         let focus = self.model.ui.pane == pane && self.model.ui.panes().contains(&pane);
         let border = if focus { Role::Focus } else { Role::Border };

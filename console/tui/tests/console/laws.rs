@@ -2,7 +2,7 @@
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, of_run, planner};
 use crate::replay::replaying;
-use crate::screens::{drawn, text};
+use crate::screens::{drawn_as_is as drawn, text};
 use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
 use ratatui::Terminal;

@@ -35,7 +35,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     let guide = guide(cause);
     let about = format!("{} {}", guide.cause, guide.effect);
     let remedies = guide.remedies.iter().enumerate();
-    let spelled = |remedy: &Remedy| look.model.console.keys.spelled(remedy.text);
+    let spelled = |remedy: &Remedy| look.keys(remedy.text);
     let chosen = guide.remedies.get(selected).map_or_else(String::new, spelled);
     let text = |(index, remedy): (usize, &Remedy)| {
         vec![(role(look, remedy), text::fit(&format!("{} {}", index + 1, spelled(remedy)), room))]
@@ -47,7 +47,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     below.truncate(free);
     List {
         title: name(cause, look.run),
-        note: "1-4 run",
+        note: look.keys(super::RUN),
         rows: remedies.map(text).collect(),
         selected,
         below,
@@ -57,7 +57,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
 
 fn rows(look: &Look, index: usize, remedy: &Remedy, columns: usize) -> Vec<Parts> {
     let role = role(look, remedy);
-    let sentence = look.model.console.keys.spelled(remedy.text);
+    let sentence = look.keys(remedy.text);
     let wrapped = text::wrap(&sentence, columns.saturating_sub(3));
     let number = |line: usize| if line == 0 { format!("{} ", index + 1) } else { "  ".into() };
     let row = |(line, words)| vec![(Role::Key, number(line)), (role, words)];
