@@ -2,6 +2,7 @@
 
 use super::context::TOGETHER;
 use super::*;
+use crate::keys::Key;
 
 #[test]
 fn no_two_actions_share_a_key_where_both_work() {

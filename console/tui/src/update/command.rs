@@ -153,7 +153,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     };
     // What is named needs no screen on which it is selected.
     let is_named = matches!(first, Value::Run(_) | Value::Duration(_)) && action.id != ActionId::CompareRun;
-    let can = if is_named { allowed(model, action.id) } else { offered(model, action.id) };
+    let can = if is_named { allowed(model, action) } else { offered(model, action.id) };
     if let Err(why) = can {
         return refuse(model, why);
     }

@@ -1,15 +1,26 @@
 //! What the operator does with events.
 
 use super::message::Effect;
-use super::offer::refuse;
+use super::offer::{demand, on_screen, refuse};
 use super::{place, typing};
 use crate::model::log::filter::with_least;
-use crate::model::{Model, Overlay, Screen};
+use crate::model::{Model, Overlay, Pane, Screen};
 use mission::Severity;
 
 /// Brings the lists of events up to date with log and filter.
 pub(super) fn refresh(model: &mut Model) {
     model.ui.events.matches.refresh(&model.ui.needle, &model.live.run.log);
+}
+
+/// Whether an event is selected on the screen of events.
+pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
+    on_screen(model, Screen::Events)?;
+    demand(!model.ui.events.matches.is_empty(), "no event is selected")
+}
+
+/// Whether the pane of events is shown.
+pub(crate) fn are_shown(model: &Model) -> Result<(), String> {
+    demand(model.ui.shows(Pane::Events), "the events are not shown; <next-pane>: next pane (needs 60x16)")
 }
 
 /// Opens the whole event, or closes it; from another screen it opens it.
@@ -31,7 +42,7 @@ pub(super) fn close(model: &mut Model) -> bool {
 }
 
 /// Selects the next event of the same kind, or the one before.
-pub(super) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
+pub(crate) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
     let events = &mut model.ui.events;
     let next = events
         .selected()
@@ -58,7 +69,7 @@ pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Copies the line of the selected event.
-pub(super) fn copy(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
     let entry = model.ui.events.selected().and_then(|number| model.live.run.log.get(number));
     let Some(line) = entry.map(crate::model::Entry::line) else {
         return refuse(model, "no event is selected".into());
@@ -68,7 +79,7 @@ pub(super) fn copy(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Another least severity, as a term of the filter.
-pub(super) fn next_severity(model: &mut Model) {
+pub(crate) fn next_severity(model: &mut Model) {
     let next = match model.ui.events.matches.filter().least() {
         Severity::Info => Severity::Watch,
         Severity::Watch => Severity::Warn,
@@ -86,7 +97,7 @@ pub(super) fn set_least(model: &mut Model, least: Severity) {
 }
 
 /// Opens the line in which the filter is typed; what is typed next is a term of its own.
-pub(super) fn open_filter(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
     if !text.is_empty() && !matches!(model.ui.screen, Screen::Home | Screen::Review) && !text.ends_with(' ') {
         text.push(' ');

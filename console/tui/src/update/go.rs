@@ -11,7 +11,7 @@ use mission::{PlannerChoice, Severity};
 use world::Point;
 
 /// Goes to a screen; home is looked at again each time.
-pub(super) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
+pub(crate) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
     model.ui.go(screen);
     if lists_runs(screen) { vec![Effect::Look] } else { Vec::new() }
 }
@@ -98,7 +98,7 @@ pub(super) fn not_opened(model: &mut Model, why: String) {
 }
 
 /// Opens the scenario of the run that is open once more, with the planner that it had.
-pub(super) fn again(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn again(model: &mut Model) -> Vec<Effect> {
     let Some(source) = model.live.source.clone() else { return Vec::new() };
     let planner = model.live.run.planning.choice.clone();
     open(model, source, planner)
@@ -136,7 +136,7 @@ fn result_name(model: &Model) -> Option<String> {
 }
 
 /// Begins work on the past run that the screen is about.
-pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
+pub(crate) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match named_run(model) {
         Some(run) => begin_on(model, id, run),
         None => refuse(model, "no run is selected".into()),

@@ -21,7 +21,7 @@ pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Sorts the list by something else.
-pub(super) fn sort(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn sort(model: &mut Model) -> Vec<Effect> {
     model.review.sort = model.review.sort.next();
     model.review.selected = 0;
     model.say(Severity::Info, format!("sorted by {}", model.review.sort.word()));

@@ -9,7 +9,7 @@ use crate::model::{Cause, Model, Overlay};
 use mission::{Order, PlannerChoice, PlannerInfo, Severity};
 
 /// Whether a planner can begin to fly in shadow.
-pub(super) fn can_begin(model: &Model) -> Result<(), String> {
+pub(crate) fn can_begin(model: &Model) -> Result<(), String> {
     accepted(model, &Order::Shadow(PlannerChoice::default()))?;
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }

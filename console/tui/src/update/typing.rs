@@ -1,5 +1,6 @@
 //! Lines in which text is typed.
 
+use super::offer::demand;
 use super::palette;
 use crate::keys::Key;
 use crate::model::{LineEdit, Model, Overlay, Screen};
@@ -25,8 +26,9 @@ pub(super) fn paste(model: &mut Model, pasted: &str) {
 }
 
 /// Whether the line that is open can be completed.
-pub(super) fn completes(model: &Model) -> bool {
-    matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty()
+pub(crate) fn can_complete(model: &Model) -> Result<(), String> {
+    let completes = matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty();
+    demand(completes, "nothing to complete here")
 }
 
 /// The words that the parameter takes whose value is being typed.
@@ -40,7 +42,7 @@ fn options(model: &Model) -> &[String] {
 }
 
 /// Completes the word at the cursor.
-pub(super) fn complete(model: &mut Model) {
+pub(crate) fn complete(model: &mut Model) {
     match &model.ui.overlay {
         Overlay::Commands(_) => palette::complete(model),
         Overlay::Parameters { edit: Some(typed), .. } => {
