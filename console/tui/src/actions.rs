@@ -10,10 +10,11 @@ mod rows;
 mod tests;
 
 pub use action::{Action, Risk};
-pub(crate) use action::{Deed, Reach};
+pub(crate) use action::{Deed, Reach, action};
 pub use argument::{Arg, Kind, duration_s, moment_s};
 
 use crate::model::replay::Jump;
+use crate::screens::Screen;
 use serde::{Deserialize, Serialize};
 
 /// Names an action.
@@ -147,26 +148,12 @@ pub enum ActionId {
     Help,
     /// Open a scenario.
     Open,
-    /// Show a screen.
+    /// Show the screen of a name.
     GoTo,
     /// Choose the colours.
     Theme,
-    /// Show what there is to open.
-    GoHome,
-    /// Show the mission before it moves.
-    GoPlan,
-    /// Show the mission under way.
-    GoMission,
-    /// Show what is wrong.
-    GoAlarms,
-    /// Show what happened.
-    GoEvents,
-    /// Show the past runs.
-    GoReview,
-    /// Show what the mission has achieved.
-    GoResult,
-    /// Show the plugins.
-    GoPlugins,
+    /// Show a screen.
+    Go(Screen),
     /// Look at the plugins again.
     Reload,
     /// The next missed area.

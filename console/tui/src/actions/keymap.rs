@@ -4,7 +4,7 @@ mod presets;
 
 pub use presets::PRESETS;
 
-use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER};
+use super::{ACTIONS, Action, ActionId, Risk, context::together};
 use crate::keys::Key;
 use mission::spelling::nearest;
 use presets::Changes;
@@ -153,9 +153,9 @@ impl Keymap {
     fn holder(&self, action: &Action, key: Key) -> Option<(&'static Action, Vec<&'static str>)> {
         let rows = || ACTIONS.iter().filter(|row| row.id == action.id);
         let mut found: Option<(&Action, Vec<&str>)> = None;
-        for contexts in TOGETHER.iter().filter(|contexts| rows().any(|row| row.works_in(contexts))) {
+        for contexts in together().filter(|contexts| rows().any(|row| row.works_in(contexts))) {
             let other = ACTIONS.iter().find(|other| {
-                other.id != action.id && other.works_in(contexts) && self.of(other).contains(&key)
+                other.id != action.id && other.works_in(&contexts) && self.of(other).contains(&key)
             });
             let Some(other) = other else { continue };
             let (_, screens) = found.get_or_insert((other, Vec::new()));

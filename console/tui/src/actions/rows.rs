@@ -8,10 +8,11 @@ mod mission;
 mod runs;
 
 use super::Action;
+use crate::screens::GO;
 
 /// The parts of the table.
-const PARTS: [&[Action]; 6] =
-    [mission::ROWS, alarms::ROWS, runs::ROWS, console::ROWS, map::ROWS, lists::ROWS];
+const PARTS: [&[Action]; 8] =
+    [mission::ROWS, alarms::ROWS, runs::ROWS, console::ROWS, &GO, console::LEAVING, map::ROWS, lists::ROWS];
 
 /// All of them.
 pub(super) const ALL: [Action; count()] = joined();

@@ -1,13 +1,13 @@
 //! What holds for the table as a whole.
 
-use super::context::TOGETHER;
+use super::context::together;
 use super::*;
 use crate::keys::Key;
 
 #[test]
 fn no_two_actions_share_a_key_where_both_work() {
-    for contexts in TOGETHER {
-        let here: Vec<&Action> = ACTIONS.iter().filter(|action| action.works_in(contexts)).collect();
+    for contexts in together() {
+        let here: Vec<&Action> = ACTIONS.iter().filter(|action| action.works_in(&contexts)).collect();
         for (index, one) in here.iter().enumerate() {
             for other in &here[index + 1..] {
                 let shared = one.keys.iter().find(|key| other.keys.contains(key));

@@ -28,6 +28,9 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     if let Err(why) = offered(model, id) {
         return refuse(model, why);
     }
+    if let ActionId::Go(screen) = id {
+        return go::go(model, screen);
+    }
     match find::row(id).map(|action| action.deed) {
         Some(Deed::Act(act)) => act(model),
         Some(Deed::Look(look)) => {
@@ -201,17 +204,14 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {
         return;
     }
-    match (&model.ui.overlay, model.ui.screen) {
-        (Overlay::None, Screen::Home) => model.home.select(by),
-        (Overlay::None, Screen::Review) => model.review.select(&model.home, by),
-        (Overlay::None, Screen::Mission | Screen::Events) => model.ui.events.select(by),
-        (Overlay::None, Screen::Alarms) => alarms::select(model, by),
-        (Overlay::None, Screen::Result) => go::select_missed(model, by),
-        (Overlay::None, Screen::Plugins) => {
-            let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
-            model.ui.plugin = model.ui.plugin.saturating_add_signed(by).min(last);
-        }
-        (Overlay::None, Screen::Plan) => {}
+    match model.ui.overlay {
+        Overlay::None => (model.ui.screen.row().select)(model, by),
         _ => overlay::select(model, by),
     }
+}
+
+/// Selects another plugin, so many further down.
+pub(crate) fn select_plugin(model: &mut Model, by: isize) {
+    let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
+    model.ui.plugin = model.ui.plugin.saturating_add_signed(by).min(last);
 }

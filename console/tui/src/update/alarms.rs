@@ -15,7 +15,7 @@ fn selected_cause(model: &Model) -> Option<Cause> {
 }
 
 /// Selects another alarm, so many further down.
-pub(super) fn select(model: &mut Model, by: isize) {
+pub(crate) fn select(model: &mut Model, by: isize) {
     let table = model.live.run.alarms.table();
     let at = model.selected_alarm().and_then(|here| table.iter().position(|alarm| alarm.cause == here.cause));
     let next = at.unwrap_or(0).saturating_add_signed(by).min(table.len().saturating_sub(1));
@@ -161,7 +161,7 @@ fn parse_shelving(text: &str) -> Result<(f64, String), String> {
 }
 
 /// Opens the actions of the selected alarm.
-pub(super) fn open_actions(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
     model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
     Vec::new()

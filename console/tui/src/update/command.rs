@@ -182,7 +182,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             return go::open(model, source, planner);
         }
         Value::Run(run) => return go::begin_on(model, action.id, run),
-        Value::Screen(id) => return act(model, id),
+        Value::Screen(screen) => return act(model, ActionId::Go(screen)),
         Value::Layer(layer) => model.ui.layers.toggle(layer),
         Value::Place(offset) => model.ui.map = MapView { follow: false, offset, ..model.ui.map },
         Value::Severity(least) => events::set_least(model, least),

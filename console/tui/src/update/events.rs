@@ -24,7 +24,7 @@ pub(crate) fn are_shown(model: &Model) -> Result<(), String> {
 }
 
 /// Opens the whole event, or closes it; from another screen it opens it.
-pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let Some(selected) = model.ui.events.selected() else {
         return refuse(model, "no event is selected".into());
     };
@@ -99,7 +99,7 @@ pub(super) fn set_least(model: &mut Model, least: Severity) {
 /// Opens the line in which the filter is typed; what is typed next is a term of its own.
 pub(crate) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
-    if !text.is_empty() && !matches!(model.ui.screen, Screen::Home | Screen::Review) && !text.ends_with(' ') {
+    if !text.is_empty() && model.ui.screen.row().filter.is_none() && !text.ends_with(' ') {
         text.push(' ');
     }
     model.ui.overlay = Overlay::Filter(text.as_str().into());

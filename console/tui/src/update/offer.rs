@@ -5,7 +5,7 @@ use super::look_only::{allowed, no_orders};
 use super::message::Effect;
 use super::replay;
 use crate::actions::{ActionId, find};
-use crate::model::{Model, Overlay, Pane, Screen, ui::Ask};
+use crate::model::{Model, Overlay, Screen, ui::Ask};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
 /// Whether an action can be done now.
@@ -19,14 +19,10 @@ pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
 
 /// Whether there is something that Enter opens.
 pub(crate) fn accept(model: &Model) -> Result<(), String> {
-    let opens = match model.ui.screen {
-        Screen::Home | Screen::Alarms | Screen::Events | Screen::Review => true,
-        Screen::Mission => model.ui.pane == Pane::Events,
-        Screen::Plan | Screen::Result | Screen::Plugins => false,
-    };
     if matches!(model.ui.overlay, Overlay::Preflight { .. }) {
         return demand(model.n_by_hand() > 0, "nothing is ticked by hand in this scenario");
     }
+    let opens = (model.ui.screen.row().opens)(model).is_some();
     demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
 }
 

@@ -1,13 +1,13 @@
 //! Keys within lists, lines and questions.
 
 use super::act::act;
+use super::alarms;
 use super::message::Effect;
 use super::offer::{accepted, offered, refuse};
 use super::preflight;
 use super::preset::take as take_preset;
 use super::replay;
 use super::send::{send, set_parameter};
-use super::{alarms, go};
 use super::{palette, shadow, typing, what_if};
 use crate::actions::ActionId;
 use crate::guide::guide;
@@ -43,7 +43,7 @@ pub(super) fn withdraw_motion(model: &mut Model) -> bool {
 /// Agrees, or takes the selected line; with nothing open, what Enter does on the screen.
 pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
-        Overlay::None => go::enter(model),
+        Overlay::None => (model.ui.screen.row().enter)(model),
         Overlay::Stepping => act(model, ActionId::Step),
         Overlay::Remedies { selected, .. } => u8::try_from(selected + 1)
             .map_or_else(|_| Vec::new(), |number| act(model, ActionId::Remedy(number))),

@@ -3,7 +3,7 @@
 use super::offer::demand;
 use super::palette;
 use crate::keys::Key;
-use crate::model::{LineEdit, Model, Overlay, Screen};
+use crate::model::{LineEdit, Model, Overlay};
 use mission::{ParamKind, Severity};
 
 /// Whether a line is open in which text is typed: letters and the space do nothing else then.
@@ -93,19 +93,14 @@ fn changed(model: &mut Model) {
 
 /// The text by which the list of the screen is filtered.
 pub(super) fn filtered(model: &Model) -> &str {
-    match model.ui.screen {
-        Screen::Home => &model.home.filter,
-        Screen::Review => &model.review.filter,
-        _ => &model.ui.needle,
-    }
+    model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |filter| (filter.text)(model))
 }
 
 /// Filters the list of the screen by a text.
 pub(super) fn filter(model: &mut Model, text: &str) {
-    let filter = match model.ui.screen {
-        Screen::Home => &mut model.home.filter,
-        Screen::Review => &mut model.review.filter,
-        _ => &mut model.ui.needle,
+    let filter = match model.ui.screen.row().filter {
+        Some(filter) => (filter.text_mut)(model),
+        None => &mut model.ui.needle,
     };
     text.clone_into(filter);
     (model.home.scenario, model.home.run, model.review.selected) = (0, 0, 0);

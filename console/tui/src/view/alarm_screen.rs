@@ -26,7 +26,7 @@ const RUN: &str = "<first-action>-<fourth-action> run";
 /// Rows that the table keeps, with its frame.
 const TABLE: u16 = 7;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     match (look.model.selected_alarm(), arrangement) {
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
         (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),

@@ -7,7 +7,7 @@ use super::next::{self, Clauses};
 use super::{coverage, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
-use crate::model::{LineEdit, Model, Overlay, Screen, log::clock};
+use crate::model::{LineEdit, Model, Overlay, log::clock};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -71,7 +71,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
     let problem = look.model.ui.events.matches.filter().problems.first();
     let problem = problem
-        .filter(|_| !matches!(look.model.ui.screen, Screen::Home | Screen::Review))
+        .filter(|_| look.model.ui.screen.row().filter.is_none())
         .map(|problem| format!("  {}.", problem.why));
     typed(
         look,

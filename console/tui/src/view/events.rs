@@ -37,7 +37,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 /// The screen of their own.
-pub(super) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let events = &look.model.ui.events;
     let selected = events.selected().filter(|_| events.is_open);
     let open = selected.and_then(|number| Some((number, look.run.log.get(number)?)));

@@ -18,7 +18,7 @@ const ATTENTION: u16 = 10;
 const TASK: usize = 7;
 const END: usize = 10;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(found) = &look.model.home.found else {
         let block = look.block(Role::Border, "Home", "");
         return fill(

@@ -14,7 +14,7 @@ use std::cell::RefCell;
 
 /// What every part of the view needs.
 #[derive(Clone, Copy)]
-pub(super) struct Look<'a> {
+pub(crate) struct Look<'a> {
     pub model: &'a Model,
     /// The run that the panes show.
     pub run: &'a Run,

@@ -17,7 +17,7 @@ const SIDE: (u16, u16) = (50, 34);
 /// Most rows of the reasons against a plan.
 const REASONS: usize = 6;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     if let Some(why) = &look.model.live.failure {
         return failure(look, frame, area, why);
     }

@@ -13,7 +13,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 /// Digits of a hash that are shown.
 const HASH: usize = 12;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let found = plugins(&look.model.console, look.run);
     let selected = look.model.ui.plugin.min(found.len().saturating_sub(1));
     let rows = (found.len() as u16 + 3).min(area.height / 2).max(5);

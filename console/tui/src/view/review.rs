@@ -17,7 +17,7 @@ const BELOW: (u16, u16) = (18, 10);
 /// Columns of what is known of the selected run, beside the comparison.
 const ABOUT: u16 = 56;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let wide = arrangement == Arrangement::Wide;
     let is_compared = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let rows = match arrangement {

@@ -2,27 +2,29 @@
 
 use crate::actions::action::{Action, action};
 use crate::actions::argument::{may, must};
-use crate::actions::context::Context;
+use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
+use crate::model::Screen;
+use crate::screens::EACH;
 use crate::update::act::select;
 use crate::update::{act, alarms, events, go, offer, stations, zones};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
-    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &[Context::Home, Context::Plan, Context::Mission, Context::Alarms, Context::Events, Context::Review, Context::Result, Context::Plugins]).label("ack").also(&["silence"]).orders()
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], &EACH).label("ack").also(&["silence"]).orders()
         .when(alarms::can_acknowledge).does(alarms::acknowledge),
-    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[Key::Char('*')], &[Context::Alarms]).label("ack all").orders()
+    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[Key::Char('*')], &[On(Screen::Alarms)]).label("ack all").orders()
         .when(alarms::can_acknowledge_all).does(alarms::acknowledge_all),
     action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]).opens()
         .when(offer::nothing_under_way),
-    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[Context::Result]).label("missed").repeats()
+    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats()
         .when(offer::missed).looks(|m| select(m, 1)),
-    action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[Context::Result]).label("missed").repeats()
+    action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
         .when(offer::missed).looks(|m| select(m, -1)),
-    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[Context::Result]).label("plan again").orders()
+    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").orders()
         .when(offer::again).does(go::again),
-    action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[Context::Alarms]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).orders()
+    action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[On(Screen::Alarms)]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).orders()
         .when(alarms::can_shelve).does(alarms::shelve),
     action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).orders()
         .when(|m| stations::can(m, ActionId::Inject)),
@@ -32,12 +34,12 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| stations::can(m, ActionId::Exclude)),
     action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).orders()
         .when(|m| stations::can(m, ActionId::Include)),
-    action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[Context::Alarms, Context::Events]).label("map")
+    action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[On(Screen::Alarms), On(Screen::Events)]).label("map")
         .when(offer::show_place).does(act::show_place),
-    action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[Context::Events]).label("same kind")
+    action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[On(Screen::Events)]).label("same kind")
         .when(events::is_selected).does(|m| events::next_like(m, false)),
-    action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[Context::Events]).label("same kind")
+    action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[On(Screen::Events)]).label("same kind")
         .when(events::is_selected).does(|m| events::next_like(m, true)),
-    action(ActionId::Copy, "copy", "Copy the line of the event", &[Key::Char('y')], &[Context::Events]).label("copy")
+    action(ActionId::Copy, "copy", "Copy the line of the event", &[Key::Char('y')], &[On(Screen::Events)]).label("copy")
         .when(events::is_selected).does(events::copy),
 ];

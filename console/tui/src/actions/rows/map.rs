@@ -2,10 +2,11 @@
 
 use crate::actions::action::{Action, action};
 use crate::actions::argument::{may, must};
-use crate::actions::context::Context;
+use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
 use crate::model::Overlay;
+use crate::model::Screen;
 use crate::model::ui::MapView;
 use crate::update::overlay::open;
 use crate::update::send::hold_now;
@@ -30,9 +31,9 @@ pub(super) const ROWS: &[Action] = &[
         .when(map::can_inspect).looks(map::inspect),
     action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen])
         .does(act::toggle_mouse),
-    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[Context::Mission, Context::Replay]).args(&[may("severity", Kind::Severity)])
+    action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[On(Screen::Mission), Context::Replay]).args(&[may("severity", Kind::Severity)])
         .when(events::are_shown).looks(events::next_severity),
-    action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[Context::Home, Context::Mission, Context::Replay, Context::Events, Context::Review]).args(&[may("text", Kind::Text)])
+    action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[On(Screen::Home), On(Screen::Mission), Context::Replay, On(Screen::Events), On(Screen::Review)]).args(&[may("text", Kind::Text)])
         .does(events::open_filter),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats()
         .when(map::can_pan).looks(|m| map::pan(m, Vector::new(-1.0, 0.0))),

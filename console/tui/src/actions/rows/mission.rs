@@ -2,9 +2,10 @@
 
 use crate::actions::action::{Action, action};
 use crate::actions::argument::{may, must};
-use crate::actions::context::Context;
+use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind, Risk};
 use crate::keys::Key;
+use crate::model::Screen;
 use crate::model::ui::{Ask, Purpose};
 use crate::update::offer::accepted;
 use crate::update::overlay::ask;
@@ -18,13 +19,13 @@ pub(super) const ROWS: &[Action] = &[
         .when(offer::hold).does(act::hold),
     action(ActionId::Interrupt, "interrupt", "HOLD now; twice: ask to quit", &[Key::Ctrl('c')], &[Context::Anywhere])
         .does(act::interrupt),
-    action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[Context::Plan, Context::Mission]).label("start").risk(Risk::Moves)
+    action(ActionId::Start, "start", "Start the mission", &[Key::Char('S')], &[On(Screen::Plan), On(Screen::Mission)]).label("start").risk(Risk::Moves)
         .when(offer::start).does(|m| ask(m, Ask::Start(m.live.run.standing.ready_plan()))),
     action(ActionId::Resume, "resume", "Resume after a hold", &[], &[Context::Screen]).risk(Risk::Moves).also(&["continue"])
         .when(|m| accepted(m, &Order::Resume)).does(|m| ask(m, Ask::Resume)),
     action(ActionId::FlyUncertified, "fly-uncertified", "Run a plan refused because of the tether", &[], &[Context::Screen]).risk(Risk::Moves)
         .when(|m| accepted(m, &Order::FlyUncertified)).does(|m| ask(m, Ask::FlyUncertified)),
-    action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[Context::Mission]).label("step").risk(Risk::Moves)
+    action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[On(Screen::Mission)]).label("step").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::Step)),
     action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats().paces()
         .when(|m| offer::speed(m, false)).does(|m| act::change_speed(m, false)),
@@ -34,7 +35,7 @@ pub(super) const ROWS: &[Action] = &[
         .when(offer::simulating),
     action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
         .when(offer::abort).does(|m| [hold_now(m), ask(m, Ask::Abort)].concat()),
-    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[Context::Plan, Context::Mission]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
+    action(ActionId::ChoosePlanner, "planner", "Change the planner (while held)", &[Key::Char('P')], &[On(Screen::Plan), On(Screen::Mission)]).label("planner").risk(Risk::Moves).args(&[may("planner", Kind::Planner)])
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
     action(ActionId::Shadow, "shadow", "Fly a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).orders()
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),
@@ -42,13 +43,13 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
     action(ActionId::DropShadow, "shadow-off", "End the shadow", &[], &[Context::Screen]).orders()
         .when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),
-    action(ActionId::TakePlan, "take-plan", "Take the better plan that is offered", &[Key::Char('T')], &[Context::Mission]).risk(Risk::Moves)
+    action(ActionId::TakePlan, "take-plan", "Take the better plan that is offered", &[Key::Char('T')], &[On(Screen::Mission)]).risk(Risk::Moves)
         .when(|m| accepted(m, &Order::TakePlan)).does(|m| ask(m, Ask::TakePlan)),
-    action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[Context::Plan, Context::Mission]).label("parameters")
+    action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[On(Screen::Plan), On(Screen::Mission)]).label("parameters")
         .when(offer::parameters).does(overlay::open_parameters),
     action(ActionId::SetParameter, "set", "Change a planner parameter", &[], &[Context::Screen]).args(&[must("parameter", Kind::Parameter)]).orders()
         .when(offer::parameters),
-    action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[Context::Mission]).label("what-if").orders()
+    action(ActionId::WhatIf, "what-if", "Forecast with other planners (held)", &[Key::Char('w')], &[On(Screen::Mission)]).label("what-if").orders()
         .when(|m| accepted(m, &Order::NoteOutlooks(Vec::new()))).does(what_if::open),
     action(ActionId::NextCandidate, "next-candidate", "Look at the next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats()
         .looks(|m| what_if::select(m, 1)),
@@ -64,14 +65,14 @@ pub(super) const ROWS: &[Action] = &[
         .when(preset::can_load),
     action(ActionId::PresetSave, "preset-save", "Keep the parameters as a preset", &[], &[Context::Screen]).args(&[must("name", Kind::Text)])
         .when(offer::parameters),
-    action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[Context::Plan, Context::Mission]).label("pre-flight").orders()
+    action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[On(Screen::Plan), On(Screen::Mission)]).label("pre-flight").orders()
         .when(|m| offer::waits(m, "checks are made before the start")).does(preflight::open),
-    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[Context::Plan]).label("compare").args(&[may("planner", Kind::Planner)]).orders()
+    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[On(Screen::Plan)]).label("compare").args(&[may("planner", Kind::Planner)]).orders()
         .when(offer::compare).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again").orders()
         .when(|m| offer::waits(m, "checks are made before the start")).does(preflight::open),
-    action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[Context::Plan]).orders()
+    action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[On(Screen::Plan)]).orders()
         .when(|m| offer::waits(m, "no mission waits for its start")).does(|_| vec![Effect::Order(Order::Plan)]),
-    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[Context::Plan]).label("cancel").orders()
+    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").orders()
         .when(offer::cancel_plan).does(overlay::cancel_plan),
 ];

@@ -2,7 +2,7 @@
 
 use crate::actions::action::{Action, action};
 use crate::actions::argument::{may, must};
-use crate::actions::context::Context;
+use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
 use crate::model::Screen;
@@ -51,16 +51,16 @@ pub(super) const ROWS: &[Action] = &[
         .when(replay::has_second).does(replay::align),
     action(ActionId::Replay, "replay", "Play a past run back", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]).opens()
         .when(replay::can_open).does(|m| go::begin(m, ActionId::Replay)),
-    action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[Context::Review]).label("compare").args(&[may("run", Kind::Run)]).opens()
+    action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).opens()
         .when(replay::can_compare).does(|m| go::begin(m, ActionId::CompareRun)),
-    action(ActionId::Sort, "sort", "Sort the list by something else", &[Key::Char('s')], &[Context::Review]).label("sort")
+    action(ActionId::Sort, "sort", "Sort the list by something else", &[Key::Char('s')], &[On(Screen::Review)]).label("sort")
         .when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
-    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[Context::Home, Context::Review, Context::Result]).label("re-scan").args(&[may("run", Kind::Run)]).opens()
+    action(ActionId::Rescan, "rescan", "Scan what a run has missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).opens()
         .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
-    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[Context::Home, Context::Review, Context::Result]).label("verify").args(&[may("run", Kind::Run)])
+    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
         .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),
-    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[Context::Home, Context::Review, Context::Result]).label("report").args(&[may("run", Kind::Run)]).opens()
+    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("report").args(&[may("run", Kind::Run)]).opens()
         .when(offer::run).does(|m| go::begin(m, ActionId::Report)),
-    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[Context::Home, Context::Review, Context::Replay, Context::Result]).label("rerun").args(&[may("run", Kind::Run)])
+    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[On(Screen::Home), On(Screen::Review), Context::Replay, On(Screen::Result)]).label("rerun").args(&[may("run", Kind::Run)])
         .when(offer::run).does(|m| go::begin(m, ActionId::View)),
 ];
