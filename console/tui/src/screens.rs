@@ -190,7 +190,7 @@ const ROWS: &[Row] = &[
         select: go::select_missed,
         ..row(
             shows(Screen::Result, "result", "Screen 7: what was achieved", &[Key::Char('7')])
-                .when(offer::has_result),
+                .when(|model| offer::demand(model.live.result.is_some(), "no run has ended yet")),
             "Result",
             &[&[On(Screen::Result), Map, Rows], &[On(Screen::Result), Map, Pan, Cursor]],
             view::result::draw,

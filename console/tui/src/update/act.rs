@@ -5,7 +5,7 @@ use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::{self, ask, open};
 use super::send::{hold_now, send};
-use super::{alarms, events, palette, replay};
+use super::{alarms, palette, replay};
 use crate::actions::{ActionId, Deed, find};
 use crate::model::home::HomeList;
 use crate::model::plugins::plugins;
@@ -94,11 +94,6 @@ pub(crate) fn cancel(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Goes back to the screen before; from the first one it leaves.
-pub(crate) fn back(model: &mut Model) -> Vec<Effect> {
-    go::back(model).unwrap_or_else(|| leave(model))
-}
-
 /// Holds, then asks; with nothing under way it leaves at once.
 pub(crate) fn leave(model: &mut Model) -> Vec<Effect> {
     let mut effects = hold_now(model);
@@ -172,11 +167,6 @@ pub(crate) fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
         Ok(action) => act(model, action),
         Err(why) => refuse(model, why),
     }
-}
-
-/// Shows the place of the alarm or the event that is selected.
-pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
-    if model.ui.screen == Screen::Events { events::show_place(model) } else { alarms::show_place(model) }
 }
 
 fn driving(model: &Model) -> usize {

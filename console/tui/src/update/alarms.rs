@@ -184,7 +184,7 @@ pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId
 }
 
 /// Shows the place of the selected alarm on the map.
-pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let shown =
         model.selected_alarm().and_then(|alarm| Some((alarm.place?, name(&alarm.cause, &model.live.run))));
     match shown {

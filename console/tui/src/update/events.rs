@@ -4,7 +4,7 @@ use super::message::Effect;
 use super::offer::{demand, on_screen, refuse};
 use super::{place, typing};
 use crate::model::log::filter::with_least;
-use crate::model::{Model, Overlay, Pane, Screen};
+use crate::model::{Model, Overlay, Screen};
 use mission::Severity;
 
 /// Brings the lists of events up to date with log and filter.
@@ -16,11 +16,6 @@ pub(super) fn refresh(model: &mut Model) {
 pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
     on_screen(model, Screen::Events)?;
     demand(!model.ui.events.matches.is_empty(), "no event is selected")
-}
-
-/// Whether the pane of events is shown.
-pub(crate) fn are_shown(model: &Model) -> Result<(), String> {
-    demand(model.ui.shows(Pane::Events), "the events are not shown; <next-pane>: next pane (needs 60x16)")
 }
 
 /// Opens the whole event, or closes it; from another screen it opens it.
@@ -58,7 +53,7 @@ pub(crate) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
 }
 
 /// Shows the place of the selected event on the map.
-pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let run = &model.live.run;
     let entry = model.ui.events.selected().and_then(|number| run.log.get(number));
     let shown = entry.and_then(|entry| Some((run.place_of(&entry.what)?, entry.text.clone())));

@@ -17,7 +17,7 @@ pub(crate) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
 }
 
 /// Goes back to the screen before, if there is one.
-pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
+pub(crate) fn back(model: &mut Model) -> Option<Vec<Effect>> {
     let before = model.ui.back.pop().or((model.ui.screen != Screen::Home).then_some(Screen::Home))?;
     model.ui.screen = before;
     Some(looked(before))

@@ -15,35 +15,11 @@ pub(crate) fn is_shown(model: &Model) -> Result<(), String> {
     demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
 }
 
-/// Whether the map can be enlarged.
-pub(crate) fn can_zoom_in(model: &Model) -> Result<(), String> {
-    is_shown(model)?;
-    demand(model.ui.map.zoom < MAX_ZOOM, "already at maximum zoom")
-}
-
-/// Whether the map can be reduced.
-pub(crate) fn can_zoom_out(model: &Model) -> Result<(), String> {
-    is_shown(model)?;
-    demand(model.ui.map.zoom > 0, "the whole tank is already shown")
-}
-
 /// Whether the map can be moved, or a cursor on it.
 pub(crate) fn can_pan(model: &Model) -> Result<(), String> {
     is_shown(model)?;
     let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
     demand(moves, "the whole tank is shown; <zoom-in>: zoom in first")
-}
-
-/// Whether there is a robot to follow.
-pub(crate) fn can_follow(model: &Model) -> Result<(), String> {
-    is_shown(model)?;
-    demand(model.live.run.position.pose.is_some(), "no position estimate yet")
-}
-
-/// Whether there is a tank to read the map of.
-pub(crate) fn can_inspect(model: &Model) -> Result<(), String> {
-    is_shown(model)?;
-    demand(model.live.run.about.is_some(), "no tank loaded yet")
 }
 
 /// Enlarges or reduces the map about its middle.

@@ -37,25 +37,9 @@ pub(crate) fn is_open(model: &Model) -> Result<(), String> {
     demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
 }
 
-/// Whether there is a result.
-pub(crate) fn has_result(model: &Model) -> Result<(), String> {
-    demand(model.live.result.is_some(), "no run has ended yet")
-}
-
-/// Whether the plugins can be searched again.
-pub(crate) fn reload(model: &Model) -> Result<(), String> {
-    let why = "plugins are rescanned only while the robot is held; <hold>: HOLD";
-    demand(!model.live.run.is_running(), why)
-}
-
 /// Whether an area was missed.
 pub(crate) fn missed(model: &Model) -> Result<(), String> {
     demand(!model.live.missed().is_empty(), "no area was missed")
-}
-
-/// Whether the scenario can be opened once more.
-pub(crate) fn again(model: &Model) -> Result<(), String> {
-    demand(model.live.source.is_some() && !model.live.is_under_way(), "a mission is in progress")
 }
 
 /// Whether there is a run to do something with.
@@ -81,14 +65,8 @@ pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
     Vec::new()
 }
 
-pub(super) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
+pub(crate) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
-}
-
-/// Whether an alarm or an event is selected whose place could be shown.
-pub(crate) fn show_place(model: &Model) -> Result<(), String> {
-    let is_here = matches!(model.ui.screen, Screen::Alarms | Screen::Events);
-    demand(is_here, "select an alarm (<alarms>) or an event (<events>) first")
 }
 
 /// Whether a screen is shown.
@@ -146,17 +124,11 @@ pub(crate) fn swap(model: &Model) -> Result<(), String> {
     if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
-    demand(!model.console.planners.is_empty(), "no planners found yet")
+    has_planners(model)
 }
 
-/// Whether a mission waits for its start.
-pub(crate) fn waits(model: &Model, otherwise: &str) -> Result<(), String> {
-    demand(model.live.waits(), otherwise)
-}
-
-/// Whether another planner can plan for comparison.
-pub(crate) fn compare(model: &Model) -> Result<(), String> {
-    waits(model, "plans are compared before the start")?;
+/// Whether a planner was found.
+pub(crate) fn has_planners(model: &Model) -> Result<(), String> {
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 

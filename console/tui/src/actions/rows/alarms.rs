@@ -8,7 +8,8 @@ use crate::keys::Key;
 use crate::model::Screen;
 use crate::screens::EACH;
 use crate::update::act::select;
-use crate::update::{act, alarms, events, go, offer, stations, zones};
+use crate::update::offer::{self, demand};
+use crate::update::{alarms, events, go, stations, zones};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
@@ -23,7 +24,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::PreviousMissed, "previous-missed", "Show the missed area before", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
         .when(offer::missed).looks(|m| select(m, -1)),
     action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").orders()
-        .when(offer::again).does(go::again),
+        .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
     action(ActionId::Shelve, "shelve", "Shelve the alarm, or take it back", &[Key::Char('d')], &[On(Screen::Alarms)]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).orders()
         .when(alarms::can_shelve).does(alarms::shelve),
     action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).orders()
@@ -35,7 +36,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).orders()
         .when(|m| stations::can(m, ActionId::Include)),
     action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[On(Screen::Alarms), On(Screen::Events)]).label("map")
-        .when(offer::show_place).does(act::show_place),
+        .when(|m| demand(matches!(m.ui.screen, Screen::Alarms | Screen::Events), "select an alarm (<alarms>) or an event (<events>) first")).does(|m| if m.ui.screen == Screen::Events { events::show_place(m) } else { alarms::show_place(m) }),
     action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[On(Screen::Events)]).label("same kind")
         .when(events::is_selected).does(|m| events::next_like(m, false)),
     action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[On(Screen::Events)]).label("same kind")

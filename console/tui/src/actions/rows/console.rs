@@ -6,8 +6,9 @@ use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
 use crate::model::{Overlay, Palette, Screen};
+use crate::update::offer::{self, demand};
 use crate::update::overlay::open;
-use crate::update::{Effect, act, offer};
+use crate::update::{Effect, act, go};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
@@ -26,9 +27,9 @@ pub(super) const ROWS: &[Action] = &[
 #[rustfmt::skip]
 pub(super) const LEAVING: &[Action] = &[
     action(ActionId::Reload, "reload", "Look at the plugins again", &[Key::Char('r')], &[On(Screen::Plugins)]).label("reload").orders()
-        .when(offer::reload).does(|_| vec![Effect::Survey]),
+        .when(|m| demand(!m.live.run.is_running(), "plugins are rescanned only while the robot is held; <hold>: HOLD")).does(|_| vec![Effect::Survey]),
     action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back")
-        .does(act::back),
+        .does(|m| go::back(m).unwrap_or_else(|| act::leave(m))),
     action(ActionId::Leave, "leave", "Quit; a running mission is held first", &[], &[Context::Screen]).also(&["quit", "exit"])
         .does(act::leave),
     action(ActionId::Theme, "theme", "Choose the colours", &[], &[Context::Screen]).args(&[must("theme", Kind::Theme)]),

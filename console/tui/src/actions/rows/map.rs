@@ -5,9 +5,9 @@ use crate::actions::argument::{may, must};
 use crate::actions::context::Context::{self, On};
 use crate::actions::{ActionId, Kind};
 use crate::keys::Key;
-use crate::model::Overlay;
-use crate::model::Screen;
-use crate::model::ui::MapView;
+use crate::model::ui::{MAX_ZOOM, MapView};
+use crate::model::{Overlay, Pane, Screen};
+use crate::update::offer::demand;
 use crate::update::overlay::open;
 use crate::update::send::hold_now;
 use crate::update::{Effect, act, events, map};
@@ -16,23 +16,23 @@ use world::Vector;
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
     action(ActionId::ZoomIn, "zoom-in", "Zoom in", &[Key::Char('z')], &[Context::Map]).repeats()
-        .when(map::can_zoom_in).looks(|m| map::zoom(m, 1)),
+        .when(|m| map::is_shown(m).and(demand(m.ui.map.zoom < MAX_ZOOM, "already at maximum zoom"))).looks(|m| map::zoom(m, 1)),
     action(ActionId::ZoomOut, "zoom-out", "Zoom out", &[Key::Char('Z')], &[Context::Map]).repeats()
-        .when(map::can_zoom_out).looks(|m| map::zoom(m, -1)),
+        .when(|m| map::is_shown(m).and(demand(m.ui.map.zoom > 0, "the whole tank is already shown"))).looks(|m| map::zoom(m, -1)),
     action(ActionId::WholeTank, "whole-tank", "Show the whole tank", &[Key::Char('0')], &[Context::Map])
         .when(map::is_shown).looks(|m| m.ui.map = MapView::default()),
     action(ActionId::Follow, "follow", "Keep the map centred on the robot", &[Key::Char('f')], &[Context::Map])
-        .when(map::can_follow).looks(|m| m.ui.map.follow = !m.ui.map.follow),
+        .when(|m| map::is_shown(m).and(demand(m.live.run.position.pose.is_some(), "no position estimate yet"))).looks(|m| m.ui.map.follow = !m.ui.map.follow),
     action(ActionId::Layers, "layers", "Show or hide map layers", &[Key::Char('L')], &[Context::Map]).args(&[may("layer", Kind::Layer)])
         .when(map::is_shown).does(|m| open(m, Overlay::Layers { selected: 0 })),
     action(ActionId::Centre, "centre", "Centre the map on a named object", &[], &[Context::Map]).args(&[must("place", Kind::Place)])
         .when(map::is_shown),
     action(ActionId::Inspect, "inspect", "Read the map at a cursor (<cancel>: end)", &[Key::Char('i')], &[Context::Map])
-        .when(map::can_inspect).looks(map::inspect),
+        .when(|m| map::is_shown(m).and(demand(m.live.run.about.is_some(), "no tank loaded yet"))).looks(map::inspect),
     action(ActionId::Mouse, "mouse", "Use the mouse in the console, or not", &[], &[Context::Screen])
         .does(act::toggle_mouse),
     action(ActionId::Severity, "severity", "Minimum severity of the events shown", &[Key::Char('m')], &[On(Screen::Mission), Context::Replay]).args(&[may("severity", Kind::Severity)])
-        .when(events::are_shown).looks(events::next_severity),
+        .when(|m| demand(m.ui.shows(Pane::Events), "the events are not shown; <next-pane>: next pane (needs 60x16)")).looks(events::next_severity),
     action(ActionId::Filter, "filter", "Filter the list", &[Key::Char('/')], &[On(Screen::Home), On(Screen::Mission), Context::Replay, On(Screen::Events), On(Screen::Review)]).args(&[may("text", Kind::Text)])
         .does(events::open_filter),
     action(ActionId::PanLeft, "pan-west", "Pan the map west", &[Key::Left, Key::Char('h')], &[Context::Pan]).repeats()

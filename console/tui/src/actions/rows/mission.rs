@@ -7,10 +7,10 @@ use crate::actions::{ActionId, Kind, Risk};
 use crate::keys::Key;
 use crate::model::Screen;
 use crate::model::ui::{Ask, Purpose};
-use crate::update::offer::accepted;
+use crate::update::offer::{self, accepted, demand};
 use crate::update::overlay::ask;
 use crate::update::send::{hold_now, send};
-use crate::update::{Effect, act, offer, overlay, preflight, preset, shadow, what_if};
+use crate::update::{Effect, act, overlay, preflight, preset, shadow, what_if};
 use mission::Order;
 
 #[rustfmt::skip]
@@ -66,13 +66,13 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::PresetSave, "preset-save", "Keep the parameters as a preset", &[], &[Context::Screen]).args(&[must("name", Kind::Text)])
         .when(offer::parameters),
     action(ActionId::Preflight, "preflight", "Check what the start depends on", &[Key::Char('A')], &[On(Screen::Plan), On(Screen::Mission)]).label("pre-flight").orders()
-        .when(|m| offer::waits(m, "checks are made before the start")).does(preflight::open),
+        .when(|m| demand(m.live.waits(), "checks are made before the start")).does(preflight::open),
     action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[On(Screen::Plan)]).label("compare").args(&[may("planner", Kind::Planner)]).orders()
-        .when(offer::compare).does(|m| act::choose(m, Purpose::Compare)),
+        .when(|m| demand(m.live.waits(), "plans are compared before the start").and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check once more", &[Key::Char('r')], &[Context::Preflight]).label("check again").orders()
-        .when(|m| offer::waits(m, "checks are made before the start")).does(preflight::open),
+        .when(|m| demand(m.live.waits(), "checks are made before the start")).does(preflight::open),
     action(ActionId::PlanAgain, "plan-again", "Make the plan once more", &[], &[On(Screen::Plan)]).orders()
-        .when(|m| offer::waits(m, "no mission waits for its start")).does(|_| vec![Effect::Order(Order::Plan)]),
+        .when(|m| demand(m.live.waits(), "no mission waits for its start")).does(|_| vec![Effect::Order(Order::Plan)]),
     action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").orders()
         .when(offer::cancel_plan).does(overlay::cancel_plan),
 ];
