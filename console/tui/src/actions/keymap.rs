@@ -126,7 +126,11 @@ impl Keymap {
         };
         binding.keys.iter().enumerate().find_map(|(at, key)| {
             if action.risk != Risk::Safe && !is_deliberate(*key) {
-                let what = format!("{:?} is too easy to press for what {}", key.name(), deed(action.risk));
+                let what = format!(
+                    "{:?} is too easy to press by accident for an action that {}",
+                    key.name(),
+                    deed(action.risk)
+                );
                 return Some(objection(Some(at), what, None));
             }
             let (other, screens) = self.holder(action, *key)?;
@@ -257,12 +261,12 @@ mod tests {
             (&[("zoomin", &[f])], "0: no action \"zoomin\"; did you mean zoom-in?"),
             (
                 &[("start", &[Key::Char('y')])],
-                "0: \"y\" is too easy to press for what moves the robot; take a capital letter, F key or Ctrl; \
+                "0: \"y\" is too easy to press by accident for an action that moves the robot; take a capital letter, F key or Ctrl; \
                  start keeps \"S\"",
             ),
             (
                 &[("end", &[Key::Char(' ')])],
-                "0: \"space\" is too easy to press for what ends the mission; take a capital letter, F key or \
+                "0: \"space\" is too easy to press by accident for an action that ends the mission; take a capital letter, F key or \
                  Ctrl; end keeps \"X\"",
             ),
             (&[("redraw", &[Key::Ctrl('c')])], "0: \"Ctrl-C\" is already interrupt; redraw keeps \"Ctrl-L\""),
