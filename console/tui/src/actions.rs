@@ -16,6 +16,7 @@ pub use argument::{Arg, Kind, duration_s, moment_s};
 use crate::model::replay::Jump;
 use crate::screens::Screen;
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// Names an action; what each does is said in its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -125,4 +126,4 @@ pub enum ActionId {
 }
 
 /// Every action, in the order of the footer and of help.
-pub const ACTIONS: &[Action] = &rows::ALL;
+pub static ACTIONS: LazyLock<Vec<Action>> = LazyLock::new(rows::all);

@@ -42,7 +42,7 @@ pub(crate) enum Reach {
     Mission,
 }
 
-/// What an action does.
+/// What an action does; one whose id carries a value does the same with each.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Deed {
     /// It opens the command line for its value.
@@ -140,19 +140,8 @@ impl Action {
         Self { args, ..self }
     }
 
-    /// It is an order, or work for the mission.
-    pub(super) const fn orders(self) -> Self {
-        Self { reach: Reach::Mission, ..self }
-    }
-
-    /// It changes how fast time goes.
-    pub(super) const fn paces(self) -> Self {
-        Self { reach: Reach::Pace, ..self }
-    }
-
-    /// It opens another run, or writes into the folder of one.
-    pub(super) const fn opens(self) -> Self {
-        Self { reach: Reach::Runs, ..self }
+    pub(super) const fn reaches(self, reach: Reach) -> Self {
+        Self { reach, ..self }
     }
 
     pub(crate) const fn when(self, can: fn(&Model) -> Result<(), String>) -> Self {

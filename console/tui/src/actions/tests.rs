@@ -30,7 +30,7 @@ fn nothing_that_moves_the_robot_lies_on_a_small_letter_or_on_space() {
 
 #[test]
 fn names_are_plain_and_every_action_says_what_it_does() {
-    for action in ACTIONS {
+    for action in ACTIONS.iter() {
         assert!(action.name.chars().all(|c| c.is_ascii_lowercase() || c == '-'), "{}", action.name);
         assert!(!action.about.is_empty() && action.about.len() <= 40, "{}", action.name);
     }

@@ -28,17 +28,17 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     if let Err(why) = offered(model, id) {
         return refuse(model, why);
     }
-    if let ActionId::Go(screen) = id {
-        return go::go(model, screen);
-    }
-    match find::row(id).map(|action| action.deed) {
-        Some(Deed::Act(act)) => act(model),
-        Some(Deed::Look(look)) => {
+    match (id, find::row(id).map(|action| action.deed)) {
+        (ActionId::Go(screen), _) => go::go(model, screen),
+        (ActionId::Jump(jump), _) => replay::go_to(model, jump),
+        (ActionId::Remedy(number), _) => run_remedy(model, number),
+        (_, Some(Deed::Act(act))) => act(model),
+        (_, Some(Deed::Look(look))) => {
             look(model);
             Vec::new()
         }
-        Some(Deed::Begin) => palette::begin(model, id),
-        None => Vec::new(),
+        (_, Some(Deed::Begin)) => palette::begin(model, id),
+        (_, None) => Vec::new(),
     }
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Runs an action of the alarm whose actions are open.
-pub(crate) fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
+fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
     match alarms::chosen_remedy(model, number.into()) {
         Ok(ActionId::Hold) => hold_only(model),
         Ok(action) => act(model, action),

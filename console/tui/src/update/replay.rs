@@ -116,7 +116,7 @@ pub(super) fn pause(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Goes to another moment of the run.
-pub(crate) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
+pub(super) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
     let run = &model.live.run;
     let (from_s, tick_s) = (run.clock.t_s, run.about.as_ref().map_or(0.1, |about| about.mission.tick_s));
     let target_s = model.live.replay.as_ref().and_then(|replay| replay.target_s(jump, from_s, tick_s));

@@ -20,7 +20,7 @@ pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Sorts the list by something else.
+/// Takes the next sort order.
 pub(crate) fn sort(model: &mut Model) -> Vec<Effect> {
     model.review.sort = model.review.sort.next();
     model.review.selected = 0;

@@ -93,13 +93,13 @@ fn changed(model: &mut Model) {
 
 /// The text by which the list of the screen is filtered.
 pub(super) fn filtered(model: &Model) -> &str {
-    model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |filter| (filter.text)(model))
+    model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |(text, _)| text(model))
 }
 
 /// Filters the list of the screen by a text.
 pub(super) fn filter(model: &mut Model, text: &str) {
     let filter = match model.ui.screen.row().filter {
-        Some(filter) => (filter.text_mut)(model),
+        Some((_, text_mut)) => text_mut(model),
         None => &mut model.ui.needle,
     };
     text.clone_into(filter);

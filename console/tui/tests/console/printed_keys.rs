@@ -107,7 +107,7 @@ fn on_every_screen() -> impl Iterator<Item = (Screen, Name)> {
 fn a_refusal_names_keys_that_are_bound() {
     for (map, keys) in maps() {
         for (base, name) in on_every_screen() {
-            for action in ACTIONS {
+            for action in ACTIONS.iter() {
                 let mut screen = base.clone();
                 screen.model.console.keys = keys.clone();
                 screen.model.ui.go(name);
@@ -124,7 +124,7 @@ fn a_refusal_names_keys_that_are_bound() {
 #[test]
 fn the_lists_and_lines_over_a_screen_print_keys_that_are_bound() {
     for (base, name) in on_every_screen() {
-        for action in ACTIONS {
+        for action in ACTIONS.iter() {
             let mut screen = base.clone();
             screen.model.ui.go(name);
             screen.act(action.id);

@@ -7,7 +7,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/keys.md");
 const HEAD: &str = "\
 # Keys and commands
 
-<!-- Made from the table in console/tui/src/actions.rs. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
+<!-- Made from the rows in console/tui/src/actions/rows/. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
 
 Keys are those of the preset `default`; `keys.toml` changes them (operator guide). SAFE cannot make the robot move, MOVES can and asks
 first, ENDS ends the mission and asks first. A command is typed after `:`, its values after its name; a value with spaces stands in
