@@ -69,8 +69,8 @@ fn is_key(word: &str) -> bool {
 
 /// Keys at the beginning of a clause, before what they do: `X: end mission`, `n N: go to one`.
 fn clauses(row: &str) -> Vec<String> {
-    // What cannot be done has this mark in the list of commands.
-    let row = row.replace("-: not available", "");
+    // A mark in the list of commands, and what is left of an event below a list.
+    let row = row.replace("-: not available", "").replace(" 1: rebuild it", "");
     let clauses =
         ["  ", ". ", ", ", "; ", "? ", "(", "│", "─"].iter().fold(row, |row, end| row.replace(end, "\n"));
     let heads = clauses.lines().filter_map(|clause| {
