@@ -193,12 +193,10 @@ fn promised(model: &Model) -> String {
 
 /// What the line does in which is typed for how long an alarm is put aside.
 fn shelve(model: &Model, shelving: &Shelving) -> String {
+    let keys = model.console.keys.spelled("<accept>: shelve, <cancel>: cancel.");
     match &shelving.refusal {
         Some(why) => format!("  REFUSED: {why}"),
-        None => {
-            let keys = model.console.keys.spelled("<accept>: shelve, <cancel>: cancel.");
-            format!("  ({}) {keys}", guide::name(&shelving.cause, &model.live.run))
-        }
+        None => format!("  ({}) {keys}", guide::name(&shelving.cause, &model.live.run)),
     }
 }
 
