@@ -60,7 +60,7 @@ fn disk(logs: &Path, needed_bytes: u64) -> Check {
     let needed_bytes = needed_bytes + RESERVE_BYTES;
     let megabytes = |bytes: u64| format!("{} MB", bytes / 1_000_000);
     match free_bytes(logs) {
-        None => check("disk", CheckOutcome::Warning, "the system does not say how much is free".into()),
+        None => check("disk", CheckOutcome::Warning, "free space unknown".into()),
         Some(free) if free < needed_bytes => check(
             "disk",
             CheckOutcome::Failed,

@@ -70,7 +70,7 @@ impl EngineHandle {
         self.is_typing.store(is_typing, Ordering::Relaxed);
     }
 
-    /// Settings the pace.
+    /// Sets the pace.
     pub(super) fn speed(&self, speed: Speed) {
         self.request(Request::Speed(speed), false);
     }

@@ -9,6 +9,7 @@ pub use remedy::{Guide, Remedy};
 
 use crate::actions::ActionId;
 use crate::model::{Cause, Run};
+use crate::screens::Screen;
 use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
 
 /// What an alarm is called in a table, short enough for one.
@@ -27,7 +28,7 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Stuck => "robot stuck".into(),
         Cause::Ended => "mission ended early".into(),
         Cause::Recording => "recording FAILED".into(),
-        Cause::Writer => "console of the run is gone".into(),
+        Cause::Writer => "console of this run has exited".into(),
         Cause::Console => "part of the console failed".into(),
         Cause::Response => "console answers slowly".into(),
         Cause::Frames => "screen skips frames".into(),
@@ -84,7 +85,7 @@ pub fn guide(cause: &Cause) -> Guide {
             effect: "Nothing moves. What was scanned and recorded is kept.",
             remedies: const {
                 &[
-                    run("Show the result (<result>).", ActionId::GoResult),
+                    run("Show the result (<result>).", ActionId::Go(Screen::Result)),
                     run("Scan what was missed: opens a new mission.", ActionId::Rescan),
                     run("Write the report.", ActionId::Report),
                 ]

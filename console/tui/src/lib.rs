@@ -14,6 +14,7 @@ mod layout;
 pub mod model;
 pub mod picture;
 pub mod plain;
+mod screens;
 pub mod terminal;
 pub mod theme;
 pub mod update;

@@ -29,6 +29,7 @@ pub mod trail;
 pub mod ui;
 pub mod what_if;
 
+pub use crate::screens::Screen;
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
 pub use console::{Console, Notice, Settling, Speed, Times};
@@ -52,7 +53,7 @@ pub use run::{About, Clock, Progress, Run};
 pub use shadow::Shadow;
 pub use tether::Tether;
 pub use trail::Trail;
-pub use ui::{Overlay, Pane, Screen, Ui};
+pub use ui::{Overlay, Pane, Ui};
 pub use what_if::{Candidate, Forecast, WhatIf};
 
 use mission::{PlannerChoice, PlannerInfo, Severity};

@@ -1,6 +1,6 @@
 //! The model onto the screen.
 
-mod alarm_screen;
+pub(crate) mod alarm_screen;
 mod alarms;
 mod ascii;
 mod cache;
@@ -8,30 +8,30 @@ mod charts;
 mod confirm;
 mod coverage;
 mod event_detail;
-mod events;
+pub(crate) mod events;
 mod field;
 mod fields;
 mod footer;
-mod home;
+pub(crate) mod home;
 mod lists;
-mod look;
+pub(crate) mod look;
 mod map;
 mod missed;
 mod next;
 mod notice;
-mod plan;
+pub(crate) mod plan;
 mod planner;
-mod plugins;
+pub(crate) mod plugins;
 mod position;
 mod readable;
-mod result;
-mod review;
+pub(crate) mod result;
+pub(crate) mod review;
 mod shadow;
 mod stations;
 mod strip;
-mod table;
+pub(crate) mod table;
 mod tether;
-mod text;
+pub(crate) mod text;
 mod timeline;
 mod top;
 mod what_if;
@@ -43,7 +43,7 @@ pub(crate) use next::standing;
 
 use crate::caps::{Caps, Glyphs};
 use crate::layout::{self, Shown};
-use crate::model::{Model, Overlay, Pane, Screen, ui::Arrangement};
+use crate::model::{Model, Overlay, Pane, ui::Arrangement};
 use crate::theme::Theme;
 use look::Look;
 use ratatui::Frame;
@@ -107,22 +107,15 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
         confirm::draw(look, frame, next);
         return footer::draw(look, frame, keys);
     }
-    match look.model.ui.screen {
-        Screen::Home => home::draw(look, frame, body, arrangement),
-        Screen::Plan => plan::draw(look, frame, body, arrangement),
-        Screen::Plugins => plugins::draw(look, frame, body, arrangement),
-        Screen::Alarms => alarm_screen::draw(look, frame, body, arrangement),
-        Screen::Events => events::screen(look, frame, body, arrangement),
-        Screen::Review => review::draw(look, frame, body, arrangement),
-        Screen::Result => result::draw(look, frame, body, arrangement),
-        Screen::Mission => mission(look, frame, body, (area.width, area.height)),
-    }
+    (look.model.ui.screen.row().draw)(look, frame, body, arrangement);
     confirm::draw(look, frame, next);
     footer::draw(look, frame, keys);
 }
 
-fn mission(look: &Look, frame: &mut Frame, area: Rect, size: (u16, u16)) {
-    let area = timeline::draw(look, frame, area, Arrangement::of(size.0, size.1));
+/// The mission screen: the panes that fit, and the timeline of a replay below them.
+pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+    let size = (frame.area().width, frame.area().height);
+    let area = timeline::draw(look, frame, area, arrangement);
     let shown = Shown::of(look.run, missed::account(look).is_some());
     let mut panes = layout::mission(area, size, shown);
     if panes.is_empty() {

@@ -93,7 +93,7 @@ fn warnings(written: &Written) -> impl Iterator<Item = Fault> {
     let keys = written.binding.keys.iter().zip(&written.keys_at);
     keys.filter_map(|(key, at)| {
         let who = taken_by(*key)?;
-        let what = format!("{:?} may not arrive: {who} takes it for itself", key.name());
+        let what = format!("{:?} may never reach tankops: {who} intercepts it", key.name());
         Some(Fault { at: *at, what, other: None, instead: String::new(), is_warning: true })
     })
 }

@@ -126,11 +126,11 @@ fn a_faulty_binding_names_both_places_and_keeps_the_key() {
         ),
         (
             "[keys]\nstart = [\"s\"]\n",
-            "keys.toml:2:10: \"s\" is too easy to press for what moves the robot; take a capital letter, F key or \
+            "keys.toml:2:10: \"s\" is too easy to press by accident for an action that moves the robot; take a capital letter, F key or \
              Ctrl; start keeps \"S\""
                 .to_owned(),
         ),
-        ("[keys]\nredraw = [\"Ctrl-B\"]\n", "keys.toml:2:11: \"Ctrl-B\" may not arrive: tmux takes it for itself".to_owned()),
+        ("[keys]\nredraw = [\"Ctrl-B\"]\n", "keys.toml:2:11: \"Ctrl-B\" may never reach tankops: tmux intercepts it".to_owned()),
         ("preset = \"emacs\"\n", format!("keys.toml:1:10: preset must be default, arrows or vim; {ignored}")),
         ("[alias]\nnight = \"them dark\"\n", format!("keys.toml:2:9: no command \"them\"; did you mean theme?; {ignored}")),
         ("[alias]\nhold = \"theme dark\"\n", format!("keys.toml:2:8: \"hold\" is already the command hold; {ignored}")),

@@ -4,6 +4,8 @@ use super::ActionId;
 use super::argument::Arg;
 use super::context::Context;
 use crate::keys::Key;
+use crate::model::Model;
+use crate::update::Effect;
 
 /// What an action can do to the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,8 +29,32 @@ impl Risk {
     }
 }
 
-/// One thing the operator can do.
+/// What an action reaches beyond the screen, and so which consoles have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reach {
+    /// Nothing but this screen: every console has it.
+    Screen,
+    /// Another run, or the folder of one: not a console that looks on.
+    Runs,
+    /// How fast time goes and whether it does, in a mission or a replay: not a console that looks on.
+    Pace,
+    /// The mission: only the console that runs it.
+    Mission,
+}
+
+/// What an action does; one whose id carries a value does the same with each.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Deed {
+    /// It opens the command line for its value.
+    Begin,
+    /// It changes what the operator looks at, and nothing else.
+    Look(fn(&mut Model)),
+    /// It changes the model, and there may be something to do outside.
+    Act(fn(&mut Model) -> Vec<Effect>),
+}
+
+/// One thing the operator can do.
+#[derive(Debug, Clone, Copy)]
 pub struct Action {
     /// Its id.
     pub id: ActionId,
@@ -50,9 +76,26 @@ pub struct Action {
     pub synonyms: &'static [&'static str],
     /// What its command takes.
     pub args: &'static [Arg],
+    /// What it reaches.
+    pub(crate) reach: Reach,
+    /// Whether it can be done now, and why not otherwise; keys are named as `<end>`.
+    pub(crate) can: fn(&Model) -> Result<(), String>,
+    /// What it does.
+    pub(crate) deed: Deed,
 }
 
-pub(super) const fn action(
+impl PartialEq for Action {
+    /// Whether it is the same row: an action has one for each set of keys.
+    fn eq(&self, other: &Self) -> bool {
+        (self.id, self.name, self.contexts) == (other.id, other.name, other.contexts)
+    }
+}
+
+impl Eq for Action {}
+
+/// A row of the table. Unless it says otherwise, its action is safe, reaches nothing, can be done at any time, and opens the command
+/// line for its value.
+pub(crate) const fn action(
     id: ActionId,
     name: &'static str,
     about: &'static str,
@@ -70,6 +113,9 @@ pub(super) const fn action(
         repeats: false,
         synonyms: &[],
         args: &[],
+        reach: Reach::Screen,
+        can: |_| Ok(()),
+        deed: Deed::Begin,
     }
 }
 
@@ -79,7 +125,7 @@ impl Action {
     }
 
     pub(super) const fn risk(self, risk: Risk) -> Self {
-        Self { risk, ..self }
+        Self { risk, reach: Reach::Mission, ..self }
     }
 
     pub(super) const fn repeats(self) -> Self {
@@ -92,6 +138,22 @@ impl Action {
 
     pub(super) const fn args(self, args: &'static [Arg]) -> Self {
         Self { args, ..self }
+    }
+
+    pub(super) const fn reaches(self, reach: Reach) -> Self {
+        Self { reach, ..self }
+    }
+
+    pub(crate) const fn when(self, can: fn(&Model) -> Result<(), String>) -> Self {
+        Self { can, ..self }
+    }
+
+    pub(crate) const fn does(self, act: fn(&mut Model) -> Vec<Effect>) -> Self {
+        Self { deed: Deed::Act(act), ..self }
+    }
+
+    pub(super) const fn looks(self, look: fn(&mut Model)) -> Self {
+        Self { deed: Deed::Look(look), ..self }
     }
 
     /// Whether its keys work in one of some contexts.

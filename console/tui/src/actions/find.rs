@@ -2,12 +2,17 @@
 
 use super::context::Context;
 use super::keymap::Keymap;
-use super::{ACTIONS, Action, Risk};
+use super::{ACTIONS, Action, ActionId, Risk};
 use crate::keys::Key;
 
 /// The action of a key in some contexts.
 pub fn action_for(keys: &Keymap, key: Key, contexts: &[Context]) -> Option<&'static Action> {
     ACTIONS.iter().find(|action| action.works_in(contexts) && keys.of(action).contains(&key))
+}
+
+/// The row of an action; the first one if it has several.
+pub fn row(id: ActionId) -> Option<&'static Action> {
+    ACTIONS.iter().find(|action| action.id == id)
 }
 
 /// Every command.

@@ -4,7 +4,7 @@ mod presets;
 
 pub use presets::PRESETS;
 
-use super::{ACTIONS, Action, ActionId, Risk, context::TOGETHER};
+use super::{ACTIONS, Action, ActionId, Risk, context::together};
 use crate::keys::Key;
 use mission::spelling::nearest;
 use presets::Changes;
@@ -57,12 +57,25 @@ impl Keymap {
 
     /// A sentence with the key of each action that it names as `<end>`; one without a key is called by its command.
     pub fn spelled(&self, sentence: &str) -> String {
-        let mut text = sentence.to_owned();
-        for action in ACTIONS.iter().filter(|_| sentence.contains('<')) {
-            let key = self.of(action).first().map_or_else(|| format!(":{}", action.name), Key::to_string);
-            text = text.replace(&format!("<{}>", action.name), &key);
+        let mut parts = sentence.split('<');
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let named = part.split_once('>').and_then(|(name, after)| Some((self.spelling(name)?, after)));
+            let (key, after) = named.unwrap_or_else(|| ("<".into(), part));
+            text += &key;
+            text += after;
         }
         text
+    }
+
+    /// How an action is called by the keyboard: its first key, else its command.
+    fn spelling(&self, name: &str) -> Option<String> {
+        let action = ACTIONS.iter().find(|action| action.name == name)?;
+        Some(match self.of(action).first() {
+            Some(key) => key.to_string(),
+            None if action.is_command() => format!(":{name}"),
+            None => "(no key)".into(),
+        })
     }
 
     /// A preset with the operator's own keys. What cannot be taken is left out, and its action keeps the preset's keys.
@@ -113,7 +126,11 @@ impl Keymap {
         };
         binding.keys.iter().enumerate().find_map(|(at, key)| {
             if action.risk != Risk::Safe && !is_deliberate(*key) {
-                let what = format!("{:?} is too easy to press for what {}", key.name(), deed(action.risk));
+                let what = format!(
+                    "{:?} is too easy to press by accident for an action that {}",
+                    key.name(),
+                    deed(action.risk)
+                );
                 return Some(objection(Some(at), what, None));
             }
             let (other, screens) = self.holder(action, *key)?;
@@ -140,9 +157,9 @@ impl Keymap {
     fn holder(&self, action: &Action, key: Key) -> Option<(&'static Action, Vec<&'static str>)> {
         let rows = || ACTIONS.iter().filter(|row| row.id == action.id);
         let mut found: Option<(&Action, Vec<&str>)> = None;
-        for contexts in TOGETHER.iter().filter(|contexts| rows().any(|row| row.works_in(contexts))) {
+        for contexts in together().filter(|contexts| rows().any(|row| row.works_in(contexts))) {
             let other = ACTIONS.iter().find(|other| {
-                other.id != action.id && other.works_in(contexts) && self.of(other).contains(&key)
+                other.id != action.id && other.works_in(&contexts) && self.of(other).contains(&key)
             });
             let Some(other) = other else { continue };
             let (_, screens) = found.get_or_insert((other, Vec::new()));
@@ -244,12 +261,12 @@ mod tests {
             (&[("zoomin", &[f])], "0: no action \"zoomin\"; did you mean zoom-in?"),
             (
                 &[("start", &[Key::Char('y')])],
-                "0: \"y\" is too easy to press for what moves the robot; take a capital letter, F key or Ctrl; \
+                "0: \"y\" is too easy to press by accident for an action that moves the robot; take a capital letter, F key or Ctrl; \
                  start keeps \"S\"",
             ),
             (
                 &[("end", &[Key::Char(' ')])],
-                "0: \"space\" is too easy to press for what ends the mission; take a capital letter, F key or \
+                "0: \"space\" is too easy to press by accident for an action that ends the mission; take a capital letter, F key or \
                  Ctrl; end keeps \"X\"",
             ),
             (&[("redraw", &[Key::Ctrl('c')])], "0: \"Ctrl-C\" is already interrupt; redraw keeps \"Ctrl-L\""),

@@ -2,6 +2,7 @@
 
 use super::remedy::{END, Guide, HOLD, SLOWER, run, wait};
 use crate::actions::ActionId;
+use crate::screens::Screen;
 
 pub(super) const RECORDING: Guide = Guide {
     cause: "Journal or recording cannot be written, or was deleted, replaced or truncated.",
@@ -19,8 +20,8 @@ pub(super) const WRITER: Guide = Guide {
     effect: "Nothing is known of the robot after the last event.",
     remedies: &[
         wait("Look after the robot where it is."),
-        run("Show the last known place of the robot.", ActionId::GoMission),
-        run("Show what the journal says of the run.", ActionId::GoResult),
+        run("Show the last known place of the robot.", ActionId::Go(Screen::Mission)),
+        run("Show what the journal says of the run.", ActionId::Go(Screen::Result)),
     ],
 };
 

@@ -25,7 +25,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     run(
-                        "Resume: the scan is replanned from here, tether relieved first; asks.",
+                        "Resume (with confirmation): slackens the tether, then replans the scan.",
                         ActionId::Resume,
                     ),
                     OTHER_PLANNER,
@@ -39,7 +39,7 @@ pub(super) fn guide(word: &str) -> Guide {
             remedies: const {
                 &[
                     SHOW,
-                    run("Resume: a manoeuvre relieves the tether first; asks.", ActionId::Resume),
+                    run("Resume (with confirmation): slackens the tether first.", ActionId::Resume),
                     OTHER_PLANNER,
                     END,
                 ]
@@ -47,11 +47,11 @@ pub(super) fn guide(word: &str) -> Guide {
         },
         "snag" => Guide {
             cause: "The reel has paid out more than the map explains: an unmapped object holds the tether.",
-            effect: "Robot is held. How the tether lies is not known; the return path is UNKNOWN.",
+            effect: "Robot is held. Tether position unknown; the return path is UNKNOWN.",
             remedies: const {
                 &[
                     run(
-                        "Resume: the robot frees the tether by driving back the way it snagged; asks.",
+                        "Resume (with confirmation): drives back the way it came to free the tether.",
                         ActionId::Resume,
                     ),
                     SHOW,

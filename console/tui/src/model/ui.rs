@@ -3,6 +3,7 @@
 use super::line_edit::LineEdit;
 use super::palette::Palette;
 use super::{Cause, EventList};
+use crate::screens::Screen;
 use crate::theme::ThemeName;
 use mission::{Order, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
@@ -66,70 +67,6 @@ impl Default for Ui {
             alarm: None,
             theme: ThemeName::default(),
             overlay: Overlay::None,
-        }
-    }
-}
-
-/// A screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Screen {
-    /// What there is to open.
-    #[default]
-    Home,
-    /// A mission before it moves.
-    Plan,
-    /// A mission under way.
-    Mission,
-    /// What is wrong.
-    Alarms,
-    /// What happened.
-    Events,
-    /// Past runs.
-    Review,
-    /// What a mission has achieved.
-    Result,
-    /// Which plugins there are.
-    Plugins,
-}
-
-impl Screen {
-    /// Every screen, in the order of their keys.
-    pub const ALL: [Self; 8] = [
-        Self::Home,
-        Self::Plan,
-        Self::Mission,
-        Self::Alarms,
-        Self::Events,
-        Self::Review,
-        Self::Result,
-        Self::Plugins,
-    ];
-
-    /// Its name, as the top line shows it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Home => "Home",
-            Self::Plan => "Plan",
-            Self::Mission => "Mission",
-            Self::Alarms => "Alarms",
-            Self::Events => "Events",
-            Self::Review => "Review",
-            Self::Result => "Result",
-            Self::Plugins => "Plugins",
-        }
-    }
-
-    /// The digit that selects it.
-    pub fn digit(self) -> u8 {
-        match self {
-            Self::Home => 1,
-            Self::Plan => 2,
-            Self::Mission => 3,
-            Self::Alarms => 4,
-            Self::Events => 5,
-            Self::Review => 6,
-            Self::Result => 7,
-            Self::Plugins => 8,
         }
     }
 }
@@ -445,8 +382,7 @@ impl Ui {
 
     /// Whether the screen has a map.
     pub fn has_map(&self) -> bool {
-        let is_map = matches!(self.screen, Screen::Plan | Screen::Mission | Screen::Result);
-        is_map && self.arrangement() != Arrangement::Strip
+        self.screen.has_map() && self.arrangement() != Arrangement::Strip
     }
 
     /// The panes that the Tab key visits.

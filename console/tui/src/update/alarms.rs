@@ -1,7 +1,7 @@
 //! What the operator does about alarms.
 
 use super::message::Effect;
-use super::offer::{accepted, demand, refuse};
+use super::offer::{accepted, demand, on_screen, refuse};
 use super::place;
 use crate::actions::ActionId;
 use crate::guide::{guide, name};
@@ -15,7 +15,7 @@ fn selected_cause(model: &Model) -> Option<Cause> {
 }
 
 /// Selects another alarm, so many further down.
-pub(super) fn select(model: &mut Model, by: isize) {
+pub(crate) fn select(model: &mut Model, by: isize) {
     let table = model.live.run.alarms.table();
     let at = model.selected_alarm().and_then(|here| table.iter().position(|alarm| alarm.cause == here.cause));
     let next = at.unwrap_or(0).saturating_add_signed(by).min(table.len().saturating_sub(1));
@@ -26,10 +26,21 @@ pub(super) fn select(model: &mut Model, by: isize) {
 ///
 /// # Errors
 /// Why not, as a sentence.
-pub(super) fn can_acknowledge(model: &Model) -> Result<(), String> {
-    let alarms = &model.live.run.alarms;
-    demand(alarms.open().any(Alarm::is_unacknowledged), "no unacknowledged alarms")?;
+pub(crate) fn can_acknowledge(model: &Model) -> Result<(), String> {
+    can_acknowledge_all(model)?;
     demand(to_acknowledge(model).is_some(), "the selected alarm needs no acknowledgement; select another")
+}
+
+/// Whether an alarm waits for the operator.
+pub(crate) fn can_acknowledge_all(model: &Model) -> Result<(), String> {
+    demand(model.live.run.alarms.open().any(Alarm::is_unacknowledged), "no unacknowledged alarms")
+}
+
+/// Whether the selected alarm can be put aside, or taken back.
+pub(crate) fn can_shelve(model: &Model) -> Result<(), String> {
+    on_screen(model, Screen::Alarms)?;
+    let alarm = model.selected_alarm().ok_or("no alarm is selected")?;
+    alarm.cannot_be_shelved().map_or(Ok(()), |why| Err(why.to_owned()))
 }
 
 /// On the table of alarms the selected one, and no other; elsewhere the most severe one.
@@ -41,7 +52,7 @@ fn to_acknowledge(model: &Model) -> Option<&Alarm> {
 }
 
 /// Acknowledges the alarm that the screen is about.
-pub(super) fn acknowledge(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn acknowledge(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = to_acknowledge(model) else { return Vec::new() };
     let (text, noted) = (alarm.text.clone(), acknowledged(alarm));
     model.say(Severity::Info, format!("acknowledged: {text}"));
@@ -49,7 +60,7 @@ pub(super) fn acknowledge(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Acknowledges every alarm.
-pub(super) fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn acknowledge_all(model: &mut Model) -> Vec<Effect> {
     let waiting = model.live.run.alarms.list().iter().filter(|alarm| alarm.is_unacknowledged());
     let all: Vec<Noted> = waiting.map(acknowledged).collect();
     model.say(Severity::Info, format!("{} alarms acknowledged", all.len()));
@@ -75,7 +86,7 @@ pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
 }
 
 /// Asks for how long and why the selected alarm shall be put aside; takes a shelved one back.
-pub(super) fn shelve(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = model.selected_alarm() else { return Vec::new() };
     let (cause, text) = (alarm.cause.clone(), alarm.text.clone());
     if !matches!(alarm.state, State::Shelved(_)) {
@@ -150,7 +161,7 @@ fn parse_shelving(text: &str) -> Result<(f64, String), String> {
 }
 
 /// Opens the actions of the selected alarm.
-pub(super) fn open_actions(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
     model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
     Vec::new()
@@ -173,7 +184,7 @@ pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId
 }
 
 /// Shows the place of the selected alarm on the map.
-pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let shown =
         model.selected_alarm().and_then(|alarm| Some((alarm.place?, name(&alarm.cause, &model.live.run))));
     match shown {

@@ -153,7 +153,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     };
     // What is named needs no screen on which it is selected.
     let is_named = matches!(first, Value::Run(_) | Value::Duration(_)) && action.id != ActionId::CompareRun;
-    let can = if is_named { allowed(model, action.id) } else { offered(model, action.id) };
+    let can = if is_named { allowed(model, action) } else { offered(model, action.id) };
     if let Err(why) = can {
         return refuse(model, why);
     }
@@ -182,7 +182,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             return go::open(model, source, planner);
         }
         Value::Run(run) => return go::begin_on(model, action.id, run),
-        Value::Screen(id) => return act(model, id),
+        Value::Screen(screen) => return act(model, ActionId::Go(screen)),
         Value::Layer(layer) => model.ui.layers.toggle(layer),
         Value::Place(offset) => model.ui.map = MapView { follow: false, offset, ..model.ui.map },
         Value::Severity(least) => events::set_least(model, least),

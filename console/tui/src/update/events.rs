@@ -1,7 +1,7 @@
 //! What the operator does with events.
 
 use super::message::Effect;
-use super::offer::refuse;
+use super::offer::{demand, on_screen, refuse};
 use super::{place, typing};
 use crate::model::log::filter::with_least;
 use crate::model::{Model, Overlay, Screen};
@@ -12,8 +12,14 @@ pub(super) fn refresh(model: &mut Model) {
     model.ui.events.matches.refresh(&model.ui.needle, &model.live.run.log);
 }
 
+/// Whether an event is selected on the screen of events.
+pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
+    on_screen(model, Screen::Events)?;
+    demand(!model.ui.events.matches.is_empty(), "no event is selected")
+}
+
 /// Opens the whole event, or closes it; from another screen it opens it.
-pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let Some(selected) = model.ui.events.selected() else {
         return refuse(model, "no event is selected".into());
     };
@@ -31,7 +37,7 @@ pub(super) fn close(model: &mut Model) -> bool {
 }
 
 /// Selects the next event of the same kind, or the one before.
-pub(super) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
+pub(crate) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
     let events = &mut model.ui.events;
     let next = events
         .selected()
@@ -47,7 +53,7 @@ pub(super) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
 }
 
 /// Shows the place of the selected event on the map.
-pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let run = &model.live.run;
     let entry = model.ui.events.selected().and_then(|number| run.log.get(number));
     let shown = entry.and_then(|entry| Some((run.place_of(&entry.what)?, entry.text.clone())));
@@ -58,7 +64,7 @@ pub(super) fn show_place(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Copies the line of the selected event.
-pub(super) fn copy(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
     let entry = model.ui.events.selected().and_then(|number| model.live.run.log.get(number));
     let Some(line) = entry.map(crate::model::Entry::line) else {
         return refuse(model, "no event is selected".into());
@@ -68,7 +74,7 @@ pub(super) fn copy(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Another least severity, as a term of the filter.
-pub(super) fn next_severity(model: &mut Model) {
+pub(crate) fn next_severity(model: &mut Model) {
     let next = match model.ui.events.matches.filter().least() {
         Severity::Info => Severity::Watch,
         Severity::Watch => Severity::Warn,
@@ -86,9 +92,9 @@ pub(super) fn set_least(model: &mut Model, least: Severity) {
 }
 
 /// Opens the line in which the filter is typed; what is typed next is a term of its own.
-pub(super) fn open_filter(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
-    if !text.is_empty() && !matches!(model.ui.screen, Screen::Home | Screen::Review) && !text.ends_with(' ') {
+    if !text.is_empty() && model.ui.screen.row().filter.is_none() && !text.ends_with(' ') {
         text.push(' ');
     }
     model.ui.overlay = Overlay::Filter(text.as_str().into());

@@ -2,45 +2,34 @@
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
-use super::{alarms, events, news, replay, review};
+use super::{news, replay};
 use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::log::clock;
-use crate::model::{Cause, Live, Model, Pane, RunId, Screen, Source};
+use crate::model::{Cause, Live, Model, RunId, Screen, Source};
 use mission::{PlannerChoice, Severity};
 use world::Point;
 
-/// Goes to a screen; home is looked at again each time.
-pub(super) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
+/// Goes to a screen.
+pub(crate) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
     model.ui.go(screen);
-    if lists_runs(screen) { vec![Effect::Look] } else { Vec::new() }
-}
-
-/// Whether a screen shows what is on the disk.
-fn lists_runs(screen: Screen) -> bool {
-    matches!(screen, Screen::Home | Screen::Review)
+    looked(screen)
 }
 
 /// Goes back to the screen before, if there is one.
-pub(super) fn back(model: &mut Model) -> Option<Vec<Effect>> {
+pub(crate) fn back(model: &mut Model) -> Option<Vec<Effect>> {
     let before = model.ui.back.pop().or((model.ui.screen != Screen::Home).then_some(Screen::Home))?;
     model.ui.screen = before;
-    Some(if lists_runs(before) { vec![Effect::Look] } else { Vec::new() })
+    Some(looked(before))
 }
 
-/// Enter on a screen without anything over it.
-pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
-    match model.ui.screen {
-        Screen::Home => open_selected(model),
-        Screen::Alarms => alarms::open_actions(model),
-        Screen::Review => review::enter(model),
-        Screen::Events => events::enter(model),
-        Screen::Mission if model.ui.pane == Pane::Events => events::enter(model),
-        Screen::Plan | Screen::Mission | Screen::Result | Screen::Plugins => Vec::new(),
-    }
+/// What is on the disk is looked at whenever a screen shows it.
+fn looked(screen: Screen) -> Vec<Effect> {
+    if screen.row().lists_runs { vec![Effect::Look] } else { Vec::new() }
 }
 
-fn open_selected(model: &mut Model) -> Vec<Effect> {
+/// Opens what is selected on the home screen.
+pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
     let home = &model.home;
     if home.list == HomeList::Runs {
         return go_to_run(model);
@@ -98,14 +87,14 @@ pub(super) fn not_opened(model: &mut Model, why: String) {
 }
 
 /// Opens the scenario of the run that is open once more, with the planner that it had.
-pub(super) fn again(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn again(model: &mut Model) -> Vec<Effect> {
     let Some(source) = model.live.source.clone() else { return Vec::new() };
     let planner = model.live.run.planning.choice.clone();
     open(model, source, planner)
 }
 
 /// Selects another missed area, so many further down, and shows it in the middle of the map.
-pub(super) fn select_missed(model: &mut Model, by: isize) {
+pub(crate) fn select_missed(model: &mut Model, by: isize) {
     let places: Vec<Point> = model.live.missed().iter().map(|area| area.at).collect();
     model.ui.missed = model.ui.missed.saturating_add_signed(by).min(places.len().saturating_sub(1));
     let Some(bounds) = model.live.run.about.as_ref().map(|about| about.world.boundary.bounds()) else {
@@ -117,14 +106,19 @@ pub(super) fn select_missed(model: &mut Model, by: isize) {
     }
 }
 
-/// The run that a command is about: on the home screen the one that is selected in the list of runs, else the one that is open.
+/// The run that a command is about, if there is one.
 pub(super) fn named_run(model: &Model) -> Option<String> {
-    match model.ui.screen {
-        Screen::Home if model.home.list == HomeList::Runs => selected_run(model),
-        Screen::Home => None,
-        Screen::Review => model.review.run(&model.home).map(|run| run.name.clone()),
-        _ => model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model)),
-    }
+    (model.ui.screen.row().run)(model)
+}
+
+/// The run that is selected on the home screen, in its list of runs.
+pub(crate) fn run_at_home(model: &Model) -> Option<String> {
+    if model.home.list == HomeList::Runs { selected_run(model) } else { None }
+}
+
+/// The run that is open: played back, or ended.
+pub(crate) fn open_run(model: &Model) -> Option<String> {
+    model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model))
 }
 
 fn selected_run(model: &Model) -> Option<String> {
@@ -136,7 +130,7 @@ fn result_name(model: &Model) -> Option<String> {
 }
 
 /// Begins work on the past run that the screen is about.
-pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
+pub(crate) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match named_run(model) {
         Some(run) => begin_on(model, id, run),
         None => refuse(model, "no run is selected".into()),

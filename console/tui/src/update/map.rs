@@ -1,5 +1,6 @@
 //! What the operator sees of the map: zoom, part of the floor, cursor.
 
+use super::offer::demand;
 use crate::model::ui::{MAX_ZOOM, MapView};
 use crate::model::{Model, Pane};
 use world::{Point, Vector};
@@ -9,8 +10,20 @@ const CURSOR_STEPS: f64 = 64.0;
 /// Steps of the map's window across what it shows.
 const PAN_STEPS: f64 = 4.0;
 
+/// Whether the map is shown.
+pub(crate) fn is_shown(model: &Model) -> Result<(), String> {
+    demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
+}
+
+/// Whether the map can be moved, or a cursor on it.
+pub(crate) fn can_pan(model: &Model) -> Result<(), String> {
+    is_shown(model)?;
+    let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
+    demand(moves, "the whole tank is shown; <zoom-in>: zoom in first")
+}
+
 /// Enlarges or reduces the map about its middle.
-pub(super) fn zoom(model: &mut Model, by: i8) {
+pub(crate) fn zoom(model: &mut Model, by: i8) {
     let map = &mut model.ui.map;
     map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
     if map.zoom == 0 {
@@ -29,7 +42,7 @@ pub(super) fn zoom_at(model: &mut Model, by: i8, place: Point) {
 }
 
 /// Moves the map by a quarter of what it shows, or its cursor by a small step.
-pub(super) fn pan(model: &mut Model, direction: Vector) {
+pub(crate) fn pan(model: &mut Model, direction: Vector) {
     let Some((low, high)) = bounds(model) else { return };
     let seen_m = (high - low).max() / f64::from(1_u32 << model.ui.map.zoom);
     match model.ui.cursor {
@@ -55,7 +68,7 @@ pub(super) fn shift(model: &mut Model, way: Vector) {
 }
 
 /// Begins to read the map, at the robot's place if the whole tank is seen, or ends it.
-pub(super) fn inspect(model: &mut Model) {
+pub(crate) fn inspect(model: &mut Model) {
     let robot = model.live.run.position.pose.map(|pose| pose.position);
     let begin = robot.filter(|_| model.ui.map.zoom == 0).or_else(|| center(model));
     model.ui.cursor = if model.ui.cursor.is_some() { None } else { begin };

@@ -16,13 +16,13 @@ use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
 
 /// Puts something over the screen.
-pub(super) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
+pub(crate) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
     model.ui.overlay = overlay;
     Vec::new()
 }
 
 /// Opens the line that asks; the robot does not move yet.
-pub(super) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
+pub(crate) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     model.console.notice = None;
     open(model, Overlay::Confirm(ask))
 }
@@ -40,10 +40,10 @@ pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     moves
 }
 
-/// Agrees, or takes the selected line.
-pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
+/// Agrees, or takes the selected line; with nothing open, what Enter does on the screen.
+pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
-        Overlay::None => Vec::new(),
+        Overlay::None => (model.ui.screen.row().enter)(model),
         Overlay::Stepping => act(model, ActionId::Step),
         Overlay::Remedies { selected, .. } => u8::try_from(selected + 1)
             .map_or_else(|_| Vec::new(), |number| act(model, ActionId::Remedy(number))),
@@ -66,6 +66,12 @@ pub(super) fn accept(model: &mut Model) -> Vec<Effect> {
         Overlay::Shelve(shelving) => alarms::take_shelving(model, shelving),
         Overlay::Bookmark(line) => replay::take_bookmark(model, &line),
     }
+}
+
+/// Opens the planner's parameters.
+pub(crate) fn open_parameters(model: &mut Model) -> Vec<Effect> {
+    what_if::take_draft(model);
+    open(model, Overlay::Parameters { selected: 0, edit: None })
 }
 
 /// Back without doing anything.
@@ -159,7 +165,7 @@ fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
 }
 
 /// Gives up the start that was agreed to, or what is being planned, or takes the second plan from the map.
-pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
     if model.live.preflight.is_starting {
         preflight::cancel(model);
         return Vec::new();
@@ -173,7 +179,7 @@ pub(super) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Opens the line in which a value is typed.
-pub(super) fn edit(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
     let Some((planner, choice)) = model.edited() else { return Vec::new() };
     let Some(info) = planner.parameters.get(selected) else { return Vec::new() };

@@ -4,10 +4,11 @@ use super::command::{self, line};
 use super::message::Effect;
 use super::offer::{offered, refuse};
 use super::overlay::open;
-use crate::actions::context::{Context, of_screen};
+use crate::actions::context::Context;
 use crate::actions::find::{self, Match};
 use crate::actions::{Action, ActionId, Risk};
 use crate::model::{Model, Overlay, Palette, palette::LineFault};
+use crate::screens;
 use mission::spelling::nearest;
 use std::cmp::Reverse;
 
@@ -42,7 +43,7 @@ pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
 
 /// The commands that answer what was typed, best first; with nothing typed, those of other screens and panes come last.
 fn ranked(model: &Model, typed: &str) -> Vec<&'static Action> {
-    let here = [&[Context::Anywhere, Context::Screen], of_screen(model)].concat();
+    let here = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
     if typed.is_empty() {
         let mut all: Vec<&Action> = find::commands().collect();
         all.sort_by_key(|action| !action.works_in(&here));

@@ -12,7 +12,7 @@ const BYTES_PER_S: f64 = 30_000.0;
 const MARGIN: f64 = 2.0;
 
 /// Opens the list of checks, and looks again.
-pub(super) fn open(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::Preflight { selected: 0 };
     look(model)
 }

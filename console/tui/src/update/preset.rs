@@ -12,7 +12,7 @@ use mission::{Noted, Order, PlannerChoice, Severity};
 ///
 /// # Errors
 /// Why not, as a sentence.
-pub(super) fn can_load(model: &Model) -> Result<(), String> {
+pub(crate) fn can_load(model: &Model) -> Result<(), String> {
     demand(!model.console.presets.is_empty(), "there are no presets yet; preset-save NAME keeps one")?;
     accepted(model, &Order::ChoosePlanner(PlannerChoice::default()))
 }

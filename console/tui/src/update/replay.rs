@@ -2,39 +2,52 @@
 
 use super::go;
 use super::message::{Effect, ReplayMsg, Transport};
-use super::offer::{demand, nothing_under_way, refuse};
-use crate::actions::ActionId;
+use super::offer::{self, demand, nothing_under_way, refuse};
 use crate::model::log::clock;
 use crate::model::replay::{Jump, Other, Side};
 use crate::model::{LineEdit, Model, Overlay, Replay, RunId, RunResult, Screen};
 use mission::{Event, Severity};
 use report::notes::Notes;
 
-/// Whether something can be done with the replay that is open.
-pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {
-    if id == ActionId::Replay {
-        nothing_under_way(model)?;
-        return demand(go::named_run(model).is_some(), "no run is selected");
-    }
-    let replay = model.live.replay.as_ref().ok_or("no run is played back; <review>: choose one")?;
-    match id {
-        ActionId::CompareRun => demand(
-            go::named_run(model).is_some_and(|run| run != replay.name),
-            "select another run than the one that is played",
-        ),
-        ActionId::Difference | ActionId::Align => {
-            demand(replay.other.is_some(), "no second run; <compare-run> on screen 6 (Review) takes one")
-        }
-        ActionId::Bookmark | ActionId::Unmark | ActionId::Remark => match &replay.unreadable {
-            Some(why) => Err(why.clone()),
-            None if id == ActionId::Unmark => {
-                let is_marked = replay.notes.bookmark(model.live.run.clock.t_s).is_some();
-                demand(is_marked, "no bookmark here; n N: go to one")
-            }
-            None => Ok(()),
-        },
-        _ => demand(model.live.run.about.is_some(), "the run is being loaded"),
-    }
+/// Whether a run is selected that can be played back.
+pub(crate) fn can_open(model: &Model) -> Result<(), String> {
+    nothing_under_way(model)?;
+    offer::run(model)
+}
+
+fn replay(model: &Model) -> Result<&Replay, String> {
+    model.live.replay.as_deref().ok_or_else(|| "no run is played back; <review>: choose one".into())
+}
+
+/// Whether a run is played back and can be seen.
+pub(crate) fn is_loaded(model: &Model) -> Result<(), String> {
+    replay(model)?;
+    demand(model.live.run.about.is_some(), "the run is being loaded")
+}
+
+/// Whether another run is selected, to be compared.
+pub(crate) fn can_compare(model: &Model) -> Result<(), String> {
+    let played = &replay(model)?.name;
+    let is_other = go::named_run(model).is_some_and(|run| run != *played);
+    demand(is_other, "select another run than the one that is played")
+}
+
+/// Whether two runs are compared.
+pub(crate) fn has_second(model: &Model) -> Result<(), String> {
+    let is_second = replay(model)?.other.is_some();
+    demand(is_second, "no second run; <compare-run> on screen 6 (Review) takes one")
+}
+
+/// Whether something can be noted about the run.
+pub(crate) fn can_note(model: &Model) -> Result<(), String> {
+    replay(model)?.unreadable.clone().map_or(Ok(()), Err)
+}
+
+/// Whether there is a bookmark to remove.
+pub(crate) fn can_unmark(model: &Model) -> Result<(), String> {
+    can_note(model)?;
+    let is_marked = replay(model)?.notes.bookmark(model.live.run.clock.t_s).is_some();
+    demand(is_marked, "no bookmark here; <next-bookmark> <previous-bookmark>: go to one")
 }
 
 /// Plays a past run back instead of the run that is open.
@@ -47,44 +60,38 @@ pub(super) fn open(model: &mut Model, run: String) -> Vec<Effect> {
     vec![Effect::Replay { id, run }]
 }
 
-/// Carries out what the keys of a replay do.
-pub(super) fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
-    match id {
-        ActionId::Play | ActionId::Hold => toggle(model),
-        ActionId::Jump(jump) => go_to(model, jump),
-        ActionId::CompareRun => match go::named_run(model) {
-            Some(run) => compare(model, run),
-            None => Vec::new(),
-        },
-        ActionId::Difference => {
-            with(model, |replay| replay.shows_difference = !replay.shows_difference);
-            Vec::new()
-        }
-        ActionId::Align => {
-            let align = with(model, |replay| {
-                replay.align = replay.align.next();
-                replay.align
-            });
-            let Some(align) = align else { return Vec::new() };
-            model.say(Severity::Info, format!("aligned by {}", align.word()));
-            vec![Effect::Transport(Transport::Align(align))]
-        }
-        ActionId::Bookmark => {
-            let t_s = model.live.run.clock.t_s;
-            let notes = model.live.replay.as_ref().map(|replay| &replay.notes);
-            let text = notes.and_then(|notes| notes.bookmark(t_s)).map(|mark| mark.text.clone());
-            model.ui.overlay = Overlay::Bookmark(text.unwrap_or_default().as_str().into());
-            pause(model)
-        }
-        ActionId::Unmark => {
-            let t_s = model.live.run.clock.t_s;
-            keep(model, "bookmark removed", |notes| {
-                notes.unmark(t_s);
-                Ok(())
-            })
-        }
-        _ => Vec::new(),
-    }
+/// Shows which floor only one of two runs scanned, or not.
+pub(crate) fn toggle_difference(model: &mut Model) {
+    with(model, |replay| replay.shows_difference = !replay.shows_difference);
+}
+
+/// Another way in which moments of two runs correspond.
+pub(crate) fn align(model: &mut Model) -> Vec<Effect> {
+    let align = with(model, |replay| {
+        replay.align = replay.align.next();
+        replay.align
+    });
+    let Some(align) = align else { return Vec::new() };
+    model.say(Severity::Info, format!("aligned by {}", align.word()));
+    vec![Effect::Transport(Transport::Align(align))]
+}
+
+/// Stops time and opens the line for the text of a bookmark.
+pub(crate) fn open_bookmark(model: &mut Model) -> Vec<Effect> {
+    let t_s = model.live.run.clock.t_s;
+    let notes = model.live.replay.as_ref().map(|replay| &replay.notes);
+    let text = notes.and_then(|notes| notes.bookmark(t_s)).map(|mark| mark.text.clone());
+    model.ui.overlay = Overlay::Bookmark(text.unwrap_or_default().as_str().into());
+    pause(model)
+}
+
+/// Removes the bookmark at this moment.
+pub(crate) fn unmark(model: &mut Model) -> Vec<Effect> {
+    let t_s = model.live.run.clock.t_s;
+    keep(model, "bookmark removed", |notes| {
+        notes.unmark(t_s);
+        Ok(())
+    })
 }
 
 fn with<T>(model: &mut Model, change: impl FnOnce(&mut Replay) -> T) -> Option<T> {
@@ -92,7 +99,7 @@ fn with<T>(model: &mut Model, change: impl FnOnce(&mut Replay) -> T) -> Option<T
 }
 
 /// Lets time go on, from the beginning if it is at the end, or stops it.
-fn toggle(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn toggle(model: &mut Model) -> Vec<Effect> {
     let t_s = model.live.run.clock.t_s;
     let Some(replay) = &mut model.live.replay else { return Vec::new() };
     replay.is_playing = !replay.is_playing;
@@ -108,7 +115,8 @@ pub(super) fn pause(model: &mut Model) -> Vec<Effect> {
     if is_playing { toggle(model) } else { Vec::new() }
 }
 
-fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
+/// Goes to another moment of the run.
+pub(super) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
     let run = &model.live.run;
     let (from_s, tick_s) = (run.clock.t_s, run.about.as_ref().map_or(0.1, |about| about.mission.tick_s));
     let target_s = model.live.replay.as_ref().and_then(|replay| replay.target_s(jump, from_s, tick_s));

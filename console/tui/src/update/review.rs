@@ -8,7 +8,7 @@ use crate::model::Model;
 use mission::Severity;
 
 /// Plays the selected run back; one that is played already is shown.
-pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let selected = model.review.run(&model.home).map(|run| run.name.clone());
     let Some(run) = selected else { return refuse(model, "no run is selected".into()) };
     if model.live.replay.as_ref().is_some_and(|replay| replay.name == run) {
@@ -20,8 +20,8 @@ pub(super) fn enter(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Sorts the list by something else.
-pub(super) fn sort(model: &mut Model) -> Vec<Effect> {
+/// Takes the next sort order.
+pub(crate) fn sort(model: &mut Model) -> Vec<Effect> {
     model.review.sort = model.review.sort.next();
     model.review.selected = 0;
     model.say(Severity::Info, format!("sorted by {}", model.review.sort.word()));

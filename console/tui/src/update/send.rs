@@ -6,7 +6,7 @@ use crate::model::{Model, Speed, parameter};
 use mission::{Order, ParamValue, Severity};
 
 /// Sends an order and remembers that an answer is due if it makes the robot move.
-pub(super) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
+pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
     let moves = matches!(order, Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_))
         || order.is_start();
     if moves {
@@ -36,7 +36,7 @@ pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -
 /// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
 ///
 /// Who stops the robot is in no hurry: the mission goes on no faster than the clock until the operator says so again.
-pub(super) fn hold_now(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn hold_now(model: &mut Model) -> Vec<Effect> {
     preflight::cancel(model);
     model.console.settling = None;
     if model.live.is_look_only() {

@@ -2,16 +2,16 @@
 
 use super::message::Effect;
 use super::news;
-use super::offer::{accepted, demand};
+use super::offer::{accepted, has_planners};
 use super::overlay::open;
 use super::send::send;
 use crate::model::{Cause, Model, Overlay};
 use mission::{Order, PlannerChoice, PlannerInfo, Severity};
 
 /// Whether a planner can begin to fly in shadow.
-pub(super) fn can_begin(model: &Model) -> Result<(), String> {
+pub(crate) fn can_begin(model: &Model) -> Result<(), String> {
     accepted(model, &Order::Shadow(PlannerChoice::default()))?;
-    demand(!model.console.planners.is_empty(), "no planners found yet")
+    has_planners(model)
 }
 
 /// Flies a planner in shadow; the one that drives, perhaps from another build, with the parameters that it has.

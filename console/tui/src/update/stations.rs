@@ -11,7 +11,7 @@ use world::StationId;
 ///
 /// # Errors
 /// Why not, as a sentence.
-pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {
+pub(crate) fn can(model: &Model, id: ActionId) -> Result<(), String> {
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     let station = model.live.run.stations().first().ok_or("this mission has no AE stations")?.id;
     let order = match id {

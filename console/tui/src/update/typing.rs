@@ -1,8 +1,9 @@
 //! Lines in which text is typed.
 
+use super::offer::demand;
 use super::palette;
 use crate::keys::Key;
-use crate::model::{LineEdit, Model, Overlay, Screen};
+use crate::model::{LineEdit, Model, Overlay};
 use mission::{ParamKind, Severity};
 
 /// Whether a line is open in which text is typed: letters and the space do nothing else then.
@@ -25,8 +26,9 @@ pub(super) fn paste(model: &mut Model, pasted: &str) {
 }
 
 /// Whether the line that is open can be completed.
-pub(super) fn completes(model: &Model) -> bool {
-    matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty()
+pub(crate) fn can_complete(model: &Model) -> Result<(), String> {
+    let completes = matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty();
+    demand(completes, "nothing to complete here")
 }
 
 /// The words that the parameter takes whose value is being typed.
@@ -40,7 +42,7 @@ fn options(model: &Model) -> &[String] {
 }
 
 /// Completes the word at the cursor.
-pub(super) fn complete(model: &mut Model) {
+pub(crate) fn complete(model: &mut Model) {
     match &model.ui.overlay {
         Overlay::Commands(_) => palette::complete(model),
         Overlay::Parameters { edit: Some(typed), .. } => {
@@ -91,19 +93,14 @@ fn changed(model: &mut Model) {
 
 /// The text by which the list of the screen is filtered.
 pub(super) fn filtered(model: &Model) -> &str {
-    match model.ui.screen {
-        Screen::Home => &model.home.filter,
-        Screen::Review => &model.review.filter,
-        _ => &model.ui.needle,
-    }
+    model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |(text, _)| text(model))
 }
 
 /// Filters the list of the screen by a text.
 pub(super) fn filter(model: &mut Model, text: &str) {
-    let filter = match model.ui.screen {
-        Screen::Home => &mut model.home.filter,
-        Screen::Review => &mut model.review.filter,
-        _ => &mut model.ui.needle,
+    let filter = match model.ui.screen.row().filter {
+        Some((_, text_mut)) => text_mut(model),
+        None => &mut model.ui.needle,
     };
     text.clone_into(filter);
     (model.home.scenario, model.home.run, model.review.selected) = (0, 0, 0);

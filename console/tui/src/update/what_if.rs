@@ -9,7 +9,7 @@ use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, Severity};
 
 /// Opens the comparison: the planner as it is, and the others that can fly this mission.
-pub(super) fn open(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     if model.live.what_if.is_some() {
         return Vec::new();
@@ -45,7 +45,7 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
 }
 
 /// Opens the parameters of the selected candidate, to be changed for a further forecast.
-pub(super) fn draft(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn draft(model: &mut Model) -> Vec<Effect> {
     let chosen = model.live.what_if.as_ref().and_then(WhatIf::candidate).map(|found| found.choice.clone());
     let Some(choice) = chosen else { return Vec::new() };
     if model.info_of(&choice.id).is_none_or(|info| info.parameters.is_empty()) {
@@ -75,12 +75,12 @@ pub(super) fn take_draft(model: &mut Model) -> Option<PlannerChoice> {
 }
 
 /// Forecasts the draft.
-pub(super) fn forecast_draft(model: &mut Model) -> Vec<Effect> {
+pub(crate) fn forecast_draft(model: &mut Model) -> Vec<Effect> {
     take_draft(model).map_or_else(Vec::new, |draft| add(model, draft))
 }
 
 /// Looks at another candidate, so many further on.
-pub(super) fn select(model: &mut Model, by: isize) {
+pub(crate) fn select(model: &mut Model, by: isize) {
     if let Some(what_if) = &mut model.live.what_if {
         let last = what_if.candidates.len().saturating_sub(1);
         what_if.selected = what_if.selected.saturating_add_signed(by).min(last);
@@ -103,7 +103,8 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let noted = Effect::Order(Order::NoteOutlooks(what_if.outlooks()));
     if what_if.selected == 0 {
         model.ui.overlay = Overlay::None;
-        model.say(Severity::Info, format!("planner {} stays; space: resume", choice.id));
+        let text = format!("planner {} stays; <hold>: resume", choice.id);
+        model.say(Severity::Info, model.console.keys.spelled(&text));
         return vec![noted];
     }
     std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()

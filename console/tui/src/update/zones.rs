@@ -10,7 +10,7 @@ use world::Point;
 ///
 /// # Errors
 /// Why not, as a sentence.
-pub(super) fn can(model: &Model) -> Result<(), String> {
+pub(crate) fn can(model: &Model) -> Result<(), String> {
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::DrawZone(Vec::new()))
 }

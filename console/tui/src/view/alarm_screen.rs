@@ -21,10 +21,12 @@ use ratatui::text::Line;
 const DETAIL: u16 = 72;
 /// Rows of the events of an alarm, with their frame.
 const EVENTS: u16 = 5;
+/// Which keys run the actions of an alarm that are open.
+const RUN: &str = "<first-action>-<fourth-action> run";
 /// Rows that the table keeps, with its frame.
 const TABLE: u16 = 7;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     match (look.model.selected_alarm(), arrangement) {
         (Some(alarm), Arrangement::Wide) => wide(look, frame, area, alarm),
         (Some(alarm), Arrangement::Narrow) => narrow(look, frame, area, alarm),
@@ -49,10 +51,10 @@ fn wide(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
             .areas(area);
     let [left, right] = Layout::horizontal([Constraint::Length(DETAIL), Constraint::Fill(1)]).areas(middle);
     draw_table(look, frame, list, true);
-    let map = alarm.place.map_or_else(String::new, |_| note(look, "<show-place> map"));
+    let map = alarm.place.map_or_else(String::new, |_| look.keys("<show-place> map"));
     fill(frame, left, look.block(Role::Border, &detail::title(look, alarm), &map), detail);
     fill(frame, right, actions_block(look, "Actions"), actions);
-    let block = look.block(Role::Border, "Events of this alarm", &note(look, "<events> all events"));
+    let block = look.block(Role::Border, "Events of this alarm", &look.keys("<events> all events"));
     fill(frame, below, block, of_alarm(look, alarm, usize::from(below.width) - 2));
 }
 
@@ -69,15 +71,14 @@ fn narrow(look: &Look, frame: &mut Frame, area: Rect, alarm: &Alarm) {
     fill(frame, below, actions_block(look, &detail::title(look, alarm)), lines);
 }
 
-/// What can be done, with the keys of the table.
-fn note(look: &Look, sentence: &str) -> String {
-    look.model.console.keys.spelled(sentence)
-}
-
 fn actions_block<'t>(look: &Look, title: &str) -> ratatui::widgets::Block<'t> {
     let is_open = matches!(look.model.ui.overlay, Overlay::Remedies { .. });
-    let (border, note) = if is_open { (Role::Focus, "1-4 run") } else { (Role::Border, "Enter, then 1-4") };
-    look.block(border, title, note)
+    let (border, note) = if is_open {
+        (Role::Focus, RUN)
+    } else {
+        (Role::Border, "<accept>, then <first-action>-<fourth-action>")
+    };
+    look.block(border, title, &look.keys(note))
 }
 
 /// The last lines of the log about an alarm, newest first.
@@ -96,7 +97,7 @@ fn draw_table(look: &Look, frame: &mut Frame, area: Rect, wide: bool) {
     let block = look.block(
         Role::Focus,
         &title,
-        &if wide { note(look, "<acknowledge-all> acknowledge all  <shelve> shelve") } else { String::new() },
+        &if wide { look.keys("<acknowledge-all> acknowledge all  <shelve> shelve") } else { String::new() },
     );
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));

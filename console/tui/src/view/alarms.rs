@@ -15,7 +15,11 @@ const BESIDE: usize = 64;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let mut alarms = look.run.alarms.table();
     alarms.retain(|alarm| alarm.is_open());
-    let block = look.pane(Pane::Alarms, &format!("Alarms  {}", alarms.len()), "a acknowledge  4 all");
+    let block = look.pane(
+        Pane::Alarms,
+        &format!("Alarms  {}", alarms.len()),
+        &look.keys("<acknowledge> acknowledge  <alarms> all"),
+    );
     let inner = block.inner(area);
     let mut lines: Vec<_> = alarms
         .iter()

@@ -7,7 +7,7 @@ use super::next::{self, Clauses};
 use super::{coverage, text};
 use crate::guide;
 use crate::model::ui::{Ask, Shelving};
-use crate::model::{LineEdit, Model, Overlay, Screen, log::clock};
+use crate::model::{LineEdit, Model, Overlay, log::clock};
 use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -52,7 +52,13 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         );
     }
     if let Overlay::Bookmark(line) = &look.model.ui.overlay {
-        return typed(look, frame, area, (" Bookmark: ", line), "  Enter: set, Esc: cancel.");
+        return typed(
+            look,
+            frame,
+            area,
+            (" Bookmark: ", line),
+            &look.keys("  <accept>: set, <cancel>: cancel."),
+        );
     }
     let (role, clauses) = clauses(look.model);
     let columns = usize::from(area.width).saturating_sub(1);
@@ -65,14 +71,14 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
     let problem = look.model.ui.events.matches.filter().problems.first();
     let problem = problem
-        .filter(|_| !matches!(look.model.ui.screen, Screen::Home | Screen::Review))
+        .filter(|_| look.model.ui.screen.row().filter.is_none())
         .map(|problem| format!("  {}.", problem.why));
     typed(
         look,
         frame,
         area,
         (" Filter: ", line),
-        &(problem.unwrap_or_default() + "  Enter: keep, Esc: clear."),
+        &(problem.unwrap_or_default() + &look.keys("  <accept>: keep, <cancel>: clear.")),
     );
 }
 
@@ -104,28 +110,30 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let planner = text::fit(model.live.run.planner_id().unwrap_or("unknown"), 18);
             let speed = text::speed(model.live.speed);
             vec![
-                format!("Start ({planner}, {speed})? Enter: start, Esc: cancel."),
+                format!("Start ({planner}, {speed})? <accept>: start, <cancel>: cancel."),
                 "Robot will move.".into(),
                 promised(model),
             ]
         }
-        Overlay::Confirm(Ask::Resume) => vec!["Resume? Enter: resume, Esc: stay held.".into(), moves()],
+        Overlay::Confirm(Ask::Resume) => {
+            vec!["Resume? <accept>: resume, <cancel>: stay held.".into(), moves()]
+        }
         Overlay::Confirm(Ask::FlyUncertified) => vec![
-            "Run uncertified plan? Enter: run, Esc: stay held.".into(),
+            "Run uncertified plan? <accept>: run, <cancel>: stay held.".into(),
             "Tether may stay out on return.".into(),
             "Applies to later plans too, until one fails.".into(),
         ],
         Overlay::Confirm(Ask::Abort) => {
             let scanned = format!("{} % of reachable floor scanned.", coverage::shares(&model.live.run).0);
-            vec!["End mission for good? Enter: end, Esc: cancel.".into(), scanned]
+            vec!["End mission for good? <accept>: end, <cancel>: cancel.".into(), scanned]
         }
         Overlay::Confirm(Ask::Swap(choice)) => {
             let next = text::fit(&choice.id, 18);
             let question = match (choice.parameters.len(), model.live.run.planner_id()) {
                 (n @ 1.., Some(id)) if id == choice.id => {
-                    format!("Restart {next} with {n} parameters set? Enter: change, Esc: cancel.")
+                    format!("Restart {next} with {n} parameters set? <accept>: change, <cancel>: cancel.")
                 }
-                _ => format!("Change planner to {next}? Enter: change, Esc: cancel."),
+                _ => format!("Change planner to {next}? <accept>: change, <cancel>: cancel."),
             };
             vec![question, "No motion yet.".into()]
         }
@@ -134,7 +142,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let next = text::fit(shadow.map_or("-", |shadow| &shadow.choice.id), 18);
             let driving = model.live.run.planner_id().unwrap_or("-");
             vec![
-                format!("Promote {next} from shadow? Enter: promote, Esc: cancel."),
+                format!("Promote {next} from shadow? <accept>: promote, <cancel>: cancel."),
                 format!("It takes over from {driving} without a hold."),
             ]
         }
@@ -143,7 +151,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
             let saves = offer.map_or_else(|| "-".into(), |offer| offer.better.saving(&offer.flown));
             let begins = offer.and_then(|offer| offer.begins).map_or_else(|| "-".into(), text::place);
             vec![
-                "Take the better plan? Enter: take, Esc: cancel.".into(),
+                "Take the better plan? <accept>: take, <cancel>: cancel.".into(),
                 format!("It saves {saves}."),
                 format!("It begins at {begins}, without a hold."),
             ]
@@ -151,14 +159,15 @@ fn asked(model: &Model) -> Option<Vec<String>> {
         Overlay::Stepping => {
             let tick_s = model.live.run.about.as_ref().map_or(0.0, |run| run.mission.tick_s);
             vec![
-                "Step? Enter or .: one tick, }: lane, ]: event, Esc: end.".into(),
+                "Step? <accept> or <step>: one tick, <step-lane>: lane, <step-event>: event, <cancel>: end."
+                    .into(),
                 format!("{} s per step.", text::number(tick_s, 2)),
             ]
         }
         Overlay::Quit => quit(model),
         _ => return None,
     };
-    Some(clauses)
+    Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
 /// What is started, as a clause: length and time of the plan, and whether it is certified for the tether.
@@ -184,17 +193,21 @@ fn promised(model: &Model) -> String {
 
 /// What the line does in which is typed for how long an alarm is put aside.
 fn shelve(model: &Model, shelving: &Shelving) -> String {
+    let keys = model.console.keys.spelled("<accept>: shelve, <cancel>: cancel.");
     match &shelving.refusal {
         Some(why) => format!("  REFUSED: {why}"),
-        None => format!("  ({}) Enter: shelve, Esc: cancel.", guide::name(&shelving.cause, &model.live.run)),
+        None => format!("  ({}) {keys}", guide::name(&shelving.cause, &model.live.run)),
     }
 }
 
 fn quit(model: &Model) -> Vec<String> {
     if !model.live.is_under_way() {
-        return vec!["Quit console? Enter: quit, Esc: stay.".into(), "No mission in progress.".into()];
+        return vec![
+            "Quit console? <accept>: quit, <cancel>: stay.".into(),
+            "No mission in progress.".into(),
+        ];
     }
-    let question = "Quit and abort mission? Enter: quit, Esc: stay held.".to_owned();
+    let question = "Quit and abort mission? <accept>: quit, <cancel>: stay held.".to_owned();
     let planning = model.live.busy.as_ref().map(|_| "Planning will be cancelled.".to_owned());
     std::iter::once(question).chain(planning).collect()
 }

@@ -20,7 +20,7 @@ const NEAR: usize = 2000;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (number, entry): (u64, &Entry)) {
     let title = format!("T+{}.{}  {}", text::clock(entry.t_s), tenths(entry.t_s), facts::title(&entry.what));
     let note = "<show-place> map  <copy> copy  <next-like> <previous-like> same kind";
-    let note = if area.width >= 70 { look.model.console.keys.spelled(note) } else { String::new() };
+    let note = if area.width >= 70 { look.keys(note) } else { String::new() };
     let block = look.block(Role::Border, &title, &note);
     let columns = usize::from(block.inner(area).width);
     fill(frame, area, block, lines(look, (number, entry), columns));

@@ -28,8 +28,8 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let back = if newer > 0 { format!(", {newer} newer") } else { String::new() };
     let least = severity_word(ui.events.matches.filter().least());
     let title = format!("Events, {least} and above{filter}{back}");
-    let note = if area.width >= 60 { "m severity  / filter" } else { "" };
-    let block = look.pane(Pane::Events, &title, note);
+    let note = if area.width >= 60 { "<severity> severity  <filter> filter" } else { "" };
+    let block = look.pane(Pane::Events, &title, &look.keys(note));
     let inner = block.inner(area);
     let entries = ui.events.matches.newest(&look.run.log, newer).take(usize::from(inner.height));
     let lines = entries.map(|(_, entry)| look.line(row(entry, usize::from(inner.width)))).collect();
@@ -37,7 +37,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
 }
 
 /// The screen of their own.
-pub(super) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let events = &look.model.ui.events;
     let selected = events.selected().filter(|_| events.is_open);
     let open = selected.and_then(|number| Some((number, look.run.log.get(number)?)));
@@ -62,9 +62,9 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
         let hint = if look.model.ui.needle.is_empty() {
             "No events."
         } else {
-            "No event matches. <filter>, then Esc: clear."
+            "No event matches. <filter>, then <cancel>: clear."
         };
-        lines.push(look.line([(Role::Dim, format!(" {}", look.model.console.keys.spelled(hint)))]));
+        lines.push(look.line([(Role::Dim, format!(" {}", look.keys(hint)))]));
     }
     let height = usize::from(inner.height).saturating_sub(lines.len());
     let newer = events.newer();
@@ -87,7 +87,7 @@ fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
         return Vec::new();
     }
     let filter = ui.events.matches.filter();
-    let mut line = look.line([(Role::Key, " / ".into())]);
+    let mut line = look.line([(Role::Key, look.keys(" <filter> "))]);
     line.spans.extend(pieces(&ui.needle, filter).into_iter().map(|(is_bad, piece)| {
         let span = look.span(if is_bad { Role::Warn } else { Role::Title }, piece);
         if is_bad { span.patch_style(Modifier::UNDERLINED) } else { span }

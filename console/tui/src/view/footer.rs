@@ -136,13 +136,7 @@ fn label(action: &Action, model: &Model) -> String {
         }
         (ActionId::Interrupt, _) if is_typing(model) => "HOLD",
         (ActionId::Cancel, Overlay::None) => "end reading",
-        (ActionId::Accept, Overlay::None) => match model.ui.screen {
-            Screen::Alarms => "actions",
-            Screen::Events if model.ui.events.is_open => "close detail",
-            Screen::Events => "detail",
-            Screen::Review => "replay",
-            _ => "open",
-        },
+        (ActionId::Accept, Overlay::None) => (model.ui.screen.row().opens)(model).unwrap_or_default(),
         (ActionId::Back, _) if model.ui.screen == Screen::Home => "quit",
         (ActionId::Accept, Overlay::Commands(_) | Overlay::Remedies { .. }) => "run",
         (ActionId::Accept, Overlay::Planners { .. } | Overlay::WhatIf) => "choose",

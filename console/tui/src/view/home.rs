@@ -18,7 +18,7 @@ const ATTENTION: u16 = 10;
 const TASK: usize = 7;
 const END: usize = 10;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(found) = &look.model.home.found else {
         let block = look.block(Role::Border, "Home", "");
         return fill(
@@ -71,7 +71,7 @@ fn border(look: &Look, list: HomeList) -> Role {
 fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let home = &look.model.home;
     let listed = home.scenarios();
-    let note = filter_note(&home.filter);
+    let note = filter_note(look);
     let inner = look.block(Role::Border, "", "").inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height));
     let names = name_columns(&listed, columns);
@@ -229,8 +229,11 @@ fn plugins(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-fn filter_note(filter: &str) -> String {
-    if filter.is_empty() { "/ filter  Tab list".into() } else { format!("`{}`", text::fit(filter, 20)) }
+fn filter_note(look: &Look) -> String {
+    match look.model.home.filter.as_str() {
+        "" => look.keys("<filter> filter  <next-pane> list"),
+        filter => format!("`{}`", text::fit(filter, 20)),
+    }
 }
 
 /// How many points need the operator.

@@ -14,7 +14,7 @@ use std::cell::RefCell;
 
 /// What every part of the view needs.
 #[derive(Clone, Copy)]
-pub(super) struct Look<'a> {
+pub(crate) struct Look<'a> {
     pub model: &'a Model,
     /// The run that the panes show.
     pub run: &'a Run,
@@ -24,39 +24,44 @@ pub(super) struct Look<'a> {
 }
 
 /// Pieces of a line, each with what it stands for.
-pub(super) type Parts = Vec<(Role, String)>;
+pub(crate) type Parts = Vec<(Role, String)>;
 
 impl Look<'_> {
     /// Whether letters stand for what colours and half characters show elsewhere.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         self.caps.colours == Colours::None || self.caps.glyphs == Glyphs::Ascii
     }
 
     /// Whether a value that comes with every tick has not come for two ticks, or nothing at all is heard of the mission.
-    pub(super) fn is_stale(&self, t_s: Option<f64>) -> bool {
+    pub(crate) fn is_stale(&self, t_s: Option<f64>) -> bool {
         t_s.is_some_and(|t_s| self.model.silent_s().is_some() || self.run.is_overdue(t_s))
     }
 
     /// Whether the estimated pose is old.
-    pub(super) fn is_pose_stale(&self) -> bool {
+    pub(crate) fn is_pose_stale(&self) -> bool {
         self.is_stale(self.run.position.pose.map(|_| self.run.position.pose_t_s))
     }
 
-    pub(super) fn span<'t>(&self, role: Role, text: impl Into<Cow<'t, str>>) -> Span<'t> {
+    pub(crate) fn span<'t>(&self, role: Role, text: impl Into<Cow<'t, str>>) -> Span<'t> {
         Span::styled(text, self.theme.style(role))
     }
 
-    pub(super) fn line<'t>(&self, parts: impl IntoIterator<Item = (Role, String)>) -> Line<'t> {
+    pub(crate) fn line<'t>(&self, parts: impl IntoIterator<Item = (Role, String)>) -> Line<'t> {
         Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
     }
 
-    pub(super) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
+    /// A sentence with the keys that the operator has for the actions that it names as `<end>`.
+    pub(crate) fn keys(&self, sentence: &str) -> String {
+        self.model.console.keys.spelled(sentence)
+    }
+
+    pub(crate) fn pane<'t>(&self, pane: Pane, title: &str, note: &str) -> Block<'t> {
         let focus = self.model.ui.pane == pane && self.model.ui.panes().contains(&pane);
         let border = if focus { Role::Focus } else { Role::Border };
         self.block(border, title, note)
     }
 
-    pub(super) fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
+    pub(crate) fn block<'t>(&self, border: Role, title: &str, note: &str) -> Block<'t> {
         let block = Block::bordered()
             .border_style(self.theme.style(border))
             .title_top(Line::from(vec![Span::raw("─"), self.span(Role::Title, format!(" {title} "))]));
@@ -71,7 +76,7 @@ impl Look<'_> {
 }
 
 /// The lines of highest rank (the lowest number) that fit into some rows, in their order.
-pub(super) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
+pub(crate) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
     let mut ranks: Vec<u8> = lines.iter().map(|(rank, _)| *rank).collect();
     ranks.sort_unstable();
     let last = ranks.get(rows).map_or(u8::MAX, |rank| rank.saturating_sub(1));
@@ -79,7 +84,7 @@ pub(super) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
 }
 
 /// The mark of a value that is older than it should be.
-pub(super) fn marked(is_stale: bool, (role, value): (Role, String)) -> (Role, String) {
+pub(crate) fn marked(is_stale: bool, (role, value): (Role, String)) -> (Role, String) {
     match (is_stale, role) {
         (false, _) => (role, value),
         // That something is wrong matters more than that it is old.
@@ -89,7 +94,7 @@ pub(super) fn marked(is_stale: bool, (role, value): (Role, String)) -> (Role, St
 }
 
 /// Lines in a pane; one that is too long ends in an ellipsis.
-pub(super) fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
+pub(crate) fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
     let columns = usize::from(block.inner(area).width);
     let lines: Vec<Line> = lines.into_iter().map(|line| cut(line, columns)).collect();
     frame.render_widget(Paragraph::new(lines).block(block), area);

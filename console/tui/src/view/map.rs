@@ -31,7 +31,7 @@ const LEGEND: (u16, u16) = (64, 20);
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let title = title(look.model);
-    let mut block = look.pane(Pane::Map, &title, keys(usize::from(area.width), text::width(&title)));
+    let mut block = look.pane(Pane::Map, &title, &keys(look, usize::from(area.width), text::width(&title)));
     if let Some(at) = ui.cursor {
         block = block.title_bottom(look.span(Role::Title, format!("─ {} ", readout::floor(look, at))));
     }
@@ -75,9 +75,13 @@ fn title(model: &Model) -> String {
 }
 
 /// As many keys as fit beside the title.
-fn keys(width: usize, title: usize) -> &'static str {
-    const KEYS: [&str; 3] = ["z Z zoom  f follow  0 whole tank  L layers  i read", "z Z f 0 L i", ""];
-    KEYS.into_iter().find(|keys| text::width(keys) + title + 9 <= width).unwrap_or_default()
+fn keys(look: &Look, width: usize, title: usize) -> String {
+    const KEYS: [&str; 2] = [
+        "<zoom-in> <zoom-out> zoom  <follow> follow  <whole-tank> whole tank  <layers> layers  <inspect> read",
+        "<zoom-in> <zoom-out> <follow> <whole-tank> <layers> <inspect>",
+    ];
+    let mut spelled = KEYS.into_iter().map(|keys| look.keys(keys));
+    spelled.find(|keys| text::width(keys) + title + 9 <= width).unwrap_or_default()
 }
 
 /// What of the floor is seen in an area.

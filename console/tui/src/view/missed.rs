@@ -15,7 +15,11 @@ pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let Some(account) = account(look) else { return };
-    let block = look.pane(Pane::Missed, &format!("Missed areas  {}", account.missed.len()), "7 result");
+    let block = look.pane(
+        Pane::Missed,
+        &format!("Missed areas  {}", account.missed.len()),
+        &look.keys("<result> result"),
+    );
     let inner = block.inner(area);
     let columns = usize::from(inner.width).saturating_sub(2);
     let mut lines: Vec<_> = account

@@ -12,7 +12,7 @@ pub(super) type Clauses = (Role, Vec<String>);
 pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
     if model.live.is_look_only() {
-        clauses.retain(|clause| !clause.contains(['<', '>']) && !clause.contains("space:"));
+        clauses.retain(|clause| !clause.contains(['<', '>']));
         clauses.push(match &model.live.replay {
             Some(replay) => played(model, replay),
             None => "VIEW: orders are given on the console that runs the mission.".into(),
@@ -25,8 +25,8 @@ pub(super) fn clauses(model: &Model) -> Clauses {
 fn played(model: &Model, replay: &Replay) -> String {
     let next = match (model.live.is_opening, replay.is_playing) {
         (true, _) => "reading the run...",
-        (false, true) => "space: pause.",
-        (false, false) => "space: play.",
+        (false, true) => "<hold>: pause.",
+        (false, false) => "<hold>: play.",
     };
     format!("Past run, no robot connected; {next}")
 }
@@ -34,7 +34,7 @@ fn played(model: &Model, replay: &Replay) -> String {
 fn by_phase(model: &Model) -> Clauses {
     if let Some(silent_s) = model.silent_s() {
         let news = format!("◌ No data from the mission for {} s: values are stale.", silent_s as u64);
-        return (Role::Stale, vec![news, "space: HOLD.".into()]);
+        return (Role::Stale, vec![news, "<hold>: HOLD.".into()]);
     }
     if model.live.hold_asked && model.live.may_move() {
         return (Role::Hold, vec!["HOLD requested...".into()]);
@@ -52,7 +52,7 @@ fn by_phase(model: &Model) -> Clauses {
         }
         (None, Phase::Waiting) if model.ui.screen == Screen::Home => (
             Role::Title,
-            vec!["Enter opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
+            vec!["<accept> opens a scenario and makes its plan.".into(), "The robot does not move.".into()],
         ),
         (None, Phase::Waiting) => {
             let (role, start) = idle(model);
@@ -60,7 +60,7 @@ fn by_phase(model: &Model) -> Clauses {
         }
         (None, Phase::Running(_)) => match work {
             Some(work) => {
-                let stop = ["space: HOLD.", "<end>: end mission."].map(str::to_owned);
+                let stop = ["<hold>: HOLD.", "<end>: end mission."].map(str::to_owned);
                 (Role::Watch, work.into_iter().chain(stop).collect())
             }
             None => running(model),
@@ -210,7 +210,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
         (_, HoldReason::PlannerSilent { .. }) => "Resumes automatically on answer.",
         _ => "Resumes automatically.",
     };
-    vec![format!("{}.", state(by)), when.into(), "space: HOLD (stay held).".into()]
+    vec![format!("{}.", state(by)), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
 /// A hold that only an order ends, and none that moves the robot is accepted now.
@@ -225,8 +225,8 @@ fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec
 
 /// A hold that only an order ends.
 fn held_for_good(by: &HoldReason) -> Vec<String> {
-    const RESUME: &str = "space: resume.";
-    const RETRY: &str = "space: retry.";
+    const RESUME: &str = "<hold>: resume.";
+    const RETRY: &str = "<hold>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
         // Why the robot was held is over.

@@ -17,7 +17,7 @@ const SIDE: (u16, u16) = (50, 34);
 /// Most rows of the reasons against a plan.
 const REASONS: usize = 6;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     if let Some(why) = &look.model.live.failure {
         return failure(look, frame, area, why);
     }
@@ -53,7 +53,7 @@ fn failure(look: &Look, frame: &mut Frame, area: Rect, why: &str) {
 
 /// Which planner, how far it is, and what speaks against its plan.
 fn state(look: &Look, frame: &mut Frame, area: Rect) {
-    let block = look.block(Role::Border, "Planner", "P change  c compare");
+    let block = look.block(Role::Border, "Planner", &look.keys("<planner> change  <compare> compare"));
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
     let name = match (look.model.planner(), look.run.planner_id()) {
         (Some(info), _) => format!("{} {}", info.id, info.version),
@@ -118,7 +118,7 @@ fn ghost(look: &Look, columns: usize) -> Vec<Parts> {
     let id = &ghost.choice.id;
     let (role, words) = match (&ghost.made, &ghost.at) {
         (Some(Err(why)), _) => (Role::Warn, format!("{id}: {why}")),
-        (Some(Ok(_)), _) => (Role::Ghost, format!("compared with {id} (Esc: remove)")),
+        (Some(Ok(_)), _) => (Role::Ghost, look.keys(&format!("compared with {id} (<cancel-plan>: remove)"))),
         (None, Some((share, _))) => {
             (Role::Watch, format!("Planning ({id}) {} %", (100.0 * share).floor().clamp(0.0, 99.0)))
         }

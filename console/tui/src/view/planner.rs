@@ -63,8 +63,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
 fn better(look: &Look, offer: &Offer, room: usize) -> Value {
     let saves = text::number((offer.flown.time_s - offer.better.time_s) / 60.0, 1);
     let of = text::number(offer.flown.time_s / 60.0, 1);
-    let keys = |words: &str| look.model.console.keys.spelled(words);
-    let next = if offer.is_taken { "taken".to_owned() } else { keys("<take-plan>: take") };
+    let next = if offer.is_taken { "taken".to_owned() } else { look.keys("<take-plan>: take") };
     let words = [format!("saves {saves} of {of} min; {next}"), format!("-{saves} min; {next}"), next];
     (Role::Watch, text::wording(words, room))
 }

@@ -13,7 +13,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 /// Digits of a hash that are shown.
 const HASH: usize = 12;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let found = plugins(&look.model.console, look.run);
     let selected = look.model.ui.plugin.min(found.len().saturating_sub(1));
     let rows = (found.len() as u16 + 3).min(area.height / 2).max(5);
@@ -32,7 +32,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugin<'_>], usize)) {
     let planners = look.model.console.planners.len();
     let title = format!("Plugins  {planners} planners in {} files", found.len());
-    let block = look.block(Role::Focus, &title, "r reload");
+    let block = look.block(Role::Focus, &title, &look.keys("<reload> reload"));
     let inner = block.inner(area);
     let columns = usize::from(inner.width);
     let name = 30.min(columns / 3);
@@ -83,7 +83,7 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
     let wrapped = |role: Role, words: &str| -> Vec<Parts> {
         text::wrap(words, columns).into_iter().map(|line| vec![(role, format!(" {line}"))]).collect()
     };
-    let mut rows = wrapped(role(plugin.state), state_words(plugin.state));
+    let mut rows = wrapped(role(plugin.state), &look.keys(state_words(plugin.state)));
     if !plugin.reason.is_empty() {
         rows.extend(wrapped(Role::Warn, plugin.reason));
     }
@@ -106,7 +106,7 @@ fn state_words(state: PluginState) -> &'static str {
     match state {
         PluginState::Ready => "ready",
         PluginState::Active => "active: one of its planners drives",
-        PluginState::Changed => "CHANGED on disk; P: choose the planner again to use the new build",
+        PluginState::Changed => "CHANGED on disk; <planner>: choose the planner again to use the new build",
         PluginState::Refused => "REFUSED",
     }
 }

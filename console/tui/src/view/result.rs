@@ -19,7 +19,7 @@ const FLOOR: u16 = 6;
 /// Rows of the list of missed areas with its frame.
 const MISSED: u16 = 10;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let Some(result) = &look.model.live.result else {
         let block = look.block(Role::Border, "Result", "");
         return fill(frame, area, block, vec![look.line([(Role::Dim, " No run has ended yet.".into())])]);

@@ -17,7 +17,7 @@ const BELOW: (u16, u16) = (18, 10);
 /// Columns of what is known of the selected run, beside the comparison.
 const ABOUT: u16 = 56;
 
-pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
+pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let wide = arrangement == Arrangement::Wide;
     let is_compared = look.model.live.replay.as_ref().is_some_and(|replay| replay.other.is_some());
     let rows = match arrangement {
@@ -46,11 +46,11 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     let (model, review) = (look.model, &look.model.review);
     let listed = review.runs(&model.home);
     let filter = if review.filter.is_empty() {
-        "/ filter".into()
+        look.keys("<filter> filter")
     } else {
         format!("`{}`", text::fit(&review.filter, 20))
     };
-    let note = format!("{filter}  s sort: {}", review.sort.word());
+    let note = format!("{filter}  {} {}", look.keys("<sort> sort:"), review.sort.word());
     let block = look.block(Role::Focus, &format!("Runs  {}", listed.len()), &note);
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
@@ -71,7 +71,9 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
         let words = match &model.home.found {
             None => " Looking for runs...".to_owned(),
             Some(found) if found.runs.is_empty() => format!(" No runs in {}.", found.logs),
-            Some(_) => " No run contains all these words. / then Esc: clear the filter.".into(),
+            Some(_) => {
+                look.keys(" No run contains all these words. <filter> then <cancel>: clear the filter.")
+            }
         };
         lines.push(look.line([(Role::Dim, words)]));
     }

@@ -9,18 +9,18 @@ use ratatui::text::Line;
 use std::ops::Range;
 
 /// The part of a list that is shown in some rows: the selected line is always in it.
-pub(super) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
+pub(crate) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
     let first = (selected + 1).saturating_sub(rows).min(len.saturating_sub(rows));
     first..(first + rows).min(len)
 }
 
 /// How many rows a list has, and which of them are shown if not all: `15`, `1-10 of 15`.
-pub(super) fn counted(shown: &Range<usize>, len: usize) -> String {
+pub(crate) fn counted(shown: &Range<usize>, len: usize) -> String {
     if shown.len() == len { len.to_string() } else { format!("{}-{} of {len}", shown.start + 1, shown.end) }
 }
 
 /// A row; the selected one begins with a mark and is reversed to its end.
-pub(super) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
+pub(crate) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
     parts.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
     if !selected {
         return look.line(parts);
@@ -35,7 +35,7 @@ pub(super) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize)
 }
 
 /// The rows of a table that fit, the selected one among them; `None`: the table does not take the arrow keys.
-pub(super) fn rows(
+pub(crate) fn rows(
     look: &Look,
     all: Vec<Parts>,
     selected: Option<usize>,
@@ -47,7 +47,7 @@ pub(super) fn rows(
 }
 
 /// Notes for the mouse where the shown rows of a list are; the first of them is at the top of an area.
-pub(super) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
+pub(crate) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
     for (y, index) in (area.top()..area.bottom()).zip(shown) {
         look.cache.borrow_mut().place_row(Rect { y, height: 1, ..area }, list, index);
     }

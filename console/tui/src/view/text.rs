@@ -1,18 +1,18 @@
 //! Numbers and words as the screen writes them.
 
-pub(super) use crate::model::log::clock;
+pub(crate) use crate::model::log::clock;
 
 use crate::model::Speed;
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
 /// A share as a percentage without its sign.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
 }
 
 /// A number with some decimals; a dash for what is not a number.
-pub(super) fn number(value: f64, decimals: usize) -> String {
+pub(crate) fn number(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "-".into();
     }
@@ -26,12 +26,12 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
 }
 
 /// A place on the floor.
-pub(super) fn place(point: Point) -> String {
+pub(crate) fn place(point: Point) -> String {
     format!("{}, {} m", number(point.x, 2), number(point.y, 2))
 }
 
 /// The pace of the simulation.
-pub(super) fn speed(speed: Speed) -> String {
+pub(crate) fn speed(speed: Speed) -> String {
     match speed {
         Speed::Times(factor) => format!("×{factor}"),
         Speed::Max => "×max".into(),
@@ -39,13 +39,13 @@ pub(super) fn speed(speed: Speed) -> String {
 }
 
 /// A heading in degrees, 0 to 359, counter-clockwise from east.
-pub(super) fn degrees(heading_rad: f64) -> String {
+pub(crate) fn degrees(heading_rad: f64) -> String {
     let degrees = heading_rad.to_degrees().rem_euclid(360.0).round();
     number(if degrees >= 360.0 { 0.0 } else { degrees }, 0)
 }
 
 /// Text no wider than some columns; an ellipsis stands for what is cut.
-pub(super) fn fit(text: &str, columns: usize) -> String {
+pub(crate) fn fit(text: &str, columns: usize) -> String {
     if width(text) <= columns {
         return text.to_owned();
     }
@@ -63,14 +63,14 @@ pub(super) fn fit(text: &str, columns: usize) -> String {
 }
 
 /// The first of some wordings, the fullest first, that fits into some columns; the last one if none does.
-pub(super) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> String {
+pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> String {
     let fits = wordings.iter().position(|words| width(words) <= columns).unwrap_or(N - 1);
     wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
 /// The leading clauses of a sentence that fit into some columns, for a row whose whole sentence stands elsewhere; an
 /// ellipsis only if not even the first clause fits.
-pub(super) fn clauses(sentence: &str, columns: usize) -> String {
+pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
     }
@@ -81,7 +81,7 @@ pub(super) fn clauses(sentence: &str, columns: usize) -> String {
 }
 
 /// As many of some names as fit, and how many more there are.
-pub(super) fn names(names: &[&str], columns: usize) -> String {
+pub(crate) fn names(names: &[&str], columns: usize) -> String {
     let wordings = (0..names.len()).map(|left_out| match left_out {
         0 => names.join(" "),
         _ => format!("{} +{left_out}", names[..names.len() - left_out].join(" ")),
@@ -90,20 +90,20 @@ pub(super) fn names(names: &[&str], columns: usize) -> String {
 }
 
 /// A sentence without its full stop, with a capital letter.
-pub(super) fn capitalized(sentence: &str) -> String {
+pub(crate) fn capitalized(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Text of exactly some columns, padded on the right.
-pub(super) fn column(text: &str, columns: usize) -> String {
+pub(crate) fn column(text: &str, columns: usize) -> String {
     let cut = fit(text, columns);
     let blank = columns.saturating_sub(width(&cut));
     cut + &" ".repeat(blank)
 }
 
 /// The first lines of a text; an ellipsis at the end of the last one if there are more.
-pub(super) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -> Vec<String> {
+pub(crate) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -> Vec<String> {
     if lines.len() > most {
         lines.truncate(most);
         if let Some(last) = lines.last_mut() {
@@ -114,12 +114,12 @@ pub(super) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -
 }
 
 /// Columns that a text takes.
-pub(super) fn width(text: &str) -> usize {
+pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
 /// Words in lines of at most some columns.
-pub(super) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
+pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split_whitespace() {
         match lines.last_mut() {
@@ -134,13 +134,13 @@ pub(super) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
 }
 
 /// A bar of some columns that is filled to a share.
-pub(super) fn bar(share: f64, columns: usize) -> String {
+pub(crate) fn bar(share: f64, columns: usize) -> String {
     let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
 /// A curve in some columns, from 0 to `top`; each column shows the largest of its values.
-pub(super) fn sparkline(
+pub(crate) fn sparkline(
     values: impl ExactSizeIterator<Item = f64>,
     top: f64,
     columns: usize,

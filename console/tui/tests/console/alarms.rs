@@ -4,6 +4,7 @@ use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
 use mission::event::TetherAlarm;
 use mission::{EventKind, HoldReason, Noted, Order, Resumes, Severity};
+use tui::actions::keymap::{Binding, Keymap};
 use tui::model::alarms::State;
 use tui::model::ui::Ask;
 use tui::model::{Cause, Overlay};
@@ -208,6 +209,16 @@ fn the_actions_of_an_alarm_are_run_by_their_digits_and_what_moves_asks() {
     screen.type_text("9");
     assert_eq!(screen.model.ui.screen, SHOWN, "a digit that is not an action does nothing");
     assert!(matches!(screen.model.ui.overlay, Overlay::Remedies { .. }));
+}
+
+#[test]
+fn the_actions_of_an_alarm_stand_beside_the_keys_that_run_them() {
+    let mut screen = troubled();
+    let binding = Binding { action: "second-action".into(), keys: vec![Key::F(2)] };
+    screen.model.console.keys = Keymap::new(&[], &[binding]).0;
+    screen.send(Msg::Resize { width: 120, height: 36 });
+    let shown = text(&drawn(&screen.model, RICH, (120, 36)));
+    assert!(shown.contains(" F2 "), "{shown}");
 }
 
 #[test]

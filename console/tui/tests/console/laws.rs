@@ -2,7 +2,7 @@
 
 use crate::fixture::{ASCII, PLAIN, RICH, Screen, choice, of_run, planner};
 use crate::replay::replaying;
-use crate::screens::{drawn, text};
+use crate::screens::{drawn_as_is as drawn, text};
 use mission::{AskId, Event, EventKind, HoldReason, Order, Outcome, Resumes, Severity, WorkerId};
 use proptest::prelude::*;
 use ratatui::Terminal;
@@ -115,7 +115,7 @@ fn mouse() -> impl Strategy<Value = Mouse> {
         (-20.0..20.0_f64, prop_oneof![4 => -20.0..20.0_f64, 1 => Just(f64::NAN)])
             .prop_map(|(x, y)| Point::new(x, y))
     };
-    let key = prop::sample::select(ACTIONS).prop_map(|action| Target::Key(action.id));
+    let key = prop::sample::select(ACTIONS.to_vec()).prop_map(|action| Target::Key(action.id));
     let target = || prop_oneof![place().prop_map(Target::Map), Just(Target::Else)];
     prop_oneof![
         2 => prop_oneof![target(), key].prop_map(Mouse::Click),

@@ -35,7 +35,7 @@ fn looks(effect: &Effect) -> bool {
 fn no_action_on_any_screen_gives_an_order() {
     for onlooker in onlookers() {
         for name in Name::ALL {
-            for action in ACTIONS {
+            for action in ACTIONS.iter() {
                 let mut screen = onlooker.clone();
                 screen.model.ui.go(name);
                 let mut effects = act(&mut screen.model, action.id);

@@ -14,6 +14,7 @@ mod notices;
 mod overviews;
 mod panes;
 mod presets;
+mod printed_keys;
 mod reference;
 mod replay;
 mod screens;

@@ -1,13 +1,13 @@
 //! `docs/keys.md`: every key and command, from the table of actions.
 
-use tui::actions::{ACTIONS, Action, Kind, find, keymap::PRESETS};
+use tui::actions::{ACTIONS, Action, Kind, find, keymap::Keymap, keymap::PRESETS};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/keys.md");
 
 const HEAD: &str = "\
 # Keys and commands
 
-<!-- Made from the table in console/tui/src/actions.rs. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
+<!-- Made from the rows in console/tui/src/actions/rows/. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
 
 Keys are those of the preset `default`; `keys.toml` changes them (operator guide). SAFE cannot make the robot move, MOVES can and asks
 first, ENDS ends the mission and asks first. A command is typed after `:`, its values after its name; a value with spaces stands in
@@ -31,15 +31,19 @@ fn keys(action: &Action) -> String {
     code(action.keys.iter().map(|key| key.name()))
 }
 
+fn about(action: &Action) -> String {
+    Keymap::default().spelled(action.about)
+}
+
 fn command(action: &Action) -> String {
     let synonyms = code(action.synonyms.iter().map(|word| (*word).to_owned()));
-    let cells = [keys(action), synonyms, action.about.to_owned(), action.risk.word().to_lowercase()];
+    let cells = [keys(action), synonyms, about(action), action.risk.word().to_lowercase()];
     let cells = cells.map(|text| format!(" {} |", cell(&text)));
     format!("| `{}` |{}\n", action.usage(), cells.concat())
 }
 
 fn step(action: &Action) -> String {
-    format!("| {} | {} | {} |\n", action.name, cell(&keys(action)), action.about)
+    format!("| {} | {} | {} |\n", action.name, cell(&keys(action)), about(action))
 }
 
 fn kind(kind: Kind) -> &'static str {

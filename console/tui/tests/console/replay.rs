@@ -235,7 +235,7 @@ fn a_second_run_is_taken_and_taken_away_and_aligned() {
 #[test]
 fn a_replay_gives_no_order_whatever_is_done_and_is_left_without_a_question() {
     for name in Name::ALL {
-        for action in ACTIONS {
+        for action in ACTIONS.iter() {
             let mut screen = replaying(true);
             screen.model.ui.go(name);
             let mut effects = act(&mut screen.model, action.id);

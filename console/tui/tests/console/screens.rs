@@ -11,8 +11,14 @@ use world::Point;
 /// The sizes that the console is made for.
 const SIZES: [(u16, u16); 4] = [(120, 36), (80, 24), (60, 16), (44, 10)];
 
-/// Draws a model.
+/// Draws a model, in which no key is printed that does nothing.
 pub(crate) fn drawn(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
+    crate::printed_keys::check(model, caps, size);
+    drawn_as_is(model, caps, size)
+}
+
+/// Draws a model in which there may be texts of any kind.
+pub(crate) fn drawn_as_is(model: &Model, caps: Caps, size: (u16, u16)) -> Buffer {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
     terminal.draw(|frame| view(model, &caps, frame)).unwrap();
     terminal.backend().buffer().clone()

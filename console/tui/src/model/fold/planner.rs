@@ -74,7 +74,7 @@ impl Run {
             EventKind::BetterPlanDropped { why, .. } => {
                 self.planning.candidate = None;
                 if self.planning.offer.take().is_some() {
-                    change.say(Severity::Info, format!("no better plan any more: {why}"));
+                    change.say(Severity::Info, format!("better plan withdrawn: {why}"));
                 }
             }
             EventKind::PlannerRejected { planner, why } => {

@@ -1,6 +1,6 @@
 //! The values of commands: what there is to choose from, and what a typed word means.
 
-use crate::actions::{ActionId, Kind, duration_s, find, moment_s};
+use crate::actions::{Kind, duration_s, moment_s};
 use crate::guide;
 use crate::model::ui::MapLayer;
 use crate::model::{Cause, Model, Screen, Source, Speed, parameter};
@@ -29,8 +29,8 @@ pub(in crate::update) enum Value {
     Severity(Severity),
     /// A theme.
     Theme(ThemeName),
-    /// What shows a screen.
-    Screen(ActionId),
+    /// A screen.
+    Screen(Screen),
     /// Name of a preset.
     Preset(String),
     /// A span of time, seconds.
@@ -115,8 +115,7 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
         }
         Kind::Theme => ThemeName::named(text).map(Value::Theme),
         Kind::Screen => {
-            let screen = Screen::ALL.into_iter().find(|screen| screen.name().to_lowercase() == text)?;
-            find::named(&screen.name().to_lowercase()).map(|action| Value::Screen(action.id))
+            Screen::ALL.into_iter().find(|screen| screen.name().to_lowercase() == text).map(Value::Screen)
         }
         Kind::Preset => {
             let preset = model.console.presets.iter().find(|preset| preset.name == text)?;

@@ -9,6 +9,8 @@ use crate::view::look::{Look, Parts};
 use crate::view::{table, text};
 use ratatui::text::Line;
 
+/// Which keys run the actions while they are open.
+const NUMBERS: [&str; 4] = ["<first-action>", "<second-action>", "<third-action>", "<fourth-action>"];
 /// Rows around a list: its frame, and the three lines that stay visible.
 const FRAME: usize = 5;
 
@@ -35,10 +37,10 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     let guide = guide(cause);
     let about = format!("{} {}", guide.cause, guide.effect);
     let remedies = guide.remedies.iter().enumerate();
-    let spelled = |remedy: &Remedy| look.model.console.keys.spelled(remedy.text);
+    let spelled = |remedy: &Remedy| look.keys(remedy.text);
     let chosen = guide.remedies.get(selected).map_or_else(String::new, spelled);
     let text = |(index, remedy): (usize, &Remedy)| {
-        vec![(role(look, remedy), text::fit(&format!("{} {}", index + 1, spelled(remedy)), room))]
+        vec![(role(look, remedy), text::fit(&format!("{} {}", number(look, index), spelled(remedy)), room))]
     };
     let mut below: Vec<Parts> = paragraph(Role::Text, &chosen, room).collect();
     below.extend(paragraph(Role::Dim, &about, room));
@@ -47,7 +49,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     below.truncate(free);
     List {
         title: name(cause, look.run),
-        note: "1-4 run",
+        note: look.keys(super::RUN),
         rows: remedies.map(text).collect(),
         selected,
         below,
@@ -57,11 +59,17 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
 
 fn rows(look: &Look, index: usize, remedy: &Remedy, columns: usize) -> Vec<Parts> {
     let role = role(look, remedy);
-    let sentence = look.model.console.keys.spelled(remedy.text);
-    let wrapped = text::wrap(&sentence, columns.saturating_sub(3));
-    let number = |line: usize| if line == 0 { format!("{} ", index + 1) } else { "  ".into() };
-    let row = |(line, words)| vec![(Role::Key, number(line)), (role, words)];
+    let sentence = look.keys(remedy.text);
+    let number = number(look, index);
+    let width = text::width(&number) + 1;
+    let wrapped = text::wrap(&sentence, columns.saturating_sub(width + 1));
+    let front = |line: usize| text::column(if line == 0 { &number } else { "" }, width);
+    let row = |(line, words)| vec![(Role::Key, front(line)), (role, words)];
     wrapped.into_iter().enumerate().map(row).collect()
+}
+
+fn number(look: &Look, index: usize) -> String {
+    look.keys(NUMBERS.get(index).copied().unwrap_or_default())
 }
 
 /// What cannot be run now is of less weight.

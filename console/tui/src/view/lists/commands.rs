@@ -22,12 +22,12 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     let below = if palette.help {
         rules(&look.model.console.keys, room)
     } else {
-        below(found.get(palette.selected), room)
+        below(look, found.get(palette.selected), room)
     };
     let (above, cursor) = line(palette, found.len(), room);
     List {
         title: if palette.help { "Keys and commands" } else { "Commands" }.into(),
-        note: "type to filter",
+        note: "type to filter".into(),
         above,
         rows,
         selected: palette.selected,
@@ -83,20 +83,26 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     let risk = if now { action.risk.word() } else { "-" };
     vec![
         (Role::Key, text::column(action.name, name)),
-        (role, text::column(action.about, about)),
+        (role, text::column(&look.keys(action.about), about)),
         (Role::Key, text::column(&look.model.console.keys.text(action), KEYS)),
         (role, risk.into()),
     ]
 }
 
 /// How the selected command is written, and what keys do, as far as there is room.
-fn below(selected: Option<&Choice>, room: usize) -> Vec<Row> {
+fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     let usage = match selected {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
         _ => None,
     };
-    let keys = ["Enter: run.", "Esc: close.", "Tab: complete.", "-: not available.", "↑: earlier lines."]
-        .map(str::to_owned);
+    let keys = [
+        "<accept>: run.",
+        "<cancel>: close.",
+        "<complete>: complete.",
+        "-: not available.",
+        "<up>: earlier lines.",
+    ]
+    .map(|clause| look.keys(clause));
     let clauses: Vec<String> = usage.into_iter().chain(keys).collect();
     vec![hint(&format!(" {}", joined(&clauses, room)))]
 }
@@ -108,14 +114,14 @@ fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
         action.map(|action| keys.text(action)).unwrap_or_default()
     };
     let (up, down, accept) = (of(ActionId::Up), of(ActionId::Down), of(ActionId::Accept));
-    let lists = format!("{up} {down}: select, {accept}: run, Esc: close, -: not available.");
+    let lists = format!("{up} {down}: select, {accept}: run, <cancel>: close, -: not available.");
     [
         lists.as_str(),
         "HOLD never asks first; commands marked MOVES or ENDS do.",
-        "In a text field space types and Ctrl-C holds.",
+        "In a text field space types and <interrupt> holds.",
         "Alarms: C crit, W warn, w watch, * not acknowledged.",
     ]
     .into_iter()
-    .flat_map(|rule| paragraph(Role::Dim, rule, columns))
+    .flat_map(|rule| paragraph(Role::Dim, &keys.spelled(rule), columns))
     .collect()
 }

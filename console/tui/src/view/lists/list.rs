@@ -12,7 +12,7 @@ use ratatui::widgets::{Clear, Paragraph};
 #[derive(Default)]
 pub(in crate::view) struct List {
     pub title: String,
-    pub note: &'static str,
+    pub note: String,
     pub above: Vec<Row>,
     pub rows: Vec<Row>,
     pub selected: usize,
@@ -25,7 +25,7 @@ pub(in crate::view) struct List {
 
 impl List {
     pub(super) fn draw(self, look: &Look, frame: &mut Frame, area: Rect) {
-        let block = look.block(Role::Focus, &self.title, self.note);
+        let block = look.block(Role::Focus, &self.title, &self.note);
         let inner = block.inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
         // The selected line is worth more than anything below the list.

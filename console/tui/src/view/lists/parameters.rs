@@ -59,7 +59,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     let what = if is_draft { "Forecast with parameters" } else { "Parameters" };
     List {
         title: format!("{what} of {} {}", planner.id, planner.version),
-        note: "* changed",
+        note: "* changed".into(),
         above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),
         selected,

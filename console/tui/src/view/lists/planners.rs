@@ -8,10 +8,10 @@ use crate::view::text::{self, wrap};
 
 pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16) -> List {
     let (title, enter) = match purpose {
-        Purpose::Drive => ("Planners", " Enter: change planner (asks first); coverage is kept."),
-        Purpose::Compare => ("Compare with", " Enter: have it plan beside the active planner."),
-        Purpose::Shadow => ("Fly in shadow", " Enter: fly it in shadow; it moves nothing."),
-        Purpose::WhatIf => ("Forecast with", " Enter: add it to the forecasts."),
+        Purpose::Drive => ("Planners", " <accept>: change planner (asks first); coverage is kept."),
+        Purpose::Compare => ("Compare with", " <accept>: have it plan beside the active planner."),
+        Purpose::Shadow => ("Fly in shadow", " <accept>: fly it in shadow; it moves nothing."),
+        Purpose::WhatIf => ("Forecast with", " <accept>: add it to the forecasts."),
     };
     let driving = look.run.planner_id();
     let rows = look.model.console.planners.iter().map(|planner| {
@@ -39,7 +39,12 @@ pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16)
         title: title.into(),
         rows: rows.collect(),
         selected,
-        below: [Row::new()].into_iter().chain(about).chain(refused).chain([hint(enter)]).collect(),
+        below: [Row::new()]
+            .into_iter()
+            .chain(about)
+            .chain(refused)
+            .chain([hint(&look.keys(enter))])
+            .collect(),
         ..List::default()
     }
 }

@@ -33,11 +33,12 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };
     below.push(vec![verdict]);
-    let tick = if model.n_by_hand() > 0 { " space: tick " } else { "" };
-    below.push(hint(&format!("{tick} r: check again  Esc: close")));
+    // The key that holds the robot ticks here: nothing moves yet.
+    let tick = if model.n_by_hand() > 0 { " <hold>: tick " } else { "" };
+    below.push(hint(&look.keys(&format!("{tick} <check-again>: check again  <cancel>: close"))));
     List {
         title: format!("Pre-flight  {} checks, {} by hand", first_by_hand, model.n_by_hand()),
-        note: note(&blocks, warned),
+        note: note(&blocks, warned).into(),
         rows,
         selected,
         needed_below: 2,

@@ -23,15 +23,15 @@ pub(super) fn list(look: &Look, name: &str, choice: &PlannerChoice, selected: us
     let head = ["name", "now", "preset", "unit"].map(|name| text::column(name, width));
     let changed = format!("{} of {} parameters change", differences.len(), info.parameters.len());
     let enter = match now {
-        Some(now) if now.id == choice.id => format!(" {changed}. Enter: take them."),
-        _ => format!(" {changed} from their defaults. Enter: change planner to {}.", choice.id),
+        Some(now) if now.id == choice.id => format!(" {changed}. <accept>: take them."),
+        _ => format!(" {changed} from their defaults. <accept>: change planner to {}.", choice.id),
     };
     List {
         title: format!("Preset {name} ({})", choice.id),
         above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),
         selected,
-        below: vec![hint(&enter), hint(" Nothing moves: the planner plans with them.")],
+        below: vec![hint(&look.keys(&enter)), hint(" Nothing moves: the planner plans with them.")],
         needed_below: 2,
         ..List::default()
     }

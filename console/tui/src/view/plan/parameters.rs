@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let changed = changed(look);
     let title = format!("Parameters  {} changed", changed.len());
-    let block = look.block(Role::Border, &title, "p edit");
+    let block = look.block(Role::Border, &title, &look.keys("<parameters> edit"));
     let columns = usize::from(block.inner(area).width);
     let rows: Vec<Parts> = if changed.is_empty() {
         vec![vec![(Role::Dim, " all at their defaults".into())]]

@@ -12,8 +12,8 @@ use report::account::{Area, MissReason};
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let listed = &look.model.live.missed()[..];
-    let block =
-        look.block(Role::Focus, &title(look, listed), if listed.is_empty() { "" } else { "n N walk" });
+    let note = if listed.is_empty() { "" } else { "<next-missed> <previous-missed> walk" };
+    let block = look.block(Role::Focus, &title(look, listed), &look.keys(note));
     let inner = block.inner(area);
     let (columns, height) = (usize::from(inner.width), usize::from(inner.height).saturating_sub(1));
     let why = listed.get(look.model.ui.missed).map_or_else(Vec::new, |area| {

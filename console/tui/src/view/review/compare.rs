@@ -48,7 +48,7 @@ const FIGURES: [Figure; 15] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): (&Replay, &Other)) {
-    let block = look.block(Role::Border, "Compare", "c: other run, twice: none");
+    let block = look.block(Role::Border, "Compare", &look.keys("<compare-run>: other run, twice: none"));
     let columns = usize::from(block.inner(area).width);
     let rows = usize::from(block.inner(area).height).saturating_sub(2);
     let a = look.model.live.result.as_ref().map(|result| &*result.summary);

@@ -1,0 +1,41 @@
+//! Alarms, missed areas and events, and what is done about them.
+
+use crate::actions::action::{Action, Reach, action};
+use crate::actions::argument::{may, must};
+use crate::actions::context::Context::{self, On};
+use crate::actions::{ActionId, Kind};
+use crate::keys::Key;
+use crate::model::Screen;
+use crate::screens::EACH;
+use crate::update::act::select;
+use crate::update::offer::{self, demand};
+use crate::update::{alarms, events, go, stations, zones};
+
+#[rustfmt::skip]
+pub(super) const ROWS: &[Action] = &[
+    action(ActionId::Acknowledge, "acknowledge", "Acknowledge the most severe alarm", &[Key::Char('a')], EACH).label("ack").also(&["silence"]).reaches(Reach::Mission)
+        .when(alarms::can_acknowledge).does(alarms::acknowledge),
+    action(ActionId::AcknowledgeAll, "acknowledge-all", "Acknowledge every alarm", &[Key::Char('*')], &[On(Screen::Alarms)]).label("ack all").reaches(Reach::Mission)
+        .when(alarms::can_acknowledge_all).does(alarms::acknowledge_all),
+    action(ActionId::Open, "open", "Open a scenario", &[], &[Context::Screen]).args(&[must("scenario", Kind::Scenario), may("planner", Kind::Planner)]).reaches(Reach::Runs).when(offer::nothing_under_way),
+    action(ActionId::NextMissed, "next-missed", "Show the next missed area", &[Key::Char('n')], &[On(Screen::Result)]).label("missed").repeats().when(offer::missed).looks(|m| select(m, 1)),
+    action(ActionId::PreviousMissed, "previous-missed", "Show the previous missed area", &[Key::Char('N')], &[On(Screen::Result)]).label("missed").repeats()
+        .when(offer::missed).looks(|m| select(m, -1)),
+    action(ActionId::Again, "again", "Plan the same scenario again", &[Key::Char('p')], &[On(Screen::Result)]).label("plan again").reaches(Reach::Mission)
+        .when(|m| demand(m.live.source.is_some() && !m.live.is_under_way(), "a mission is in progress")).does(go::again),
+    action(ActionId::Shelve, "shelve", "Shelve or unshelve the alarm", &[Key::Char('d')], &[On(Screen::Alarms)]).label("shelve").args(&[may("time", Kind::Duration), may("reason", Kind::Text), may("alarm", Kind::Alarm)]).reaches(Reach::Mission)
+        .when(alarms::can_shelve).does(alarms::shelve),
+    action(ActionId::Inject, "inject", "Make a simulated station fail (training)", &[], &[Context::Screen]).args(&[must("station", Kind::Station), must("fault", Kind::Fault), must("time", Kind::Duration)]).reaches(Reach::Mission)
+        .when(|m| stations::can(m, ActionId::Inject)),
+    action(ActionId::DrawZone, "no-go", "Draw a no-go zone between two corners", &[], &[Context::Screen]).args(&[must("corner", Kind::Corner), must("opposite", Kind::Corner)]).reaches(Reach::Mission)
+        .when(zones::can),
+    action(ActionId::Exclude, "exclude", "Exclude a station from the position fix", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).reaches(Reach::Mission)
+        .when(|m| stations::can(m, ActionId::Exclude)),
+    action(ActionId::Include, "include", "Use an excluded station again", &[], &[Context::Screen]).args(&[must("station", Kind::Station)]).reaches(Reach::Mission).when(|m| stations::can(m, ActionId::Include)),
+    action(ActionId::ShowPlace, "show-place", "Show the place on the map", &[Key::Char('m')], &[On(Screen::Alarms), On(Screen::Events)]).label("map")
+        .when(|m| demand(matches!(m.ui.screen, Screen::Alarms | Screen::Events), "select an alarm (<alarms>) or an event (<events>) first")).does(|m| if m.ui.screen == Screen::Events { events::show_place(m) } else { alarms::show_place(m) }),
+    action(ActionId::NextLike, "next-like", "Next event of the same kind", &[Key::Char('n')], &[On(Screen::Events)]).label("same kind").when(events::is_selected).does(|m| events::next_like(m, false)),
+    action(ActionId::PreviousLike, "previous-like", "Previous event of the same kind", &[Key::Char('N')], &[On(Screen::Events)]).label("same kind")
+        .when(events::is_selected).does(|m| events::next_like(m, true)),
+    action(ActionId::Copy, "copy", "Copy the line of the event", &[Key::Char('y')], &[On(Screen::Events)]).label("copy").when(events::is_selected).does(events::copy),
+];

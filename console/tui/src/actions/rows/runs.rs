@@ -1,0 +1,47 @@
+//! Past runs: played back, compared, reported.
+
+use crate::actions::action::{Action, Reach, action};
+use crate::actions::argument::{may, must};
+use crate::actions::context::Context::{self, On};
+use crate::actions::{ActionId, Kind};
+use crate::keys::Key;
+use crate::model::Screen;
+use crate::model::replay::Jump;
+use crate::update::{go, offer, replay, review};
+
+#[rustfmt::skip]
+pub(super) const ROWS: &[Action] = &[
+    action(ActionId::Play, "play", "Play the run, or pause it (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),
+    action(ActionId::Jump(Jump::TickBack), "tick-back", "Step back one tick", &[Key::Char(',')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Tick), "tick-on", "Step forward one tick", &[Key::Char('.')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::EventBack), "event-back", "Go to the previous event", &[Key::Char('[')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Event), "event-on", "Go to the next event", &[Key::Char(']')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::AlarmBack), "alarm-back", "Go to the previous alarm", &[Key::Char('{')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Alarm), "alarm-on", "Go to the next alarm", &[Key::Char('}')], &[Context::Replay]).label("alarm").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::MinuteBack), "minute-back", "Step back one minute", &[Key::Char('(')], &[Context::Replay]).label("minute").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Minute), "minute-on", "Step forward one minute", &[Key::Char(')')], &[Context::Replay]).label("minute").repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::Start), "to-start", "Go to the beginning of the run", &[Key::Char('^')], &[Context::Replay]).when(replay::is_loaded),
+    action(ActionId::Jump(Jump::End), "to-end", "Go to the end of the run", &[Key::Char('$')], &[Context::Replay]).when(replay::is_loaded),
+    action(ActionId::Seek, "seek", "Go to a moment of the run", &[], &[Context::Replay]).args(&[must("moment", Kind::Moment)]).when(replay::is_loaded),
+    action(ActionId::Bookmark, "bookmark", "Set a bookmark, or change its text", &[Key::Char('b')], &[Context::Replay]).label("bookmark").args(&[may("text", Kind::Text)]).reaches(Reach::Runs)
+        .when(replay::can_note).does(replay::open_bookmark),
+    action(ActionId::Unmark, "remove-bookmark", "Remove the bookmark at this moment", &[Key::Char('B')], &[Context::Replay]).reaches(Reach::Runs).when(replay::can_unmark).does(replay::unmark),
+    action(ActionId::Jump(Jump::Bookmark), "next-bookmark", "Go to the next bookmark", &[Key::Char('n')], &[Context::Replay]).repeats().when(replay::is_loaded),
+    action(ActionId::Jump(Jump::BookmarkBack), "previous-bookmark", "Go to the previous bookmark", &[Key::Char('N')], &[Context::Replay]).repeats().when(replay::is_loaded),
+    action(ActionId::Remark, "remark", "Write a remark about the whole run", &[], &[Context::Replay]).args(&[must("text", Kind::Text)]).reaches(Reach::Runs).when(replay::can_note),
+    action(ActionId::Difference, "difference", "Show floor that only one run scanned", &[Key::Char('D')], &[Context::Replay]).label("difference")
+        .when(replay::has_second).looks(replay::toggle_difference),
+    action(ActionId::Align, "align", "Align two runs by time, path or place", &[Key::Char('T')], &[Context::Replay]).label("align").when(replay::has_second).does(replay::align),
+    action(ActionId::Replay, "replay", "Play a past run back", &[], &[Context::Screen]).args(&[may("run", Kind::Run)]).reaches(Reach::Runs).when(replay::can_open).does(|m| go::begin(m, ActionId::Replay)),
+    action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
+        .when(replay::can_compare).does(|m| go::begin(m, ActionId::CompareRun)),
+    action(ActionId::Sort, "sort", "Cycle the sort order", &[Key::Char('s')], &[On(Screen::Review)]).label("sort").when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
+    action(ActionId::Rescan, "rescan", "Scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
+        .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
+    action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
+        .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),
+    action(ActionId::Report, "report", "Write the report of a run", &[Key::Char('w')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("report").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
+        .when(offer::run).does(|m| go::begin(m, ActionId::Report)),
+    action(ActionId::View, "view", "Open the recording of a run in rerun", &[Key::Char('o')], &[On(Screen::Home), On(Screen::Review), Context::Replay, On(Screen::Result)]).label("rerun").args(&[may("run", Kind::Run)])
+        .when(offer::run).does(|m| go::begin(m, ActionId::View)),
+];
