@@ -186,6 +186,25 @@ impl PlanRequest {
     }
 }
 
+impl crate::Sensed<'_> {
+    /// What a robot knows that stands still at a pose and is to go to a target, with nothing around it; a tick takes `dt_s`
+    /// seconds.
+    pub fn new(tick: u64, dt_s: f64, pose: PoseEstimate, target: Point) -> Self {
+        Self {
+            tick,
+            t_s: tick as f64 * dt_s,
+            dt_s,
+            pose,
+            v_m_per_s: 0.0,
+            w_rad_per_s: 0.0,
+            target,
+            targets_ahead: &[],
+            path_ahead: &[],
+            obstacles: &[],
+        }
+    }
+}
+
 impl Sensed {
     /// Lends what is known for a call.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::Sensed<'_>) -> T) -> T {

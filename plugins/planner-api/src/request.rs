@@ -218,10 +218,7 @@ impl LegTag {
 /// # use planner_api::{Point2, PoseEstimate};
 /// # let covariance = nalgebra::Matrix3::zeros();
 /// # let pose = PoseEstimate { position: Point2::origin(), heading_rad: 0.0, covariance };
-/// # let (tick, t_s, dt_s, v_m_per_s, w_rad_per_s, target) = (0, 0.0, 0.1, 0.0, 0.0, Point2::new(3.0, 4.0));
-/// # let sensed = Sensed {
-/// #     tick, t_s, dt_s, pose, v_m_per_s, w_rad_per_s, target, targets_ahead: &[], path_ahead: &[], obstacles: &[],
-/// # };
+/// # let sensed = Sensed::new(0, 0.1, pose, Point2::new(3.0, 4.0));
 ///
 /// let step = |sensed: &Sensed<'_>| Command::velocity((sensed.target - sensed.pose.position) * 0.1);
 /// assert!(matches!(step(&sensed).drive, Drive::Velocity(v) if v.norm() == 0.5));

@@ -1,4 +1,4 @@
-//! seccomp: which calls of the system a planner may make without asking.
+//! seccomp: which system calls a planner may make without asking.
 
 use super::listener;
 use seccompiler::{
@@ -66,7 +66,7 @@ const OLD_FREE: &[i64] = &[libc::SYS_poll, libc::SYS_time, libc::SYS_alarm];
 #[cfg(not(target_arch = "x86_64"))]
 const OLD_FREE: &[i64] = &[];
 
-/// Puts the filter in place; where the console learns what it does not allow.
+/// Installs the filter. Returns where the console learns about calls that it does not allow.
 pub(super) fn install() -> Result<OwnedFd, String> {
     // The C library starts threads by `clone3`, whose flags no filter can see, and falls back to `clone` if there is none.
     let no_clone3 = [(libc::SYS_clone3, Vec::new())].into();

@@ -1,6 +1,6 @@
 //! What plugins were found to hold, kept from one start of tankops to the next, so that not every one is loaded every time.
 //!
-//! An entry is believed only if it is whole, and of this very program and this system: another build may read a plugin
+//! An entry is believed only if it is complete, and of this same program and system: another build may read a plugin
 //! differently, another kernel may close a process off less. It says what a probe said that was closed off wholly; whoever
 //! flies a planner loads and checks its file again.
 
