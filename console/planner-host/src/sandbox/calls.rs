@@ -119,7 +119,7 @@ fn rules() -> Result<Rules, String> {
     };
     rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
     rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
-    // All but taking pages of the machine out of use, which who is privileged may do.
+    // Everything except taking pages of the machine out of use, which a privileged process may do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
     // `nice` reads its own priority before it tries to change it.

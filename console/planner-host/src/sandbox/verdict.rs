@@ -84,7 +84,7 @@ fn on_clone(call: &Call) -> Verdict {
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
     const MAY: u64 = (libc::CLONE_SETTLS | libc::CLONE_PARENT_SETTID | libc::CLONE_CHILD_CLEARTID) as u64
         | (libc::CLONE_CHILD_SETTID | libc::CLONE_DETACHED) as u64;
-    // By which the C library forks and starts programs.
+    // With these the C library forks and starts programs.
     const OF_FORK: u64 = (libc::CLONE_CHILD_CLEARTID | libc::CLONE_CHILD_SETTID) as u64
         | (libc::CLONE_VM | libc::CLONE_VFORK) as u64;
     let flags = call.arguments[0];

@@ -249,7 +249,7 @@ mod tests {
         fs::copy(built, &file).expect("copied");
         let (cache, plugin) = (Cache::new(Some(folder.path())), PluginFile::read(file.clone()));
         cache.note(&plugin);
-        assert_eq!(cache.seen(&file), None, "it may be written to once more in the same moment");
+        assert_eq!(cache.seen(&file), None, "it may be written to again in the same moment");
         std::thread::sleep(SETTLED + Duration::from_millis(100));
         cache.note(&plugin);
         assert_eq!(cache.seen(&file), Some(plugin));

@@ -227,7 +227,8 @@ fn an_instance_that_does_not_end_well_is_no_fault_of_the_next_mission() {
 fn a_call_of_another_kind_of_processor_ends_the_process_without_a_name() {
     if cfg!(target_arch = "x86_64") {
         let fault = fault_of("IN_STEP", r#"__asm__ volatile("int $0x80" : : "a"(20) : "memory")"#);
-        let sentence = "planner hostile was killed by SIGSYS (a call of the system that no planner may make) during step 3";
+        let sentence =
+            "planner hostile was killed by SIGSYS (a system call that no planner may make) during step 3";
         assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Died));
     }
 }
