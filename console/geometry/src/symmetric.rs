@@ -1,7 +1,7 @@
 //! How symmetric matrices are written: the upper triangle, row by row.
 
 use nalgebra::SMatrix;
-use serde::{Deserialize, Deserializer, Serializer, de::Error};
+use serde::{Deserialize, Deserializer, Serializer, de::Error, ser::SerializeSeq};
 
 /// Writes the upper triangle.
 ///
@@ -11,7 +11,12 @@ pub fn serialize<S: Serializer, const N: usize>(
     matrix: &SMatrix<f64, N, N>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq((0..N).flat_map(|row| (row..N).map(move |column| matrix[(row, column)])))
+    // Their number is stated: a format that is not text writes it first.
+    let mut numbers = serializer.serialize_seq(Some(N * (N + 1) / 2))?;
+    for (row, column) in (0..N).flat_map(|row| (row..N).map(move |column| (row, column))) {
+        numbers.serialize_element(&matrix[(row, column)])?;
+    }
+    numbers.end()
 }
 
 /// Reads an upper triangle.

@@ -7,16 +7,17 @@
 //! Lengths are metres, angles radians, counter-clockwise from the x axis, in the tank frame.
 
 mod comparison;
-mod site;
 
 pub use comparison::Comparison;
-pub use site::{Site, SiteObstacle, SiteZone};
+pub use planner_api::message::{
+    Obstacle as SiteObstacle, PlanRequest as PlanAsk, Sensed as StepAsk, Site, Task as TaskLeft,
+    Zone as SiteZone,
+};
 
 use crate::planner::{Fault, Parameters, PlannerChoice, PlannerInfo};
-use planner_api::{self as api, Command, Drawing, LogLevel, Plan, PoseEstimate, Reason, TetherLimits};
+use planner_api::{Command, Drawing, LogLevel, Plan};
 use serde::{Deserialize, Serialize};
 use std::{fmt, sync::Arc};
-use world::Point;
 
 /// One instance of a planner in a worker process, numbered by the mission; no number is used twice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -82,124 +83,6 @@ pub enum What {
     Snapshot,
     /// Give up what is being done and end the process. There is no answer to this one.
     Close,
-}
-
-/// What is left of a task, with its arrays.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TaskLeft {
-    /// Reach a point.
-    Goto {
-        /// The point.
-        goal: Point,
-        /// Distance at which it counts as reached, metres.
-        tolerance_m: f64,
-    },
-    /// Follow targets in order.
-    Follow {
-        /// The targets that are left.
-        targets: Vec<Point>,
-        /// Distance at which the last one counts as reached, metres.
-        tolerance_m: f64,
-    },
-    /// Scan floor and come back.
-    Cover {
-        /// Where the tether comes in, and where the path ends.
-        anchor: Point,
-        /// The floor to scan, as polygons; empty for all of it.
-        regions: Vec<Vec<Point>>,
-        /// The tether, if there is one.
-        tether: Option<TetherLimits>,
-        /// Distance at which the end counts as reached, metres.
-        tolerance_m: f64,
-    },
-}
-
-/// The inputs of a plan; the owned form of [`planner_api::PlanRequest`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlanAsk {
-    /// Why a plan is wanted.
-    pub reason: Reason,
-    /// Where it starts.
-    pub start: PoseEstimate,
-    /// What is to be achieved.
-    pub task: TaskLeft,
-    /// The tank as it is known.
-    pub site: Arc<Site>,
-    /// The path flown so far, and a return path before the plan.
-    pub previous: Vec<Point>,
-    /// What is left of the plan that it is to keep to, if there is one.
-    pub under_way: Option<Plan>,
-}
-
-/// The inputs of a command; the owned form of [`planner_api::Sensed`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct StepAsk {
-    /// Number of the tick.
-    pub tick: u64,
-    /// Mission time, seconds.
-    pub t_s: f64,
-    /// Length of a tick, seconds.
-    pub dt_s: f64,
-    /// Where the robot believes to be.
-    pub pose: PoseEstimate,
-    /// Speed that was commanded last, metres per second.
-    pub v_m_per_s: f64,
-    /// Turn rate that was commanded last, radians per second.
-    pub w_rad_per_s: f64,
-    /// Where to go next.
-    pub target: Point,
-    /// The targets from the next one on.
-    pub targets_ahead: Vec<Point>,
-    /// The plan from here on.
-    pub path_ahead: Vec<Point>,
-    /// Obstacles within sensing range.
-    pub obstacles: Vec<SiteObstacle>,
-}
-
-impl PlanAsk {
-    /// Lends the request in the form that planners read.
-    pub fn lend<R>(&self, call: impl FnOnce(&api::PlanRequest<'_>) -> R) -> R {
-        let regions: Vec<&[Point]> = match &self.task {
-            TaskLeft::Cover { regions, .. } => regions.iter().map(Vec::as_slice).collect(),
-            TaskLeft::Goto { .. } | TaskLeft::Follow { .. } => Vec::new(),
-        };
-        let task = match &self.task {
-            TaskLeft::Goto { goal, tolerance_m } => {
-                api::Task::Goto { goal: *goal, tolerance_m: *tolerance_m }
-            }
-            TaskLeft::Follow { targets, tolerance_m } => {
-                api::Task::Follow { targets, tolerance_m: *tolerance_m }
-            }
-            TaskLeft::Cover { anchor, tether, tolerance_m, .. } => api::Task::Cover {
-                anchor: *anchor,
-                regions: &regions,
-                tether: *tether,
-                tolerance_m: *tolerance_m,
-            },
-        };
-        let Self { reason, start, previous, under_way, .. } = self;
-        let (start, under_way) = (*start, under_way.as_ref());
-        self.site.lend(|site| call(&api::PlanRequest { reason, start, task, site, previous, under_way }))
-    }
-}
-
-impl StepAsk {
-    /// Lends what is sensed in the form that planners read.
-    pub fn lend<R>(&self, call: impl FnOnce(&api::Sensed<'_>) -> R) -> R {
-        let obstacles: Vec<api::Obstacle<'_>> = self.obstacles.iter().map(SiteObstacle::lend).collect();
-        call(&api::Sensed {
-            tick: self.tick,
-            t_s: self.t_s,
-            dt_s: self.dt_s,
-            pose: self.pose,
-            v_m_per_s: self.v_m_per_s,
-            w_rad_per_s: self.w_rad_per_s,
-            target: self.target,
-            targets_ahead: &self.targets_ahead,
-            path_ahead: &self.path_ahead,
-            obstacles: &obstacles,
-        })
-    }
 }
 
 /// What came of an ask.

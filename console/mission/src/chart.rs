@@ -209,7 +209,7 @@ impl Chart {
                 .world
                 .zones
                 .iter()
-                .map(|zone| SiteZone { kind: zone_kind(zone.kind), shape: zone.shape.clone() })
+                .map(|zone| SiteZone { kind: zone_kind(zone.kind), outline: zone.shape.clone() })
                 .collect(),
             limits: self.limits,
             swath_m: self.swath_m,
@@ -232,7 +232,7 @@ impl Chart {
     fn as_seen(&self, charted: SiteObstacle) -> SiteObstacle {
         let seen = self.in_sight.iter().find(|(id, _)| id.0 == charted.id);
         match seen {
-            Some((_, shape)) => SiteObstacle { shape: shape.clone(), ..charted },
+            Some((_, shape)) => SiteObstacle { outline: shape.clone(), ..charted },
             None => charted,
         }
     }
@@ -246,7 +246,7 @@ impl Chart {
             id: obstacle.id.0,
             discovered: !obstacle.known,
             velocity_m_per_s: velocity.unwrap_or_default(),
-            shape: obstacle.shape.clone(),
+            outline: obstacle.shape.clone(),
         })
     }
 

@@ -53,19 +53,8 @@ fn round_trip(criterion: &mut Criterion) {
         clearance_m: 0.1,
         seed: 1,
     };
-    let position = Point2::origin();
-    let mut sensed = Sensed {
-        tick: 0,
-        t_s: 0.0,
-        dt_s: 0.1,
-        pose: PoseEstimate { position, heading_rad: 0.0, covariance: Matrix3::identity() },
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target: Point2::new(10.0, 0.0),
-        targets_ahead: &[],
-        path_ahead: &[],
-        obstacles: &obstacles,
-    };
+    let pose = PoseEstimate { position: Point2::origin(), heading_rad: 0.0, covariance: Matrix3::identity() };
+    let mut sensed = Sensed { obstacles: &obstacles, ..Sensed::new(0, 0.1, pose, Point2::new(10.0, 0.0)) };
     let mut host = host();
     host.choose("faulty", &Parameters::new(), &site).expect("the fault injector is built with the benches");
     criterion.bench_function("step with 16 obstacles", |bench| {

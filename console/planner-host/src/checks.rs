@@ -1,4 +1,6 @@
-//! What a planner answered, against what the robot can do.
+//! What a planner answered, against what the robot can do; in [`limits`], against what a worker may send at all.
+
+pub(crate) mod limits;
 
 use planner_api::{Command, Drive, Limits, Plan};
 

@@ -1,4 +1,4 @@
-//! Answers the mission's asks: finds, starts, asks and ends planners, and never waits but in [`Host::next`].
+//! Answers the mission's asks: finds, starts, asks and ends planners, and waits only in [`Host::next`].
 
 mod config;
 pub(crate) mod fault;
@@ -43,7 +43,7 @@ pub struct Host {
     config: HostConfig,
     catalog: Catalog,
     planners: Vec<Planner>,
-    /// Workers that nobody asks any more and that have not ended yet.
+    /// Workers that are no longer asked and have not ended yet.
     leaving: Vec<Leaving>,
     answers: VecDeque<Answer>,
     /// What the last look found, kept for its memory.
@@ -125,7 +125,7 @@ impl Host {
         std::mem::take(&mut self.kept.crashes)
     }
 
-    /// Which planners did not end well since the last time.
+    /// Which planners ended badly since the last time.
     pub fn take_bad_ends(&mut self) -> Vec<BadEnd> {
         std::mem::take(&mut self.kept.bad_ends)
     }
@@ -259,7 +259,7 @@ impl Host {
         woken
     }
 
-    /// Whether a planner on the processor of this thread has answered by the time that this thread has it again, as mostly. Then
+    /// Whether a planner on the processor of this thread has answered, as it usually has by the time this thread runs again. Then
     /// the system need not be asked what else has happened; that is done every millisecond.
     fn is_answered_at_once(&mut self) -> bool {
         #[cfg(target_os = "linux")]
@@ -274,7 +274,7 @@ impl Host {
         false
     }
 
-    /// Does what is due after what has happened.
+    /// Handles what has happened.
     fn go_on(&mut self) {
         let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();

@@ -10,11 +10,12 @@ use sink::{LONGEST_TEXT, plain};
 pub(crate) use sink::{Sink, Watch};
 use stage::Staged;
 
+use crate::checks::limits::MOST_PLANNERS;
 use crate::discovery::{read_bytes, sha256_hex, too_large_for_machine};
 use crate::parameters;
 use crate::stamp::{self, Abi, CONSOLE_ABI};
 use crate::supervisor::no_worker;
-use crate::wire::answer::{Described, MOST_PLANNERS, Refusal};
+use crate::wire::answer::{Described, Refusal};
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
 use planner_api::abi;
 use std::error::Error;
@@ -42,7 +43,7 @@ pub(crate) struct File {
 /// A library whose constructors have run; it stays loaded until the process ends.
 pub(crate) struct Loaded(abi::Entry);
 
-/// Why there is no file to be loaded.
+/// Why a file cannot be loaded.
 pub(crate) enum NotRead {
     /// It is not a plugin that can be loaded.
     Refused(String),
@@ -70,7 +71,7 @@ impl File {
     /// Loads exactly the bytes that were checked.
     ///
     /// # Errors
-    /// Why it is refused; reads on after "refused:". So below.
+    /// Why it is refused; reads on after "refused:". The same below.
     pub(crate) fn load(self) -> Result<Loaded, String> {
         let staged = self.staged.path();
         // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.

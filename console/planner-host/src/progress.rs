@@ -1,15 +1,19 @@
 //! Progress of a plan while it is being computed. It is shown and not stored: it depends on wall-clock time, so it enters
 //! neither journal nor recording.
 
+use crate::checks::limits;
 use mission::AskId;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Progress of a plan that is being computed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Share done, 0 to 1, as reported by the planner.
+    #[serde(deserialize_with = "limits::share")]
     pub share: f64,
     /// The current activity, in a few words.
+    #[serde(deserialize_with = "limits::doing")]
     pub what: String,
 }
 

@@ -1,4 +1,4 @@
-//! What planners leave beside their answers: what they print, and what is left of one that failed. It depends on the machine
+//! What planners leave besides their answers: what they print, and what is left of one that failed. It depends on the machine
 //! when it arrives, so it enters neither journal nor recording.
 
 use mission::{Cause, Fault};
@@ -13,7 +13,7 @@ pub struct Printed {
     pub line: String,
 }
 
-/// What is left of a planner that failed: enough to ask its plugin the same once more ([`crate::replay`]).
+/// What is left of a planner that failed: enough to ask its plugin the same again ([`crate::replay`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crash {
     /// How it failed.
@@ -24,7 +24,7 @@ pub struct Crash {
     pub output: String,
 }
 
-/// A planner that did not end well when it was not wanted any more.
+/// A planner that ended badly when it was no longer needed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadEnd {
     /// Which.

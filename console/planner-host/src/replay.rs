@@ -1,13 +1,14 @@
-//! Asks a plugin once more what it was asked before it failed, alone in a worker, and judges its answers as the console does.
+//! Asks a plugin again what it was asked before it failed, alone in a worker, and judges its answers as the console does.
 
 mod judge;
 
 use crate::discovery::sha256_hex;
 use crate::remains::is_crash;
 use crate::supervisor::{Failure, Worker, WorkerCommand};
-use crate::survey::{load_of, refusal_text};
+use crate::survey::refusal_text;
 use crate::wire::frame::{Incoming, Received};
 use crate::wire::kind;
+use crate::wire::request::Load;
 use crate::worker::check_descriptors;
 use judge::Judge;
 use std::path::PathBuf;
@@ -16,7 +17,7 @@ use std::time::Duration;
 /// How a replay ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Replayed {
-    /// Every request was answered, and the console takes each answer.
+    /// Every request was answered, and the console accepts each answer.
     ToTheEnd {
         /// How many there were.
         requests: usize,
@@ -28,17 +29,17 @@ pub enum Replayed {
 /// Why nothing was replayed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotReplayed {
-    /// The requests are not whole; reads on after the name of their file.
+    /// The requests are incomplete; reads on after the name of their file.
     Damaged(String),
     /// This machine lets no planner run.
     Machine(String),
 }
 
-/// Puts recorded requests to a worker, one after the other, and says what comes of each. With `patient` no deadline ends
+/// Sends recorded requests to a worker, one after the other, and reports the outcome of each. With `patient` no deadline ends
 /// it, for a debugger.
 ///
 /// # Errors
-/// The requests are not whole, or no worker can be started.
+/// The requests are incomplete, or no worker can be started.
 pub fn replay(
     frames: &[u8],
     worker: &WorkerCommand,
@@ -47,7 +48,7 @@ pub fn replay(
 ) -> Result<Replayed, NotReplayed> {
     check_descriptors().map_err(NotReplayed::Machine)?;
     let requests = whole(frames).map_err(NotReplayed::Damaged)?;
-    // A debugger has memory of its own.
+    // A debugger needs memory of its own.
     let limit = memory_limit_of(frames).filter(|_| !patient).unwrap_or(u64::MAX);
     let mut worker =
         Worker::spawn(worker, limit).map_err(|failure| NotReplayed::Machine(refusal_text(&failure)))?;
@@ -89,7 +90,7 @@ pub fn digest_of(frames: &[u8]) -> String {
     sha256_hex(frames)
 }
 
-/// Makes sure that recorded requests are whole; how many there are.
+/// Makes sure that recorded requests are complete, and counts them.
 ///
 /// # Errors
 /// What is wrong with them.
@@ -114,18 +115,18 @@ fn whole(frames: &[u8]) -> Result<usize, String> {
 
 /// The plugin's file that is named in recorded requests.
 pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
-    loaded(frames, |load| load.path.to_owned())
+    loaded(frames, |load| load.path().to_owned())
 }
 
 fn memory_limit_of(frames: &[u8]) -> Option<u64> {
     loaded(frames, |load| load.memory_limit_bytes)
 }
 
-fn loaded<T>(frames: &[u8], take: impl FnOnce(crate::survey::Load<'_>) -> T) -> Option<T> {
+fn loaded<T>(frames: &[u8], take: impl FnOnce(Load) -> T) -> Option<T> {
     let (mut stream, mut incoming) = (frames, Incoming::default());
     while incoming.receive(&mut stream) == Received::Frame {
         if incoming.kind() == kind::LOAD {
-            return load_of(&mut incoming.body()).ok().flatten().map(take);
+            return Load::read(incoming.body()).ok().flatten().map(take);
         }
     }
     None
@@ -137,7 +138,7 @@ mod tests {
     use crate::wire::body::Writer;
 
     fn frame(kind: u8) -> Vec<u8> {
-        Writer::default().begin(kind, 1, 250).text("x").finish().expect("short").to_vec()
+        Writer::default().begin(kind, 1, 250).put("x").finish().expect("short").to_vec()
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub enum StampError {
     /// The file ends too early, or its tables are wrong.
     #[error("truncated or damaged library ({0})")]
     Damaged(String),
-    /// A library of another kind of computer.
+    /// A library for another kind of computer.
     #[error("built for another system ({theirs}, this console runs on {ours})")]
     OtherSystem {
         /// Format and processor of the file.

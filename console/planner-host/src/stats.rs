@@ -1,4 +1,4 @@
-//! How often planners were called and how long it took on the wall clock.
+//! How often planners were called, and how long it took in wall-clock time.
 
 use std::time::Duration;
 
@@ -24,14 +24,14 @@ pub struct HostStats {
     pub faults: u64,
 }
 
-/// Memory of a worker: what it has touched, its libraries among it.
+/// Memory of a worker: what it has touched, including its libraries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
     /// Now, bytes.
     pub now_bytes: u64,
-    /// At most so far, bytes.
+    /// Peak so far, bytes.
     pub most_bytes: u64,
-    /// Threads that it has now, its own two among them.
+    /// Threads that it has now, including its own two.
     pub threads: u32,
 }
 

@@ -38,7 +38,7 @@ pub struct WorkerCommand {
 }
 
 impl WorkerCommand {
-    /// Another program with the argument `worker`.
+    /// Runs another program with the argument `worker`.
     pub fn new(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into(), arguments: vec!["worker".into()] }
     }
@@ -46,7 +46,7 @@ impl WorkerCommand {
 
 impl Default for WorkerCommand {
     /// This very program with the argument `worker`. On Linux the file that is running, even if another was put in
-    /// its place, so that console and worker are always of one build.
+    /// its place, so that console and worker are always the same build.
     fn default() -> Self {
         let running = PathBuf::from("/proc/self/exe");
         let is_there = cfg!(target_os = "linux") && running.exists();
@@ -85,26 +85,26 @@ pub(crate) enum Failure {
     Hung,
     /// An answer, but only within the grace period; the process was killed.
     Late,
-    /// It hardly got the processor, for very long; the process was killed.
+    /// It was starved of CPU time for too long; the process was killed.
     Starved,
-    /// It had more memory than this, bytes; the process was killed.
+    /// It exceeded this limit of memory, bytes; the process was killed.
     Overweight(u64),
     /// An invalid answer; the process was killed.
     Protocol,
-    /// There is no process any more.
+    /// The process no longer exists.
     Gone,
     /// A worker could not be started, or the request is too long for it.
     Console(String),
 }
 
-/// What a process did that had more memory than this, bytes.
+/// What a process did that exceeded this limit of memory, bytes; reads on after the planner's name.
 pub(crate) fn overweight(limit: u64) -> String {
     format!("took more than its limit of {} MB of memory", limit >> 20)
 }
 
-/// Why a worker does not run: what cannot be done with its process, and what would let it.
+/// Why a worker cannot run: what failed with its process, and what would help.
 pub(crate) fn no_worker(cannot: &str, error: &io::Error) -> String {
-    // What fork and clone say at the limit of processes and threads.
+    // What fork and clone report at the limit of processes and threads.
     let limit = if error.kind() == io::ErrorKind::WouldBlock {
         "; `ulimit -u` limits processes and threads"
     } else {
@@ -114,7 +114,7 @@ pub(crate) fn no_worker(cannot: &str, error: &io::Error) -> String {
 }
 
 impl Failure {
-    /// Whether the process has ended with it, by itself or killed for what it did.
+    /// Whether the process has ended as well, by itself or killed for what it did.
     pub(crate) fn has_ended_the_process(&self) -> bool {
         matches!(
             self,
@@ -134,7 +134,7 @@ impl Failure {
             Self::Died { how, .. } => how.clone(),
             Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
             Self::Overweight(limit) => overweight(*limit),
-            Self::Protocol => "sent something that is not a valid answer".to_owned(),
+            Self::Protocol => "sent an invalid reply".to_owned(),
             _ => "did not end in time".to_owned(),
         }
     }

@@ -1,4 +1,4 @@
-//! Everything that was found: plugins with their planners, and bad ones with the reason.
+//! Everything that was found: plugins with their planners, and refused ones with the reason.
 
 mod cache;
 
@@ -7,15 +7,13 @@ pub(crate) use cache::Cache;
 use crate::discovery::{PluginDirs, PluginFile, too_large_for_machine};
 use crate::supervisor::{Failure, Worker, WorkerCommand, overweight, wait_for_one};
 use crate::wire::answer::{Described, Sealed};
-use crate::wire::body::{Body, Read, Writer};
-use crate::wire::{self, kind};
+use crate::wire::kind;
+use crate::wire::request::Load;
 use crate::worker::check_descriptors;
 use mission::{PlannerInfo, RefusedPlugin};
 use planner_api::Caps;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -63,7 +61,7 @@ impl Survey {
     }
 }
 
-/// Looks at every plugin: one that is not known yet is loaded and described in a worker of its own that is thrown away.
+/// Looks at every plugin: one that is not known yet is loaded and described in a throw-away worker.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     Surveyor::new(dirs, worker).survey()
 }
@@ -80,7 +78,7 @@ impl<'a> Surveyor<'a> {
         Self { probing: Probing::of(dirs, worker), plugins: dirs.plugins() }
     }
 
-    /// The planners of these ids that there are, each of the first plugin that has it; no other plugin is looked at.
+    /// The planners with these ids, each from the first plugin that has it; no other plugin is looked at.
     pub fn find(&self, ids: &[&str]) -> Vec<PlannerInfo> {
         let find = |id: &&str| {
             let may_have = self.plugins.iter().filter(|plugin| plugin.may_have(id));
@@ -204,9 +202,8 @@ fn look_at(plugin: &PluginFile, probing: &Probing<'_>, known: &mut Vec<String>) 
 
 fn probe(plugin: &PluginFile, probing: &Probing<'_>) -> Result<Vec<PlannerInfo>, Failure> {
     let mut worker = Worker::spawn(probing.worker, MEMORY_LIMIT)?;
-    worker.ask(kind::LOAD, LOAD_WITHIN, |w| {
-        write_load(w, &plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
-    })?;
+    let load = Load::of(&plugin.path, "", MEMORY_LIMIT, probing.requires_sandbox);
+    worker.ask(kind::LOAD, LOAD_WITHIN, |w| load.write(w))?;
     finished(&mut worker)?;
     let (sealed, planners) = worker.take_planners()?;
     Ok(planners.iter().map(|planner| info(planner, &sealed, &plugin.name())).collect())
@@ -220,41 +217,6 @@ fn finished(worker: &mut Worker) -> Result<(), Failure> {
             return outcome;
         }
     }
-}
-
-/// A request to load a library and to keep the planner of this id, or to describe all planners for an empty id.
-pub(crate) fn write_load(
-    w: &mut Writer,
-    path: &Path,
-    id: &str,
-    memory_limit_bytes: u64,
-    requires_sandbox: bool,
-) {
-    // What is recorded of it is replayed from anywhere.
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    w.u32(wire::VERSION).u64(memory_limit_bytes).flag(requires_sandbox);
-    w.bytes(path.as_os_str().as_encoded_bytes()).text(id);
-}
-
-/// A request to load a library.
-pub(crate) struct Load<'a> {
-    pub(crate) memory_limit_bytes: u64,
-    pub(crate) requires_sandbox: bool,
-    pub(crate) path: &'a Path,
-    /// The planner that is wanted; empty for all.
-    pub(crate) id: String,
-}
-
-/// Reads such a request; none if it is of another build.
-pub(crate) fn load_of<'a>(body: &mut Body<'a>) -> Read<Option<Load<'a>>> {
-    if body.u32()? != wire::VERSION {
-        return Ok(None);
-    }
-    let (memory_limit_bytes, requires_sandbox) = (body.u64()?, body.flag()?);
-    let path = Path::new(OsStr::from_bytes(body.bytes()?));
-    let load = Load { memory_limit_bytes, requires_sandbox, path, id: body.text()? };
-    body.end()?;
-    Ok(Some(load))
 }
 
 /// A planner as the mission knows it.
@@ -292,7 +254,7 @@ pub(crate) fn refusal_text(failure: &Failure) -> String {
             "did not load in time; its process was stopped".to_owned()
         }
         Failure::Planner(_) | Failure::Protocol | Failure::Gone => {
-            "sent something that is not a valid answer while it was loaded".to_owned()
+            "sent an invalid reply while it was loaded".to_owned()
         }
     }
 }

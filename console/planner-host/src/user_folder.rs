@@ -3,7 +3,7 @@
 use std::env;
 use std::path::PathBuf;
 
-/// The folder of tankops in the one that a variable names, else in this one of the user's home; none without both.
+/// The folder of tankops in the one that a variable names, or else in this one of the user's home; `None` without either.
 pub fn user_folder(variable: &str, otherwise: &str) -> Option<PathBuf> {
     let set = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     // The specification asks to ignore a path that is not absolute.

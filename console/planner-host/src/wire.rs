@@ -1,4 +1,4 @@
-//! What console and worker say to each other.
+//! The protocol between console and worker.
 //!
 //! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian; the length counts
 //! everything after itself, the soft deadline is in microseconds and zero for none. One request, one answer with the
@@ -11,16 +11,16 @@ pub(crate) mod body;
 #[cfg(test)]
 mod damaged;
 pub(crate) mod frame;
-pub(crate) mod input;
+pub(crate) mod request;
 
 use rustix::process::Signal;
 use std::time::Duration;
 
-/// Raised whenever a frame changes its form: console and worker must be of one build.
-pub(crate) const VERSION: u32 = 5;
+/// Raised whenever a frame changes its form: console and worker must be the same build.
+pub(crate) const VERSION: u32 = 6;
 /// Longest frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
-/// The signal by which a worker ends itself that cannot talk to its console any more. No exit code: those are the planner's;
+/// The signal with which a worker ends itself when it can no longer talk to its console. No exit code: those are the planner's;
 /// and on Linux a signal that nothing uses.
 #[cfg(target_os = "linux")]
 pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
@@ -47,8 +47,8 @@ pub(crate) mod kind {
     pub(crate) const REFUSED: u8 = 0x82;
     /// How far a plan is; the answer follows.
     pub(crate) const PROGRESS: u8 = 0x83;
-    /// The worker is closed off, how far, and for which file; the descriptor that reports its calls comes along.
+    /// How far the worker is closed off, and for which file; the descriptor that reports its calls comes along.
     pub(crate) const SEALED: u8 = 0x84;
-    /// The machine does not let the worker run; nothing is said about the library.
+    /// The machine does not let the worker run; this says nothing about the library.
     pub(crate) const UNABLE: u8 = 0x85;
 }

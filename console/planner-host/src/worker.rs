@@ -67,13 +67,13 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
     match session.obey(incoming, writer) {
         Ok(()) => {}
         Err(Trouble::Failed(refusal)) => {
-            writer.begin(kind::FAILED, sequence, 0).refusal(&refusal);
+            writer.begin(kind::FAILED, sequence, 0).put(&refusal);
         }
         Err(Trouble::Refused(why)) => {
-            writer.begin(kind::REFUSED, sequence, 0).text(&why);
+            writer.begin(kind::REFUSED, sequence, 0).put(&why);
         }
         Err(Trouble::Unable(why)) => {
-            writer.begin(kind::UNABLE, sequence, 0).text(&why);
+            writer.begin(kind::UNABLE, sequence, 0).put(&why);
         }
         // The console sent something that its own build does not send.
         Err(Trouble::Malformed) => return Err(io::ErrorKind::InvalidData.into()),
@@ -85,7 +85,7 @@ fn finished(writer: &mut Writer, sequence: u32) -> &[u8] {
     if writer.finish().is_err() {
         let message = "gave more than fits into an answer".to_owned();
         let refusal = Refusal { code: BAD_OUTPUT, message, partial: Vec::new() };
-        writer.begin(kind::FAILED, sequence, 0).refusal(&refusal);
+        writer.begin(kind::FAILED, sequence, 0).put(&refusal);
     }
     writer.finish().expect("a sentence fits into a frame")
 }

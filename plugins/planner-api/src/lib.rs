@@ -11,6 +11,7 @@ pub mod command;
 pub mod ctx;
 pub mod drawing;
 pub mod error;
+pub mod message;
 pub mod params;
 pub mod planner;
 pub mod request;

@@ -1,5 +1,6 @@
 //! What a planner is asked, and what it knows when asked.
 
+use crate::message;
 use crate::site::{Obstacle, Site};
 use nalgebra::{Matrix3, Point2};
 
@@ -37,36 +38,8 @@ pub enum Reason {
     Recover,
 }
 
-/// What the mission is to achieve from here on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Task<'a> {
-    /// Reach the goal.
-    Goto {
-        /// The goal.
-        goal: Point2<f64>,
-        /// Distance at which it counts as reached, metres.
-        tolerance_m: f64,
-    },
-    /// Follow preset points in order, as closely as the obstacles allow.
-    Follow {
-        /// The points that remain, the next one first.
-        targets: &'a [Point2<f64>],
-        /// Distance at which the last one counts as reached, metres.
-        tolerance_m: f64,
-    },
-    /// Scan the floor with the swath, and come back to the anchor.
-    Cover {
-        /// Where the path ends, and where the tether is made fast if there is one.
-        anchor: Point2<f64>,
-        /// What is still to scan: closed polygons, counter-clockwise, that do not overlap. Empty: all floor that can
-        /// be reached. They may be ragged (built of square cells) and need not respect obstacles or clearances.
-        regions: &'a [&'a [Point2<f64>]],
-        /// The tether's limits; `None` without a tether.
-        tether: Option<TetherLimits>,
-        /// Distance from the anchor at which the robot counts as back, metres.
-        tolerance_m: f64,
-    },
-}
+/// What the mission is to achieve from here on, lent by the console.
+pub type Task<'a> = message::Task<&'a [Point2<f64>], &'a [&'a [Point2<f64>]]>;
 
 /// What a tether bears. It runs from the anchor to the robot, taut, and may touch obstacles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +53,7 @@ pub struct TetherLimits {
     pub wrap_total_max_rad: f64,
 }
 
-/// A request for a plan.
+/// A request for a plan, lent by the console.
 ///
 /// ```
 /// # use planner_api::{PlanRequest, Point2, Task};
@@ -91,23 +64,8 @@ pub struct TetherLimits {
 /// Some(if arrived { vec![start] } else { vec![start, goal] })
 /// # }
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanRequest<'a> {
-    /// Why.
-    pub reason: &'a Reason,
-    /// From where.
-    pub start: PoseEstimate,
-    /// To what end.
-    pub task: Task<'a>,
-    /// Where.
-    pub site: &'a Site<'a>,
-    /// The path flown so far, oldest first; empty at the start.
-    pub previous: &'a [Point2<f64>],
-    /// On coverage missions: the plan to be kept to as far as it can be, which is what is left of the one that the robot flies,
-    /// from the place that it is led to, or one that this planner made a moment ago; without its cost. It may lead through
-    /// what was found since. `None`: plan anew.
-    pub under_way: Option<&'a Plan>,
-}
+pub type PlanRequest<'a> =
+    message::PlanRequest<&'a [Point2<f64>], &'a [&'a [Point2<f64>]], &'a Reason, &'a Site<'a>, &'a Plan>;
 
 impl<'a> PlanRequest<'a> {
     /// A request of a robot that has not driven yet.
@@ -253,42 +211,16 @@ impl LegTag {
     }
 }
 
-/// What is known in one tick.
+/// What is known in one tick, lent by the console.
 ///
 /// ```
 /// use planner_api::{Command, Drive, Sensed};
 /// # use planner_api::{Point2, PoseEstimate};
 /// # let covariance = nalgebra::Matrix3::zeros();
 /// # let pose = PoseEstimate { position: Point2::origin(), heading_rad: 0.0, covariance };
-/// # let (tick, t_s, dt_s, v_m_per_s, w_rad_per_s, target) = (0, 0.0, 0.1, 0.0, 0.0, Point2::new(3.0, 4.0));
-/// # let sensed = Sensed {
-/// #     tick, t_s, dt_s, pose, v_m_per_s, w_rad_per_s, target, targets_ahead: &[], path_ahead: &[], obstacles: &[],
-/// # };
+/// # let sensed = Sensed::new(0, 0.1, pose, Point2::new(3.0, 4.0));
 ///
 /// let step = |sensed: &Sensed<'_>| Command::velocity((sensed.target - sensed.pose.position) * 0.1);
 /// assert!(matches!(step(&sensed).drive, Drive::Velocity(v) if v.norm() == 0.5));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensed<'a> {
-    /// Number of the tick, from 0.
-    pub tick: u64,
-    /// Mission time, seconds.
-    pub t_s: f64,
-    /// Length of a tick, seconds.
-    pub dt_s: f64,
-    /// Where the robot believes to be.
-    pub pose: PoseEstimate,
-    /// Speed ahead, metres per second.
-    pub v_m_per_s: f64,
-    /// Turn rate, radians per second.
-    pub w_rad_per_s: f64,
-    /// Where to go next: the goal, or the preset point that is due.
-    pub target: Point2<f64>,
-    /// The preset points from the target on, a few metres of them.
-    pub targets_ahead: &'a [Point2<f64>],
-    /// The plan from here on, a few metres of it.
-    pub path_ahead: &'a [Point2<f64>],
-    /// Known and discovered obstacles within the robot's sensing range: as they are seen now, so that their distance from
-    /// `pose` is right even where the position is not, and as the chart has them while they are out of sight.
-    pub obstacles: &'a [Obstacle<'a>],
-}
+pub type Sensed<'a> = message::Sensed<&'a [Point2<f64>], &'a [Obstacle<'a>]>;

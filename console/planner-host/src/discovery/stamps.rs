@@ -1,4 +1,4 @@
-//! Which plugin files there are and when they were written, looked at again and again for little.
+//! Which plugin files there are and when they were written, cheap enough to look at again and again.
 
 use super::{PluginDirs, named_like_plugins};
 use std::{
@@ -37,7 +37,7 @@ struct Folder {
 }
 
 impl Stamps {
-    /// Of these folders; nothing is looked at yet.
+    /// For these folders; nothing has been looked at yet.
     pub fn of(plugins: &PluginDirs) -> Self {
         let folder = |path: &PathBuf| Folder { path: path.clone(), listed: None, files: Vec::new() };
         Self { folders: plugins.folders.iter().map(folder).collect() }

@@ -42,7 +42,7 @@ impl fmt::Display for Phase {
     }
 }
 
-/// A fault with its sentence.
+/// A fault with this message.
 pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) -> Fault {
     Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new(), plugin_sha256: None }
 }
@@ -86,7 +86,7 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         Failure::Starved => fault(
             Cause::Starved,
             format!(
-                "planner {planner} got so little of the processor that it did not finish {phase}; its process was killed"
+                "planner {planner} was starved of CPU time and did not finish {phase}; its process was killed"
             ),
         ),
         Failure::Overweight(limit) => fault(
@@ -95,9 +95,7 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         ),
         Failure::Protocol => fault(
             Cause::Protocol,
-            format!(
-                "planner {planner} sent something that is not a valid answer during {phase}; its process was killed"
-            ),
+            format!("planner {planner} sent an invalid reply during {phase}; its process was killed"),
         ),
         Failure::Gone => {
             let who =

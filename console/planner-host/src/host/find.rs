@@ -43,7 +43,7 @@ impl Catalog {
         Self { dirs, cache, plugins: None, known: BTreeMap::new() }
     }
 
-    /// Whether a plugin is refused where its process cannot be closed off wholly.
+    /// Whether a plugin is refused where its process cannot be closed off completely.
     pub(super) fn requires_sandbox(&self) -> bool {
         self.dirs.requires_sandbox
     }
@@ -63,7 +63,7 @@ impl Catalog {
                 None => (Search::Remembered, self.candidates(id)),
             },
             Search::Known(tried) => {
-                // It could be loaded before: it is tried once more before another build takes its place.
+                // It could be loaded before: it is tried again before another build takes its place.
                 let mut files = self.candidates(id);
                 files.retain(|file| *file != tried);
                 files.push_front(tried);
@@ -105,7 +105,7 @@ impl Catalog {
             .collect()
     }
 
-    /// A planner was loaded, from this file if it is the first that has it.
+    /// Notes that a planner was loaded, from this file if it is the first that has it.
     pub(super) fn learn(&mut self, id: &str, file: Option<Candidate>) {
         self.known.insert(id.to_owned(), file);
     }

@@ -1,12 +1,12 @@
-//! What planners leave beside their answers, until somebody takes it.
+//! What planners leave besides their answers, until it is collected.
 
 use crate::remains::{BadEnd, Crash, Printed};
 
-/// So many lines are kept, the newest.
+/// Most lines that are kept: the newest.
 const MOST_PRINTED: usize = 256;
-/// Crashes that are kept.
+/// Most crashes that are kept.
 const MOST_CRASHES: usize = 4;
-/// Bad ends that are kept.
+/// Most bad ends that are kept.
 const MOST_BAD_ENDS: usize = 16;
 
 /// What was left since the last time.
@@ -31,7 +31,7 @@ impl Kept {
         }
     }
 
-    /// Notes how a planner ended; a worker that had none yet has no author who has to know.
+    /// Notes how a planner ended; a worker without a planner has no author who needs to know.
     pub(super) fn note_bad_end(&mut self, end: BadEnd) {
         if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
             self.bad_ends.push(end);

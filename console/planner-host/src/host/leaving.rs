@@ -1,4 +1,4 @@
-//! Workers that nobody asks any more: how they are ended, and how that went.
+//! Workers that are no longer asked: how they are ended, and how that went.
 
 use super::Host;
 use super::spare::Spare;
@@ -70,7 +70,7 @@ impl Host {
         !self.leaving.is_empty()
     }
 
-    /// Removes a worker that cannot be asked any more.
+    /// Removes a worker that can no longer be asked.
     pub(super) fn retire(&mut self, id: WorkerId) {
         let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
         let ended = unasked.and_then(|planner| {

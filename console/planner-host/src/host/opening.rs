@@ -63,7 +63,7 @@ struct WrittenSite {
 impl WrittenSite {
     fn of(site: &Site<'_>) -> Self {
         let mut writer = Writer::default();
-        writer.site(site);
+        writer.put(site);
         Self { bytes: writer.into_bytes(), limits: site.limits }
     }
 }

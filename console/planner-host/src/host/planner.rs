@@ -4,13 +4,14 @@ use super::opening::{Loaded, Opening, Stage};
 use super::said_limit::SaidLimit;
 use super::{HostConfig, fault, fault::Phase};
 use crate::supervisor::{Failure, Worker};
-use crate::wire::answer::{Said, said_of};
-use crate::wire::body::{Body, Read, Writer};
+use crate::wire::answer::{Answered, GivenPlan, Said};
+use crate::wire::body::{Body, Read, Writer, whole};
 use crate::wire::kind;
+use crate::wire::request::Call;
 use crate::{checks, parameters};
 use mission::planner::{Cause, During, Fault, Parameters};
 use mission::{AskId, Given, WorkerId};
-use planner_api::{Limits, PlanRequest, Sensed, Task};
+use planner_api::{Command, Limits, PlanRequest, Sensed, Task};
 use std::time::{Duration, Instant};
 
 /// A planner under the number that the mission gave it.
@@ -23,7 +24,7 @@ pub(super) struct Planner {
     pub(super) ready: Option<Ready>,
 }
 
-/// What is wanted of a planner that was opened, lent.
+/// What is wanted of an opened planner, borrowed.
 pub(crate) enum Wanted<'a> {
     Reconfigure(&'a Parameters),
     Plan(&'a PlanRequest<'a>),
@@ -154,7 +155,7 @@ impl Planner {
         let values = parameters::numbers(info, &merged)
             .map_err(|message| self.blamed(fault::of_parameters(&info.id, message)))?;
         let write = |w: &mut Writer| {
-            w.values(&values);
+            w.put(&values);
         };
         self.ask(id, Doing::Reconfigure(merged), kind::RECONFIGURE, config.configure_deadline, write)
     }
@@ -173,7 +174,7 @@ impl Planner {
             return Err(self.blamed(fault::new(self.name(), During::Plan, Cause::Refused, message)));
         }
         let write = |w: &mut Writer| {
-            w.flag(config.wants_drawing).request(request);
+            w.put(&Call { watched: config.wants_drawing, asked: request });
         };
         self.ask(id, Doing::Plan(request.site.limits), kind::PLAN, config.plan_deadline, write)
     }
@@ -181,7 +182,7 @@ impl Planner {
     /// Asks for a command.
     pub(super) fn step(&mut self, id: AskId, sensed: &Sensed<'_>, config: &HostConfig) -> Result<(), Fault> {
         let write = |w: &mut Writer| {
-            w.flag(config.wants_drawing).sensed(sensed);
+            w.put(&Call { watched: config.wants_drawing, asked: sensed });
         };
         self.ask(id, Doing::Step(sensed.tick), kind::STEP, config.step_deadline, write)
     }
@@ -196,11 +197,11 @@ impl Planner {
         self.ask(id, Doing::Snapshot, kind::SNAPSHOT, config.state_deadline, |_| {})
     }
 
-    /// Reads the answer that the worker has, or passes on why there is none.
+    /// Reads the worker's answer, or passes on why there is none.
     pub(super) fn read<T>(
         &mut self,
         outcome: Result<(), Failure>,
-        read: impl FnOnce(&mut Body<'_>) -> Read<T>,
+        read: impl FnOnce(Body<'_>) -> Read<T>,
     ) -> Result<T, Failure> {
         outcome?;
         self.worker.as_mut().map_or(Err(Failure::Gone), |worker| worker.take_answer(read))
@@ -208,7 +209,8 @@ impl Planner {
 
     /// What came of new values.
     pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Outcome {
-        let said = self.read(outcome, said_of).map_err(|failure| self.fault(failure, Phase::Configure))?;
+        let answer = self.read(outcome, whole::<Answered<()>>);
+        let Answered { said, .. } = answer.map_err(|failure| self.fault(failure, Phase::Configure))?;
         if let Some(ready) = &mut self.ready {
             ready.parameters = values;
         }
@@ -217,8 +219,9 @@ impl Planner {
 
     /// What came of a plan.
     pub(super) fn planned(&mut self, outcome: Result<(), Failure>, limits: Limits) -> Outcome {
-        let answer = self.read(outcome, |body| Ok((body.plan()?, said_of(body)?)));
-        let (plan, said) = answer.map_err(|failure| self.fault(failure, Phase::Plan))?;
+        let answer = self.read(outcome, whole::<Answered<GivenPlan>>);
+        let Answered { given: GivenPlan(plan), said } =
+            answer.map_err(|failure| self.fault(failure, Phase::Plan))?;
         checks::plan(&plan).map_err(|what| self.bad_output(Phase::Plan, &what))?;
         if let Some(ready) = &mut self.ready {
             ready.limits = limits;
@@ -229,8 +232,8 @@ impl Planner {
     /// What came of a command.
     pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Outcome {
         let phase = Phase::Step(tick);
-        let answer = self.read(outcome, |body| Ok((body.command()?, said_of(body)?)));
-        let (command, mut said) = answer.map_err(|failure| self.fault(failure, phase))?;
+        let answer = self.read(outcome, whole::<Answered<Command>>);
+        let Answered { given: command, mut said } = answer.map_err(|failure| self.fault(failure, phase))?;
         let checked = self.ready.as_ref().map_or(Ok(()), |ready| checks::command(&command, &ready.limits));
         checked.map_err(|what| self.bad_output(phase, &what))?;
         if let Some(ready) = &mut self.ready {
@@ -241,7 +244,7 @@ impl Planner {
 
     /// The private state; none when the planner cannot provide it now.
     pub(super) fn snapshotted(&mut self, outcome: Result<(), Failure>) -> Result<Option<Vec<u8>>, Fault> {
-        let answer = self.read(outcome, |body| Ok(body.bytes()?.to_vec()));
+        let answer = self.read(outcome, |body| Ok(body.0.to_vec()));
         unless_refused(answer.map_err(|failure| self.fault(failure, Phase::State)))
     }
 
@@ -267,13 +270,13 @@ impl Planner {
         self.ready.as_ref().map_or("", |ready| &ready.loaded.info.id)
     }
 
-    /// A fault with the file that is to blame.
+    /// Adds the file that is to blame to a fault.
     fn blamed(&self, fault: Fault) -> Fault {
         Fault { plugin_sha256: self.ready.as_ref().map(|ready| ready.loaded.info.sha256.clone()), ..fault }
     }
 }
 
-/// State is a convenience: a planner may refuse to save or restore it, but not fail over it.
+/// State is a convenience: a planner may refuse to save or restore it, but must not fail doing so.
 pub(super) fn unless_refused<T>(answer: Result<T, Fault>) -> Result<Option<T>, Fault> {
     match answer {
         Ok(answer) => Ok(Some(answer)),

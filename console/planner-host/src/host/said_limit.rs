@@ -5,13 +5,13 @@ use mission::Said;
 use planner_api::{Drawing, LogLevel};
 use std::collections::BTreeSet;
 
-/// So many messages at once; every step adds one, up to this.
+/// Most messages at once; every step adds one, up to this.
 const MOST: usize = 64;
-/// So many figures by name: each is a curve of its own in the recording.
+/// Most distinct figures: each is a curve of its own in the recording.
 const MOST_FIGURES: usize = 128;
-/// So many drawings at once ...
+/// Most drawings at once ...
 const MOST_DRAWINGS: usize = 4096;
-/// ... and so many more with every step.
+/// ... and this many more with every step.
 const DRAWINGS_A_STEP: usize = 512;
 
 /// What a planner may still say.
@@ -23,7 +23,7 @@ pub(super) struct SaidLimit {
 }
 
 impl SaidLimit {
-    /// Takes what was said in a step, and leaves out what is beyond the limits; the first time it says so.
+    /// Takes what was said in a step, and leaves out what is beyond the limits, with a warning the first time.
     pub(super) fn take(&mut self, said: &mut Said) {
         self.logs.take(&mut said.logs);
         let warnings = [self.figures.take(&mut said.scalars), self.drawings.take(&mut said.drawings)];
@@ -45,7 +45,7 @@ impl FigureLimit {
             self.names.contains(name) || (self.names.len() < MOST_FIGURES && self.names.insert(name.clone()))
         });
         let is_news = figures.len() < before && !std::mem::replace(&mut self.is_warned, true);
-        is_news.then(|| format!("reports figures by more than {MOST_FIGURES} names: the others are dropped"))
+        is_news.then(|| format!("reports more than {MOST_FIGURES} distinct figures: the others are dropped"))
     }
 }
 
@@ -88,7 +88,7 @@ impl Default for LogLimit {
 }
 
 impl LogLimit {
-    /// Takes the messages of a step, and drops those beyond the limit; the first time of a row it says so.
+    /// Takes the messages of a step, and drops those beyond the limit, with a warning for the first in a row.
     fn take(&mut self, logs: &mut Vec<(LogLevel, String)>) {
         self.left = (self.left + 1).min(MOST);
         self.is_muted &= self.left < MOST;

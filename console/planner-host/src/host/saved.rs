@@ -1,8 +1,8 @@
-//! Private state of planners, kept for those that come after them.
+//! Private state of planners, kept for their successors.
 
 use mission::{AskId, PlannerInfo};
 
-/// So many states are kept, of as many workers.
+/// Most states that are kept, each of another worker.
 const MOST: usize = 8;
 
 /// Private state of a planner.

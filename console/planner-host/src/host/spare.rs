@@ -3,7 +3,7 @@
 use super::opening::Loaded;
 use crate::supervisor::Worker;
 
-/// So many are kept; a mission needs one or two planners, a campaign one for each that it compares.
+/// Most processes kept; a mission needs one or two planners, a campaign one for each that it compares.
 const MOST: usize = 16;
 
 /// A worker that has loaded a planner and waits.
@@ -17,7 +17,7 @@ pub(super) struct Spare {
 pub(super) struct Spares(Vec<Spare>);
 
 impl Spares {
-    /// Keeps a worker; gives back the one that there is no room for.
+    /// Keeps a worker; returns the one for which there is no room.
     pub(super) fn keep(&mut self, worker: Worker, loaded: Loaded) -> Option<Worker> {
         let same = self.0.iter().position(|spare| spare.loaded.info.id == loaded.info.id);
         let surplus = same.or((self.0.len() >= MOST).then_some(0)).map(|at| self.0.remove(at).worker);

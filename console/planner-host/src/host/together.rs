@@ -7,9 +7,9 @@ use crate::supervisor::Worker;
 use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
 use std::time::{Duration, Instant};
 
-/// So long the two stay where they are; then the system may move them to a processor that has less to do.
+/// For this time the two stay where they are; then the system may move them to a less busy processor.
 const STAYS_FOR: Duration = Duration::from_millis(100);
-/// As long as its answers come at once, this is how often a worker is looked at for anything else.
+/// How often a worker is checked for anything else as long as its answers come at once.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The thread that asks, and perhaps the worker that shares its processor.
@@ -63,7 +63,7 @@ impl Together {
     /// Something else is about to be done, for which all processors may be used, by new processes and threads, too.
     pub(super) fn part<'a>(&mut self, workers: impl Iterator<Item = &'a Worker>) {
         if let (Some(all), Some(_)) = (&self.all, self.until.take()) {
-            // Who cannot be moved is slower, and nothing else.
+            // A thread that cannot be moved is slower, nothing worse.
             let _ = sched_setaffinity(None, all);
             workers.for_each(|worker| worker.stay_on(all));
         }

@@ -1,9 +1,8 @@
 //! The console's services in the worker: copies what a planner hands over, up to a limit.
 
 use crate::Progress;
-use crate::wire::answer::{
-    MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS, Said, log_level,
-};
+use crate::checks::limits::{MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS};
+use crate::wire::answer::Said;
 use mission::{ParamInfo, ParamKind};
 use nalgebra::Point2;
 use planner_api::LogLevel;
@@ -253,6 +252,15 @@ unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
     }
     // SAFETY: the plugin promises a parameter of the size that it states.
     sink.params.push(param_info(&unsafe { abi::copy_sized(param) }));
+}
+
+/// The level of a number that came over the boundary; unknown ones count as a warning.
+fn log_level(number: u32) -> LogLevel {
+    match number {
+        0 => LogLevel::Debug,
+        1 => LogLevel::Info,
+        _ => LogLevel::Warn,
+    }
 }
 
 fn param_info(raw: &Param) -> ParamInfo {

@@ -3,14 +3,14 @@
 use crate::checks;
 use crate::host::fault::{self, Phase};
 use crate::supervisor::{Failure, Worker, wait_for_one};
-use crate::survey::load_of;
-use crate::wire::answer::said_of;
-use crate::wire::body::Read;
+use crate::wire::answer::{Answered, GivenPlan};
+use crate::wire::body::{Read, whole};
 use crate::wire::frame::Incoming;
+use crate::wire::request::{Call, Load, Values};
 use crate::wire::{answer::BAD_OUTPUT, answer::Refusal, kind};
-use mission::ask::Site;
+use mission::ask::{PlanAsk, Site, StepAsk};
 use mission::{Fault, check_extent};
-use planner_api::{Drive, Limits, Status};
+use planner_api::{Command, Drive, Limits, Status};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -31,24 +31,20 @@ pub(super) struct Judge {
 impl Judge {
     /// Hears a request.
     pub(super) fn hear(&mut self, request: &Incoming) -> Read<()> {
-        let mut body = request.body();
+        let body = request.body();
         self.kind = request.kind();
         match self.kind {
-            kind::LOAD => self.planner = load_of(&mut body)?.map(|load| load.id).unwrap_or_default(),
+            kind::LOAD => self.planner = Load::read(body)?.map(|load| load.id).unwrap_or_default(),
             kind::CONFIGURE => {
-                body.values()?;
-                self.limits = Some(body.site()?.limits);
+                let (_, site): (Values, Site) = whole(body)?;
+                self.limits = Some(site.limits);
             }
             kind::PLAN => {
-                body.flag()?;
-                let site = body.request()?.site;
+                let site = whole::<Call<PlanAsk>>(body)?.asked.site;
                 self.next_limits = Some(site.limits);
                 self.site = Some(site);
             }
-            kind::STEP => {
-                body.flag()?;
-                self.tick = body.sensed()?.tick;
-            }
+            kind::STEP => self.tick = whole::<Call<StepAsk>>(body)?.asked.tick,
             _ => {}
         }
         Ok(())
@@ -89,7 +85,7 @@ impl Judge {
         match self.kind {
             kind::LOAD => worker.take_planners().map(|(sealed, _)| format!("sha256 {}", sealed.sha256)),
             kind::PLAN => {
-                let (plan, _) = worker.take_answer(|body| Ok((body.plan()?, said_of(body)?)))?;
+                let Answered { given: GivenPlan(plan), .. } = worker.take_answer(whole)?;
                 checks::plan(&plan).map_err(bad_output)?;
                 if let Some(site) = &self.site {
                     check_extent(&plan, &site.boundary, site.swath_m).map_err(bad_output)?;
@@ -98,13 +94,13 @@ impl Judge {
                 Ok(format!("{} points, complete: {}", plan.path.len(), plan.complete))
             }
             kind::STEP => {
-                let (command, _) = worker.take_answer(|body| Ok((body.command()?, said_of(body)?)))?;
+                let Answered::<Command> { given: command, .. } = worker.take_answer(whole)?;
                 let checked = self.limits.map_or(Ok(()), |limits| checks::command(&command, &limits));
                 checked.map_err(bad_output)?;
                 Ok(format!("{}, {}", driven(&command.drive), named(command.status)))
             }
-            kind::RESTORE => worker.take_answer(|_| Ok("done".to_owned())),
-            _ => worker.take_answer(|body| said_of(body).map(|_| "done".to_owned())),
+            kind::RESTORE => worker.take_answer(whole::<()>).map(|()| "done".to_owned()),
+            _ => worker.take_answer(whole::<Answered<()>>).map(|_| "done".to_owned()),
         }
     }
 

@@ -17,7 +17,7 @@ pub(crate) struct About {
 /// About an open file of a thread.
 ///
 /// # Errors
-/// The number of the system's error; so below.
+/// The system's error number; the same below.
 pub(super) fn descriptor(thread: u32, number: i32) -> Result<Bytes, i32> {
     status(std::fs::metadata(format!("/proc/{thread}/fd/{number}")), libc::EBADF)
 }
@@ -35,7 +35,7 @@ fn status(about: std::io::Result<Metadata>, otherwise: i32) -> Result<Bytes, i32
     about.map(|about| bytes_of(&about)).map_err(|_| otherwise)
 }
 
-/// The structure as the kernel writes it; what is not there is zero.
+/// The structure as the kernel writes it; what is absent is zero.
 fn bytes_of(about: &Metadata) -> Bytes {
     macro_rules! place {
         ($field:ident) => {

@@ -1,4 +1,4 @@
-//! seccomp: which calls of the system a planner may make without asking.
+//! seccomp: which system calls a planner may make without asking.
 
 use super::listener;
 use seccompiler::{
@@ -66,7 +66,7 @@ const OLD_FREE: &[i64] = &[libc::SYS_poll, libc::SYS_time, libc::SYS_alarm];
 #[cfg(not(target_arch = "x86_64"))]
 const OLD_FREE: &[i64] = &[];
 
-/// Puts the filter in place; where the console learns what it does not allow.
+/// Installs the filter. Returns where the console learns about calls that it does not allow.
 pub(super) fn install() -> Result<OwnedFd, String> {
     // The C library starts threads by `clone3`, whose flags no filter can see, and falls back to `clone` if there is none.
     let no_clone3 = [(libc::SYS_clone3, Vec::new())].into();
@@ -119,7 +119,7 @@ fn rules() -> Result<Rules, String> {
     };
     rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
     rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
-    // All but taking pages of the machine out of use, which who is privileged may do.
+    // Everything except taking pages of the machine out of use, which a privileged process may do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
     // `nice` reads its own priority before it tries to change it.

@@ -47,9 +47,9 @@ pub(crate) fn verdict(call: &Call, _: super::Stage, _: &mut String) -> Verdict {
     match *call {}
 }
 
-/// Address space beside the memory of a planner, bytes.
+/// Address space in addition to the memory of a planner, bytes.
 pub(crate) const MAY_RESERVE: u64 = 1 << 30;
-/// Memory that a worker may have beside that of its planner, bytes.
+/// Memory that a worker may have in addition to that of its planner, bytes.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 
 /// Nothing is known of it.

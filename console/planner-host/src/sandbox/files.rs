@@ -7,7 +7,7 @@ use landlock::{
 
 /// Where the loader looks for libraries.
 pub(super) const LIBRARIES: [&str; 4] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64"];
-/// Where it looks up in which of them a library is.
+/// Where it looks up which of them holds a library.
 pub(super) const LIBRARY_CACHE: &str = "/etc/ld.so.cache";
 /// The newest rules that are used; older kernels enforce those that they know, and seccomp denies the calls of the others.
 const RULES: ABI = ABI::V6;
@@ -41,7 +41,7 @@ fn restrict(folders: &[&str], files: &[&str]) -> Result<RulesetStatus, RulesetEr
     let folders = folders.iter().map(|folder| (folder, in_folders));
     let files = files.iter().map(|file| (file, AccessFs::ReadFile.into()));
     for (path, access) in folders.chain(files) {
-        // What is not there needs no rule.
+        // What does not exist needs no rule.
         if let Ok(path) = PathFd::new(path) {
             rules = rules.add_rule(PathBeneath::new(path, access))?;
         }

@@ -1,6 +1,6 @@
-//! The kernel's reports of calls that wait for a decision.
+//! The kernel's reports of system calls that are waiting for a decision.
 //!
-//! The calls that this takes are offered by no safe crate: installing a filter with a listener, receiving a report, asking
+//! No safe crate offers the calls that this takes: installing a filter with a listener, receiving a report, asking
 //! whether it still waits, answering it. All of them only pass a structure of the kernel. A fifth closes what was inherited.
 #![expect(unsafe_code, reason = "calls of the kernel that no safe crate offers")]
 
@@ -36,7 +36,7 @@ pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
     Ok(unsafe { OwnedFd::from_raw_fd(descriptor as i32) })
 }
 
-/// Closes every descriptor of this process above the standard ones, but this one.
+/// Closes every descriptor of this process above the standard ones except this one.
 pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
     let kept = kept.as_raw_fd().cast_unsigned();
     for (first, last) in [(3, kept - 1), (kept + 1, u32::MAX)] {
@@ -46,7 +46,7 @@ pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
     }
 }
 
-/// A call of the system that waits for a decision.
+/// A system call that is waiting for a decision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Call {
     id: u64,
@@ -58,7 +58,7 @@ pub(crate) struct Call {
 
 #[cfg(test)]
 impl Call {
-    /// A call of this very process.
+    /// A call of this process itself.
     pub(super) fn of(number: i64, arguments: [u64; 6]) -> Self {
         Self { id: 0, thread: std::process::id(), number, arguments }
     }
@@ -82,7 +82,7 @@ impl Listener {
         Self(descriptor)
     }
 
-    /// The next call that waits; to be asked only when the descriptor is readable. None if its thread has ended meanwhile.
+    /// The next waiting call; only to be called when the descriptor is readable. `None` if its thread has ended meanwhile.
     pub(crate) fn next(&self) -> Option<Call> {
         // SAFETY: all zeros is what the kernel wants to be given, and a value of every field.
         let mut report: libc::seccomp_notif = unsafe { std::mem::zeroed() };

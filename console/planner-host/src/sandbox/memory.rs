@@ -1,4 +1,4 @@
-//! What a planner does with memory that the kernel does not count.
+//! Memory of a planner that the kernel does not count.
 //!
 //! The kernel counts the private memory that can be written (`RLIMIT_DATA`), and that is nearly all of it. Who writes to
 //! memory and then gives up the right to write keeps it uncounted, and address space that can only be read costs tables of
@@ -13,7 +13,7 @@ pub(crate) const MAY_HIDE: u64 = 32 << 20;
 /// Smaller pieces are the guard pages of threads, however many are started; who hides much in them takes so long that the
 /// supervisor sees it, which weighs the process ([`crate::supervisor`]).
 const SMALL: u64 = 16 << 10;
-/// Address space beside the memory of the planner, bytes: stacks of threads, and 64 MB that the C library reserves for each
+/// Address space in addition to the memory of the planner, bytes: stacks of threads, and 64 MB that the C library reserves for each
 /// thread that allocates.
 pub(crate) const MAY_RESERVE: u64 = 1 << 30;
 
@@ -29,7 +29,7 @@ pub(crate) struct Uncounted {
 }
 
 impl Uncounted {
-    /// For a planner that may have so much memory, bytes.
+    /// For a planner with this limit of memory, bytes.
     pub(crate) fn of(limit: u64) -> Self {
         Self { limit, ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! What the console decides about a call that is not free.
+//! What the console decides about a call that is not allowed outright.
 //!
 //! What a call points at can be changed by another thread while the console looks at it. So a path decides only how a
 //! planner is refused, never that a file may be reached: what may be opened is decided by Landlock, and what is to be known
@@ -36,7 +36,7 @@ const CURIOUS: [&str; 10] = [
 pub(crate) enum Verdict {
     /// It may be made.
     Allow,
-    /// It is not made, and succeeds: this is what it returns about a file.
+    /// It is not made but succeeds, and returns this about a file.
     Tell(About),
     /// It fails with this error of the system, and the planner goes on.
     Refuse(i32),
@@ -44,7 +44,7 @@ pub(crate) enum Verdict {
     Forbid(String),
 }
 
-/// Decides about a call. `sought` is the folder in which a library was looked for last.
+/// Decides about a call. `sought` is the folder that was last searched for a library.
 pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict {
     let Call { number, arguments, .. } = *call;
     match number {
@@ -57,7 +57,7 @@ pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict
         libc::SYS_open if arguments[1] as i32 & !READING != 0 => written(call, 0),
         #[cfg(target_arch = "x86_64")]
         libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0),
-        // Everybody falls back to `newfstatat`.
+        // All callers fall back to `newfstatat`.
         libc::SYS_statx => Verdict::Refuse(libc::ENOSYS),
         // Terminals are asked for their size and kind by libraries that print; a trace of calls shortens its paths.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
@@ -84,7 +84,7 @@ fn on_clone(call: &Call) -> Verdict {
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
     const MAY: u64 = (libc::CLONE_SETTLS | libc::CLONE_PARENT_SETTID | libc::CLONE_CHILD_CLEARTID) as u64
         | (libc::CLONE_CHILD_SETTID | libc::CLONE_DETACHED) as u64;
-    // By which the C library forks and starts programs.
+    // With these the C library forks and starts programs.
     const OF_FORK: u64 = (libc::CLONE_CHILD_CLEARTID | libc::CLONE_CHILD_SETTID) as u64
         | (libc::CLONE_VM | libc::CLONE_VFORK) as u64;
     let flags = call.arguments[0];
@@ -182,7 +182,7 @@ fn is_library(path: &str) -> bool {
     path == LIBRARY_CACHE || (is_there && !leads_back(path))
 }
 
-/// Whether a path goes up again, to somewhere else than its beginning says.
+/// Whether a path goes up again, out of the folder with which it begins.
 fn leads_back(path: &str) -> bool {
     path.split('/').any(|part| part == "..")
 }

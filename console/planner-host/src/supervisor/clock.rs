@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// A worker that hardly gets the processor is killed after this many budgets of wall time ...
+/// A worker that is starved of CPU time is killed after this many budgets of wall time ...
 const MOST_BUDGETS: u32 = 10;
 /// ... but not before this time has passed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
@@ -29,7 +29,7 @@ pub(super) struct FairClock {
 }
 
 impl FairClock {
-    /// Takes a look after so much wall time since the request; without a look wall time counts.
+    /// Takes a look this long after the request; without a look wall time counts.
     ///
     /// What a running process used before the first look is not known; it is given that time.
     pub(super) fn advance(&mut self, wall: Duration, load: Option<Load>) {

@@ -33,7 +33,7 @@ fn signal_text(number: i32) -> String {
         Some(Signal::TERM) => ("SIGTERM", "asked to end"),
         Some(Signal::INT) => ("SIGINT", "interrupted"),
         Some(Signal::HUP) => ("SIGHUP", "hung up"),
-        Some(Signal::SYS) => ("SIGSYS", "a call of the system that no planner may make"),
+        Some(Signal::SYS) => ("SIGSYS", "a system call that no planner may make"),
         Some(Signal::PIPE) => ("SIGPIPE", "wrote to a closed channel"),
         Some(Signal::ALARM) => ("SIGALRM", "an alarm that it had set"),
         Some(Signal::VTALARM) => ("SIGVTALRM", "an alarm that it had set"),
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(signalled(70 << 8), "ended its own process with exit code 70");
         assert_eq!(signalled(CHANNEL_LOST.as_raw()), "lost its channel to the console");
         assert_eq!(signalled(2), "was killed by SIGINT (interrupted)");
-        assert_eq!(signalled(31), "was killed by SIGSYS (a call of the system that no planner may make)");
+        assert_eq!(signalled(31), "was killed by SIGSYS (a system call that no planner may make)");
         assert_eq!(signalled(12), "was killed by SIGUSR2 (sent by itself or from outside)");
         assert_eq!(signalled(14), "was killed by SIGALRM (an alarm that it had set)");
         assert_eq!(signalled(40), "was killed by signal 40");

@@ -6,7 +6,7 @@ use rustix::process::Pid;
 use std::fs::{read_dir, read_to_string};
 use std::time::Duration;
 
-/// Looks at a process; nothing where there is no `/proc`.
+/// Looks at a process; `None` where there is no `/proc`.
 pub(super) fn load_of(pid: Pid) -> Option<Load> {
     let process = format!("/proc/{}", pid.as_raw_pid());
     let ticks = Stat::of(&read_to_string(format!("{process}/stat")).ok()?)?.ticks;
@@ -19,12 +19,12 @@ pub(super) fn load_of(pid: Pid) -> Option<Load> {
     Some(Load { cpu, is_running: stats.any(|stat| matches!(stat.state, 'R' | 'D')) })
 }
 
-/// What a process has of memory and threads; nothing where there is no `/proc`.
+/// Memory and threads of a process; `None` where there is no `/proc`.
 pub(super) fn memory_of(pid: Pid) -> Option<Memory> {
     memory_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
 }
 
-/// Memory that a process alone has, bytes: what it has written to, and the tables of its pages. Files that it shares with
+/// Private memory of a process, bytes: what it has written to, and the tables of its pages. Files that it shares with
 /// others are not part of it.
 pub(super) fn weight_of(pid: Pid) -> Option<u64> {
     weight_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)

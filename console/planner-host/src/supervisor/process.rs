@@ -9,17 +9,17 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-/// So much of the output is kept, bytes: the trace of a panic is some kilobytes.
+/// Length of the end of the output that is kept, bytes: the trace of a panic is a few kilobytes.
 const TAIL: usize = 16 << 10;
-/// What a worker is given of the console's environment: whether a panic says by which calls it came.
+/// The only variable a worker inherits from the console's environment: whether a panic prints its backtrace.
 const ENVIRONMENT: [&str; 2] = ["RUST_BACKTRACE", "RUST_LIB_BACKTRACE"];
-/// So many reads of the output in a row, so that a planner that prints without end holds nobody up.
+/// Most reads of the output in a row, so that a planner that prints endlessly delays nobody.
 const MOST_READS: usize = 16;
 
 /// A child process and the end of what it printed.
 pub(super) struct Process {
     child: Child,
-    /// Readable once the process has ended; absent where the system has no such thing.
+    /// Readable once the process has ended; absent where the system has no such descriptor.
     pidfd: Option<OwnedFd>,
     /// How it ended, once it is reaped.
     status: Option<ExitStatus>,
@@ -29,7 +29,7 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts a worker with this socket as its standard input and hardly any environment. It leaves the console's session
+    /// Starts a worker with this socket as its standard input and almost no environment. It leaves the console's session
     /// by itself.
     pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
         let (reader, writer) = io::pipe()?;
@@ -141,7 +141,7 @@ fn pidfd_of(child: &Child) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_child(child), rustix::process::PidfdFlags::empty()).ok()
 }
 
-/// Elsewhere the process is looked at now and then.
+/// Elsewhere the process is polled.
 #[cfg(not(target_os = "linux"))]
 fn pidfd_of(_: &Child) -> Option<OwnedFd> {
     None

@@ -6,13 +6,13 @@ use std::os::fd::BorrowedFd;
 /// What a worker's descriptor is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
-    /// Answers, and room for requests.
+    /// Carries answers, and has room for requests.
     Socket,
-    /// The end of the process.
+    /// Becomes readable when the process ends.
     Exit,
     /// What it prints.
     Output,
-    /// Calls of the system that wait for a decision.
+    /// System calls that are waiting for a decision.
     Calls,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Ready {
     pub(super) exited: bool,
     /// It printed something, or closed its output.
     pub(super) printed: bool,
-    /// It waits for a decision about a call of the system.
+    /// A system call of it is waiting for a decision.
     pub(super) called: bool,
 }
 

@@ -1,11 +1,11 @@
-//! The last requests of a worker, so that they can be put to its plugin once more.
+//! The last requests to a worker, so that they can be replayed to its plugin.
 
 use crate::wire::kind;
 use std::collections::VecDeque;
 
-/// So many requests are kept since the last plan.
+/// Most requests kept since the last plan.
 const MOST: usize = 200;
-/// So many are kept that made the planner what it is.
+/// Most requests kept that shaped the planner: loading, parameters, state.
 const MOST_LASTING: usize = 64;
 
 /// Frames as they went to the worker.

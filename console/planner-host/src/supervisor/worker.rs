@@ -1,4 +1,4 @@
-//! A worker process as a state machine: it is asked, looked at when something has happened, and never waited for.
+//! A worker process as a state machine: it is asked, polled when something has happened, and never waited for.
 
 mod end;
 mod exchange;
@@ -13,8 +13,8 @@ use super::tape::Tape;
 use super::{Failure, WorkerCommand, no_worker, soft};
 use crate::Progress;
 use crate::stats::Memory;
-use crate::wire::answer::{Described, Sealed, planners_of};
-use crate::wire::body::Writer;
+use crate::wire::answer::{Described, Planners, Sealed};
+use crate::wire::body::{Writer, whole};
 use crate::wire::frame::Incoming;
 use guard::Guard;
 use rustix::event::PollFlags;
@@ -49,7 +49,7 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    /// Starts a worker for a planner that may have so much memory, bytes; nothing is loaded yet.
+    /// Starts a worker for a planner with this limit of memory, bytes; nothing is loaded yet.
     pub(crate) fn spawn(command: &WorkerCommand, memory_limit_bytes: u64) -> Result<Self, Failure> {
         let start = || {
             let (socket, theirs) = UnixStream::pair()?;
@@ -82,10 +82,10 @@ impl Worker {
         matches!(self.state, State::Gone)
     }
 
-    /// Reads which planners the plugin has that it was asked to load, beside what it said of itself before.
+    /// Reads which planners the plugin has that it was asked to load, with the worker's own report from before.
     pub(crate) fn take_planners(&mut self) -> Result<(Sealed, Vec<Described>), Failure> {
-        let planners = self.take_answer(planners_of)?;
-        // Who answers without that has not closed itself off.
+        let Planners(planners) = self.take_answer(whole)?;
+        // A worker that answers without it has not closed itself off.
         let sealed = self.guard.sealed().cloned();
         sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
     }
@@ -134,7 +134,7 @@ impl Worker {
     /// Asks; the outcome comes from [`Self::advance`].
     ///
     /// # Errors
-    /// There is no process any more, or the request is too long.
+    /// The process no longer exists, or the request is too long.
     pub(crate) fn ask(
         &mut self,
         kind: u8,
@@ -145,7 +145,7 @@ impl Worker {
             return Err(Failure::Gone);
         }
         if self.incoming.has_more() {
-            // It said something after its last answer, when nobody had asked.
+            // It sent something unasked after its last answer.
             self.kill();
             return Err(Failure::Protocol);
         }

@@ -1,6 +1,6 @@
 //! What plugins were found to hold, kept from one start of tankops to the next, so that not every one is loaded every time.
 //!
-//! An entry is believed only if it is whole, and of this very program and this system: another build may read a plugin
+//! An entry is believed only if it is complete, and of this same program and system: another build may read a plugin
 //! differently, another kernel may close a process off less. It says what a probe said that was closed off wholly; whoever
 //! flies a planner loads and checks its file again.
 
@@ -249,7 +249,7 @@ mod tests {
         fs::copy(built, &file).expect("copied");
         let (cache, plugin) = (Cache::new(Some(folder.path())), PluginFile::read(file.clone()));
         cache.note(&plugin);
-        assert_eq!(cache.seen(&file), None, "it may be written to once more in the same moment");
+        assert_eq!(cache.seen(&file), None, "it may be written to again in the same moment");
         std::thread::sleep(SETTLED + Duration::from_millis(100));
         cache.note(&plugin);
         assert_eq!(cache.seen(&file), Some(plugin));

@@ -2,8 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::answer::{Described, Refusal, Said, planners_of, said_of};
-use super::body::{Body, Writer};
+use super::LONGEST;
+use super::answer::{Answered, Described, GivenPlan, Planners, Refusal, Said, Sealed};
+use super::body::{Body, Read, Writer, whole};
+use super::request::{Call, Load, Values};
+use crate::Progress;
+use crate::checks::limits::Text;
+use mission::ask::{PlanAsk, Site, StepAsk};
 use mission::{ParamInfo, ParamKind};
 use mutations::{mutated, mutations};
 use nalgebra::{Point2, Vector2};
@@ -31,16 +36,15 @@ fn said() -> Said {
     Said { drawings: vec![arrow; 9], scalars: vec![("u".into(), 1.5, "J".into())], logs }
 }
 
+fn refusal() -> Refusal {
+    Refusal { code: -7, message: "no".into(), partial: plan().path }
+}
+
 /// All kinds of answers, one after the other.
 fn answers() -> Vec<u8> {
     let mut writer = Writer::default();
-    let refusal = Refusal { code: -7, message: "no".into(), partial: plan().path };
-    writer
-        .planners(&planners())
-        .said(&said())
-        .plan(&plan())
-        .command(Command::twist(0.1, -0.2))
-        .refusal(&refusal);
+    writer.put(&Planners(planners())).put(&Answered { given: GivenPlan(plan()), said: said() });
+    writer.put(&Answered { given: Command::twist(0.1, -0.2), said: said() }).put(&refusal());
     writer.into_bytes()
 }
 
@@ -57,21 +61,23 @@ proptest! {
         let most = bytes.len();
         let body = || Body(bytes);
         // No element is shorter than a byte, so nothing that was read has more elements than there were bytes.
-        if let Ok(plan) = body().plan() {
+        if let Ok(Answered { given: GivenPlan(plan), said }) = body().take::<Answered<GivenPlan>>() {
             prop_assert!(plan.path.len() + plan.legs.len() + plan.cuts.len() <= most);
-        }
-        if let Ok(planners) = planners_of(&mut body()) {
-            prop_assert!(planners.len() <= most);
-        }
-        if let Ok(said) = said_of(&mut body()) {
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
         }
-        if let Ok(refusal) = body().refusal() {
-            // A character that is not plain is shown as one of three bytes.
-            prop_assert!(refusal.message.chars().count() + refusal.partial.len() <= most);
+        if let Ok(Planners(planners)) = body().take() {
+            prop_assert!(planners.len() <= most);
         }
-        let _ = (body().command(), body().progress(), body().site(), body().request(), body().sensed());
-        let _ = (body().values(), body().text(), body().points());
+        if let Ok(Answered { said, .. }) = body().take::<Answered<()>>() {
+            prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
+        }
+        if let Ok(Refusal { message, partial, .. }) = body().take() {
+            // A character that is not plain is shown as one of three bytes.
+            prop_assert!(message.chars().count() + partial.len() <= most);
+        }
+        let _ = (body().take::<Answered<Command>>(), body().take::<Progress>(), body().take::<Sealed>());
+        let _ = (body().take::<Site>(), body().take::<Call<PlanAsk>>(), body().take::<Call<StepAsk>>());
+        let _ = (body().take::<Values>(), body().take::<Text>(), Load::read(body()));
     }
 }
 
@@ -79,9 +85,30 @@ proptest! {
 fn what_is_damaged_above_is_good_before() {
     let bytes = answers();
     let mut body = Body(&bytes);
-    assert_eq!(planners_of(&mut body).unwrap(), planners());
-    assert_eq!(said_of(&mut body).unwrap(), said());
-    assert_eq!(body.plan().unwrap(), plan());
-    assert!(body.command().is_ok() && body.refusal().is_ok());
-    assert_eq!(body.end(), Ok(()));
+    assert_eq!(body.take(), Ok(Planners(planners())));
+    assert_eq!(body.take(), Ok(Answered { given: GivenPlan(plan()), said: said() }));
+    assert_eq!(body.take(), Ok(Answered { given: Command::twist(0.1, -0.2), said: said() }));
+    assert_eq!(body.take(), Ok(refusal()));
+    assert!(body.0.is_empty());
+}
+
+/// A frame as long as one may be with the largest count that its first bytes can claim, and then the shortest elements that
+/// there are: a list that its limits did not end would need many times its length as memory.
+#[test]
+fn a_list_of_the_shortest_elements_ends_at_its_limit() {
+    fn is_refused<T: serde::de::DeserializeOwned>(before: &[u8]) -> bool {
+        let count = [0xff, 0xff, 0xff, 0x7f];
+        let bytes = [before, &count, &vec![0; LONGEST]].concat();
+        let read: Read<T> = whole(Body(&bytes));
+        let claimed: Read<T> = whole(Body(&bytes[..before.len() + count.len()]));
+        read.is_err() && claimed.is_err()
+    }
+    // Planners, and the parameters of one.
+    assert!(is_refused::<Planners>(&[]) && is_refused::<Planners>(&[1, 1, b'x', 0, 0, 0, 0, 0]));
+    // The words of a parameter: five texts and the number of its kind come before.
+    assert!(is_refused::<Planners>(&[1, 1, b'x', 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 3]));
+    // Legs and cuts of a plan: a path without a point, its cost, that it is not complete.
+    assert!(is_refused::<Answered<GivenPlan>>(&[0; 10]) && is_refused::<Answered<GivenPlan>>(&[0; 11]));
+    // Drawings, figures and messages.
+    assert!((0..3).all(|n| is_refused::<Answered<()>>(&[0; 3][..n])));
 }

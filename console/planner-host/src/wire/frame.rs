@@ -26,7 +26,7 @@ pub(crate) enum Received {
 pub(crate) enum Filled {
     /// Something arrived.
     Some,
-    /// Nothing is there by now.
+    /// Nothing has arrived yet.
     Nothing,
     /// The peer has closed the connection.
     Closed,
@@ -68,7 +68,7 @@ impl Incoming {
         }
     }
 
-    /// Goes on to the next frame, if all of it has arrived; it stays readable until the next call.
+    /// Moves on to the next frame, if all of it has arrived; it stays readable until the next call.
     pub(crate) fn next_frame(&mut self) -> Option<Result<(), NoFrame>> {
         self.forget_current();
         let length = self.front_length()?;
@@ -157,7 +157,7 @@ mod tests {
     use std::os::unix::net::UnixStream;
 
     fn frame(sequence: u32, text: &str) -> Vec<u8> {
-        Writer::default().begin(5, sequence, 250).bytes(text.as_bytes()).finish().expect("short").to_vec()
+        Writer::default().begin(5, sequence, 250).put(text).finish().expect("short").to_vec()
     }
 
     #[test]
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(incoming.next_frame(), Some(Ok(())));
         assert_eq!((incoming.kind(), incoming.sequence()), (5, 7));
         assert_eq!(incoming.soft_deadline(), Some(Duration::from_micros(250)));
-        assert_eq!(incoming.body().text(), Ok("hello".to_owned()));
+        assert_eq!(incoming.body().take(), Ok("hello"));
         assert!(!incoming.has_more());
     }
 
@@ -188,9 +188,9 @@ mod tests {
         let mut incoming = Incoming::default();
         assert_eq!(incoming.receive(&mut ours), Received::Frame);
         assert!(incoming.has_more());
-        assert_eq!((incoming.sequence(), incoming.body().text()), (1, Ok("a".to_owned())));
+        assert_eq!((incoming.sequence(), incoming.body().take()), (1, Ok("a")));
         assert_eq!(incoming.receive(&mut ours), Received::Frame);
-        assert_eq!((incoming.sequence(), incoming.body().text()), (2, Ok("b".to_owned())));
+        assert_eq!((incoming.sequence(), incoming.body().take()), (2, Ok("b")));
         drop(theirs);
         assert_eq!(incoming.receive(&mut ours), Received::Closed);
     }
@@ -212,7 +212,7 @@ mod tests {
         let writer = std::thread::spawn(move || theirs.write_all(&bytes));
         let mut incoming = Incoming::default();
         assert_eq!(incoming.receive(&mut ours), Received::Frame);
-        assert_eq!(incoming.body().bytes(), Ok(text.as_bytes()));
+        assert_eq!(incoming.body().take(), Ok(&*text));
         writer.join().expect("no panic").expect("written");
     }
 }

@@ -88,7 +88,7 @@ pub(super) fn close_off(
     }
     let sealed = Sealed { sandbox, sha256: file.sha256.clone(), abi: file.abi };
     let mut frame = Writer::default();
-    let frame = frame.begin(kind::SEALED, sequence, 0).sealed(&sealed).finish().expect("a few words");
+    let frame = frame.begin(kind::SEALED, sequence, 0).put(&sealed).finish().expect("a few words");
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut descriptors = SendAncillaryBuffer::new(&mut space);
     let listener = listener.as_ref().map(AsFd::as_fd);
@@ -102,7 +102,7 @@ pub(super) fn close_off(
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits memory to this much beside what the worker itself has: that is the planner's. The system counts what is private and
+/// Limits memory to this much in addition to what the worker itself has: that is the planner's. The system counts what is private and
 /// can be written; what a planner does about the rest, the console decides ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
     let (_, own_data) = own_memory();

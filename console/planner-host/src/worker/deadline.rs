@@ -30,7 +30,7 @@ pub(super) struct Deadline {
     progress: ProgressReporter,
 }
 
-/// Time for a request: it is used up when as much has passed on the wall and this process has computed as long.
+/// Time for a request: it is used up when that much wall time has passed and this process has computed for as long.
 #[derive(Debug, Clone, Copy)]
 struct Budget {
     within: Duration,
@@ -46,7 +46,7 @@ impl Budget {
     }
 
     fn is_used_up(&self, now: Instant) -> bool {
-        // The processor time costs a call of the system; most of the time there is no need to know it.
+        // Reading the processor time costs a system call; most of the time it is not needed.
         now - self.began >= self.within && self.left(now).is_zero()
     }
 }
@@ -75,7 +75,7 @@ impl Deadline {
     /// A request arrived; only a CANCEL can have arrived behind it.
     pub(super) fn begin(&self, request: &Incoming) {
         let now = Instant::now();
-        // It costs a call of the system, and steps may come every few microseconds.
+        // Reading it costs a system call, and steps may come every few microseconds.
         if now - self.computed.get().0 >= CHECK_PERIOD {
             self.computed.set((now, processor_time()));
         }

@@ -49,11 +49,11 @@ impl ProgressReporter {
         }
         if let (Some(sequence), Some(progress)) = (self.plan.get(), self.waiting.take()) {
             self.reported_at.set(Some(now));
-            self.write(Writer::default().begin(kind::PROGRESS, sequence, 0).progress(&progress));
+            self.write(Writer::default().begin(kind::PROGRESS, sequence, 0).put(&progress));
         }
     }
 
-    /// Writes a frame whole or not at all: a console that does not read blocks nothing.
+    /// Writes a frame completely or not at all: a console that does not read blocks nothing.
     fn write(&self, writer: &mut Writer) {
         let Ok(mut rest) = writer.finish() else { return };
         let mut flags = SendFlags::DONTWAIT;

@@ -6,11 +6,12 @@ use super::deadline::Deadline;
 use crate::loader::{File, Instance, NotRead, Sink, Table};
 use crate::sandbox::close_files;
 use crate::supervisor::no_worker;
-use crate::survey::{Load, load_of};
-use crate::wire::answer::Refusal;
-use crate::wire::body::{Body, Malformed, Writer};
+use crate::wire::answer::{Answered, GivenPlan, Planners, Refusal};
+use crate::wire::body::{Body, Malformed, Writer, whole};
+use crate::wire::request::{Call, Load, Values};
 use crate::wire::{frame::Incoming, kind};
 use mission::Sandbox;
+use mission::ask::{PlanAsk, Site, StepAsk};
 use std::sync::Arc;
 
 /// Why there is no answer.
@@ -80,32 +81,30 @@ impl<'a> Session<'a> {
     }
 
     /// Loads a library once; describes one planner of it and keeps that, or all of them when none is named.
-    fn load(&mut self, mut body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
-        let Some(Load { memory_limit_bytes, requires_sandbox, path, id: wanted }) = load_of(&mut body)?
-        else {
-            return Err(Trouble::Refused(
-                "the worker is of another build than the console; restart tankops".into(),
-            ));
+    fn load(&mut self, body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
+        let Some(load) = Load::read(body)? else {
+            return Err(Trouble::Refused("worker and console are different builds; restart tankops".into()));
         };
-        limit_memory(memory_limit_bytes);
-        let file = File::read(path)?;
-        let reads_libraries = self.close_off(sequence, &file, memory_limit_bytes, requires_sandbox)?;
+        limit_memory(load.memory_limit_bytes);
+        let file = File::read(load.path())?;
+        let reads_libraries =
+            self.close_off(sequence, &file, load.memory_limit_bytes, load.requires_sandbox)?;
         let library = file.load().map_err(Trouble::Refused)?;
         if reads_libraries {
             close_files()
                 .map_err(|why| Trouble::Refused(format!("its files cannot be closed off: {why}")))?;
         }
         let mut tables = library.tables().map_err(Trouble::Refused)?;
-        tables.retain(|table| wanted.is_empty() || table.id == wanted);
+        tables.retain(|table| load.id.is_empty() || table.id == load.id);
         let planners =
             tables.iter().map(|table| table.describe(&mut self.sink())).collect::<Result<Vec<_>, _>>();
         let planners = planners.map_err(Trouble::Refused)?;
         self.table = tables.into_iter().next();
-        out.planners(&planners);
+        out.put(&Planners(planners));
         Ok(())
     }
 
-    /// From here on the process can only compute. Whether files are still to be closed.
+    /// From here on the process can only compute. Returns whether files are still to be closed off.
     fn close_off(
         &self,
         sequence: u32,
@@ -124,15 +123,14 @@ impl<'a> Session<'a> {
         Ok(reads_libraries)
     }
 
-    fn configure(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        let (values, site) = (body.values()?, body.site()?);
-        body.end()?;
+    fn configure(&mut self, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
+        let (values, site): (Values, Site) = whole(body)?;
         let table = self.table.as_ref().ok_or(Trouble::Malformed)?;
         let mut sink = self.sink();
-        // The one of an earlier mission, if there was one, is dropped first.
+        // An instance of an earlier mission is dropped first.
         self.instance = None;
         self.instance = Some(site.lend(|site| table.create(site, &values, &mut sink))?);
-        out.said(&sink.take_said());
+        out.put(&Answered { given: (), said: sink.take_said() });
         Ok(())
     }
 
@@ -140,48 +138,44 @@ impl<'a> Session<'a> {
         self.instance.as_mut().ok_or(Trouble::Malformed)
     }
 
-    fn reconfigure(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        let values = body.values()?;
-        body.end()?;
+    fn reconfigure(&mut self, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
+        let values: Values = whole(body)?;
         let mut sink = self.sink();
         self.instance()?.reconfigure(&values, &mut sink)?;
-        out.said(&sink.take_said());
+        out.put(&Answered { given: (), said: sink.take_said() });
         Ok(())
     }
 
-    fn plan(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        self.deadline.set_watched(body.flag()?);
-        let request = body.request()?;
-        body.end()?;
+    fn plan(&mut self, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
+        let Call { watched, asked }: Call<PlanAsk> = whole(body)?;
+        self.deadline.set_watched(watched);
         let mut sink = self.sink();
         let instance = self.instance()?;
-        let plan = request.lend(|request| instance.plan(request, &mut sink))?;
-        out.plan(&plan).said(&sink.take_said());
+        let plan = asked.lend(|request| instance.plan(request, &mut sink))?;
+        out.put(&Answered { given: GivenPlan(plan), said: sink.take_said() });
         Ok(())
     }
 
-    fn step(&mut self, mut body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        self.deadline.set_watched(body.flag()?);
-        let sensed = body.sensed()?;
-        body.end()?;
+    fn step(&mut self, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
+        let Call { watched, asked }: Call<StepAsk> = whole(body)?;
+        self.deadline.set_watched(watched);
         let mut sink = self.sink();
         let instance = self.instance()?;
-        let command = sensed.lend(|sensed| instance.step(sensed, &mut sink))?;
-        out.command(command).said(&sink.take_said());
+        let given = asked.lend(|sensed| instance.step(sensed, &mut sink))?;
+        out.put(&Answered { given, said: sink.take_said() });
         Ok(())
     }
 
     fn snapshot(&mut self, body: Body<'_>, out: &mut Writer) -> Result<(), Trouble> {
-        body.end()?;
+        whole::<()>(body)?;
         let mut sink = self.sink();
-        out.bytes(&self.instance()?.snapshot(&mut sink)?);
+        out.written(&self.instance()?.snapshot(&mut sink)?);
         Ok(())
     }
 
     fn restore(&mut self, mut body: Body<'_>) -> Result<(), Trouble> {
-        let (version, state) = (body.u32()?, body.bytes()?);
-        body.end()?;
+        let version = body.take()?;
         let mut sink = self.sink();
-        Ok(self.instance()?.restore(version, state, &mut sink)?)
+        Ok(self.instance()?.restore(version, body.0, &mut sink)?)
     }
 }

@@ -227,7 +227,8 @@ fn an_instance_that_does_not_end_well_is_no_fault_of_the_next_mission() {
 fn a_call_of_another_kind_of_processor_ends_the_process_without_a_name() {
     if cfg!(target_arch = "x86_64") {
         let fault = fault_of("IN_STEP", r#"__asm__ volatile("int $0x80" : : "a"(20) : "memory")"#);
-        let sentence = "planner hostile was killed by SIGSYS (a call of the system that no planner may make) during step 3";
+        let sentence =
+            "planner hostile was killed by SIGSYS (a system call that no planner may make) during step 3";
         assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Died));
     }
 }
@@ -290,15 +291,12 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
         let (_folder, dirs) = hostile("IN_STEP", "");
         survey(&dirs, &worker()).plugins[0].planners[0].sha256.clone()
     };
-    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    let text = |text: &str| [&[text.len() as u8], text.as_bytes()].concat();
     // Full, another hash, ABI 1.0.
-    let sealed = [vec![0], text("ab"), vec![1, 0, 0, 0, 0, 0, 0, 0]].concat();
-    assert_eq!(
-        refusal_of(&sending(0x84, 1, &sealed)),
-        "sent something that is not a valid answer while it was loaded"
-    );
+    let sealed = [vec![0], text("ab"), vec![1, 0]].concat();
+    assert_eq!(refusal_of(&sending(0x84, 1, &sealed)), "sent an invalid reply while it was loaded");
     // One planner: id, name, version, about; no abilities, state 1, no parameters.
-    let named = |id: &str| [vec![1, 0, 0, 0], text(id), vec![0; 16], vec![1, 0, 0, 0], vec![0; 4]].concat();
+    let named = |id: &str| [vec![1], text(id), vec![0; 4], vec![1], vec![0]].concat();
     let surveyed = |done: &str| {
         let (_folder, dirs) = hostile("IN_CONSTRUCTOR", &format!("{done}; rest(200)"));
         survey(&dirs, &worker()).plugins.remove(0)
@@ -307,10 +305,7 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
     assert_eq!((lying.planners[0].id.as_str(), &lying.planners[0].sha256), ("spiral", &lying.sha256));
     assert_ne!(lying.sha256, honest, "the hash of this very file");
     let unsound = surveyed(&sending(0x80, 1, &named("two words")));
-    assert_eq!(
-        unsound.refused.as_deref(),
-        Some("sent something that is not a valid answer while it was loaded")
-    );
+    assert_eq!(unsound.refused.as_deref(), Some("sent an invalid reply while it was loaded"));
 }
 
 /// Writes a frame to the console, in C.
@@ -325,8 +320,7 @@ fn sending(kind: u8, sequence: u32, body: &[u8]) -> String {
 fn frames_that_nobody_asked_for_are_no_answers() {
     for kind in [0x80, 0x84] {
         let fault = fault_of("IN_STEP", &sending(kind, u32::MAX, &[]));
-        let sentence =
-            "planner hostile sent something that is not a valid answer during step 3; its process was killed";
+        let sentence = "planner hostile sent an invalid reply during step 3; its process was killed";
         assert_eq!((fault.message.as_str(), fault.cause), (sentence, Cause::Protocol));
     }
 }

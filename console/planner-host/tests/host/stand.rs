@@ -129,23 +129,14 @@ pub(crate) fn step_at(
 /// What is sensed at the origin.
 pub(crate) fn sensed<R>(tick: u64, call: impl FnOnce(&Sensed<'_>) -> R) -> R {
     let far = Outline::Disc { center: Point2::new(5.0, 0.0), radius_m: 0.3 };
-    call(&Sensed {
-        tick,
-        t_s: tick as f64 * TICK_S,
-        dt_s: TICK_S,
-        pose: pose(Point2::origin()),
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target: GOAL,
-        targets_ahead: &[GOAL],
-        path_ahead: &[],
-        obstacles: &[Obstacle {
-            id: 1,
-            outline: far,
-            discovered: false,
-            velocity_m_per_s: planner_api::Vector2::zeros(),
-        }],
-    })
+    let obstacles = [Obstacle {
+        id: 1,
+        outline: far,
+        discovered: false,
+        velocity_m_per_s: planner_api::Vector2::zeros(),
+    }];
+    let at_rest = Sensed::new(tick, TICK_S, pose(Point2::origin()), GOAL);
+    call(&Sensed { targets_ahead: &[GOAL], obstacles: &obstacles, ..at_rest })
 }
 
 /// Steps until the first fault, ten at most.

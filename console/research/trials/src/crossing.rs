@@ -73,16 +73,11 @@ pub fn cross<P: Planner>(values: &[(&str, f64)], from_y_m: f64) -> Crossing {
         let estimate =
             planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
         let sensed = Sensed {
-            tick,
-            t_s: tick as f64 * TICK_S,
-            dt_s: TICK_S,
-            pose: estimate,
             v_m_per_s: (pose.position - before.position).norm() / TICK_S,
             w_rad_per_s: wrap_angle_rad(pose.heading_rad - before.heading_rad) / TICK_S,
-            target: GOAL,
             targets_ahead: &[GOAL],
-            path_ahead: &[],
             obstacles: if is_seen { &cart } else { &[] },
+            ..Sensed::new(tick, TICK_S, estimate, GOAL)
         };
         let command = planner.step(&sensed, &bench.ctx()).expect("it decides");
         bench.clear();

@@ -131,21 +131,15 @@ fn sensed_at<'a>(
     near: &'a [Obstacle<'a>],
 ) -> Sensed<'a> {
     let variance = robot.sigma_m * robot.sigma_m;
+    let estimate = PoseEstimate {
+        position: pose.position,
+        heading_rad: pose.heading_rad,
+        covariance: Matrix3::from_diagonal(&nalgebra::Vector3::new(variance, variance, 1e-4)),
+    };
     Sensed {
-        tick,
-        t_s: tick as f64 * TICK_S,
-        dt_s: TICK_S,
-        pose: PoseEstimate {
-            position: pose.position,
-            heading_rad: pose.heading_rad,
-            covariance: Matrix3::from_diagonal(&nalgebra::Vector3::new(variance, variance, 1e-4)),
-        },
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target: follower.target(),
         targets_ahead: follower.ahead(AHEAD_M),
-        path_ahead: &[],
         obstacles: near,
+        ..Sensed::new(tick, TICK_S, estimate, follower.target())
     }
 }
 

@@ -69,16 +69,11 @@ fn fly(columns: &[(Point2<f64>, f64)], radius_m: f64, clearance_m: f64, guide: f
         let estimate =
             planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
         let sensed = Sensed {
-            tick,
-            t_s: tick as f64 * TICK_S,
-            dt_s: TICK_S,
-            pose: estimate,
             v_m_per_s: twist.v_m_per_s,
             w_rad_per_s: twist.w_rad_per_s,
-            target: GOAL,
             targets_ahead: &[GOAL],
-            path_ahead: &[],
             obstacles: &obstacles,
+            ..Sensed::new(tick, TICK_S, estimate, GOAL)
         };
         let command = planner.step(&sensed, &bench.ctx()).unwrap();
         bench.clear();

@@ -53,16 +53,11 @@ fn preset_paths_are_refused_with_the_reason() {
 fn sensed<'a>(pose: Pose, tick: u64, twist: Twist, obstacles: &'a [Obstacle<'a>]) -> Sensed<'a> {
     let estimate = planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
     Sensed {
-        tick,
-        t_s: tick as f64 * 0.1,
-        dt_s: 0.1,
-        pose: estimate,
         v_m_per_s: twist.v_m_per_s,
         w_rad_per_s: twist.w_rad_per_s,
-        target: GOAL,
         targets_ahead: std::slice::from_ref(&GOAL),
-        path_ahead: &[],
         obstacles,
+        ..Sensed::new(tick, 0.1, estimate, GOAL)
     }
 }
 

@@ -141,18 +141,8 @@ fn fly(values: &[(&str, f64)], motion: Motion, swap_at: Option<u64>) -> Flown {
             covariance: nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(9e-4, 9e-4, 1e-4)),
         };
         let targets = [GOAL];
-        let sensed = Sensed {
-            tick,
-            t_s: tick as f64 * TICK_S,
-            dt_s: TICK_S,
-            pose: estimate,
-            v_m_per_s: 0.0,
-            w_rad_per_s: 0.0,
-            target: GOAL,
-            targets_ahead: &targets,
-            path_ahead: &[],
-            obstacles: &near,
-        };
+        let sensed =
+            Sensed { targets_ahead: &targets, obstacles: &near, ..Sensed::new(tick, TICK_S, estimate, GOAL) };
         let command = planner.step(&sensed, &bench.ctx()).unwrap();
         flown.phases.extend(bench.scalar("phase"));
         bench.clear();
@@ -222,16 +212,9 @@ fn crossed(from_y_m: f64) -> (bool, f64) {
         let estimate =
             planner_api::PoseEstimate { heading_rad: pose.heading_rad, ..exact_pose(pose.position) };
         let sensed = Sensed {
-            tick,
-            t_s: tick as f64 * TICK_S,
-            dt_s: TICK_S,
-            pose: estimate,
-            v_m_per_s: 0.0,
-            w_rad_per_s: 0.0,
-            target: GOAL,
             targets_ahead: &[GOAL],
-            path_ahead: &[],
             obstacles: if in_sight { &cart } else { &[] },
+            ..Sensed::new(tick, TICK_S, estimate, GOAL)
         };
         let command = planner.step(&sensed, &bench.ctx()).unwrap();
         bench.clear();

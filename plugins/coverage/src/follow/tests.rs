@@ -15,17 +15,12 @@ fn sensed<'a>(
     obstacles: &'a [Obstacle<'a>],
 ) -> Sensed<'a> {
     let end = path.len() - 1;
+    let pose = PoseEstimate { position, heading_rad, covariance: nalgebra::Matrix3::zeros() };
     Sensed {
-        tick,
-        t_s: tick as f64 * TICK_S,
-        dt_s: TICK_S,
-        pose: PoseEstimate { position, heading_rad, covariance: nalgebra::Matrix3::zeros() },
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target: path[end],
         targets_ahead: &path[end..],
         path_ahead: path,
         obstacles,
+        ..Sensed::new(tick, TICK_S, pose, path[end])
     }
 }
 

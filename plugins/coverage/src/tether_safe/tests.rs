@@ -359,18 +359,7 @@ fn a_robot_millimetres_beyond_a_cut_goes_round_its_end_at_an_obstacle() {
         "the chord crosses what the plan calls the cut"
     );
     let pose = PoseEstimate { position: here, heading_rad: 1.5, covariance: nalgebra::Matrix3::zeros() };
-    let sensed = Sensed {
-        tick: 0,
-        t_s: 0.0,
-        dt_s: 0.1,
-        pose,
-        v_m_per_s: 0.0,
-        w_rad_per_s: 0.0,
-        target: aim,
-        targets_ahead: &[aim],
-        path_ahead: &[aim],
-        obstacles: &[],
-    };
+    let sensed = Sensed { targets_ahead: &[aim], path_ahead: &[aim], ..Sensed::new(0, 0.1, pose, aim) };
     let command = planner.step(&sensed, &bench.ctx()).unwrap();
     assert_ne!(command.status, planner_api::Status::Stuck, "{:?}", bench.logs());
 }

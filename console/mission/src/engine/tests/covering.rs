@@ -94,8 +94,8 @@ fn is_wanted(request: &PlanAsk, point: Point) -> bool {
 /// Circles round what stands in the way, wide enough for the hull.
 fn kept_clear(request: &PlanAsk) -> impl Iterator<Item = (Point, f64)> {
     let room_m = request.site.limits.radius_m + request.site.clearance_m + 0.05;
-    let drawn = request.site.obstacles.iter().map(|obstacle| &obstacle.shape);
-    drawn.chain(request.site.zones.iter().map(|zone| &zone.shape)).map(move |shape| {
+    let drawn = request.site.obstacles.iter().map(|obstacle| &obstacle.outline);
+    drawn.chain(request.site.zones.iter().map(|zone| &zone.outline)).map(move |shape| {
         let (low, high) = shape.bounds();
         let radius_m =
             if let Shape::Disc { radius_m, .. } = shape { *radius_m } else { (high - low).norm() / 2.0 };
@@ -274,7 +274,7 @@ fn planners_steer_round_obstacles_where_they_are_seen_not_where_the_chart_has_th
     let world = World { obstacles: vec![known], ..drawing() };
     let mut chart = Chart::new(world, &covering(), 1);
     let pose = covering().start;
-    let shown = |chart: &Chart| match chart.near(pose.position)[0].shape {
+    let shown = |chart: &Chart| match chart.near(pose.position)[0].outline {
         Shape::Disc { center, .. } => center.x,
         _ => f64::NAN,
     };

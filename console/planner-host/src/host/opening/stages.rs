@@ -8,10 +8,10 @@ use crate::host::{Host, fault, fault::Phase};
 use crate::parameters;
 use crate::remains::BadEnd;
 use crate::supervisor::{Failure, Worker};
-use crate::survey::write_load;
-use crate::wire::answer::{Described, Said, Sealed, said_of};
-use crate::wire::body::Writer;
+use crate::wire::answer::{Answered, Described, Said, Sealed};
+use crate::wire::body::{Writer, whole};
 use crate::wire::kind;
+use crate::wire::request::Load;
 use mission::planner::{Cause, During};
 use mission::{AskId, Fault, Given};
 use std::time::Instant;
@@ -75,9 +75,8 @@ impl Host {
         let (memory_limit_bytes, requires_sandbox) =
             (self.config.memory_limit_bytes, self.catalog.requires_sandbox());
         let mut worker = Worker::spawn(&self.config.worker_command, memory_limit_bytes)?;
-        worker.ask(kind::LOAD, self.config.load_deadline, |w| {
-            write_load(w, &candidate.path, planner, memory_limit_bytes, requires_sandbox);
-        })?;
+        let load = Load::of(&candidate.path, planner, memory_limit_bytes, requires_sandbox);
+        worker.ask(kind::LOAD, self.config.load_deadline, |w| load.write(w))?;
         Ok(worker)
     }
 
@@ -105,11 +104,12 @@ impl Host {
                 self.configure(id, worker, opening, candidate, answer)
             }
             Stage::Configure(loaded) => {
-                let answer = outcome.and_then(|()| worker.take_answer(said_of));
+                let answer = outcome.and_then(|()| worker.take_answer(whole::<Answered<()>>));
+                let answer = answer.map(|answered| answered.said);
                 self.restore(id, worker, opening, loaded, answer)
             }
             Stage::Restore(loaded, said) => {
-                let answer = outcome.and_then(|()| worker.take_answer(|_| Ok(())));
+                let answer = outcome.and_then(|()| worker.take_answer(whole::<()>));
                 match unless_refused(answer.map_err(|failure| loaded.fault(failure, Phase::State))) {
                     Ok(_) => {
                         self.opened(id, worker, opening, loaded, said);
@@ -175,7 +175,7 @@ impl Host {
             Err(fault) => return self.part(worker, loaded.blamed(fault)),
         };
         let write = |w: &mut Writer| {
-            w.values(&values).written(&opening.site.bytes);
+            w.put(&values).written(&opening.site.bytes);
         };
         match worker.ask(kind::CONFIGURE, self.config.configure_deadline, write) {
             Ok(()) => {
@@ -224,7 +224,7 @@ impl Host {
             return Ok(());
         };
         let write = |w: &mut Writer| {
-            w.u32(loaded.state_version).bytes(state);
+            w.put(&loaded.state_version).written(state);
         };
         match worker.ask(kind::RESTORE, self.config.state_deadline, write) {
             Ok(()) => {

@@ -1,4 +1,4 @@
-//! How a worker ends: by itself, on request, or killed; looked at and never waited for, but when it is dropped.
+//! How a worker ends: by itself, on request, or killed; it is polled and never waited for, except when it is dropped.
 
 use super::Worker;
 use super::state::{DIE_WITHIN, Dying, State};
@@ -39,7 +39,7 @@ impl Worker {
             return None;
         }
         if !self.process.is_reaped() && !dying.is_killed {
-            // A process that was slow to end keeps its own reason; only one that lives on is ended by our signal.
+            // A process that was slow to end keeps its own reason; only one that is still alive is ended by our signal.
             self.process.kill();
             dying.wait_for_kill(now);
             return None;
@@ -52,7 +52,7 @@ impl Worker {
     }
 
     /// Lets the process exit by itself within a grace period, so that the planner is dropped cleanly; an open request has
-    /// no outcome any more.
+    /// no outcome then.
     pub(crate) fn shut_down(&mut self) {
         let now = Instant::now();
         self.process.read_output();
@@ -69,7 +69,7 @@ impl Worker {
         }
     }
 
-    /// Kills the process; an open request has no outcome any more.
+    /// Kills the process; an open request has no outcome then.
     pub(crate) fn kill(&mut self) {
         if !self.is_gone() {
             self.process.kill();
@@ -95,7 +95,7 @@ impl Worker {
         }
     }
 
-    /// Who was interrupted did not end by itself.
+    /// A worker that was interrupted did not end by itself.
     fn end_badly(&mut self, how: String) {
         if self.leaves_idle {
             self.bad_end.get_or_insert(how);
@@ -104,7 +104,7 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Nobody looks at it any more: it is killed, and reaped unless the system is stuck.
+    /// It is no longer polled: it is killed, and reaped unless the system is stuck.
     fn drop(&mut self) {
         self.kill();
         let until = Instant::now() + DIE_WITHIN;

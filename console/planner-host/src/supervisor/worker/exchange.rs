@@ -3,11 +3,12 @@
 use super::Worker;
 use super::state::{Budgeted, State};
 use crate::Progress;
+use crate::checks::limits::Text;
 use crate::supervisor::Failure;
 use crate::supervisor::ending::last_line;
 use crate::supervisor::load::load_of;
 use crate::supervisor::ready::Ready;
-use crate::wire::body::{Body, Malformed, Read};
+use crate::wire::body::{Body, Malformed, Read, whole};
 use crate::wire::frame::Filled;
 use crate::wire::kind;
 use std::time::{Duration, Instant};
@@ -50,7 +51,7 @@ impl Worker {
             Arrived::Answer => return Some(Err(self.end(Failure::Late))),
             Arrived::Broken => return Some(Err(self.end(Failure::Protocol))),
             Arrived::Closed => self.lose(now),
-            // Only when there is nothing more to read the end of the process is the end of the request.
+            // The end of the process ends the request only once there is nothing left to read.
             Arrived::Nothing if ready.exited && !ready.readable() => self.lose(now),
             Arrived::Nothing => {}
         }
@@ -82,11 +83,9 @@ impl Worker {
         }
     }
 
-    /// Takes the report of how far the worker is closed off, and for which file, which it gives once.
+    /// Takes the worker's report, given once, of how far it is closed off and for which file.
     fn take_sealed(&mut self) -> Read<()> {
-        let mut body = self.incoming.body();
-        let sealed = body.sealed()?;
-        body.end()?;
+        let sealed = whole(self.incoming.body())?;
         if self.guard.begin(sealed) { Ok(()) } else { Err(Malformed) }
     }
 
@@ -98,16 +97,14 @@ impl Worker {
         if request.kind != kind::PLAN {
             return Err(Malformed);
         }
-        let mut body = self.incoming.body();
-        let progress = body.progress()?;
-        body.end()?;
+        let progress = whole(self.incoming.body())?;
         if request.may_forward(now) {
             on_progress(&progress);
         }
         Ok(())
     }
 
-    /// Takes a look when it is time, and ends what used up its budget.
+    /// Looks at the worker when it is time, and ends a request that has used up its budget.
     pub(super) fn keep_deadline(&mut self, now: Instant) -> Option<Failure> {
         match &mut self.state {
             State::Busy(request) if now >= request.look_at => {
@@ -132,7 +129,7 @@ impl Worker {
         }
     }
 
-    /// Asks the planner to stop; one that does not even read the request is not asked.
+    /// Asks the planner to stop, unless it has not even read the request.
     pub(super) fn send_cancel(&mut self, now: Instant) {
         if self.has_sent() && self.writer.begin(kind::CANCEL, self.sequence, 0).finish().is_ok() {
             self.n_sent = 0;
@@ -142,10 +139,7 @@ impl Worker {
 
     /// Reads the answer that has just arrived. If it is malformed, or says that the planner cannot continue, the process is
     /// killed.
-    pub(crate) fn take_answer<T>(
-        &mut self,
-        read: impl FnOnce(&mut Body<'_>) -> Read<T>,
-    ) -> Result<T, Failure> {
+    pub(crate) fn take_answer<T>(&mut self, read: impl FnOnce(Body<'_>) -> Read<T>) -> Result<T, Failure> {
         match interpret(self.incoming.kind(), self.incoming.body(), read) {
             Ok(Err(failure)) if failure.ends_the_process() => Err(self.end(failure)),
             Ok(answer) => answer,
@@ -156,16 +150,14 @@ impl Worker {
 
 fn interpret<T>(
     kind: u8,
-    mut body: Body<'_>,
-    read: impl FnOnce(&mut Body<'_>) -> Read<T>,
+    body: Body<'_>,
+    read: impl FnOnce(Body<'_>) -> Read<T>,
 ) -> Read<Result<T, Failure>> {
-    let answer = match kind {
-        kind::DONE => Ok(read(&mut body)?),
-        kind::FAILED => Err(Failure::Planner(body.refusal()?)),
-        kind::REFUSED => Err(Failure::Refused(body.text()?)),
-        kind::UNABLE => Err(Failure::Console(body.text()?)),
+    Ok(match kind {
+        kind::DONE => Ok(read(body)?),
+        kind::FAILED => Err(Failure::Planner(whole(body)?)),
+        kind::REFUSED => Err(Failure::Refused(whole::<Text>(body)?.0)),
+        kind::UNABLE => Err(Failure::Console(whole::<Text>(body)?.0)),
         _ => return Err(Malformed),
-    };
-    body.end()?;
-    Ok(answer)
+    })
 }

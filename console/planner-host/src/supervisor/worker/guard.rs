@@ -1,4 +1,4 @@
-//! The console's side of a worker's sandbox: how far it reaches, and decisions about calls of the system.
+//! The console's side of a worker's sandbox: how far it reaches, and decisions about system calls.
 
 use crate::sandbox::{Listener, Stage, Uncounted, Verdict, ends_loading, verdict};
 use crate::wire::answer::Sealed;
@@ -12,19 +12,19 @@ use std::os::unix::net::UnixStream;
 /// What guards a worker.
 #[derive(Default)]
 pub(super) struct Guard {
-    /// None before the worker has reported it.
+    /// `None` until the worker has reported it.
     sealed: Option<Sealed>,
     /// The last descriptor that came over the socket.
     received: Option<OwnedFd>,
     listener: Option<Listener>,
     has_loaded: bool,
-    /// The folder in which a library was looked for last.
+    /// The folder that was last searched for a library.
     sought: String,
     uncounted: Uncounted,
 }
 
 impl Guard {
-    /// Of a planner that may have so much memory, bytes.
+    /// For a planner with this limit of memory, bytes.
     pub(super) fn new(memory_limit_bytes: u64) -> Self {
         Self { uncounted: Uncounted::of(memory_limit_bytes), ..Self::default() }
     }
@@ -62,7 +62,7 @@ impl Guard {
         self.listener.as_ref().map(AsFd::as_fd)
     }
 
-    /// Decides about the call that waits; what was tried, if that may not be.
+    /// Decides about the call that is waiting. Returns what was tried, if it is forbidden.
     pub(super) fn decide(&mut self) -> Option<String> {
         let stage = self.stage();
         let listener = self.listener.as_ref()?;
@@ -77,7 +77,7 @@ impl Guard {
         }
     }
 
-    /// Reads from the socket; as long as the worker has not reported, a descriptor may come along.
+    /// Reads from the socket; until the worker has reported, a descriptor may come along.
     pub(super) fn read<'a>(&'a mut self, socket: &'a UnixStream) -> impl Read + 'a {
         Reader { socket, received: self.sealed.is_none().then_some(&mut self.received) }
     }

@@ -1,11 +1,11 @@
-//! How much memory a busy worker has, looked at often: the system limits what it counts, and there are ways around that.
+//! How much memory a busy worker has, checked often: the system limits only what it counts, and there are ways around that.
 
 use crate::sandbox::MAY_HIDE;
 use crate::supervisor::load::weight_of;
 use rustix::process::Pid;
 use std::time::{Duration, Instant};
 
-/// A worker that is busy is weighed so often: in this time a thread writes to some 30 MB of new memory.
+/// Interval at which a busy worker is weighed: in this time a thread writes to about 30 MB of new memory.
 const WEIGH_EVERY: Duration = Duration::from_millis(10);
 
 /// Weighs a worker.
@@ -16,7 +16,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// For a planner that may have so much memory, bytes.
+    /// For a planner with this limit of memory, bytes.
     pub(super) fn new(limit: u64) -> Self {
         Self { limit, look_at: Instant::now() }
     }
@@ -31,7 +31,7 @@ impl Scale {
         self.look_at
     }
 
-    /// Weighs it when it is time; its limit, bytes, if it has more than that and what a worker has beside it.
+    /// Weighs it when it is time. Returns its limit, bytes, if it has more than that plus what a worker itself needs.
     pub(super) fn weigh(&mut self, process: Pid, now: Instant) -> Option<u64> {
         if now < self.look_at {
             return None;

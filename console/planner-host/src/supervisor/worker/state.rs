@@ -3,9 +3,9 @@
 use crate::supervisor::clock::{FairClock, Load, Verdict};
 use std::time::{Duration, Instant};
 
-/// A request that is not answered yet is first looked at after this long ...
+/// An unanswered request is first looked at after this time ...
 const FIRST_LOOK: Duration = Duration::from_millis(100);
-/// ... then so often ...
+/// ... then at this interval ...
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// ... and near the end of its budget no more often than this, which is the resolution of the processor time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
@@ -28,7 +28,7 @@ pub(super) enum State {
     Busy(Request),
     /// Its budget is used up; until then it may still answer.
     Cancelling(Request, Instant),
-    /// It is ending, and what there is to know of it is being gathered.
+    /// It is ending, and what can be learned about that is being gathered.
     Dying(Dying),
     /// It was asked to shut down and has until then to exit by itself. Without a time it was killed and is not reaped yet.
     Leaving(Option<Instant>),
@@ -47,7 +47,7 @@ pub(super) struct Request {
     n_forwarded: u32,
 }
 
-/// What is left of a request's budget.
+/// The state of a request's budget.
 pub(super) enum Budgeted {
     Left,
     Exhausted,
@@ -60,7 +60,7 @@ impl Request {
         Self { kind, look_at, budget, began: now, clock: FairClock::default(), n_forwarded: 0 }
     }
 
-    /// Takes a look at the process.
+    /// Looks at the process.
     pub(super) fn look(&mut self, now: Instant, load: Option<Load>) -> Budgeted {
         self.clock.advance(now.saturating_duration_since(self.began), load);
         match self.clock.evaluate(self.budget) {
@@ -73,7 +73,7 @@ impl Request {
         }
     }
 
-    /// Whether one more progress message may be forwarded; if so, counts it.
+    /// Whether another progress message may be forwarded; if so, counts it.
     pub(super) fn may_forward(&mut self, now: Instant) -> bool {
         let elapsed_s = now.saturating_duration_since(self.began).as_secs_f64();
         let may = f64::from(self.n_forwarded) < MOST_AT_FIRST + MOST_PER_S * elapsed_s;

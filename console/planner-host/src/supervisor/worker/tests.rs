@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::supervisor::wait_for_one;
-use crate::wire::body::{Body, Read};
+use crate::wire::body::whole;
 use crate::wire::kind;
 
 /// Long enough for a busy machine to start a shell.
@@ -37,13 +37,13 @@ fn frame(kind: u8, sequence: u32, write: impl FnOnce(&mut Writer)) -> Vec<u8> {
 fn progress(sequence: u32, share: f64, what: &str) -> Vec<u8> {
     let progress = Progress { share, what: what.to_owned() };
     frame(kind::PROGRESS, sequence, |w| {
-        w.progress(&progress);
+        w.put(&progress);
     })
 }
 
 fn done(sequence: u32) -> Vec<u8> {
     frame(kind::DONE, sequence, |w| {
-        w.u32(7);
+        w.put(&7_u32);
     })
 }
 
@@ -62,13 +62,9 @@ fn answer(worker: &mut Worker, on_progress: &mut dyn FnMut(&Progress)) -> Result
     loop {
         let ready = wait_for_one(worker, None);
         if let Some(outcome) = worker.advance(ready, Instant::now(), on_progress) {
-            return outcome.and_then(|()| worker.take_answer(number));
+            return outcome.and_then(|()| worker.take_answer(whole));
         }
     }
-}
-
-fn number(body: &mut Body<'_>) -> Read<u32> {
-    body.u32()
 }
 
 /// Looks at a worker until it has ended.
@@ -103,7 +99,7 @@ fn what_comes_after_an_answer_is_none() {
 fn progress_that_nobody_asked_for_is_no_answer() {
     let long = "x".repeat(Progress::LONGEST + 1);
     let trailing = frame(kind::PROGRESS, 1, |w| {
-        w.f64(0.5).text("a").u8(0);
+        w.put(&(0.5, "a", 0_u8));
     });
     for (kind, frame) in [
         (kind::STEP, progress(1, 0.5, "")),
@@ -149,12 +145,12 @@ fn a_request_that_does_not_fit_into_the_socket_is_written_piece_by_piece() {
     let mut worker = worker(&format!(
         "while ! [ -e {} ]; do :; done; head -c {} > /dev/null; printf '{}' >&0; while read -r line; do :; done",
         gate.display(),
-        length + 13 + 4,
+        length + 13,
         octal(&done(1))
     ));
     worker
         .ask(kind::PLAN, PATIENT, |w| {
-            w.bytes(&vec![0; length]);
+            w.written(&vec![0; length]);
         })
         .unwrap();
     assert!(!worker.has_sent(), "nothing waits for room");
@@ -183,7 +179,7 @@ fn a_worker_that_reads_nothing_is_killed_when_its_budget_is_used_up() {
     let mut worker = worker("while :; do sleep 1; done");
     worker
         .ask(kind::PLAN, Duration::from_millis(100), |w| {
-            w.bytes(&vec![0; 4 << 20]);
+            w.written(&vec![0; 4 << 20]);
         })
         .unwrap();
     assert_eq!(answer(&mut worker, &mut |_| {}), Err(Failure::Hung));

@@ -71,16 +71,12 @@ pub(super) fn fly(planners: &Planners, method: &Method, site: &Site<'_>, trip: &
         }
         let t_s = tick as f64 * dt_s;
         let sensed = Sensed {
-            tick,
-            t_s,
-            dt_s,
-            pose: exact(pose),
             v_m_per_s: twist.0,
             w_rad_per_s: twist.1,
-            target: goal,
             targets_ahead: std::slice::from_ref(&goal),
             path_ahead: plan.as_ref().map_or(&[], |plan| plan.ahead(SHOWN_M)),
             obstacles: site.obstacles,
+            ..Sensed::new(tick, dt_s, exact(pose), goal)
         };
         let reply = host.step(&sensed).map_err(failed)?;
         for (name, value, _) in reply.scalars {

@@ -126,16 +126,10 @@ impl Journey<'_> {
             self.known.iter().filter(|obstacle| self.is_in_range(obstacle)).copied().collect();
         let goal = self.trap.goal;
         let sensed = Sensed {
-            tick,
-            t_s: tick as f64 * STEP_M,
-            dt_s: STEP_M,
-            pose: self.pose(),
-            v_m_per_s: 0.0,
-            w_rad_per_s: 0.0,
-            target: goal,
             targets_ahead: std::slice::from_ref(&goal),
             path_ahead: self.plan.as_ref().map_or(&[], |plan| plan.ahead(SHOWN_M)),
             obstacles: &near,
+            ..Sensed::new(tick, STEP_M, self.pose(), goal)
         };
         let command = match host.step(&sensed) {
             Ok(reply) => reply.value,

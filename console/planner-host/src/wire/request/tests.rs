@@ -1,8 +1,14 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
+use crate::wire::body::Malformed;
+use mission::ask::{PlanAsk, Site as OwnSite, StepAsk};
 use nalgebra::{Matrix3, Point2};
-use planner_api::{Plan, PoseEstimate};
+use planner_api::geometry::Amphibious;
+use planner_api::{
+    Boundary, Limits, Motion, Obstacle, Outline, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Site, Task,
+    TetherLimits, Zone, ZoneKind,
+};
 use proptest::prelude::*;
 
 fn written(write: impl FnOnce(&mut Writer)) -> Vec<u8> {
@@ -13,7 +19,11 @@ fn written(write: impl FnOnce(&mut Writer)) -> Vec<u8> {
 
 const CORNERS: [Point2<f64>; 3] = [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)];
 
-fn with_site<R>(obstacles: &[Obstacle<'_>], call: impl FnOnce(&Site<'_>) -> R) -> R {
+fn with_site<R>(
+    obstacles: &[Obstacle<'_>],
+    amphibious: Option<Amphibious>,
+    call: impl FnOnce(&Site<'_>) -> R,
+) -> R {
     let zones = [Zone { kind: ZoneKind::Underwater, outline: Outline::Polygon { vertices: &CORNERS } }];
     let limits = Limits {
         motion: Motion::Point,
@@ -23,7 +33,7 @@ fn with_site<R>(obstacles: &[Obstacle<'_>], call: impl FnOnce(&Site<'_>) -> R) -
         sensing_range_m: 2.0,
         acceleration_m_per_s2: 0.5,
         tick_s: 0.1,
-        amphibious: None,
+        amphibious,
     };
     let boundary = Boundary::Polygon { vertices: &CORNERS };
     let site = Site {
@@ -66,14 +76,14 @@ fn obstacles() -> [Obstacle<'static>; 3] {
 
 #[test]
 fn a_site_arrives_as_it_was_sent() {
-    with_site(&obstacles(), |site| {
-        let bytes = written(|w| {
-            w.site(site);
+    for amphibious in [None, Some(Amphibious::YANG_2021)] {
+        with_site(&obstacles(), amphibious, |site| {
+            let bytes = written(|w| {
+                w.put(site);
+            });
+            whole::<OwnSite>(Body(&bytes)).unwrap().lend(|arrived| assert_eq!(arrived, site));
         });
-        let mut body = Body(&bytes);
-        body.site().unwrap().lend(|arrived| assert_eq!(arrived, site));
-        assert_eq!(body.end(), Ok(()));
-    });
+    }
 }
 
 #[test]
@@ -101,7 +111,7 @@ fn every_request_arrives_as_it_was_sent() {
             tolerance_m: 0.3,
         },
     ];
-    with_site(&[], |site| {
+    with_site(&[], None, |site| {
         for (reason, task) in reasons.iter().flat_map(|reason| tasks.iter().map(move |task| (reason, *task)))
         {
             let way = Plan { path: CORNERS.to_vec(), cuts: vec![CORNERS.to_vec()], ..Plan::default() };
@@ -109,12 +119,22 @@ fn every_request_arrives_as_it_was_sent() {
                 let request =
                     PlanRequest { reason, start: pose(0.5), task, site, previous: &CORNERS, under_way };
                 let bytes = written(|w| {
-                    w.request(&request);
+                    w.put(&request);
                 });
-                Body(&bytes).request().unwrap().lend(|arrived| assert_eq!(*arrived, request));
+                whole::<PlanAsk>(Body(&bytes)).unwrap().lend(|arrived| assert_eq!(*arrived, request));
             }
         }
     });
+}
+
+#[test]
+fn a_load_of_another_build_is_known_as_one_whatever_follows() {
+    let load = Load::of(Path::new("/a/b.so"), "apf", 1 << 40, true);
+    let bytes = written(|w| load.write(w));
+    assert_eq!(Load::read(Body(&bytes)), Ok(Some(load)));
+    for other in [[VERSION as u8 - 1, 0, 0, 0], [VERSION as u8 + 1, 255, 255, 255]] {
+        assert_eq!(Load::read(Body(&other)), Ok(None));
+    }
 }
 
 fn sensed<'a>(x: f64, obstacles: &'a [Obstacle<'a>], points: &'a [Point2<f64>]) -> Sensed<'a> {
@@ -138,23 +158,24 @@ proptest! {
         let points: Vec<_> = raw.windows(2).map(|w| Point2::new(w[0], w[1])).collect();
         let obstacles = obstacles();
         let sensed = sensed(x, &obstacles, &points);
-        let bytes = written(|w| { w.sensed(&sensed); });
-        let arrived = Body(&bytes).sensed().unwrap();
+        let bytes = written(|w| { w.put(&sensed); });
+        let arrived = whole::<StepAsk>(Body(&bytes)).unwrap();
         prop_assert!(arrived.lend(|arrived| *arrived == sensed));
     }
 
     #[test]
     fn a_cut_message_is_malformed_and_nothing_worse(cut in 0_usize..300) {
         let obstacles = obstacles();
-        let bytes = written(|w| { w.sensed(&sensed(0.0, &obstacles, &CORNERS)); });
+        let bytes = written(|w| { w.put(&sensed(0.0, &obstacles, &CORNERS)); });
         prop_assume!(cut < bytes.len());
-        prop_assert_eq!(Body(&bytes[..cut]).sensed().err(), Some(Malformed));
+        prop_assert_eq!(whole::<StepAsk>(Body(&bytes[..cut])).err(), Some(Malformed));
     }
 
     #[test]
     fn noise_is_malformed_and_nothing_worse(noise in prop::collection::vec(any::<u8>(), 0..400)) {
-        let _ = Body(&noise).sensed();
-        let _ = Body(&noise).request();
-        let _ = Body(&noise).values();
+        let _ = whole::<StepAsk>(Body(&noise));
+        let _ = whole::<PlanAsk>(Body(&noise));
+        let _ = whole::<Values>(Body(&noise));
+        let _ = Load::read(Body(&noise));
     }
 }
