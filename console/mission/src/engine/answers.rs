@@ -2,8 +2,10 @@
 
 use super::{
     Mission,
+    known::Known,
     planning::{Evaluated, Objection},
-    slot::{AskedPlan, Pending, PendingKind, PlanState, PlannerSlot, Prepare},
+    requests::AskedPlan,
+    slot::{Pending, PendingKind, PlanState, PlannerSlot, Prepare},
     workers,
 };
 use crate::{
@@ -52,22 +54,22 @@ impl Mission {
         match (pending.kind.clone(), given) {
             (PendingKind::Open, Given::Opened(info)) => self.open_succeeded(ask, *info, said),
             (PendingKind::Reconfigure(choice), Given::Reconfigured) => {
-                self.pass_on(said, &choice.id);
+                self.happened.pass_on(said, &choice.id);
                 self.active.choice = choice.clone();
                 self.active.first_plan = None;
                 self.happened.push(EventKind::ParametersChanged { ask: Some(ask), choice });
             }
             (PendingKind::Plan(asked), Given::Plan(plan)) => self.plan_arrived(ask, asked, plan, said),
             (PendingKind::Step { usable }, Given::Command(command)) => {
-                let usable = usable && self.is_running();
+                let usable = usable && self.known.is_running();
                 self.take_command(&pending, usable, command, said);
             }
             (PendingKind::StepInShadow, Given::Command(_)) => {
-                self.pass_on(said, &self.active.choice.id.clone());
+                self.happened.pass_on(said, &self.active.choice.id.clone());
                 self.happened.push(EventKind::Discarded { ask, plan: None });
             }
             (PendingKind::Snapshot, Given::State { bytes }) => {
-                self.pass_on(said, &self.active.choice.id.clone());
+                self.happened.pass_on(said, &self.active.choice.id.clone());
                 if bytes > 0 {
                     self.active.saved = Some(ask);
                 }
@@ -87,7 +89,7 @@ impl Mission {
         {
             return Err(refused(info, During::Load, Cause::Quarantined, message));
         }
-        self.fitting(slot, given)
+        self.known.fitting(slot, given)
     }
 
     /// Why a planner may not drive again in this mission, if it may not.
@@ -101,7 +103,9 @@ impl Mission {
         };
         self.workers.quarantine.holds(&info.sha256).then(message)
     }
+}
 
+impl Known {
     /// Refuses a planner that cannot fly this mission.
     pub(super) fn fitting(&self, slot: &PlannerSlot, given: Given) -> Result<Given, Fault> {
         let id = &slot.choice.id;
@@ -121,9 +125,11 @@ impl Mission {
         }
         Ok(given)
     }
+}
 
+impl Mission {
     fn open_succeeded(&mut self, ask: AskId, info: PlannerInfo, said: Said) {
-        self.pass_on(said, &self.active.choice.id.clone());
+        self.happened.pass_on(said, &self.active.choice.id.clone());
         let slot = &mut self.active;
         let (choice, from) = (slot.choice.clone(), slot.known().map(|before| before.id.clone()));
         slot.info = Some(info.clone());
@@ -136,17 +142,17 @@ impl Mission {
 
     fn plan_arrived(&mut self, ask: AskId, asked: AskedPlan, plan: Plan, said: Said) {
         let id = self.active.choice.id.clone();
-        self.pass_on(said, &id);
-        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
+        self.happened.pass_on(said, &id);
+        let Evaluated { plan, events, objection } = self.known.evaluate(Some(ask), &id, &asked, plan);
         self.happened.extend(events);
         let may_retry =
-            objection.as_ref().is_some_and(|why| why.by_tether) && self.may_try_from_anchor(&asked);
+            objection.as_ref().is_some_and(|why| why.by_tether) && self.known.may_try_from_anchor(&asked);
         if !may_retry {
             self.show_first_plan(&plan, objection.as_ref());
         }
         match objection {
             None => {
-                let is_repair = asked.is_repair && self.task.keeps_to(&plan);
+                let is_repair = asked.is_repair && self.known.task.keeps_to(&plan);
                 self.take_plan(&plan);
                 self.plan_is_there();
                 if is_repair {
@@ -166,16 +172,10 @@ impl Mission {
             }
         }
     }
-
-    /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
-    pub(super) fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
-        asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
-    }
-
     /// The active planner has a plan that flies: a hold that it was to end, or that blamed another planner, is over.
     pub(super) fn plan_is_there(&mut self) {
         let was_ordered = std::mem::take(&mut self.active.prepare) == Prepare::Plan;
-        let Phase::Held(hold) = &self.phase else { return };
+        let Phase::Held(hold) = &self.known.phase else { return };
         if hold.resumes == Resumes::ByFallback {
             self.go_on(Gait::Steady);
         } else if was_ordered && (hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. })) {
@@ -185,7 +185,7 @@ impl Mission {
     }
 
     fn fail_active(&mut self, Failed { ask, kind, fault, said }: Failed) {
-        self.pass_on(said, &self.active.choice.id.clone());
+        self.happened.pass_on(said, &self.active.choice.id.clone());
         let (message, cause, is_no_way) = (fault.message.clone(), fault.cause, fault.is_no_way());
         self.note_fault(ask, fault, self.active.info.as_ref().map(|info| info.sha256.clone()));
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
@@ -194,7 +194,7 @@ impl Mission {
             PendingKind::Reconfigure(choice) if says_no => {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
                 // A planner that was ordered meanwhile stays ordered.
-                if unsupported && self.candidate.is_none() && !self.is_running() {
+                if unsupported && self.candidate.is_none() && !self.known.is_running() {
                     let prepare = self.active.prepare;
                     self.choose(choice, planner_api::Reason::Operator);
                     // A plan that was ordered before the start stays ordered.
@@ -209,13 +209,13 @@ impl Mission {
                 if says_no => {}
             _ => self.close_active(),
         }
-        if self.phase == Phase::Waiting {
+        if self.known.is_waiting() {
             self.active.first_plan = Some(Err(message.clone()));
         }
         if !self.active.has_plan() {
             // The operator agreed to the plan that was refused, not to one of later.
-            self.allow_uncertified(
-                self.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
+            self.known.allow_uncertified(
+                self.known.config.tether.as_ref().is_some_and(|tether| tether.allow_uncertified),
             );
         }
         self.active_is_no_use(if is_no_way {
@@ -229,13 +229,13 @@ impl Mission {
     fn active_is_no_use(&mut self, by: HoldReason) {
         self.drop_better_plan("the planner that drives failed");
         self.active.prepare = Prepare::No;
-        let is_to_be_held = match &self.phase {
+        let is_to_be_held = match &self.known.phase {
             Phase::Running(_) => true,
             Phase::Held(hold) => hold.by.blames_planner(),
             Phase::Waiting | Phase::Ended(_) => false,
         };
         if is_to_be_held {
-            let resumes = self.rules.fallback.resumes(&self.config, &self.active.choice.id);
+            let resumes = self.rules.fallback.resumes(&self.known.config, &self.active.choice.id);
             self.hold(Hold { by, resumes });
         }
     }
@@ -245,7 +245,7 @@ impl Mission {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
         if let Some(sha256) = fault.plugin_sha256.clone().or(sha256).filter(|_| counts) {
-            let now_s = self.now_s();
+            let now_s = self.known.now_s();
             self.workers.quarantine.note(&sha256, now_s);
         }
         self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });

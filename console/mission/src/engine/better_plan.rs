@@ -6,9 +6,11 @@
 
 use super::{
     Mission,
-    asks::Beginning,
+    known::Known,
     planning::Evaluated,
-    slot::{AskedPlan, PendingKind, PlanState, PlannerSlot},
+    requests::AskedPlan,
+    requests::Beginning,
+    slot::{PendingKind, PlanState, PlannerSlot},
 };
 use crate::{
     ask::{Ask, AskId, Said, What},
@@ -70,8 +72,8 @@ struct Offer {
 impl Mission {
     /// A repaired plan is flown: another one is looked for, if the mission wants any.
     pub(super) fn want_better_plan(&mut self) {
-        let wanted = self.config.wants_better_plans() && matches!(self.task, Task::Cover(_));
-        self.better_plan_due_s = wanted.then(|| self.now_s() + SETTLE_S);
+        let wanted = self.known.config.wants_better_plans() && self.known.is_coverage();
+        self.better_plan_due_s = wanted.then(|| self.known.now_s() + SETTLE_S);
     }
 
     /// The map has changed: what is being made is out of date, and what is due waits until the map is settled.
@@ -118,12 +120,12 @@ impl Mission {
         }
         let Some(better) = self.better() else { return };
         let (joint, is_ready) = (better.joint, better.offer.is_some());
-        let is_taken = better.is_ordered || self.config.better_plan == BetterPlan::Take;
+        let is_taken = better.is_ordered || self.known.config.better_plan == BetterPlan::Take;
         if !self.active.has_plan() || !self.active.is_ready {
             return self.drop_better_plan("another plan is being made");
         }
-        let along_m = self.task.lanes().map_or(0.0, PathFollower::along_m);
-        if !self.is_running() || joint.is_none_or(|joint| along_m < joint.station_m - AT_JOINT_M) {
+        let along_m = self.known.task.lanes().map_or(0.0, PathFollower::along_m);
+        if !self.known.is_running() || joint.is_none_or(|joint| along_m < joint.station_m - AT_JOINT_M) {
             return;
         }
         match self.candidate.take_if(|_| is_ready && is_taken) {
@@ -134,21 +136,23 @@ impl Mission {
     }
 
     fn is_better_plan_due(&self) -> bool {
-        let is_due = self.better_plan_due_s.is_some_and(|due_s| due_s <= self.now_s());
+        let is_due = self.better_plan_due_s.is_some_and(|due_s| due_s <= self.known.now_s());
         let is_steady =
             self.active.is_ready && self.active.has_plan() && self.active.newest_change().is_none();
-        is_due && is_steady && self.candidate.is_none() && self.is_running()
+        is_due && is_steady && self.candidate.is_none() && self.known.is_running()
     }
 
     fn begin_better_plan(&mut self) {
         self.better_plan_due_s = None;
-        if self.joint().is_some() {
+        if self.known.joint().is_some() {
             let mut slot = self.active.successor(self.active.choice.clone(), Reason::MapChanged);
             slot.better = Some(Box::default());
             self.candidate = Some(slot);
         }
     }
+}
 
+impl Known {
     /// Where a better plan would begin; `None` if too little is left from there on.
     fn joint(&self) -> Option<Joint> {
         let (Task::Cover(cover), Some(lanes)) = (&self.task, self.task.lanes()) else { return None };
@@ -157,36 +161,42 @@ impl Mission {
         let joint = cover.joint((LEAD_S * v_m_per_s).max(LEAD_SHARE * left_m))?;
         (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
     }
+}
 
+impl Mission {
     /// Asks the candidate for a plan for all that will be left where it begins.
     pub(super) fn ask_for_better_plan(&mut self) -> Option<Ask> {
-        let Some(joint) = self.joint() else {
+        let Some(joint) = self.known.joint() else {
             self.drop_better_plan("too little is left of the plan that is flown");
             return None;
         };
-        let Task::Cover(cover) = &self.task else { return None };
+        let Task::Cover(cover) = &self.known.task else { return None };
         let way = cover.way_to(&joint);
-        let coverage = self.coverage_after(&way);
+        let coverage = self.known.coverage_after(&way);
         let heading_rad = way.windows(2).next_back().map(|pair| pair[1] - pair[0]).map(|w| w.y.atan2(w.x));
-        let here = self.locator.pose_estimate();
+        let here = self.known.locator.pose_estimate();
         let start =
             PoseEstimate { position: joint.at, heading_rad: heading_rad.unwrap_or(here.heading_rad), ..here };
-        let previous = self.trail.iter().chain(&way).copied().collect();
+        let previous = self.known.trail.iter().chain(&way).copied().collect();
         let beginning = Beginning { start, previous, coverage: &coverage };
-        let ask = self.plan_from(beginning, Reason::MapChanged, None);
+        let ask = self.known.plan_from(beginning, Reason::MapChanged, None);
         let asked = AskedPlan::from_here(Reason::MapChanged, here.position);
         let slot = self.candidate.as_mut()?;
         slot.better = Some(Box::new(Better { joint: Some(joint), ..Better::default() }));
-        slot.ask(self.tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)))
+        slot.ask(self.known.tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)))
     }
+}
 
+impl Known {
     /// What will have been scanned after some way.
     fn coverage_after(&self, way: &[Point]) -> CoverageGrid {
         let mut coverage = self.floor.coverage.clone();
         Tool::along(way, |from, to| coverage.mark(self.config.tool(), from, to));
         coverage
     }
+}
 
+impl Mission {
     /// Judges a plan for all that is left; gives the candidate back if it is offered.
     pub(super) fn better_plan_arrived(
         &mut self,
@@ -196,16 +206,16 @@ impl Mission {
         said: Said,
     ) -> Option<PlannerSlot> {
         let planner = slot.choice.id.clone();
-        self.pass_on(said, &planner);
+        self.happened.pass_on(said, &planner);
         let joint = slot.better.as_ref().and_then(|better| better.joint);
-        let (Task::Cover(cover), Some(joint)) = (&self.task, joint) else { return None };
+        let (Task::Cover(cover), Some(joint)) = (&self.known.task, joint) else { return None };
         let way = cover.way_to(&joint);
         let rest = cover.path_from(&joint);
         // The turn at the joint counts, too.
         let before = &way[way.len().saturating_sub(2)..way.len().saturating_sub(1)];
-        let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.config.limits);
+        let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.known.config.limits);
         let (flown, better) = (effort(&rest), effort(&plan.path));
-        let objection = self.objection_to_better(&way, &rest, (flown, better), &plan);
+        let objection = self.known.objection_to_better(&way, &rest, (flown, better), &plan);
         self.happened.push(EventKind::BetterPlanned {
             ask,
             planner,
@@ -226,7 +236,9 @@ impl Mission {
         slot.better = Some(Box::new(Better { joint: Some(joint), offer, is_ordered: false }));
         Some(slot)
     }
+}
 
+impl Known {
     /// Why a plan after some way is not offered in place of a path: for what it saves, for the floor that it scans, or for the
     /// tether.
     fn objection_to_better(
@@ -263,7 +275,9 @@ impl Mission {
         let why = || format!("it is not safe for the tether: {}", certificate.reasons.join("; "));
         (!certificate.certified).then(why)
     }
+}
 
+impl Mission {
     /// The planner failed while it made a better plan: nobody is harmed, so it counts against nobody.
     pub(super) fn better_plan_failed(&mut self, slot: PlannerSlot, ask: AskId, fault: Fault) {
         let why = fault.message.clone();
@@ -277,10 +291,10 @@ impl Mission {
         let Some(Offer { plan, flown, better }) = slot.better.take().and_then(|better| better.offer) else {
             return;
         };
-        let here = self.locator.position();
+        let here = self.known.position();
         let asked = AskedPlan::from_here(Reason::MapChanged, here);
         let Evaluated { plan, events, objection } =
-            self.evaluate(None, &planner, &asked, rest_of(&plan, 0.0, &[here]));
+            self.known.evaluate(None, &planner, &asked, rest_of(&plan, 0.0, &[here]));
         if let Some(objection) = objection {
             return self.close_better_plan(slot, objection.message);
         }

@@ -3,8 +3,10 @@
 use super::{
     Mission,
     answers::mismatch,
+    known::Known,
     planning::Evaluated,
-    slot::{AskedPlan, Pending, PendingKind, PlanState, PlannerSlot},
+    requests::AskedPlan,
+    slot::{Pending, PendingKind, PlanState, PlannerSlot},
 };
 use crate::{
     ask::{Answer, AskId, Given, Said},
@@ -28,7 +30,7 @@ impl Mission {
     ) -> Option<PlannerSlot> {
         match (pending.kind, result.and_then(|given| self.checked(&slot, given))) {
             (PendingKind::Open, Ok(Given::Opened(info))) => {
-                self.pass_on(said, &slot.choice.id);
+                self.happened.pass_on(said, &slot.choice.id);
                 (slot.info, slot.is_ready) = (Some((*info).clone()), true);
                 self.happened.push(EventKind::PlannerPrepared { ask, choice: slot.choice.clone(), info });
                 Some(slot)
@@ -41,7 +43,7 @@ impl Mission {
             }
             (_, result) => {
                 let fault = result.err().unwrap_or_else(|| mismatch(&slot.choice.id));
-                self.pass_on(said, &slot.choice.id);
+                self.happened.pass_on(said, &slot.choice.id);
                 if slot.better.is_some() {
                     self.better_plan_failed(slot, ask, fault);
                     return None;
@@ -63,32 +65,32 @@ impl Mission {
         said: Said,
     ) -> Option<PlannerSlot> {
         let id = slot.choice.id.clone();
-        let gone_m = (self.locator.position() - asked.here).norm();
+        let gone_m = (self.known.position() - asked.here).norm();
         if gone_m > NEAR_PLAN_M {
             // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
-            self.pass_on(said, &id);
-            let is_kept = gone_m <= MOST_GONE_M && matches!(self.task, Task::Cover(_));
+            self.happened.pass_on(said, &id);
+            let is_kept = gone_m <= MOST_GONE_M && self.known.is_coverage();
             // The journal repeats what the planner is asked next.
             let from_here = AskedPlan::from_here(asked.reason, asked.here);
-            let planned = is_kept.then(|| Box::new(Self::planned(Some(ask), &id, &from_here, &plan)));
+            let planned = is_kept.then(|| Box::new(Known::planned(Some(ask), &id, &from_here, &plan)));
             self.happened.push(EventKind::Discarded { ask, plan: planned });
             slot.robot_waits = true;
             slot.keep = is_kept.then_some(Plan { cost: 0.0, ..plan });
             return Some(slot);
         }
-        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
+        let Evaluated { plan, events, objection } = self.known.evaluate(Some(ask), &id, &asked, plan);
         if objection.is_none() {
             self.promote(slot);
-            self.pass_on(said, &id);
+            self.happened.pass_on(said, &id);
             self.happened.extend(events);
             self.take_plan(&plan);
             self.plan_is_there();
             return None;
         }
-        self.pass_on(said, &id);
+        self.happened.pass_on(said, &id);
         self.happened.extend(events);
         match objection {
-            Some(objection) if !(objection.by_tether && self.may_try_from_anchor(&asked)) => {
+            Some(objection) if !(objection.by_tether && self.known.may_try_from_anchor(&asked)) => {
                 self.reject(slot, objection.message);
                 None
             }

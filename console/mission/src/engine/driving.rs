@@ -2,6 +2,7 @@
 
 use super::{
     Mission,
+    known::Known,
     rules::{LatePlannerRule, Verdict},
     slot::{Arrived, Pending},
 };
@@ -14,8 +15,6 @@ use crate::{
 use geometry::motion::drive_for;
 use planner_api::{Command, Drive, Limits};
 
-/// How much of the targets and of the plan a planner sees ahead, metres.
-pub(super) const AHEAD_M: f64 = 4.0;
 /// Distance between the points of the path flown that are kept for planners, metres.
 const TRAIL_M: f64 = 0.1;
 
@@ -39,45 +38,48 @@ impl Sending {
 impl Mission {
     /// Sends the robot the command of this tick; without one it stands still.
     pub(super) fn drive(&mut self) -> Drive {
-        let Phase::Running(gait) = self.phase else { return Drive::STILL };
+        let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
         let Some(arrived) = self.active.command.take() else { return Drive::STILL };
         let (ask, command) = (arrived.ask, arrived.command);
         self.pass_on_with(arrived);
-        let (here, in_lanes) = (self.locator.position(), matches!(self.task, Task::Cover(_)));
-        let verdict = self.active.blocked.update(command.status, here, in_lanes, self.config.tick_s);
+        let (here, in_lanes) = (self.known.position(), self.known.is_coverage());
+        let verdict = self.active.blocked.update(command.status, here, in_lanes, self.known.config.tick_s);
         if let Some(Verdict::Replan(reason)) = verdict {
             self.active.want_plan(reason);
         }
-        let wanted = self.sending().as_sent(command);
-        let sent = self.governed(wanted);
+        let wanted = self.known.sending().as_sent(command);
+        let sent = self.known.governed(wanted);
         let asked = (sent != wanted).then_some(wanted);
         self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
-        self.note_limit(wanted, sent);
+        self.happened.extend(self.known.note_limit(wanted, sent));
         if gait == Gait::OneTick {
             self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
         }
         sent.drive
     }
+}
 
-    /// What a command would become now on its way to the robot.
-    pub fn sending(&self) -> Sending {
+impl Known {
+    pub(super) fn sending(&self) -> Sending {
         Sending {
             heading_rad: self.locator.pose().heading_rad,
             limits: self.config.limits,
             turn_first_rad: self.config.task.turn_first_rad(),
         }
     }
+}
 
+impl Mission {
     /// Takes a command of the active planner, which was asked for in this tick or in an earlier one. The freshest one
     /// that arrives before the tick ends is sent.
     pub(super) fn take_command(&mut self, asked: &Pending, usable: bool, command: Command, said: Said) {
-        let ticks = self.tick - asked.tick;
+        let ticks = self.known.tick - asked.tick;
         let late_ticks = self.active.late.arrived(ticks).then_some(ticks);
         let arrived = Arrived { ask: asked.id, command, said, late_ticks };
-        if !(usable && LatePlannerRule::is_fresh(ticks as f64 * self.config.tick_s)) {
+        if !(usable && LatePlannerRule::is_fresh(ticks as f64 * self.known.config.tick_s)) {
             return self.discard(arrived);
         }
-        let now_s = self.now_s();
+        let now_s = self.known.now_s();
         self.active.saved_at_s.get_or_insert(now_s);
         if let Some(older) = self.active.command.replace(arrived) {
             self.discard(older);
@@ -97,9 +99,11 @@ impl Mission {
         if let Some(ticks) = arrived.late_ticks {
             self.happened.push(EventKind::PlannerLate { planner: planner.clone(), ticks });
         }
-        self.pass_on(arrived.said, &planner);
+        self.happened.pass_on(arrived.said, &planner);
     }
+}
 
+impl Known {
     pub(super) fn keep_trail(&mut self) {
         let here = self.locator.position();
         if self.trail.last().is_none_or(|last| (here - last).norm() >= TRAIL_M) {

@@ -25,10 +25,10 @@ impl Mission {
     /// After a fault, or where the planner sees no way: the fallback takes over, if there is one; with nobody there to help the
     /// mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
-        let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
+        let Phase::Held(Hold { by, resumes }) = &self.known.phase else { return };
         if *resumes == Resumes::ByFallback {
             let active = self.active.choice.id.clone();
-            if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
+            if let Some(choice) = self.rules.fallback.update(&self.known.config, &active) {
                 let mut slot = self.active.successor(choice, Reason::Swap { from: active });
                 slot.prepare = Prepare::Plan;
                 self.drop_better_plan("another planner drives");
@@ -37,7 +37,7 @@ impl Mission {
                 }
                 self.replace_active(slot);
             }
-        } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
+        } else if resumes.is_never() && !self.known.config.attended && self.active.prepare == Prepare::No {
             let (outcome, message) = match by {
                 // A planner that says that no way exists has not failed.
                 HoldReason::Stuck { message } => (Outcome::Stuck, message),
@@ -54,14 +54,14 @@ impl Mission {
     /// Holds the robot. If only an order could let it move anyway, or for longer than a step, only an order ends this
     /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
     pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
-        let only_by_order = match &self.phase {
+        let only_by_order = match &self.known.phase {
             Phase::Held(before) => before.resumes.is_never(),
             Phase::Running(gait) => *gait != Gait::Steady,
             Phase::Waiting | Phase::Ended(_) => false,
         };
         let resumes = if only_by_order { Resumes::Never } else { resumes };
         self.happened.push(EventKind::Held { by: by.clone(), resumes });
-        self.phase = Phase::Held(Hold { by, resumes });
+        self.known.phase = Phase::Held(Hold { by, resumes });
         self.active.outdate_step();
         if let Some(unsent) = self.active.command.take() {
             self.discard(unsent);
@@ -77,12 +77,12 @@ impl Mission {
     pub(super) fn go_on(&mut self, gait: Gait) {
         self.rules.restart();
         self.happened.push(EventKind::Resumed);
-        self.phase = Phase::Running(gait);
+        self.known.phase = Phase::Running(gait);
     }
 
     pub(super) fn end(&mut self, outcome: Outcome, reason: String) {
         self.happened.ending = Some(EventKind::Ended { outcome, reason });
-        self.phase = Phase::Ended(outcome);
+        self.known.phase = Phase::Ended(outcome);
         self.drop_candidate();
         self.drop_shadow();
         self.close_active();

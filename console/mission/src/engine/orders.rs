@@ -3,6 +3,7 @@
 use super::{
     Mission,
     candidate::NEAR_PLAN_M,
+    known::Known,
     planning::Objection,
     slot::{LeftPlan, PlannerSlot, Prepare},
 };
@@ -20,7 +21,7 @@ impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
         // The order stands in the journal before its effects.
         let allowed = self.standing().allows(order).map_err(|why| why.to_string());
-        if let Err(why) = allowed.and_then(|()| self.check_place(order)) {
+        if let Err(why) = allowed.and_then(|()| self.known.check_place(order)) {
             self.happened.push(EventKind::OrderRefused { order: order.clone(), why });
             return;
         }
@@ -32,7 +33,7 @@ impl Mission {
             // The simulator obeys it.
             Order::Inject(_) => self.stay_held(),
             Order::UseStation { station, used, .. } => {
-                self.locator.use_station(*station, *used);
+                self.known.locator.use_station(*station, *used);
                 self.stay_held();
             }
             Order::DrawZone(corners) => self.draw_zone(corners),
@@ -40,7 +41,7 @@ impl Mission {
             Order::Resume => self.resume(Gait::Steady),
             Order::Step => self.resume(Gait::OneTick),
             Order::StepTo(to) => {
-                self.stepped_from = Some(self.place_on_plan());
+                self.stepped_from = Some(self.known.place_on_plan());
                 self.resume(Gait::To(*to));
             }
             Order::Abort => self.end(Outcome::Aborted, "ended by operator".into()),
@@ -61,18 +62,22 @@ impl Mission {
             Order::TakePlan => self.order_better_plan(),
             Order::SetParameter { key, value } => self.set_parameter(key, value),
             Order::FlyUncertified => {
-                self.allow_uncertified(true);
+                self.known.allow_uncertified(true);
                 self.resume(Gait::Steady);
             }
         }
     }
+}
 
+impl Known {
     /// Refuses what cannot be where it is ordered.
     fn check_place(&self, order: &Order) -> Result<(), String> {
         let Order::DrawZone(corners) = order else { return Ok(()) };
         self.check_zone(corners)
     }
+}
 
+impl Mission {
     /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.
     fn plan_ahead(&mut self) {
         self.active.want_plan(Reason::Start);
@@ -82,7 +87,7 @@ impl Mission {
     /// What a start would begin with.
     pub(super) fn readiness(&self) -> Readiness<'_> {
         let slot = &self.active;
-        if !self.config.start_names_plan {
+        if !self.known.config.start_names_plan {
             return Readiness::Unseen;
         }
         if slot.is_being_prepared() || slot.prepare > Prepare::No || slot.newest_change().is_some() {
@@ -100,12 +105,12 @@ impl Mission {
     /// Whether the plan that the operator saw before the start is not the one to be run any more.
     pub(super) fn is_seen_plan_outdated(&self) -> bool {
         let is_seen = matches!(self.active.first_plan, Some(Ok(_)));
-        self.phase == Phase::Waiting && is_seen && !self.active.has_plan()
+        self.known.is_waiting() && is_seen && !self.active.has_plan()
     }
 
     /// Keeps which plan the operator sees before the start, or why there is none.
     pub(super) fn show_first_plan(&mut self, plan: &Plan, objection: Option<&Objection>) {
-        if self.phase != Phase::Waiting || !self.config.start_names_plan {
+        if self.known.phase != Phase::Waiting || !self.known.config.start_names_plan {
             return;
         }
         let Plan { path, legs, cuts, complete, .. } = plan;
@@ -119,13 +124,13 @@ impl Mission {
     }
 
     fn start(&mut self) {
-        self.rules.time_limit.start(self.now_s());
-        self.phase = Phase::Running(Gait::Steady);
+        self.rules.time_limit.start(self.known.now_s());
+        self.known.phase = Phase::Running(Gait::Steady);
     }
 
     /// From now on only an order lets the robot move; a hold of which that is true already keeps its reason.
     fn hold_by_order(&mut self) {
-        if self.phase.may_move() {
+        if self.known.phase.may_move() {
             self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
         }
     }
@@ -133,19 +138,23 @@ impl Mission {
     /// A hold that was to end by itself now ends by an order: nobody who changes planners, or which stations are heard,
     /// expects the robot to move.
     pub(super) fn stay_held(&mut self) {
-        if let Phase::Held(hold) = &self.phase
+        if let Phase::Held(hold) = &self.known.phase
             && !hold.resumes.is_never()
         {
             self.hold(Hold { by: hold.by.clone(), resumes: Resumes::Never });
         }
     }
+}
 
+impl Known {
     pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
             tether.allow_uncertified(fly);
         }
     }
+}
 
+impl Mission {
     /// Another planner, or the same one with other parameters, is to take over.
     ///
     /// The one before stays until the other has a plan that may be flown, unless it could not drive on anyway: then it is
@@ -154,10 +163,10 @@ impl Mission {
         self.stay_held();
         self.cancel_promotion();
         self.drop_better_plan("another planner was chosen");
-        let waiting = self.phase == Phase::Waiting;
+        let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { reason };
         let mut slot = self.active.successor(choice, reason);
-        let goes_on = self.takes_live(&slot.choice).then(|| self.task.under_way()).flatten();
+        let goes_on = self.takes_live(&slot.choice).then(|| self.known.task.under_way()).flatten();
         slot.keep = goes_on.or_else(|| self.plan_left_here(&slot.choice));
         slot.prepare = if waiting { Prepare::Open } else { Prepare::Plan };
         self.drop_candidate();
@@ -188,7 +197,7 @@ impl Mission {
 
     /// Whether the robot is held because the active planner has no plan that it may fly.
     fn has_active_failed(&self) -> bool {
-        let is_blamed = matches!(&self.phase, Phase::Held(hold) if hold.by.blames_planner());
+        let is_blamed = matches!(&self.known.phase, Phase::Held(hold) if hold.by.blames_planner());
         is_blamed && !self.active.has_plan()
     }
 
@@ -202,14 +211,14 @@ impl Mission {
     /// called back goes on with it.
     fn plan_left_here(&self, choice: &PlannerChoice) -> Option<Plan> {
         let left = self.left.as_ref().filter(|left| left.choice == *choice)?;
-        let is_here = (left.at - self.locator.position()).norm() < NEAR_PLAN_M;
+        let is_here = (left.at - self.known.position()).norm() < NEAR_PLAN_M;
         is_here.then(|| left.plan.clone())
     }
 
     /// Puts a planner in the place of the active one, whose worker is closed.
     pub(super) fn replace_active(&mut self, slot: PlannerSlot) {
-        let at = self.locator.position();
-        let plan = self.active.has_plan().then(|| self.task.under_way()).flatten();
+        let at = self.known.position();
+        let plan = self.active.has_plan().then(|| self.known.task.under_way()).flatten();
         self.left = plan.map(|plan| LeftPlan { choice: self.active.choice.clone(), plan, at });
         self.close_active();
         self.active = slot;
@@ -241,8 +250,8 @@ impl Mission {
         // While the mission runs, a planner that is being opened gets the values once it is there, and refuses what it does
         // not know; while it is held, they are given to it from the start.
         let takes_it = match &self.active.info {
-            Some(info) => info.has_live(key) && (self.active.is_ready || self.is_running()),
-            None => self.is_running(),
+            Some(info) => info.has_live(key) && (self.active.is_ready || self.known.is_running()),
+            None => self.known.is_running(),
         };
         if takes_it && newest.is_none() {
             self.active.reconfigure = Some(choice);

@@ -2,12 +2,13 @@
 
 use super::{
     Mission,
+    known::Known,
+    requests::AskedPlan,
     rules::{CutsRule, Solids},
-    slot::AskedPlan,
     slot::PlanState,
 };
 use crate::{
-    ask::{AskId, Said},
+    ask::AskId,
     event::EventKind,
     tether::{Tether, return_path_ends},
 };
@@ -37,7 +38,7 @@ pub(super) struct Objection {
     pub message: String,
 }
 
-impl Mission {
+impl Known {
     /// Judges a plan on the map as it is known now.
     pub(super) fn evaluate(
         &self,
@@ -105,20 +106,22 @@ impl Mission {
         };
         (left_m2 > 0.0).then(|| Objection { by_tether: false, message: message() })
     }
+}
 
+impl Mission {
     /// Flies a plan from now on.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
         self.drop_better_plan("another plan is flown");
         self.better_plan_due_s = None;
-        self.task.take_plan(plan);
+        self.known.task.take_plan(plan);
         // Progress is counted along the new plan from here.
         self.rules.stuck.restart();
-        let anchor = self.tether.as_ref().map(Tether::anchor);
+        let anchor = self.known.tether.as_ref().map(Tether::anchor);
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
         let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
-        let here = self.locator.position();
-        let boundary = &self.chart.world().boundary;
-        let solids = Solids { boundary, map: self.chart.map(), room_m: self.config.room_m() };
+        let here = self.known.position();
+        let boundary = &self.known.chart.world().boundary;
+        let solids = Solids { boundary, map: self.known.chart.map(), room_m: self.known.config.room_m() };
         let slot = &mut self.active;
         (slot.plan, slot.keep) = (PlanState::Flying { is_whole: plan.complete }, None);
         slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here, &solids);
@@ -129,28 +132,11 @@ impl Mission {
 
     /// What was found while a plan was being made may stand in its way: then another one is due at once.
     fn doubt_fresh_plan(&mut self) {
-        let room_m = self.config.room_m();
+        let room_m = self.known.config.room_m();
         let found = std::mem::take(&mut self.active.found_since);
-        if found.iter().any(|shape| self.task.is_in_the_way(shape, room_m)) {
+        if found.iter().any(|shape| self.known.task.is_in_the_way(shape, room_m)) {
             self.active.want_plan(Reason::MapChanged);
         }
-    }
-
-    /// Passes on what a planner drew, reported and said besides its answer.
-    pub(super) fn pass_on(&mut self, said: Said, planner: &str) {
-        self.happened.extend(said.into_events(planner));
-    }
-}
-
-impl Said {
-    /// What was said, as events of a planner.
-    pub(super) fn into_events(self, planner: &str) -> impl Iterator<Item = EventKind> {
-        let Self { drawings, scalars, logs } = self;
-        let drawn = (!drawings.is_empty()).then_some(EventKind::Drawn { drawings });
-        let figures = (!scalars.is_empty()).then_some(EventKind::Scalars { scalars });
-        let logged =
-            move |(level, message)| EventKind::PlannerLogged { planner: planner.to_owned(), level, message };
-        drawn.into_iter().chain(figures).chain(logs.into_iter().map(logged))
     }
 }
 

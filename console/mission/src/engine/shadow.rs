@@ -6,8 +6,9 @@ mod promotion;
 
 use super::{
     Mission,
-    asks::under_way,
-    slot::{AskedPlan, PendingKind, PlanState, PlannerSlot},
+    requests::AskedPlan,
+    requests::under_way,
+    slot::{PendingKind, PlanState, PlannerSlot},
 };
 use crate::{
     ask::{Ask, What},
@@ -74,11 +75,11 @@ impl Mission {
         self.shadow = Some(Shadow {
             slot: self.active.successor(choice, Reason::Swap { from }),
             tally: ShadowTally::default(),
-            task: self.task.clone(),
+            task: self.known.task.clone(),
             plan: Plan::default(),
             from_anchor: false,
-            n_flown: self.trail.len(),
-            asked_at_s: self.now_s(),
+            n_flown: self.known.trail.len(),
+            asked_at_s: self.known.now_s(),
             now: Now::default(),
             promotion: Promotion::No,
         });
@@ -103,16 +104,16 @@ impl Mission {
     /// Follows the shadow's plan from where the robot is; lets the shadow take over if that was ordered.
     pub(super) fn lead_shadow(&mut self) {
         let Some(mut shadow) = self.shadow.take() else { return };
-        let here = self.locator.position();
+        let here = self.known.position();
         self.advance_shadow(&mut shadow, here);
         shadow.now = Now {
-            is_running: self.is_running(),
-            may_plan: !matches!(self.task, Task::Cover(_)) || self.task.lanes().is_some(),
-            n_flown: self.trail.len(),
+            is_running: self.known.is_running(),
+            may_plan: !self.known.is_coverage() || self.known.task.lanes().is_some(),
+            n_flown: self.known.trail.len(),
         };
         if shadow.now.is_running {
-            shadow.task.wait(self.config.tick_s);
-            let asked_s = self.now_s() - shadow.asked_at_s;
+            shadow.task.wait(self.known.config.tick_s);
+            let asked_s = self.known.now_s() - shadow.asked_at_s;
             if asked_s >= PLAN_AGAIN_S && !shadow.is_near(here) {
                 shadow.want_plan(&self.active.choice.id);
             }
@@ -121,7 +122,7 @@ impl Mission {
     }
 
     fn advance_shadow(&self, shadow: &mut Shadow, here: Point) {
-        let (chart, map, room_m) = (&self.chart, self.chart.map(), self.config.room_m());
+        let (chart, map, room_m) = (&self.known.chart, self.known.chart.map(), self.known.config.room_m());
         shadow.task.advance(here, map, |at| chart.has_room(at, room_m));
         if let Some(plan) = &mut shadow.slot.follower {
             plan.advance(here, |at| map.clearance_m(at) >= 0.0);
@@ -137,9 +138,9 @@ impl Mission {
     }
 
     fn ask_of_shadow(&mut self, shadow: &mut Shadow) -> Option<Ask> {
-        let tick = self.tick;
+        let tick = self.known.tick;
         if !shadow.slot.is_ready {
-            let (worker, site) = (self.workers.next(), self.chart.site());
+            let (worker, site) = (self.workers.next(), self.known.chart.site());
             return Some(shadow.slot.open(worker, tick, site));
         }
         if let PlanState::Due { reason, from_anchor } = shadow.slot.plan.clone() {
@@ -147,16 +148,16 @@ impl Mission {
                 return None;
             }
             let keep = under_way(&shadow.task, &reason);
-            let (kind, what) = self.plan_ask(reason, from_anchor, shadow.now.n_flown, keep);
-            (shadow.n_flown, shadow.asked_at_s) = (shadow.now.n_flown, self.now_s());
+            let (asked, ask) = self.known.plan_ask(reason, from_anchor, shadow.now.n_flown, keep);
+            (shadow.n_flown, shadow.asked_at_s) = (shadow.now.n_flown, self.known.now_s());
             shadow.slot.found_since.clear();
-            return shadow.slot.ask(tick, kind, what);
+            return shadow.slot.ask(tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)));
         }
         if !shadow.now.is_running || shadow.slot.stepped_at == Some(tick) {
             return None;
         }
         shadow.slot.stepped_at = Some(tick);
-        let step = self.step_ask(&shadow.task, shadow.slot.follower.as_ref());
+        let step = self.known.step_ask(&shadow.task, shadow.slot.follower.as_ref());
         shadow.slot.ask(tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     better_plan::Better,
+    requests::AskedPlan,
     rules::{BlockedRule, CutsRule, LatePlannerRule},
 };
 use crate::{
@@ -142,27 +143,6 @@ pub(super) enum PendingKind {
     Snapshot,
     /// A step that was asked of it in shadow, before it took over: the answer is of no use, and not late.
     StepInShadow,
-}
-
-/// What has to be remembered of a plan that is being made.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct AskedPlan {
-    pub reason: Reason,
-    /// The return path before the plan; empty for a plan from where the robot stood.
-    pub return_path: Vec<Point>,
-    /// Whether that return path was the second try.
-    pub from_anchor: bool,
-    /// Whether the planner was to keep to the plan that is flown, changed where the map has changed.
-    pub is_repair: bool,
-    /// Where the robot stood.
-    pub here: Point,
-}
-
-impl AskedPlan {
-    /// A plan from where the robot stands, which is not asked of the planner.
-    pub(super) fn from_here(reason: Reason, here: Point) -> Self {
-        Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
-    }
 }
 
 /// A command that has arrived.

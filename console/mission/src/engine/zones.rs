@@ -1,6 +1,6 @@
 //! No-go zones that the operator draws under way.
 
-use super::{Mission, slot::Prepare};
+use super::{Mission, known::Known, slot::Prepare};
 use crate::{config::TaskConfig, event::EventKind, phase::Phase};
 use planner_api::Reason;
 use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
@@ -9,7 +9,7 @@ use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortes
 const LEAST_M2: f64 = 0.01;
 const FARTHEST_M: f64 = 1e4;
 
-impl Mission {
+impl Known {
     /// Refuses a zone in which the robot stands already, or has to go.
     ///
     /// # Errors
@@ -68,14 +68,16 @@ impl Mission {
         let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
         (1..=zones.len() + 1).map(|n| format!("no-go {n}")).find(is_free).unwrap_or_default()
     }
+}
 
+impl Mission {
     /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
     /// that drives keeps to its plan as far as it can.
     pub(super) fn draw_zone(&mut self, corners: &[Point]) {
         let shape = Shape::Polygon { vertices: corners.to_vec() };
-        let zone = Zone { name: self.free_name(), kind: ZoneKind::NoGo, shape };
-        let changes = self.floor.forbid(&self.config, &self.chart, &zone.shape);
-        self.chart.draw(zone.clone());
+        let zone = Zone { name: self.known.free_name(), kind: ZoneKind::NoGo, shape };
+        let changes = self.known.floor.forbid(&self.known.config, &self.known.chart, &zone.shape);
+        self.known.chart.draw(zone.clone());
         self.happened.push(EventKind::ZoneDrawn { zone });
         if !changes.is_empty() {
             self.happened.push(EventKind::FloorChanged { changes });
@@ -86,7 +88,7 @@ impl Mission {
             self.workers.close(slot.leave_worker());
             slot.choice
         });
-        let waiting = self.phase == Phase::Waiting;
+        let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { Reason::MapChanged };
         let mut again = self.active.successor(self.active.choice.clone(), reason);
         // Before the start it goes as far as it was: a plan that is on the screen already is made again.

@@ -4,8 +4,10 @@ use super::{
     super::{
         Mission,
         answers::mismatch,
+        known::Known,
         planning::after,
-        slot::{AskedPlan, Pending, PendingKind},
+        requests::AskedPlan,
+        slot::{Pending, PendingKind},
     },
     Shadow,
 };
@@ -26,7 +28,7 @@ impl Mission {
         pending: Pending,
         Answer { ask, result, said }: Answer,
     ) -> Option<Shadow> {
-        match (pending.kind, result.and_then(|given| self.fitting(&shadow.slot, given))) {
+        match (pending.kind, result.and_then(|given| self.known.fitting(&shadow.slot, given))) {
             (PendingKind::Open, Ok(Given::Opened(info))) => {
                 self.pass_on_of_shadow(&mut shadow, said);
                 (shadow.slot.info, shadow.slot.is_ready) = (Some((*info).clone()), true);
@@ -39,7 +41,7 @@ impl Mission {
                 Some(self.shadow_planned(shadow, ask, &asked, plan))
             }
             (PendingKind::Step { .. }, Ok(Given::Command(command))) => {
-                self.shadow_stepped(&mut shadow, (ask, self.tick - pending.tick), command, said);
+                self.shadow_stepped(&mut shadow, (ask, self.known.tick - pending.tick), command, said);
                 Some(shadow)
             }
             (_, result) => {
@@ -74,15 +76,15 @@ impl Mission {
     fn shadow_planned(&mut self, mut shadow: Shadow, ask: AskId, asked: &AskedPlan, plan: Plan) -> Shadow {
         let id = shadow.slot.choice.id.clone();
         let plan = after(&asked.return_path, plan);
-        let planned = Self::planned(Some(ask), &id, asked, &plan);
+        let planned = Known::planned(Some(ask), &id, asked, &plan);
         self.note_shadow(&mut shadow, planned);
-        shadow.take_plan(plan, self.task.clone(), asked);
+        shadow.take_plan(plan, self.known.task.clone(), asked);
         // The robot went on meanwhile: perhaps along this plan.
-        for flown in &self.trail[shadow.n_flown..shadow.now.n_flown] {
+        for flown in &self.known.trail[shadow.n_flown..shadow.now.n_flown] {
             self.advance_shadow(&mut shadow, *flown);
         }
-        self.advance_shadow(&mut shadow, self.locator.position());
-        let room_m = self.config.room_m();
+        self.advance_shadow(&mut shadow, self.known.position());
+        let room_m = self.known.config.room_m();
         let found = std::mem::take(&mut shadow.slot.found_since);
         if found.iter().any(|shape| shadow.task.is_in_the_way(shape, room_m)) {
             shadow.slot.want_plan(Reason::MapChanged);

@@ -4,7 +4,8 @@ use super::{
     super::{
         Mission,
         planning::Evaluated,
-        slot::{AskedPlan, PendingKind, PlanState, Prepare},
+        requests::AskedPlan,
+        slot::{PendingKind, PlanState, Prepare},
     },
     Promotion, Shadow,
 };
@@ -50,11 +51,11 @@ impl Mission {
             self.refuse_promotion(&mut shadow, why);
             return Some(shadow);
         }
-        if !shadow.may_take_over(self.tick) {
+        if !shadow.may_take_over(self.known.tick) {
             return Some(shadow);
         }
         let from = self.active.choice.id.clone();
-        let Some(rest) = shadow.rest_from(self.locator.position(), &self.trail) else {
+        let Some(rest) = shadow.rest_from(self.known.position(), &self.known.trail) else {
             if n_plans == MOST_PLANS {
                 self.refuse_promotion(
                     &mut shadow,
@@ -66,16 +67,16 @@ impl Mission {
             }
             return Some(shadow);
         };
-        let here = self.locator.position();
+        let here = self.known.position();
         let reason = Reason::Swap { from };
         let asked = AskedPlan { from_anchor: shadow.from_anchor, ..AskedPlan::from_here(reason, here) };
-        let evaluated = self.evaluate(None, &shadow.slot.choice.id, &asked, rest);
+        let evaluated = self.known.evaluate(None, &shadow.slot.choice.id, &asked, rest);
         match &evaluated.objection {
             None => {
                 self.take_over(shadow, evaluated);
                 return None;
             }
-            Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
+            Some(objection) if objection.by_tether && self.known.may_try_from_anchor(&asked) => {
                 shadow.slot.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
             }
             Some(objection) => self.refuse_promotion(&mut shadow, objection.message.clone()),
@@ -108,7 +109,7 @@ impl Mission {
             pending.kind = PendingKind::StepInShadow;
         }
         // A hold that blames the planner before has lost its reason.
-        slot.prepare = if matches!(self.phase, Phase::Held(_)) { Prepare::Plan } else { Prepare::No };
+        slot.prepare = if matches!(self.known.phase, Phase::Held(_)) { Prepare::Plan } else { Prepare::No };
         self.happened.push(EventKind::Promoted { planner, tally });
         self.promote(slot);
         self.happened.extend(events);

@@ -87,7 +87,7 @@ fn texts(flight: &Flight) -> Vec<String> {
 }
 
 fn driven_s(flight: &Flight) -> f64 {
-    flight.mission.now_s()
+    flight.mission.known.now_s()
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn a_planner_that_fails_at_it_is_named_and_harms_nobody() {
 #[test]
 fn a_fault_of_the_planner_that_drives_drops_it() {
     let mut flight = with_offer();
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     assert_eq!(texts(&flight)[1], "no better plan of straight: the planner that drives failed");
     flight.tick(&[Order::Resume]);
@@ -275,7 +275,7 @@ fn a_forecast_makes_none_unless_they_are_taken_without_asking() {
     for (better_plan, in_fork) in [(BetterPlan::Offer, BetterPlan::Off), (BetterPlan::Take, BetterPlan::Take)]
     {
         let flight = flight(wasteful(better_plan));
-        assert_eq!(flight.mission.fork().mission.config.better_plan, in_fork);
+        assert_eq!(flight.mission.fork().mission.known.config.better_plan, in_fork);
     }
 }
 
@@ -288,7 +288,7 @@ fn a_turn_at_the_joint_counts_for_both() {
         _ => None,
     });
     let (flown, better, path) = said.unwrap();
-    let alone = Effort::of(&path, &taken.mission.config.limits);
+    let alone = Effort::of(&path, &taken.mission.known.config.limits);
     assert!(better.length_m > alone.length_m && flown.length_m > better.length_m);
     let planned = taken.events.iter().rev().find_map(|event| match &event.kind {
         EventKind::Planned { ask: None, reason: Reason::MapChanged, length_m, .. } => Some(*length_m),
