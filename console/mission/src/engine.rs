@@ -9,6 +9,8 @@ mod answers;
 mod asks;
 mod better_plan;
 mod candidate;
+mod checking;
+mod course;
 mod driving;
 mod floor;
 mod fork;
@@ -18,13 +20,14 @@ mod holding;
 mod known;
 mod orders;
 mod planning;
+mod preparing;
 mod requests;
 mod rules;
 mod scanning;
 mod shadow;
-mod slot;
 mod stepping;
 mod tethering;
+mod worker;
 mod workers;
 mod zones;
 
@@ -37,14 +40,16 @@ use crate::{
     tether::Tether,
 };
 pub use driving::Sending;
+use driving::{Driving, LeftPlan, Prepare};
 pub use fork::Fork;
 use happened::Happened;
 use known::Known;
 use planner_api::{Drive, Reason};
-use rules::{PlannerSeen, Rules, Seen};
+use preparing::Preparing;
+use rules::{Rules, Seen};
 use shadow::Shadow;
-use slot::{LeftPlan, PlannerSlot};
 use stepping::PlaceOnPlan;
+use worker::Worker;
 use workers::Workers;
 use world::{Floor, Readings, World};
 
@@ -74,10 +79,9 @@ pub struct Step {
 pub struct Mission {
     known: Known,
     rules: Rules,
-    /// The planner that drives.
-    active: PlannerSlot,
-    /// A planner that is being prepared to take over.
-    candidate: Option<PlannerSlot>,
+    driving: Driving,
+    /// What is prepared beside it.
+    preparing: Option<Preparing>,
     /// A planner that flies beside the one that drives, and moves nothing.
     shadow: Option<Shadow>,
     /// Mission time from which on a better plan than the repaired one is looked for, seconds.
@@ -97,8 +101,8 @@ impl Mission {
     pub fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
         Self {
             rules: Rules::new(&config),
-            active: PlannerSlot::new(config.planner.clone(), Reason::Start),
-            candidate: None,
+            driving: Driving::new(Worker::new(config.planner.clone()), Reason::Start, Prepare::No),
+            preparing: None,
             shadow: None,
             better_plan_due_s: None,
             left: None,
@@ -116,7 +120,7 @@ impl Mission {
 
     /// The planner that drives, or that will drive first.
     pub fn planner_id(&self) -> &str {
-        &self.active.choice.id
+        self.driving.id()
     }
 
     /// What a command would become now on its way to the robot.
@@ -129,10 +133,10 @@ impl Mission {
         Standing {
             phase: &self.known.phase,
             position: self.known.position_trust(),
-            planner: self.active.known(),
+            planner: self.driving.worker.seen(),
             shadow: self.shadow.as_ref().map(|shadow| shadow.tally),
             has_offer: self.has_offer(),
-            readiness: self.readiness(),
+            readiness: self.driving.readiness(&self.known),
         }
     }
 
@@ -148,12 +152,12 @@ impl Mission {
         let map_changed = self.look_around(input.readings);
         self.known.scan_from(before, &mut self.happened);
         let reached = self.known.drag_tether(map_changed, input.readings.paid_out_m, &mut self.happened);
-        if map_changed {
-            self.doubt_plan();
-        }
-        self.watch_cuts();
+        self.watch_tether(map_changed);
         self.apply_rules(input.readings, reached.as_ref());
-        self.lead_shadow();
+        if let Some(shadow) = &mut self.shadow {
+            shadow.lead(&self.known, self.driving.id());
+            self.promote_if_due();
+        }
         self.lead_better_plan();
     }
 
@@ -169,6 +173,16 @@ impl Mission {
         Step { drive, events }
     }
 
+    /// Has the plan made again that the tether, or the way it lies, no longer permits.
+    fn watch_tether(&mut self, map_changed: bool) {
+        if map_changed {
+            self.driving.course.doubt_for_tether(&self.known);
+        }
+        if self.driving.course.has_strayed(&self.known) {
+            self.happened.push(EventKind::TetherAlarmRaised { alarm: TetherAlarm::Strayed, reached: false });
+        }
+    }
+
     /// The rules that hold the robot, let it go on, or end the mission; the first that has something to say wins.
     fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>) {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
@@ -181,21 +195,13 @@ impl Mission {
             here,
             position: self.known.position_trust(),
             task: &self.known.task,
-            plan_left_m: self.active.follower.as_ref().map(|plan| plan.left_m(here)),
+            plan_left_m: self.driving.course.follower.as_ref().map(|plan| plan.left_m(here)),
             scanned: self.known.floor.coverage.fraction_reachable(),
             touched: readings.contact,
             reached,
             can_replan: self.known.plans_ways_home(),
             can_go_home: self.known.tether.as_ref().is_none_or(Tether::can_go_home),
-            planner: PlannerSeen {
-                id: &self.active.choice.id,
-                is_waited_for: self.robot_waits(),
-                owes: self.active.pending.is_some(),
-                owed_s: self
-                    .active
-                    .owed_ticks(self.known.tick)
-                    .map(|ticks| ticks as f64 * self.known.config.tick_s),
-            },
+            planner: self.driving.seen(&self.known, self.robot_waits()),
         };
         match self.rules.update(&seen, &self.known.phase) {
             Some(verdict) => self.carry_out(verdict),
@@ -219,8 +225,8 @@ impl Mission {
     /// Whether the robot stands because it has no plan, or no planner, yet, or does not know whether to walk or to swim.
     fn robot_waits(&self) -> bool {
         !self.known.knows_medium()
-            || self.active.is_being_prepared()
-            || self.candidate.as_ref().is_some_and(|slot| slot.robot_waits)
+            || self.driving.worker.is_being_prepared()
+            || self.preparing.as_ref().is_some_and(Preparing::robot_waits)
     }
 }
 

@@ -71,7 +71,7 @@ impl Known {
     }
 
     pub(super) fn is_coverage(&self) -> bool {
-        matches!(self.task, Task::Cover(_))
+        self.task.cover().is_some()
     }
 
     /// Estimated position of the robot.

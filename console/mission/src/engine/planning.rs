@@ -1,19 +1,8 @@
-//! Plans: whether one may be flown, and what flying it changes.
+//! Plans: whether one may be flown.
 
-use super::{
-    Mission,
-    known::Known,
-    requests::AskedPlan,
-    rules::{CutsRule, Solids},
-    slot::PlanState,
-};
-use crate::{
-    ask::AskId,
-    event::EventKind,
-    tether::{Tether, return_path_ends},
-};
-use geometry::PathFollower;
-use planner_api::{Leg, LegTag, Plan, Reason};
+use super::{known::Known, requests::AskedPlan};
+use crate::{ask::AskId, event::EventKind};
+use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
 /// A plan shorter than this leads nowhere, metres.
@@ -48,24 +37,9 @@ impl Known {
         plan: Plan,
     ) -> Evaluated {
         let plan = after(&asked.return_path, plan);
-        let mut events = vec![Self::planned(ask, planner, asked, &plan)];
+        let mut events = vec![planned(ask, planner, asked, &plan)];
         let objection = self.objection(planner, &plan, &mut events);
         Evaluated { plan, events, objection }
-    }
-
-    /// That a plan was made, after its return path.
-    pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
-        EventKind::Planned {
-            ask,
-            return_path: asked.return_path.len(),
-            planner: planner.to_owned(),
-            reason: asked.reason.clone(),
-            length_m: polyline::length_m(&plan.path),
-            path: plan.path.clone(),
-            complete: plan.complete,
-            legs: plan.legs.clone(),
-            cuts: plan.cuts.clone(),
-        }
     }
 
     /// Why a plan is not flown; its certificate goes into the events.
@@ -108,35 +82,18 @@ impl Known {
     }
 }
 
-impl Mission {
-    /// Flies a plan from now on.
-    pub(super) fn take_plan(&mut self, plan: &Plan) {
-        self.drop_better_plan("another plan is flown");
-        self.better_plan_due_s = None;
-        self.known.task.take_plan(plan);
-        // Progress is counted along the new plan from here.
-        self.rules.stuck.restart();
-        let anchor = self.known.tether.as_ref().map(Tether::anchor);
-        let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
-        let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
-        let here = self.known.position();
-        let boundary = &self.known.chart.world().boundary;
-        let solids = Solids { boundary, map: self.known.chart.map(), room_m: self.known.config.room_m() };
-        let slot = &mut self.active;
-        (slot.plan, slot.keep) = (PlanState::Flying { is_whole: plan.complete }, None);
-        slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here, &solids);
-        slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
-        slot.outdate_step();
-        self.doubt_fresh_plan();
-    }
-
-    /// What was found while a plan was being made may stand in its way: then another one is due at once.
-    fn doubt_fresh_plan(&mut self) {
-        let room_m = self.known.config.room_m();
-        let found = std::mem::take(&mut self.active.found_since);
-        if found.iter().any(|shape| self.known.task.is_in_the_way(shape, room_m)) {
-            self.active.want_plan(Reason::MapChanged);
-        }
+/// That a plan was made, after its return path.
+pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
+    EventKind::Planned {
+        ask,
+        return_path: asked.return_path.len(),
+        planner: planner.to_owned(),
+        reason: asked.reason.clone(),
+        length_m: polyline::length_m(&plan.path),
+        path: plan.path.clone(),
+        complete: plan.complete,
+        legs: plan.legs.clone(),
+        cuts: plan.cuts.clone(),
     }
 }
 

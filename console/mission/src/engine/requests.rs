@@ -1,6 +1,6 @@
 //! What planners are given with an ask: the inputs of a plan and of a command.
 
-use super::known::Known;
+use super::{course::Due, known::Known};
 use crate::{
     ask::{PlanAsk, StepAsk},
     task::Task,
@@ -12,15 +12,6 @@ use world::{CoverageGrid, Point};
 
 /// How much of the targets and of the plan a planner sees ahead, metres.
 const AHEAD_M: f64 = 4.0;
-
-/// Where a plan begins.
-pub(super) struct Beginning<'a> {
-    pub start: PoseEstimate,
-    /// The way to there, from the start of the mission.
-    pub previous: Vec<Point>,
-    /// What has been scanned by then.
-    pub coverage: &'a CoverageGrid,
-}
 
 /// What has to be remembered of a plan that is being made.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,29 +42,30 @@ impl Known {
     /// of the first `n_flown` points of the path flown.
     pub(super) fn plan_ask(
         &self,
-        reason: Reason,
-        from_anchor: bool,
+        Due { reason, from_anchor }: &Due,
         n_flown: usize,
         keep: Option<Plan>,
     ) -> (AskedPlan, PlanAsk) {
-        let return_path = if from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
+        let return_path =
+            if *from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
         let here = self.locator.pose_estimate();
         let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
         let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
         let is_repair = keep.is_some() && matches!(reason, Reason::MapChanged | Reason::Blocked);
-        let beginning = Beginning { start, previous, coverage: &self.floor.coverage };
-        let ask = self.plan_from(beginning, reason.clone(), keep);
-        let asked =
-            AskedPlan { return_path, from_anchor, is_repair, ..AskedPlan::from_here(reason, here.position) };
+        let ask = self.plan_from(start, previous, &self.floor.coverage, (reason.clone(), keep));
+        let asked = AskedPlan::from_here(reason.clone(), here.position);
+        let asked = AskedPlan { return_path, from_anchor: *from_anchor, is_repair, ..asked };
         (asked, ask)
     }
 
-    /// The inputs of a plan for what is left of the task.
+    /// The inputs of a plan for what is left of the task from some place on, with the way to there from the start of the
+    /// mission and what is scanned by then; why it is made, and the plan that it is to keep to.
     pub(super) fn plan_from(
         &self,
-        Beginning { start, previous, coverage }: Beginning<'_>,
-        reason: Reason,
-        under_way: Option<Plan>,
+        start: PoseEstimate,
+        previous: Vec<Point>,
+        coverage: &CoverageGrid,
+        (reason, under_way): (Reason, Option<Plan>),
     ) -> PlanAsk {
         let task = self.task.left(coverage, self.config.lane_m(), self.config.tether_limits());
         PlanAsk { reason, start, task, site: Arc::new(self.chart.site()), previous, under_way }

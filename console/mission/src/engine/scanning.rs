@@ -1,6 +1,11 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
-use super::{Mission, happened::Happened, known::Known};
+use super::{
+    Mission,
+    happened::Happened,
+    known::Known,
+    preparing::{Preparing, Role},
+};
 use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
 use planner_api::Reason;
 use world::{Cell, CellRun, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
@@ -32,19 +37,17 @@ impl Mission {
         };
         let shadow_is_due = self.shadow.as_ref().is_some_and(|shadow| is_due(&shadow.task));
         if is_due(&self.known.task) {
-            self.active.want_plan(Reason::MapChanged);
+            self.driving.course.want_plan(Reason::MapChanged);
         }
         if changes_plans && !shapes.is_empty() {
             self.postpone_better_plan();
+            self.driving.course.found_since.extend_from_slice(&shapes);
+            if let Some(Preparing { role: Role::Candidate(candidate), .. }) = &mut self.preparing {
+                candidate.found_since.extend_from_slice(&shapes);
+            }
         }
-        let shadow = self.shadow.as_mut().map(|shadow| &mut shadow.slot);
-        if changes_plans {
-            self.active.found_since.extend_from_slice(&shapes);
-            let others = self.candidate.iter_mut().chain(shadow);
-            others.for_each(|slot| slot.found_since.extend_from_slice(&shapes));
-        }
-        if shadow_is_due {
-            self.shadow.iter_mut().for_each(|shadow| shadow.slot.want_plan(Reason::MapChanged));
+        if let Some(shadow) = &mut self.shadow {
+            shadow.map_changed(if changes_plans { &shapes } else { &[] }, shadow_is_due);
         }
         self.happened.extend(events);
         let changes = self.known.floor.survey(&self.known.config, &self.known.chart, &shapes);

@@ -646,7 +646,7 @@ fn a_planner_that_sees_no_way_has_not_failed() {
                 flight.ended(),
                 Some(Outcome::Stuck),
                 "{:?}",
-                (flight.mission.phase(), flight.mission.active.prepare)
+                (flight.mission.phase(), flight.mission.driving.prepare)
             );
         }
     }

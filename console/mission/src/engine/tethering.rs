@@ -5,7 +5,6 @@ use crate::{
     event::{EventKind, TetherAlarm},
     phase::Outcome,
 };
-use planner_api::Reason;
 use world::Point;
 
 impl Known {
@@ -35,35 +34,14 @@ impl Known {
         happened.extend(events);
         reached
     }
-}
 
-impl Mission {
-    /// What was found may stand beside the rest of the plan and yet in the way of its tether: then another plan is due.
-    pub(super) fn doubt_plan(&mut self) {
-        let Some(tether) = self.known.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else {
-            return;
-        };
-        let Some(rest) = self.known.task.lanes_left().filter(|_| self.active.has_plan()) else { return };
-        if !tether.bears(rest, self.known.chart.world(), self.known.task_ends_at_anchor()) {
-            self.active.want_plan(Reason::MapChanged);
+    /// Whether plans are flown that are refused for the tether.
+    pub(super) fn allow_uncertified(&mut self, fly: bool) {
+        if let Some(tether) = &mut self.tether {
+            tether.allow_uncertified(fly);
         }
     }
 
-    /// A robot that has come off its plan across a cut needs another plan, from the tether as it lies.
-    pub(super) fn watch_cuts(&mut self) {
-        if self.known.locator.is_lost() {
-            return;
-        }
-        let has_strayed = self.active.cuts.update(self.known.position(), self.known.config.limits.radius_m);
-        if has_strayed && self.active.has_plan() {
-            self.happened.push(EventKind::TetherAlarmRaised { alarm: TetherAlarm::Strayed, reached: false });
-            self.active.want_plan(Reason::MapChanged);
-            self.active.cuts.clear();
-        }
-    }
-}
-
-impl Known {
     /// The way back along the cable, as wide as possible; `None` at the anchor, or if there is none.
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
@@ -97,7 +75,7 @@ impl Mission {
             self.known.tether.as_ref().filter(|_| back).and_then(|t| t.left_out(self.known.chart.world()));
         match left {
             Some(why) => self.end(Outcome::Entangled, format!("back at the anchor, but {why}")),
-            None => self.end(Outcome::Complete, self.known.done_reason(self.active.is_plan_whole())),
+            None => self.end(Outcome::Complete, self.known.done_reason(self.driving.course.is_whole())),
         }
     }
 }

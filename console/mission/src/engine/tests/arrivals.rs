@@ -122,7 +122,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     let value = ParamValue::Float(2.0);
     let events = flight.tick(&[Order::SetParameter { key: "gain".into(), value: value.clone() }]);
     let at = |is: fn(&EventKind) -> bool| events.iter().position(is);
@@ -131,7 +131,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
         changed.is_some() && changed < at(|kind| matches!(kind, EventKind::Commanded { .. })),
         "{events:?}"
     );
-    assert_eq!(flight.mission.active.choice.parameters["gain"], value);
+    assert_eq!(flight.mission.driving.worker.choice.parameters["gain"], value);
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn state_is_saved_every_second_and_given_to_the_next_instance() {
     flight.tick(&[Order::Start]);
     flight.fly(35);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Snapshotted { .. })), 3);
-    let newest = flight.mission.active.saved;
+    let newest = flight.mission.driving.worker.saved;
     flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     flight.delay = Box::new(|ask, _| u64::from(matches!(ask.what, What::Open { .. })));

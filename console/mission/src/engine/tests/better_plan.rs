@@ -1,6 +1,7 @@
 //! A plan for all that is left, made while a repaired one is flown.
 
 use super::{
+    super::preparing::Role,
     arrivals::replay,
     covering::{covered, covering},
     *,
@@ -113,10 +114,12 @@ fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
 #[test]
 fn the_plan_is_asked_from_a_place_ahead_for_what_will_be_left_there() {
     let mut flight = with_offer();
-    let better = flight.mission.candidate.as_ref().and_then(|slot| slot.better.clone()).unwrap();
+    let Some(Preparing { role: Role::Better(better), .. }) = &flight.mission.preparing else {
+        panic!("none is made")
+    };
     let (kept, asked) = (flight.planner.regions_m2[1], flight.planner.regions_m2[2]);
     assert!(asked < kept - 2.0, "{kept} m² at the repair, {asked} m² for the better plan");
-    let at = better.begins().unwrap();
+    let at = better.joint().unwrap().at;
     let mut nearest_m = f64::INFINITY;
     let away_m = (at - flight.pose.position).norm();
     for _ in 0..2000 {
@@ -244,7 +247,7 @@ fn orders_that_change_the_plan_drop_it() {
         assert!(!flight.mission.standing().has_offer && !folded(&flight).standing().has_offer);
         assert_eq!(texts(&flight)[1], format!("no better plan of straight: {why}"));
         assert_eq!(flight.closed[0], WorkerId(2));
-        assert!(flight.mission.candidate.is_none());
+        assert!(flight.mission.preparing.is_none());
     }
 }
 

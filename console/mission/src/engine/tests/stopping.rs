@@ -255,7 +255,7 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
 fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     let mut flight = started(config());
     flight.tick(&[Order::Hold]);
-    flight.mission.active.want_plan(Reason::MapChanged);
+    flight.mission.driving.course.want_plan(Reason::MapChanged);
     flight.planner.refuse = vec!["other"];
     flight.tick(&[swap_to("other")]);
     flight.fly(3);

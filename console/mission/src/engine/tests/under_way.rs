@@ -60,7 +60,7 @@ fn another_planner_and_other_values_begin_anew() {
 #[test]
 fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_values() {
     let mut flight = held_on_the_way();
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     let chosen = |value| {
         let parameters = Parameters::from([("gain".to_owned(), ParamValue::Float(value))]);
         Order::ChoosePlanner(PlannerChoice { id: "straight".into(), parameters })
@@ -73,9 +73,9 @@ fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_valu
     // The same choice once more plans anew, and so does one that changes the plan or takes a value back.
     flight.tick(&[chosen(2.0)]);
     assert_eq!(flight.planner.plans, 2);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(false)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(false)];
     flight.tick(&[chosen(3.0)]);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     flight.tick(&[swap_to("straight")]);
     assert_eq!((flight.planner.plans, flight.planner.chosen.len()), (4, 4));
 }
@@ -91,7 +91,7 @@ fn a_planner_that_begins_again_with_other_live_values_keeps_to_its_plan() {
     flight.tick(&[Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) }]);
     flight.fly(2);
     assert_eq!((flight.planner.chosen.len(), kept_m(&flight)), (2, vec![None, left_m]));
-    assert_eq!(flight.mission.active.choice.parameters["gain"], ParamValue::Float(2.0));
+    assert_eq!(flight.mission.driving.worker.choice.parameters["gain"], ParamValue::Float(2.0));
 }
 
 #[test]
