@@ -18,7 +18,7 @@ pub(super) struct Course {
     /// The plan that is still to be made, or is being made.
     pub due: Option<Due>,
     /// Whether the last plan was for all that was left of the task.
-    is_whole: bool,
+    pub is_whole: bool,
     /// Its plan, for tasks that do not follow it by themselves.
     pub follower: Option<PathFollower>,
     /// The lines that its plan never crosses.

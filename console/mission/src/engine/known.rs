@@ -16,8 +16,7 @@ use world::{Floor, Point, World};
 /// A robot that turns at least this fast turns about in the time that it is given at a corner, radians per second.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
-/// Everything that the mission knows of robot, tank and task, and where it stands with them. Planners see it and change none
-/// of it.
+/// Everything that the mission knows of robot, tank and task, and where it stands with them.
 #[derive(Clone)]
 pub(super) struct Known {
     pub config: MissionConfig,
