@@ -57,6 +57,14 @@ impl Task {
         }
     }
 
+    /// The floor to be scanned; `None` unless the task is to cover.
+    pub(crate) fn cover(&self) -> Option<&Cover> {
+        match self {
+            Self::Cover(cover) => Some(cover),
+            Self::Goto(_) | Self::Follow { .. } => None,
+        }
+    }
+
     /// Takes the robot's position. `has_room` says where the robot may be: points of a preset path elsewhere are left out.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, has_room: impl Fn(Point) -> bool) {
         match self {
@@ -100,71 +108,47 @@ impl Task {
 
     /// What is left of the plan from the place that it leads to next; `None` unless it is for floor.
     pub(crate) fn under_way(&self) -> Option<api::Plan> {
-        match self {
-            Self::Cover(cover) => cover.under_way(),
-            Self::Goto(_) | Self::Follow { .. } => None,
-        }
+        self.cover()?.under_way()
     }
 
     /// Whether a plan is for the most part the one that is flown.
     pub(crate) fn keeps_to(&self, plan: &api::Plan) -> bool {
-        match self {
-            Self::Cover(cover) => cover.keeps_to(plan),
-            Self::Goto(_) | Self::Follow { .. } => false,
-        }
+        self.cover().is_some_and(|cover| cover.keeps_to(plan))
     }
 
     /// Reachable cells that are left to scan; none unless the task is to cover.
     pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
-        match self {
-            Self::Cover(cover) => cover.floor_left(coverage),
-            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
-        }
+        self.cover().map_or_else(Vec::new, |cover| cover.floor_left(coverage))
     }
 
     /// The areas to be scanned that hold no floor in reach; none unless the task is to cover some.
     pub(crate) fn areas_out_of_reach(&self, coverage: &CoverageGrid) -> Vec<Vec<Point>> {
-        match self {
-            Self::Cover(cover) => cover.regions_out_of_reach(coverage).collect(),
-            Self::Goto(_) | Self::Follow { .. } => Vec::new(),
-        }
+        self.cover().map_or_else(Vec::new, |cover| cover.regions_out_of_reach(coverage).collect())
     }
 
     /// Whether only some of the floor is to be scanned.
     pub(crate) fn is_in_part(&self) -> bool {
-        matches!(self, Self::Cover(cover) if cover.is_in_part())
+        self.cover().is_some_and(Cover::is_in_part)
     }
 
     /// What is left of the lanes, from the point nearest to the robot on; `None` unless there are any.
     pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
-        match self {
-            Self::Cover(cover) => cover.lanes_left(),
-            Self::Goto(_) | Self::Follow { .. } => None,
-        }
+        self.cover()?.lanes_left()
     }
 
     /// Progress along the lanes; `None` unless there are any.
     pub(crate) fn lanes(&self) -> Option<&PathFollower> {
-        match self {
-            Self::Cover(cover) => cover.lanes(),
-            Self::Goto(_) | Self::Follow { .. } => None,
-        }
+        self.cover()?.lanes()
     }
 
     /// What the stretch of the plan under the robot is for, if the planner says.
     pub(crate) fn leg(&self) -> Option<api::LegTag> {
-        match self {
-            Self::Cover(cover) => cover.leg(),
-            Self::Goto(_) | Self::Follow { .. } => None,
-        }
+        self.cover()?.leg()
     }
 
     /// Number of the stretch of the plan under the robot, if the planner says what its stretches are for.
     pub(crate) fn leg_index(&self) -> Option<usize> {
-        match self {
-            Self::Cover(cover) => cover.leg_index(),
-            Self::Goto(_) | Self::Follow { .. } => None,
-        }
+        self.cover()?.leg_index()
     }
 
     /// Whether what is left of the task leads the robot's centre nearer than `room_m` to an outline. Planners that go

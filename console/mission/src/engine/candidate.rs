@@ -1,116 +1,101 @@
-//! What the answers of a planner do that is being prepared to take over.
+//! A planner that is being prepared to take over.
 
 use super::{
     Mission,
-    answers::mismatch,
-    planning::Evaluated,
-    slot::{AskedPlan, Pending, PendingKind, PlanState, PlannerSlot},
+    course::Due,
+    driving::{Driving, Prepare},
+    known::Known,
+    planning::planned,
+    preparing::{Preparing, Role},
+    requests::AskedPlan,
+    worker::Worker,
 };
 use crate::{
-    ask::{Answer, AskId, Given, Said},
+    ask::{AskId, PlanAsk, Said},
     event::EventKind,
-    task::Task,
 };
-use planner_api::Plan;
+use planner_api::{Plan, Reason};
+use world::Shape;
 
 /// A candidate whose plan begins further from the robot than this plans again, metres.
 pub(super) const NEAR_PLAN_M: f64 = 0.5;
 /// It keeps to that plan if the robot has gone no further, metres: more floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;
 
-impl Mission {
-    /// Takes an answer of the planner that is being prepared; gives it back unless it has taken over or is closed.
-    pub(super) fn answer_candidate(
-        &mut self,
-        mut slot: PlannerSlot,
-        pending: Pending,
-        Answer { ask, result, said }: Answer,
-    ) -> Option<PlannerSlot> {
-        match (pending.kind, result.and_then(|given| self.checked(&slot, given))) {
-            (PendingKind::Open, Ok(Given::Opened(info))) => {
-                self.pass_on(said, &slot.choice.id);
-                (slot.info, slot.is_ready) = (Some((*info).clone()), true);
-                self.happened.push(EventKind::PlannerPrepared { ask, choice: slot.choice.clone(), info });
-                Some(slot)
-            }
-            (PendingKind::Plan(_), Ok(Given::Plan(plan))) if slot.better.is_some() => {
-                self.better_plan_arrived(slot, ask, plan, said)
-            }
-            (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
-                self.candidate_planned(slot, ask, asked, plan, said)
-            }
-            (_, result) => {
-                let fault = result.err().unwrap_or_else(|| mismatch(&slot.choice.id));
-                self.pass_on(said, &slot.choice.id);
-                if slot.better.is_some() {
-                    self.better_plan_failed(slot, ask, fault);
-                    return None;
-                }
-                let message = fault.message.clone();
-                self.note_fault(ask, fault, slot.info.as_ref().map(|info| info.sha256.clone()));
-                self.reject(slot, message);
-                None
-            }
-        }
+/// A planner that takes over as soon as it has a plan that flies.
+#[derive(Clone)]
+pub(super) struct Candidate {
+    /// The plan that it is to make.
+    due: Due,
+    /// A plan of its own that it is to keep to, other than the one that is flown.
+    keep: Option<Plan>,
+    /// What was found since the plan was asked for that is being made.
+    pub found_since: Vec<Shape>,
+    /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.
+    pub robot_waits: bool,
+}
+
+impl Candidate {
+    /// A planner that is still to be opened, why it is to take over, and a plan that it is to keep to.
+    pub(super) fn prepare(worker: Worker, reason: Reason, keep: Option<Plan>) -> Preparing {
+        let due = Due::from_here(reason);
+        let candidate = Self { due, keep, found_since: Vec::new(), robot_waits: false };
+        Preparing { worker, role: Role::Candidate(candidate) }
     }
 
-    fn candidate_planned(
+    pub(super) fn plan_ask(&mut self, known: &Known) -> (AskedPlan, PlanAsk) {
+        self.found_since.clear();
+        known.plan_ask(&self.due, known.trail.len(), self.keep.clone())
+    }
+}
+
+impl Mission {
+    /// Takes the plan of a candidate; gives it back unless it has taken over or is closed.
+    pub(super) fn candidate_planned(
         &mut self,
-        mut slot: PlannerSlot,
-        ask: AskId,
-        asked: AskedPlan,
+        worker: Worker,
+        mut candidate: Candidate,
+        (ask, asked): (AskId, AskedPlan),
         plan: Plan,
         said: Said,
-    ) -> Option<PlannerSlot> {
-        let id = slot.choice.id.clone();
-        let gone_m = (self.locator.position() - asked.here).norm();
+    ) -> Option<Preparing> {
+        let gone_m = (self.known.position() - asked.here).norm();
         if gone_m > NEAR_PLAN_M {
             // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
-            self.pass_on(said, &id);
-            let is_kept = gone_m <= MOST_GONE_M && matches!(self.task, Task::Cover(_));
+            self.happened.pass_on(said, worker.id());
+            let is_kept = gone_m <= MOST_GONE_M && self.known.is_coverage();
             // The journal repeats what the planner is asked next.
             let from_here = AskedPlan::from_here(asked.reason, asked.here);
-            let planned = is_kept.then(|| Box::new(Self::planned(Some(ask), &id, &from_here, &plan)));
+            let planned = is_kept.then(|| Box::new(planned(Some(ask), worker.id(), &from_here, &plan)));
             self.happened.push(EventKind::Discarded { ask, plan: planned });
-            slot.robot_waits = true;
-            slot.keep = is_kept.then_some(Plan { cost: 0.0, ..plan });
-            return Some(slot);
+            (candidate.robot_waits, candidate.keep) = (true, is_kept.then_some(Plan { cost: 0.0, ..plan }));
+            return Some(Preparing { worker, role: Role::Candidate(candidate) });
         }
-        let Evaluated { plan, events, objection } = self.evaluate(Some(ask), &id, &asked, plan);
-        if objection.is_none() {
-            self.promote(slot);
-            self.pass_on(said, &id);
-            self.happened.extend(events);
-            self.take_plan(&plan);
-            self.plan_is_there();
+        let mut evaluated = self.known.evaluate(Some(ask), worker.id(), &asked, plan);
+        let Some(objection) = evaluated.objection.take() else {
+            self.take_over(Driving::with_plan(worker, candidate.found_since, Prepare::Plan), said, evaluated);
             return None;
+        };
+        self.happened.pass_on(said, worker.id());
+        self.happened.extend(evaluated.events);
+        if objection.by_tether && self.known.may_try_from_anchor(&asked) {
+            candidate.due = Due::from_anchor(asked.reason);
+            return Some(Preparing { worker, role: Role::Candidate(candidate) });
         }
-        self.pass_on(said, &id);
-        self.happened.extend(events);
-        match objection {
-            Some(objection) if !(objection.by_tether && self.may_try_from_anchor(&asked)) => {
-                self.reject(slot, objection.message);
-                None
-            }
-            _ => {
-                slot.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
-                Some(slot)
-            }
-        }
+        self.reject(worker, objection.message);
+        None
     }
 
-    /// The planner that was being prepared takes over.
-    pub(super) fn promote(&mut self, slot: PlannerSlot) {
-        let from = slot.before.as_ref().map(|before| before.id.clone());
-        let (choice, info) = (slot.choice.clone(), slot.info.clone());
-        self.replace_active(slot);
-        if let Some(info) = info {
-            self.happened.push(EventKind::PlannerChosen { ask: None, choice, info: Box::new(info), from });
-        }
+    pub(super) fn reject(&mut self, mut worker: Worker, why: String) {
+        self.workers.close(worker.leave());
+        self.happened.push(EventKind::PlannerRejected { planner: worker.choice.id, why });
     }
 
-    pub(super) fn reject(&mut self, mut slot: PlannerSlot, why: String) {
-        self.workers.close(slot.leave_worker());
-        self.happened.push(EventKind::PlannerRejected { planner: slot.choice.id, why });
+    /// Another planner takes over than the one that is being prepared.
+    pub(super) fn reject_preparing(&mut self, why: &str) {
+        self.drop_better_plan("another planner drives");
+        if let Some(Preparing { worker, .. }) = self.preparing.take() {
+            self.reject(worker, why.to_owned());
+        }
     }
 }

@@ -1,109 +1,145 @@
-//! One tick of moving: the planner's command becomes what the robot is sent.
+//! The planner that drives.
+
+mod asks;
+mod commands;
+mod orders;
 
 use super::{
-    Mission,
-    rules::{LatePlannerRule, Verdict},
-    slot::{Arrived, Pending},
+    course::Course,
+    happened::Happened,
+    known::Known,
+    rules::{BlockedRule, LatePlannerRule, PlannerSeen},
+    worker::{PendingKind, Worker},
+    workers::Workers,
 };
-use crate::{
-    ask::Said,
-    event::{EventKind, rounded_command},
-    phase::{Gait, Hold, HoldReason, Phase, Resumes},
-    task::Task,
-};
-use geometry::motion::drive_for;
-use planner_api::{Command, Drive, Limits};
+use crate::{ask::WorkerId, plan_id::PlanId, planner::PlannerChoice};
+use commands::Arrived;
+pub use commands::Sending;
+use planner_api::{Plan, Reason};
+use world::{Point, Shape};
 
-/// How much of the targets and of the plan a planner sees ahead, metres.
-pub(super) const AHEAD_M: f64 = 4.0;
-/// Distance between the points of the path flown that are kept for planners, metres.
-const TRAIL_M: f64 = 0.1;
-
-/// What a command becomes on its way to the robot, at one moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sending {
-    heading_rad: f64,
-    limits: Limits,
-    turn_first_rad: f64,
+/// The planner that drives, or that will drive first.
+#[derive(Clone, Default)]
+pub(super) struct Driving {
+    pub worker: Worker,
+    pub course: Course,
+    /// A plan of its own that it is to keep to, other than the one that is flown.
+    pub keep: Option<Plan>,
+    /// How far it is to be prepared while the robot stands.
+    pub prepare: Prepare,
+    /// The plan that it made before the start, or why that may not be run; `None` where nobody looks at it.
+    pub first_plan: Option<Result<PlanId, String>>,
+    /// What its live parameters are to become.
+    pub reconfigure: Option<PlannerChoice>,
+    /// Whether its state is wanted for the instance that replaces it.
+    pub snapshot_due: bool,
+    /// Mission time of the last snapshot, or of the first command, seconds.
+    saved_at_s: Option<f64>,
+    /// Its command for this tick.
+    command: Option<Arrived>,
+    /// The tick for which it was asked last to command.
+    stepped_at: Option<u64>,
+    /// Whether it answers late.
+    late: LatePlannerRule,
+    /// Whether it says that it cannot go on.
+    blocked: BlockedRule,
 }
 
-impl Sending {
-    /// A command as the robot is sent it: within its limits, in its own way of moving, and rounded as everything that is
-    /// reported. Doing this to a command that was sent changes nothing, so that recorded commands can be fed in again.
-    pub fn as_sent(&self, command: Command) -> Command {
-        let drive = drive_for(command.drive, self.heading_rad, &self.limits, self.turn_first_rad);
-        rounded_command(Command { drive, status: command.status })
+/// How far a planner is to be prepared while the robot stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(super) enum Prepare {
+    /// Not at all.
+    #[default]
+    No,
+    /// It shall be opened.
+    Open,
+    /// It shall have a plan.
+    Plan,
+}
+
+/// A plan that was being flown when another planner took over.
+#[derive(Clone)]
+pub(super) struct LeftPlan {
+    choice: PlannerChoice,
+    /// What was left of it.
+    plan: Plan,
+    /// Where the robot was.
+    at: Point,
+}
+
+impl LeftPlan {
+    /// The plan, for the planner that flew it with the same values, if the robot is still within `near_m` of where it was left:
+    /// whoever is called back goes on with it.
+    pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
+        (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }
 }
 
-impl Mission {
-    /// Sends the robot the command of this tick; without one it stands still.
-    pub(super) fn drive(&mut self) -> Drive {
-        let Phase::Running(gait) = self.phase else { return Drive::STILL };
-        let Some(arrived) = self.active.command.take() else { return Drive::STILL };
-        let (ask, command) = (arrived.ask, arrived.command);
-        self.pass_on_with(arrived);
-        let (here, in_lanes) = (self.locator.position(), matches!(self.task, Task::Cover(_)));
-        let verdict = self.active.blocked.update(command.status, here, in_lanes, self.config.tick_s);
-        if let Some(Verdict::Replan(reason)) = verdict {
-            self.active.want_plan(reason);
-        }
-        let wanted = self.sending().as_sent(command);
-        let sent = self.governed(wanted);
-        let asked = (sent != wanted).then_some(wanted);
-        self.happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
-        self.note_limit(wanted, sent);
-        if gait == Gait::OneTick {
-            self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
-        }
-        sent.drive
+impl Driving {
+    /// A planner that drives as soon as it has a plan, why it is asked for one, and how far it is prepared before.
+    pub(super) fn new(worker: Worker, reason: Reason, prepare: Prepare) -> Self {
+        Self { worker, course: Course::new(reason), prepare, ..Self::default() }
     }
 
-    /// What a command would become now on its way to the robot.
-    pub fn sending(&self) -> Sending {
-        Sending {
-            heading_rad: self.locator.pose().heading_rad,
-            limits: self.config.limits,
-            turn_first_rad: self.config.task.turn_first_rad(),
-        }
+    /// A planner that has planned already; what was found since may stand in the way.
+    pub(super) fn with_plan(worker: Worker, found_since: Vec<Shape>, prepare: Prepare) -> Self {
+        let course = Course { found_since, ..Course::default() };
+        Self { worker, course, prepare, ..Self::default() }
     }
 
-    /// Takes a command of the active planner, which was asked for in this tick or in an earlier one. The freshest one
-    /// that arrives before the tick ends is sent.
-    pub(super) fn take_command(&mut self, asked: &Pending, usable: bool, command: Command, said: Said) {
-        let ticks = self.tick - asked.tick;
-        let late_ticks = self.active.late.arrived(ticks).then_some(ticks);
-        let arrived = Arrived { ask: asked.id, command, said, late_ticks };
-        if !(usable && LatePlannerRule::is_fresh(ticks as f64 * self.config.tick_s)) {
-            return self.discard(arrived);
-        }
-        let now_s = self.now_s();
-        self.active.saved_at_s.get_or_insert(now_s);
-        if let Some(older) = self.active.command.replace(arrived) {
-            self.discard(older);
+    /// The planner's id.
+    pub(super) fn id(&self) -> &str {
+        self.worker.id()
+    }
+
+    /// Whether it is there and flies a plan.
+    pub(super) fn is_flying(&self) -> bool {
+        self.worker.is_ready() && self.course.has_plan()
+    }
+
+    /// What rules see of it.
+    pub(super) fn seen(&self, known: &Known, is_waited_for: bool) -> PlannerSeen<'_> {
+        let pending = self.worker.pending.as_ref();
+        let owed =
+            pending.filter(|_| !self.worker.is_being_prepared()).map(|pending| known.tick - pending.tick);
+        PlannerSeen {
+            id: self.id(),
+            is_waited_for,
+            owes: pending.is_some(),
+            owed_s: owed.map(|ticks| ticks as f64 * known.config.tick_s),
         }
     }
 
-    /// Notes that a command is not sent; what the planner said with it is passed on all the same.
-    pub(super) fn discard(&mut self, arrived: Arrived) {
-        let ask = arrived.ask;
-        self.pass_on_with(arrived);
-        self.happened.push(EventKind::Discarded { ask, plan: None });
+    /// Whether its state is asked for, or is about to be.
+    pub(super) fn is_saving(&self) -> bool {
+        let is_snapshot = self.worker.pending.as_ref().is_some_and(|p| p.kind == PendingKind::Snapshot);
+        self.snapshot_due || is_snapshot
     }
 
-    /// What there is to report with a command, directly before what becomes of it.
-    fn pass_on_with(&mut self, arrived: Arrived) {
-        let planner = self.active.choice.id.clone();
-        if let Some(ticks) = arrived.late_ticks {
-            self.happened.push(EventKind::PlannerLate { planner: planner.clone(), ticks });
-        }
-        self.pass_on(arrived.said, &planner);
+    /// Flies a plan from now on.
+    pub(super) fn take_plan(&mut self, plan: &Plan, known: &Known) {
+        self.keep = None;
+        self.course.keep_to_cuts(plan, known);
+        self.course.take(plan);
+        self.outdate_step();
+        self.course.doubt_fresh_plan(&known.task, known.config.room_m());
     }
 
-    pub(super) fn keep_trail(&mut self) {
-        let here = self.locator.position();
-        if self.trail.last().is_none_or(|last| (here - last).norm() >= TRAIL_M) {
-            self.trail.push(here);
-        }
+    /// What is left of the plan that it flies, for the case that it is called back.
+    pub(super) fn left_plan(&self, known: &Known) -> Option<LeftPlan> {
+        let plan = self.course.has_plan().then(|| known.task.under_way()).flatten()?;
+        Some(LeftPlan { choice: self.worker.choice.clone(), plan, at: known.position() })
+    }
+
+    /// Has its worker closed.
+    pub(super) fn close(&mut self, workers: &mut Workers, happened: &mut Happened) {
+        self.drop_command(happened);
+        workers.close(self.leave_worker());
+    }
+
+    /// Forgets the instance, which is to be closed, and what was wanted of it.
+    pub(super) fn leave_worker(&mut self) -> Option<WorkerId> {
+        (self.snapshot_due, self.command, self.reconfigure) = (false, None, None);
+        self.worker.leave()
     }
 }

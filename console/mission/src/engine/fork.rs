@@ -23,23 +23,20 @@ impl Mission {
     /// Costs a copy of the coverage grid and of the map.
     pub fn fork(&self) -> Fork {
         let mut mission = self.clone();
-        if let Some(mut candidate) = mission.candidate.take() {
-            candidate.leave_worker();
-        }
-        mission.shadow = None;
+        (mission.preparing, mission.shadow) = (None, None);
         // The robot of the forecast stands.
-        mission.governor.stand();
+        mission.known.governor.stand();
         // Nobody is there to take one.
-        if mission.config.better_plan == BetterPlan::Offer {
-            mission.config.better_plan = BetterPlan::Off;
+        if mission.known.config.better_plan == BetterPlan::Offer {
+            mission.known.config.better_plan = BetterPlan::Off;
         }
-        mission.active.leave_worker();
-        mission.active.saved = None;
-        let estimate = mission.locator.pose();
+        mission.driving.leave_worker();
+        mission.driving.worker.saved = None;
+        let estimate = mission.known.locator.pose();
         Fork {
-            world: mission.chart.world().clone(),
+            world: mission.known.chart.world().clone(),
             pose: Pose { position: estimate.position, heading_rad: estimate.heading_rad },
-            cable: mission.tether.as_ref().map(|tether| tether.cable().clone()),
+            cable: mission.known.tether.as_ref().map(|tether| tether.cable().clone()),
             mission,
         }
     }

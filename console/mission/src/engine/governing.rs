@@ -1,6 +1,6 @@
 //! Commands that are limited: the robot's speed as the mission knows it, and what is said when a planner is slowed down.
 
-use super::Mission;
+use super::known::Known;
 use crate::{
     config::MissionConfig,
     event::{EventKind, rounded_command},
@@ -71,7 +71,7 @@ impl Governor {
     }
 }
 
-impl Mission {
+impl Known {
     /// The robot's own speed, metres per second: as far as its acceleration has let it follow the commands.
     pub(super) fn speed_m_per_s(&self) -> f64 {
         self.governor.momentum.speed_m_per_s()
@@ -79,7 +79,7 @@ impl Mission {
 
     /// A command, so slow that the robot can stop after it.
     pub(super) fn governed(&self, command: Command) -> Command {
-        let (here, momentum) = (self.here(), &self.governor.momentum);
+        let (here, momentum) = (self.as_governed(), &self.governor.momentum);
         let reach_m = governor::reach_m(momentum, command.drive, &here);
         let is_free = self.chart.is_free(here.pose.position, reach_m);
         if is_free && governor::is_within_sight(momentum, command.drive, &here) {
@@ -92,30 +92,29 @@ impl Mission {
     }
 
     /// Says so when a planner is slowed down for long.
-    pub(super) fn note_limit(&mut self, asked: Command, sent: Command) {
+    pub(super) fn note_limit(&mut self, asked: Command, sent: Command) -> Option<EventKind> {
         let (asked_m_per_s, sent_m_per_s) = (speed(asked.drive), speed(sent.drive));
         let is_limited = sent_m_per_s < LIMITED_SHARE * asked_m_per_s;
-        if self.governor.limited.update(is_limited, self.config.tick_s) {
-            let needs_m = Braking::of(&self.here().limits).distance_m(asked_m_per_s);
-            self.happened.push(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m });
-        }
+        let needs_m = Braking::of(&self.as_governed().limits).distance_m(asked_m_per_s);
+        let is_named = self.governor.limited.update(is_limited, self.config.tick_s);
+        is_named.then_some(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m })
     }
 
     /// Keeps account of what the robot does.
     pub(super) fn follow_drive(&mut self, drive: Drive) {
-        let here = self.here();
+        let here = self.as_governed();
         self.governor.momentum = self.governor.momentum.after(drive, &here);
     }
 
     /// Takes in what the pressure sensor reads.
-    pub(super) fn take_pressure(&mut self, pressure_pa: Option<f64>) {
-        let (Some(sensor), Some(pressure_pa)) = (self.config.pressure, pressure_pa) else { return };
+    pub(super) fn take_pressure(&mut self, pressure_pa: Option<f64>) -> Option<EventKind> {
+        let (sensor, pressure_pa) = (self.config.pressure?, pressure_pa?);
         let is_first = !self.knows_medium();
-        let Some(medium) = self.governor.sensed.take(&sensor, pressure_pa) else { return };
+        let medium = self.governor.sensed.take(&sensor, pressure_pa)?;
         if is_first {
             self.governor.mode = Mode::of(medium);
         }
-        self.happened.push(EventKind::MediumKnown { medium, pressure_pa });
+        Some(EventKind::MediumKnown { medium, pressure_pa })
     }
 
     /// Whether the robot may move: one with a pressure sensor waits until that has decided how it has to.
@@ -124,19 +123,20 @@ impl Mission {
     }
 
     /// Walks or swims as the floor under the robot demands.
-    pub(super) fn update_mode(&mut self) {
-        let Some(amphibious) = self.config.limits.amphibious else { return };
+    pub(super) fn update_mode(&mut self) -> Option<EventKind> {
+        let amphibious = self.config.limits.amphibious?;
         let by_place = || Medium::at(&self.chart.world().zones, self.locator.position());
         let medium =
             if self.config.pressure.is_some() { self.governor.sensed.known() } else { Some(by_place()) };
         if let Some(medium) = medium {
             self.governor.mode = self.governor.mode.toward(medium, amphibious.transition_steps);
         } else if self.is_running() && !std::mem::replace(&mut self.governor.has_said_that_it_waits, true) {
-            self.happened.push(EventKind::MediumAwaited);
+            return Some(EventKind::MediumAwaited);
         }
+        None
     }
 
-    fn here(&self) -> Here {
+    fn as_governed(&self) -> Here {
         let limits = match self.config.limits.amphibious {
             Some(amphibious) => {
                 let pace = amphibious.pace(self.governor.mode.weight());

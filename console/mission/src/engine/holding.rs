@@ -1,22 +1,26 @@
-//! What the verdicts of rules do: the robot is held, moves again, or the mission ends.
+//! What the verdicts of rules do: the robot moves, is held, moves again, or the mission ends.
 
-use super::{Mission, rules::Verdict, slot::Prepare};
+use super::{
+    Mission,
+    driving::{Driving, Prepare},
+    rules::Verdict,
+};
 use crate::{
     event::EventKind,
     phase::{Gait, Hold, HoldReason, Outcome, Phase, Resumes},
 };
-use planner_api::Reason;
+use planner_api::{Drive, Reason};
 
 impl Mission {
     pub(super) fn carry_out(&mut self, verdict: Verdict) {
         match verdict {
             Verdict::Hold(hold) => self.hold(hold),
             Verdict::HoldAndReplan(hold) => {
-                self.active.want_plan(Reason::Blocked);
+                self.driving.course.want_plan(Reason::Blocked);
                 self.hold(hold);
             }
             Verdict::Resume => self.go_on(Gait::Steady),
-            Verdict::Replan(reason) => self.active.want_plan(reason),
+            Verdict::Replan(reason) => self.driving.course.want_plan(reason),
             Verdict::Done => self.end_done(),
             Verdict::End(outcome, reason) => self.end(outcome, reason),
         }
@@ -25,19 +29,15 @@ impl Mission {
     /// After a fault, or where the planner sees no way: the fallback takes over, if there is one; with nobody there to help the
     /// mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
-        let Phase::Held(Hold { by, resumes }) = &self.phase else { return };
+        let Phase::Held(Hold { by, resumes }) = &self.known.phase else { return };
         if *resumes == Resumes::ByFallback {
-            let active = self.active.choice.id.clone();
-            if let Some(choice) = self.rules.fallback.update(&self.config, &active) {
-                let mut slot = self.active.successor(choice, Reason::Swap { from: active });
-                slot.prepare = Prepare::Plan;
-                self.drop_better_plan("another planner drives");
-                if let Some(candidate) = self.candidate.take() {
-                    self.reject(candidate, format!("the fallback planner {} takes over", slot.choice.id));
-                }
-                self.replace_active(slot);
+            let from = self.driving.id().to_owned();
+            if let Some(choice) = self.rules.fallback.update(&self.known.config, &from) {
+                let worker = self.driving.worker.successor(choice);
+                self.reject_preparing(&format!("the fallback planner {} takes over", worker.id()));
+                self.replace_driving(Driving::new(worker, Reason::Swap { from }, Prepare::Plan));
             }
-        } else if resumes.is_never() && !self.config.attended && self.active.prepare == Prepare::No {
+        } else if resumes.is_never() && !self.known.config.attended && self.driving.prepare == Prepare::No {
             let (outcome, message) = match by {
                 // A planner that says that no way exists has not failed.
                 HoldReason::Stuck { message } => (Outcome::Stuck, message),
@@ -54,37 +54,45 @@ impl Mission {
     /// Holds the robot. If only an order could let it move anyway, or for longer than a step, only an order ends this
     /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
     pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
-        let only_by_order = match &self.phase {
+        let only_by_order = match &self.known.phase {
             Phase::Held(before) => before.resumes.is_never(),
             Phase::Running(gait) => *gait != Gait::Steady,
             Phase::Waiting | Phase::Ended(_) => false,
         };
         let resumes = if only_by_order { Resumes::Never } else { resumes };
         self.happened.push(EventKind::Held { by: by.clone(), resumes });
-        self.phase = Phase::Held(Hold { by, resumes });
-        self.active.outdate_step();
-        if let Some(unsent) = self.active.command.take() {
-            self.discard(unsent);
-        }
+        self.known.phase = Phase::Held(Hold { by, resumes });
+        self.driving.outdate_step();
+        self.driving.drop_command(&mut self.happened);
     }
 
     /// Lets the robot move again, for good or for one tick.
     pub(super) fn resume(&mut self, gait: Gait) {
-        self.active.prepare = Prepare::No;
+        self.driving.prepare = Prepare::No;
         self.go_on(gait);
     }
 
     pub(super) fn go_on(&mut self, gait: Gait) {
         self.rules.restart();
         self.happened.push(EventKind::Resumed);
-        self.phase = Phase::Running(gait);
+        self.known.phase = Phase::Running(gait);
+    }
+
+    /// Sends the robot the command of this tick; without one it stands still.
+    pub(super) fn drive(&mut self) -> Drive {
+        let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
+        let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else { return Drive::STILL };
+        if gait == Gait::OneTick {
+            self.hold(Hold { by: HoldReason::Stepped, resumes: Resumes::Never });
+        }
+        drive
     }
 
     pub(super) fn end(&mut self, outcome: Outcome, reason: String) {
         self.happened.ending = Some(EventKind::Ended { outcome, reason });
-        self.phase = Phase::Ended(outcome);
-        self.drop_candidate();
+        self.known.phase = Phase::Ended(outcome);
+        self.drop_preparing();
         self.drop_shadow();
-        self.close_active();
+        self.driving.close(&mut self.workers, &mut self.happened);
     }
 }

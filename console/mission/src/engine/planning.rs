@@ -1,18 +1,8 @@
-//! Plans: whether one may be flown, and what flying it changes.
+//! Plans: whether one may be flown.
 
-use super::{
-    Mission,
-    rules::{CutsRule, Solids},
-    slot::AskedPlan,
-    slot::PlanState,
-};
-use crate::{
-    ask::{AskId, Said},
-    event::EventKind,
-    tether::{Tether, return_path_ends},
-};
-use geometry::PathFollower;
-use planner_api::{Leg, LegTag, Plan, Reason};
+use super::{known::Known, requests::AskedPlan};
+use crate::{ask::AskId, event::EventKind};
+use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
 /// A plan shorter than this leads nowhere, metres.
@@ -37,7 +27,7 @@ pub(super) struct Objection {
     pub message: String,
 }
 
-impl Mission {
+impl Known {
     /// Judges a plan on the map as it is known now.
     pub(super) fn evaluate(
         &self,
@@ -47,24 +37,9 @@ impl Mission {
         plan: Plan,
     ) -> Evaluated {
         let plan = after(&asked.return_path, plan);
-        let mut events = vec![Self::planned(ask, planner, asked, &plan)];
+        let mut events = vec![planned(ask, planner, asked, &plan)];
         let objection = self.objection(planner, &plan, &mut events);
         Evaluated { plan, events, objection }
-    }
-
-    /// That a plan was made, after its return path.
-    pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
-        EventKind::Planned {
-            ask,
-            return_path: asked.return_path.len(),
-            planner: planner.to_owned(),
-            reason: asked.reason.clone(),
-            length_m: polyline::length_m(&plan.path),
-            path: plan.path.clone(),
-            complete: plan.complete,
-            legs: plan.legs.clone(),
-            cuts: plan.cuts.clone(),
-        }
     }
 
     /// Why a plan is not flown; its certificate goes into the events.
@@ -105,52 +80,20 @@ impl Mission {
         };
         (left_m2 > 0.0).then(|| Objection { by_tether: false, message: message() })
     }
-
-    /// Flies a plan from now on.
-    pub(super) fn take_plan(&mut self, plan: &Plan) {
-        self.drop_better_plan("another plan is flown");
-        self.better_plan_due_s = None;
-        self.task.take_plan(plan);
-        // Progress is counted along the new plan from here.
-        self.rules.stuck.restart();
-        let anchor = self.tether.as_ref().map(Tether::anchor);
-        let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
-        let from = anchor.map_or(0, |anchor| return_path_ends(plan, anchor));
-        let here = self.locator.position();
-        let boundary = &self.chart.world().boundary;
-        let solids = Solids { boundary, map: self.chart.map(), room_m: self.config.room_m() };
-        let slot = &mut self.active;
-        (slot.plan, slot.keep) = (PlanState::Flying { is_whole: plan.complete }, None);
-        slot.cuts = CutsRule::new(lines, plan.path.get(from).copied(), here, &solids);
-        slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
-        slot.outdate_step();
-        self.doubt_fresh_plan();
-    }
-
-    /// What was found while a plan was being made may stand in its way: then another one is due at once.
-    fn doubt_fresh_plan(&mut self) {
-        let room_m = self.config.room_m();
-        let found = std::mem::take(&mut self.active.found_since);
-        if found.iter().any(|shape| self.task.is_in_the_way(shape, room_m)) {
-            self.active.want_plan(Reason::MapChanged);
-        }
-    }
-
-    /// Passes on what a planner drew, reported and said besides its answer.
-    pub(super) fn pass_on(&mut self, said: Said, planner: &str) {
-        self.happened.extend(said.into_events(planner));
-    }
 }
 
-impl Said {
-    /// What was said, as events of a planner.
-    pub(super) fn into_events(self, planner: &str) -> impl Iterator<Item = EventKind> {
-        let Self { drawings, scalars, logs } = self;
-        let drawn = (!drawings.is_empty()).then_some(EventKind::Drawn { drawings });
-        let figures = (!scalars.is_empty()).then_some(EventKind::Scalars { scalars });
-        let logged =
-            move |(level, message)| EventKind::PlannerLogged { planner: planner.to_owned(), level, message };
-        drawn.into_iter().chain(figures).chain(logs.into_iter().map(logged))
+/// That a plan was made, after its return path.
+pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
+    EventKind::Planned {
+        ask,
+        return_path: asked.return_path.len(),
+        planner: planner.to_owned(),
+        reason: asked.reason.clone(),
+        length_m: polyline::length_m(&plan.path),
+        path: plan.path.clone(),
+        complete: plan.complete,
+        legs: plan.legs.clone(),
+        cuts: plan.cuts.clone(),
     }
 }
 

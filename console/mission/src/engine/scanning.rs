@@ -1,6 +1,11 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
-use super::Mission;
+use super::{
+    Mission,
+    happened::Happened,
+    known::Known,
+    preparing::{Preparing, Role},
+};
 use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
 use planner_api::Reason;
 use world::{Cell, CellRun, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
@@ -13,46 +18,47 @@ const MOST_NAMED: usize = 4;
 impl Mission {
     /// Puts what is seen on the chart; whether the chart has changed.
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
-        let (now_s, pose) = (self.now_s(), self.locator.pose());
-        self.chart.sight(&readings.sightings, &pose);
+        let (now_s, pose) = (self.known.now_s(), self.known.locator.pose());
+        self.known.chart.sight(&readings.sightings, &pose);
         // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
-        if self.locator.is_lost() {
+        if self.known.locator.is_lost() {
             return false;
         }
-        let Seen { events, changes_plans } = self.chart.see(now_s, &readings.sightings, &pose);
+        let Seen { events, changes_plans } = self.known.chart.see(now_s, &readings.sightings, &pose);
         if events.is_empty() && !changes_plans {
             return false;
         }
         // What moves is not part of the floor.
-        let still = events.iter().filter(|event| !self.chart.moves(event));
+        let still = events.iter().filter(|event| !self.known.chart.moves(event));
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
         let is_due = |task: &Task| {
-            changes_plans && (events.is_empty() || events.iter().any(|event| self.is_in_the_way(task, event)))
+            changes_plans
+                && (events.is_empty() || events.iter().any(|event| self.known.is_in_the_way(task, event)))
         };
         let shadow_is_due = self.shadow.as_ref().is_some_and(|shadow| is_due(&shadow.task));
-        if is_due(&self.task) {
-            self.active.want_plan(Reason::MapChanged);
+        if is_due(&self.known.task) {
+            self.driving.course.want_plan(Reason::MapChanged);
         }
         if changes_plans && !shapes.is_empty() {
             self.postpone_better_plan();
+            self.driving.course.found_since.extend_from_slice(&shapes);
+            if let Some(Preparing { role: Role::Candidate(candidate), .. }) = &mut self.preparing {
+                candidate.found_since.extend_from_slice(&shapes);
+            }
         }
-        let shadow = self.shadow.as_mut().map(|shadow| &mut shadow.slot);
-        if changes_plans {
-            self.active.found_since.extend_from_slice(&shapes);
-            let others = self.candidate.iter_mut().chain(shadow);
-            others.for_each(|slot| slot.found_since.extend_from_slice(&shapes));
-        }
-        if shadow_is_due {
-            self.shadow.iter_mut().for_each(|shadow| shadow.slot.want_plan(Reason::MapChanged));
+        if let Some(shadow) = &mut self.shadow {
+            shadow.map_changed(if changes_plans { &shapes } else { &[] }, shadow_is_due);
         }
         self.happened.extend(events);
-        let changes = self.floor.survey(&self.config, &self.chart, &shapes);
+        let changes = self.known.floor.survey(&self.known.config, &self.known.chart, &shapes);
         if !changes.is_empty() {
             self.happened.push(EventKind::FloorChanged { changes });
         }
         true
     }
+}
 
+impl Known {
     /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
     /// stands a little elsewhere only when half of it is gone.
     fn is_in_the_way(&self, task: &Task, event: &EventKind) -> bool {
@@ -68,7 +74,7 @@ impl Mission {
         }
     }
 
-    pub(super) fn scan_from(&mut self, before: Pose) {
+    pub(super) fn scan_from(&mut self, before: Pose, happened: &mut Happened) {
         let here = self.locator.pose();
         let (chart, room_m) = (&self.chart, self.config.room_m());
         self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
@@ -77,15 +83,15 @@ impl Mission {
         }
         let fresh = self.floor.coverage.not_covered_under(self.config.tool(), before, here);
         if self.locator.error_95_m() > self.config.scan_limit_m() {
-            self.leave_uncounted(fresh);
+            Self::leave_uncounted(fresh, happened);
         } else if !fresh.is_empty() {
             self.floor.coverage.apply(&fresh);
-            self.happened.push(EventKind::Covered { runs: fresh });
+            happened.push(EventKind::Covered { runs: fresh });
         }
         if self.locator.is_lost() {
             return;
         }
-        self.happened.push(EventKind::Progressed {
+        happened.push(EventKind::Progressed {
             done: self.task.done(),
             along_m: self.task.along_m(),
             cross_track_m: self.task.cross_track_m(here.position),
@@ -97,14 +103,14 @@ impl Mission {
     }
 
     /// The tool passed, but nobody knows well enough where.
-    fn leave_uncounted(&mut self, runs: Vec<CellRun>) {
+    fn leave_uncounted(runs: Vec<CellRun>, happened: &mut Happened) {
         if !runs.is_empty() {
-            self.happened.push(EventKind::Uncounted { runs });
+            happened.push(EventKind::Uncounted { runs });
         }
     }
 
     /// Why a task counts as done, as a sentence.
-    pub(super) fn done_reason(&self) -> String {
+    pub(super) fn done_reason(&self, is_plan_whole: bool) -> String {
         match &self.task {
             Task::Goto(_) | Task::Follow { .. } => "task complete".into(),
             Task::Cover(_) => {
@@ -122,7 +128,8 @@ impl Mission {
                 } else {
                     String::new()
                 };
-                let left_out = [self.out_of_reach(), self.left_beyond_reel()];
+                let left_beyond_reel = (!is_plan_whole).then(|| self.left_beyond_reel()).flatten();
+                let left_out = [self.out_of_reach(), left_beyond_reel];
                 let left_out = left_out.into_iter().flatten().map(|why| format!("; {why}"));
                 scanned + &asked + &left_out.collect::<String>()
             }
@@ -157,7 +164,7 @@ impl Mission {
 
     /// What the plan left out because the cable does not lead there, as a sentence.
     fn left_beyond_reel(&self) -> Option<String> {
-        let (anchor, reach_m) = self.config.cable_reach().filter(|_| !self.active.is_plan_whole())?;
+        let (anchor, reach_m) = self.config.cable_reach()?;
         let world = self.chart.world();
         let shapes: Vec<Shape> = world.obstacles.iter().map(|o| o.shape.clone()).collect();
         let reach = Reach::new(anchor, &world.boundary, &shapes, reach_m);

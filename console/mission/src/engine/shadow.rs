@@ -6,8 +6,11 @@ mod promotion;
 
 use super::{
     Mission,
-    asks::under_way,
-    slot::{AskedPlan, PendingKind, PlanState, PlannerSlot},
+    course::Course,
+    known::Known,
+    requests::under_way,
+    worker::{PendingKind, Worker},
+    workers::Workers,
 };
 use crate::{
     ask::{Ask, What},
@@ -17,7 +20,8 @@ use crate::{
 };
 use geometry::PathFollower;
 use planner_api::{Plan, Reason};
-use world::Point;
+use promotion::Promotion;
+use world::{Point, Shape};
 
 /// A robot further from the shadow's plan than this has left it, metres.
 const NEAR_PLAN_M: f64 = 0.5;
@@ -27,7 +31,10 @@ const PLAN_AGAIN_S: f64 = 10.0;
 /// A planner in shadow.
 #[derive(Clone)]
 pub(super) struct Shadow {
-    pub slot: PlannerSlot,
+    pub worker: Worker,
+    pub course: Course,
+    /// The tick for which it was asked last to command.
+    stepped_at: Option<u64>,
     /// How it does.
     pub tally: ShadowTally,
     /// The task along its own plan.
@@ -56,134 +63,122 @@ struct Now {
     n_flown: usize,
 }
 
-/// Whether a planner in shadow is to take over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Promotion {
-    No,
-    /// As soon as it can; it was asked so often for a plan from where the robot is.
-    Ordered {
-        n_plans: u32,
-    },
-}
-
 impl Mission {
     /// A planner is to fly in shadow, in place of the one that does.
     pub(super) fn begin_shadow(&mut self, choice: PlannerChoice) {
         self.drop_shadow();
-        let from = self.active.choice.id.clone();
-        self.shadow = Some(Shadow {
-            slot: self.active.successor(choice, Reason::Swap { from }),
-            tally: ShadowTally::default(),
-            task: self.task.clone(),
-            plan: Plan::default(),
-            from_anchor: false,
-            n_flown: self.trail.len(),
-            asked_at_s: self.now_s(),
-            now: Now::default(),
-            promotion: Promotion::No,
-        });
+        let reason = Reason::Swap { from: self.driving.id().to_owned() };
+        self.shadow = Some(Shadow::new(self.driving.worker.successor(choice), reason, &self.known));
     }
 
     /// Closes the planner in shadow without a word.
     pub(super) fn drop_shadow(&mut self) {
         if let Some(mut shadow) = self.shadow.take() {
-            self.workers.close(shadow.slot.leave_worker());
+            self.workers.close(shadow.worker.leave());
         }
     }
 
     /// No planner flies in shadow any more, by order.
     pub(super) fn end_shadow(&mut self) {
-        if let Some(Shadow { slot, .. }) = &self.shadow {
-            let (planner, why) = (slot.choice.id.clone(), "ended by operator".into());
+        if let Some(shadow) = &self.shadow {
+            let (planner, why) = (shadow.worker.id().to_owned(), "ended by operator".into());
             self.happened.push(EventKind::ShadowEnded { planner, why });
         }
         self.drop_shadow();
     }
 
-    /// Follows the shadow's plan from where the robot is; lets the shadow take over if that was ordered.
-    pub(super) fn lead_shadow(&mut self) {
-        let Some(mut shadow) = self.shadow.take() else { return };
-        let here = self.locator.position();
-        self.advance_shadow(&mut shadow, here);
-        shadow.now = Now {
-            is_running: self.is_running(),
-            may_plan: !matches!(self.task, Task::Cover(_)) || self.task.lanes().is_some(),
-            n_flown: self.trail.len(),
-        };
-        if shadow.now.is_running {
-            shadow.task.wait(self.config.tick_s);
-            let asked_s = self.now_s() - shadow.asked_at_s;
-            if asked_s >= PLAN_AGAIN_S && !shadow.is_near(here) {
-                shadow.want_plan(&self.active.choice.id);
-            }
+    /// The planner in shadow has failed.
+    pub(super) fn close_shadow(&mut self, why: String) {
+        if let Some(mut shadow) = self.shadow.take() {
+            self.workers.close(shadow.worker.leave());
+            let planner = shadow.worker.choice.id;
+            self.happened.of_shadow.push(EventKind::ShadowEnded { planner, why });
         }
-        self.shadow = self.promote_if_due(shadow);
-    }
-
-    fn advance_shadow(&self, shadow: &mut Shadow, here: Point) {
-        let (chart, map, room_m) = (&self.chart, self.chart.map(), self.config.room_m());
-        shadow.task.advance(here, map, |at| chart.has_room(at, room_m));
-        if let Some(plan) = &mut shadow.slot.follower {
-            plan.advance(here, |at| map.clearance_m(at) >= 0.0);
-        }
-    }
-
-    /// What is asked of the planner in shadow next.
-    pub(super) fn ask_shadow(&mut self) -> Option<Ask> {
-        let mut shadow = self.shadow.take_if(|shadow| shadow.slot.pending.is_none())?;
-        let ask = self.ask_of_shadow(&mut shadow);
-        self.shadow = Some(shadow);
-        ask
-    }
-
-    fn ask_of_shadow(&mut self, shadow: &mut Shadow) -> Option<Ask> {
-        let tick = self.tick;
-        if !shadow.slot.is_ready {
-            let (worker, site) = (self.workers.next(), self.chart.site());
-            return Some(shadow.slot.open(worker, tick, site));
-        }
-        if let PlanState::Due { reason, from_anchor } = shadow.slot.plan.clone() {
-            if !shadow.now.may_plan {
-                return None;
-            }
-            let keep = under_way(&shadow.task, &reason);
-            let (kind, what) = self.plan_ask(reason, from_anchor, shadow.now.n_flown, keep);
-            (shadow.n_flown, shadow.asked_at_s) = (shadow.now.n_flown, self.now_s());
-            shadow.slot.found_since.clear();
-            return shadow.slot.ask(tick, kind, what);
-        }
-        if !shadow.now.is_running || shadow.slot.stepped_at == Some(tick) {
-            return None;
-        }
-        shadow.slot.stepped_at = Some(tick);
-        let step = self.step_ask(&shadow.task, shadow.slot.follower.as_ref());
-        shadow.slot.ask(tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 }
 
 impl Shadow {
+    fn new(worker: Worker, reason: Reason, known: &Known) -> Self {
+        Self {
+            worker,
+            course: Course::new(reason),
+            stepped_at: None,
+            tally: ShadowTally::default(),
+            task: known.task.clone(),
+            plan: Plan::default(),
+            from_anchor: false,
+            n_flown: known.trail.len(),
+            asked_at_s: known.now_s(),
+            now: Now::default(),
+            promotion: Promotion::No,
+        }
+    }
+
+    /// Follows its plan from where the robot is, beside the planner of this id, which drives.
+    pub(super) fn lead(&mut self, known: &Known, driving: &str) {
+        let here = known.position();
+        self.advance(here, known);
+        self.now = Now {
+            is_running: known.is_running(),
+            may_plan: !known.is_coverage() || known.task.lanes().is_some(),
+            n_flown: known.trail.len(),
+        };
+        if self.now.is_running {
+            self.task.wait(known.config.tick_s);
+            let asked_s = known.now_s() - self.asked_at_s;
+            if asked_s >= PLAN_AGAIN_S && !self.is_near(here) {
+                self.course.want_plan(Reason::Swap { from: driving.to_owned() });
+            }
+        }
+    }
+
+    fn advance(&mut self, here: Point, known: &Known) {
+        let (chart, room_m) = (&known.chart, known.config.room_m());
+        self.task.advance(here, chart.map(), |at| chart.has_room(at, room_m));
+        self.course.advance(here, chart.map());
+    }
+
+    /// The map has changed: what was found that planners have to know of, and whether it is in the way of its plan.
+    pub(super) fn map_changed(&mut self, found: &[Shape], is_in_the_way: bool) {
+        self.course.found_since.extend_from_slice(found);
+        if is_in_the_way {
+            self.course.want_plan(Reason::MapChanged);
+        }
+    }
+
+    /// What it is asked next.
+    pub(super) fn next_ask(&mut self, known: &Known, workers: &mut Workers) -> Option<Ask> {
+        if self.worker.pending.is_some() {
+            return None;
+        }
+        if !self.worker.is_ready() {
+            return Some(self.worker.open(known, workers));
+        }
+        let tick = known.tick;
+        if let Some(due) = &self.course.due {
+            if !self.now.may_plan {
+                return None;
+            }
+            let plan = known.plan_ask(due, self.now.n_flown, under_way(&self.task, &due.reason));
+            (self.n_flown, self.asked_at_s) = (self.now.n_flown, known.now_s());
+            self.course.found_since.clear();
+            return self.worker.ask_for_plan(tick, plan);
+        }
+        if !self.now.is_running || self.stepped_at == Some(tick) {
+            return None;
+        }
+        self.stepped_at = Some(tick);
+        let step = known.step_ask(&self.task, self.course.follower.as_ref());
+        self.worker.ask(tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
+    }
+
     /// Progress along its own plan, if that has a path.
     fn route(&self) -> Option<&PathFollower> {
-        self.task.lanes().or(self.slot.follower.as_ref())
+        self.task.lanes().or(self.course.follower.as_ref())
     }
 
     /// Whether a place is at its plan; any is, if it has no path.
     fn is_near(&self, here: Point) -> bool {
         self.route().is_none_or(|route| route.cross_track_m(here) <= NEAR_PLAN_M)
-    }
-
-    /// Has it plan again, because the robot went another way.
-    fn want_plan(&mut self, active: &str) {
-        self.slot.want_plan(Reason::Swap { from: active.to_owned() });
-    }
-
-    /// Takes a plan for what is left of a task.
-    fn take_plan(&mut self, plan: Plan, task: Task, asked: &AskedPlan) {
-        self.task = task;
-        self.task.take_plan(&plan);
-        self.slot.plan = PlanState::Flying { is_whole: plan.complete };
-        self.slot.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
-        self.from_anchor = asked.from_anchor;
-        self.plan = plan;
     }
 }

@@ -1,6 +1,6 @@
 //! A robot that is let go until something happens: the end of a lane, or an event.
 
-use super::Mission;
+use super::{Mission, known::Known};
 use crate::{
     event::{Event, EventKind, Severity},
     order::StepTo,
@@ -26,18 +26,22 @@ fn asks_attention(kind: &EventKind) -> bool {
     event.log_line(&[]).is_some_and(|line| line.severity >= Severity::Watch)
 }
 
-impl Mission {
+impl Known {
     pub(super) fn place_on_plan(&self) -> PlaceOnPlan {
         PlaceOnPlan { leg: self.task.leg_index(), at: self.locator.position() }
     }
+}
 
+impl Mission {
     /// Holds a robot that was let go until what has now happened.
     pub(super) fn end_step(&mut self) {
-        let (Phase::Running(Gait::To(to)), Some(from)) = (&self.phase, self.stepped_from) else { return };
+        let (Phase::Running(Gait::To(to)), Some(from)) = (&self.known.phase, self.stepped_from) else {
+            return;
+        };
         let is_there = match to {
-            StepTo::LaneEnd if from.leg.is_some() => self.task.leg_index() != from.leg,
-            StepTo::LaneEnd => (self.locator.position() - from.at).norm() >= STEP_M,
-            StepTo::Event => self.happened.events.iter().any(asks_attention),
+            StepTo::LaneEnd if from.leg.is_some() => self.known.task.leg_index() != from.leg,
+            StepTo::LaneEnd => (self.known.position() - from.at).norm() >= STEP_M,
+            StepTo::Event => self.happened.has(asks_attention),
         };
         if is_there {
             self.stepped_from = None;

@@ -14,6 +14,7 @@ mod zones;
 use super::*;
 use crate::{
     ask::{Answer, Ask, Given, PlanAsk, Said, StepAsk, TaskLeft, What},
+    chart::Chart,
     config::{BetterPlan, ScanConfig, TaskConfig},
     phase::{Gait, Hold, HoldReason, Outcome},
     planner::{
@@ -24,8 +25,8 @@ use planner_api::{self as api, Command, Limits, Motion, Plan, Status};
 use std::sync::Arc;
 use world::tether::Cable;
 use world::{
-    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Odometry, Pose, PressureSensor, RangeSet, Shape,
-    Sighting, Station, StationId,
+    Amphibious, Boundary, Medium, Obstacle, ObstacleId, Odometry, Point, Pose, PressureSensor, RangeSet,
+    Shape, Sighting, Station, StationId,
 };
 
 /// A planner that drives straight to its target, and otherwise behaves as the test demands.
@@ -343,7 +344,7 @@ impl Flight {
 
     /// Answers what is due in this tick, and hands out what is asked.
     fn serve(&mut self) {
-        let tick = self.mission.tick;
+        let tick = self.mission.known.tick;
         loop {
             while let Some(ask) = self.mission.poll_ask() {
                 if ask.what == What::Close {
@@ -645,7 +646,7 @@ fn a_planner_that_sees_no_way_has_not_failed() {
                 flight.ended(),
                 Some(Outcome::Stuck),
                 "{:?}",
-                (flight.mission.phase(), flight.mission.active.prepare)
+                (flight.mission.phase(), flight.mission.driving.prepare)
             );
         }
     }

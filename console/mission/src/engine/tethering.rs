@@ -1,18 +1,20 @@
 //! What one tick does to the tether, and the return paths along it.
 
-use super::{Mission, rules::HOME_M};
+use super::{Mission, happened::Happened, known::Known, rules::HOME_M};
 use crate::{
     event::{EventKind, TetherAlarm},
     phase::Outcome,
-    task::Task,
-    tether::ends_at_anchor,
 };
-use planner_api::Reason;
 use world::Point;
 
-impl Mission {
+impl Known {
     /// Drags the cable along; gives the limit that it has reached in this tick, if any.
-    pub(super) fn drag_tether(&mut self, map_changed: bool, paid_out_m: Option<f64>) -> Option<TetherAlarm> {
+    pub(super) fn drag_tether(
+        &mut self,
+        map_changed: bool,
+        paid_out_m: Option<f64>,
+        happened: &mut Happened,
+    ) -> Option<TetherAlarm> {
         let tether = self.tether.as_mut()?;
         let world = self.chart.world();
         if map_changed {
@@ -29,33 +31,14 @@ impl Mission {
             EventKind::TetherAlarmRaised { alarm, reached: true } => Some(alarm.clone()),
             _ => None,
         });
-        self.happened.extend(events);
-        if map_changed {
-            self.doubt_plan();
-        }
-        self.watch_cuts();
+        happened.extend(events);
         reached
     }
 
-    /// What was found may stand beside the rest of the plan and yet in the way of its tether: then another plan is due.
-    fn doubt_plan(&mut self) {
-        let Some(tether) = self.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
-        let Some(rest) = self.task.lanes_left().filter(|_| self.active.has_plan()) else { return };
-        if !tether.bears(rest, self.chart.world(), self.task_ends_at_anchor()) {
-            self.active.want_plan(Reason::MapChanged);
-        }
-    }
-
-    /// A robot that has come off its plan across a cut needs another plan, from the tether as it lies.
-    fn watch_cuts(&mut self) {
-        if self.locator.is_lost() {
-            return;
-        }
-        let has_strayed = self.active.cuts.update(self.locator.position(), self.config.limits.radius_m);
-        if has_strayed && self.active.has_plan() {
-            self.happened.push(EventKind::TetherAlarmRaised { alarm: TetherAlarm::Strayed, reached: false });
-            self.active.want_plan(Reason::MapChanged);
-            self.active.cuts.clear();
+    /// Whether plans are flown that are refused for the tether.
+    pub(super) fn allow_uncertified(&mut self, fly: bool) {
+        if let Some(tether) = &mut self.tether {
+            tether.allow_uncertified(fly);
         }
     }
 
@@ -82,23 +65,17 @@ impl Mission {
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
         rooms.into_iter().find_map(way)
     }
+}
 
-    /// Whether the mission puts return paths along the cable before plans.
-    pub(super) fn plans_ways_home(&self) -> bool {
-        matches!(self.task, Task::Cover(_)) && self.task_ends_at_anchor()
-    }
-
+impl Mission {
     /// How a task that is done ends: with the robot back at the anchor and cable left out it is entangled.
     pub(super) fn end_done(&mut self) {
-        let back = self.task_ends_at_anchor();
-        let left = self.tether.as_ref().filter(|_| back).and_then(|t| t.left_out(self.chart.world()));
+        let back = self.known.task_ends_at_anchor();
+        let left =
+            self.known.tether.as_ref().filter(|_| back).and_then(|t| t.left_out(self.known.chart.world()));
         match left {
             Some(why) => self.end(Outcome::Entangled, format!("back at the anchor, but {why}")),
-            None => self.end(Outcome::Complete, self.done_reason()),
+            None => self.end(Outcome::Complete, self.known.done_reason(self.driving.course.is_whole())),
         }
-    }
-
-    pub(super) fn task_ends_at_anchor(&self) -> bool {
-        self.config.tether.as_ref().is_some_and(|tether| ends_at_anchor(tether, &self.config))
     }
 }

@@ -1,7 +1,12 @@
 //! No-go zones that the operator draws under way.
 
-use super::{Mission, slot::Prepare};
-use crate::{config::TaskConfig, event::EventKind, phase::Phase};
+use super::{
+    Mission,
+    candidate::Candidate,
+    driving::{Driving, Prepare},
+    known::Known,
+};
+use crate::{config::TaskConfig, event::EventKind, order::Order};
 use planner_api::Reason;
 use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
 
@@ -9,12 +14,13 @@ use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortes
 const LEAST_M2: f64 = 0.01;
 const FARTHEST_M: f64 = 1e4;
 
-impl Mission {
-    /// Refuses a zone in which the robot stands already, or has to go.
+impl Known {
+    /// Refuses what cannot be where it is ordered: a zone in which the robot stands already, or has to go.
     ///
     /// # Errors
     /// What is wrong, as a sentence.
-    pub(super) fn check_zone(&self, corners: &[Point]) -> Result<(), String> {
+    pub(super) fn check_place(&self, order: &Order) -> Result<(), String> {
+        let Order::DrawZone(corners) = order else { return Ok(()) };
         let is_near = |corner: &Point| corner.x.abs() <= FARTHEST_M && corner.y.abs() <= FARTHEST_M;
         if !corners.iter().all(is_near) {
             return Err(format!("a corner of a no-go zone is at most {FARTHEST_M} m from the origin"));
@@ -68,36 +74,35 @@ impl Mission {
         let is_free = |name: &String| zones.iter().all(|zone| zone.name != *name);
         (1..=zones.len() + 1).map(|n| format!("no-go {n}")).find(is_free).unwrap_or_default()
     }
+}
 
+impl Mission {
     /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
     /// that drives keeps to its plan as far as it can.
     pub(super) fn draw_zone(&mut self, corners: &[Point]) {
         let shape = Shape::Polygon { vertices: corners.to_vec() };
-        let zone = Zone { name: self.free_name(), kind: ZoneKind::NoGo, shape };
-        let changes = self.floor.forbid(&self.config, &self.chart, &zone.shape);
-        self.chart.draw(zone.clone());
+        let zone = Zone { name: self.known.free_name(), kind: ZoneKind::NoGo, shape };
+        let changes = self.known.floor.forbid(&self.known.config, &self.known.chart, &zone.shape);
+        self.known.chart.draw(zone.clone());
         self.happened.push(EventKind::ZoneDrawn { zone });
         if !changes.is_empty() {
             self.happened.push(EventKind::FloorChanged { changes });
         }
         self.end_shadow();
         self.drop_better_plan("a no-go zone was drawn");
-        let next = self.candidate.take().map(|mut slot| {
-            self.workers.close(slot.leave_worker());
-            slot.choice
-        });
-        let waiting = self.phase == Phase::Waiting;
+        let next = self.preparing.as_ref().map(|preparing| preparing.worker.choice.clone());
+        self.drop_preparing();
+        let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { Reason::MapChanged };
-        let mut again = self.active.successor(self.active.choice.clone(), reason);
+        let again = self.driving.worker.successor(self.driving.worker.choice.clone());
         // Before the start it goes as far as it was: a plan that is on the screen already is made again.
-        let stays = waiting && !self.active.has_plan();
-        again.prepare = if stays { self.active.prepare } else { Prepare::Plan };
-        self.replace_active(again);
+        let stays = waiting && !self.driving.course.has_plan();
+        let prepare = if stays { self.driving.prepare } else { Prepare::Plan };
+        self.replace_driving(Driving::new(again, reason, prepare));
         if let Some(choice) = next {
-            let from = self.active.choice.id.clone();
-            let mut slot = self.active.successor(choice, Reason::Swap { from });
-            slot.prepare = Prepare::Plan;
-            self.candidate = Some(slot);
+            let reason = Reason::Swap { from: self.driving.id().to_owned() };
+            let worker = self.driving.worker.successor(choice);
+            self.preparing = Some(Candidate::prepare(worker, reason, None));
         }
     }
 }

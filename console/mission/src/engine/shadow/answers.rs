@@ -2,10 +2,12 @@
 
 use super::{
     super::{
-        Mission,
-        answers::mismatch,
-        planning::after,
-        slot::{AskedPlan, Pending, PendingKind},
+        checking::mismatch,
+        happened::Happened,
+        known::Known,
+        planning::{after, planned},
+        requests::AskedPlan,
+        worker::{Pending, PendingKind},
     },
     Shadow,
 };
@@ -13,100 +15,92 @@ use crate::{
     ask::{Answer, AskId, Given, Said},
     event::EventKind,
 };
-use planner_api::{Command, Plan, Reason};
+use planner_api::{Command, Plan};
 
 /// An answer counts in the tick of the ask and in the next one: nobody waits for it, so that it may just miss the first.
 const IN_TIME_TICKS: u64 = 1;
 
-impl Mission {
-    /// Takes an answer of the planner in shadow; gives it back unless that ends it.
-    pub(in crate::engine) fn answer_shadow(
+impl Shadow {
+    /// Takes an answer.
+    ///
+    /// # Errors
+    /// Why it flies in shadow no more, as a sentence. That counts against nobody: the plugin may be the one that drives.
+    pub(in crate::engine) fn answer(
         &mut self,
-        mut shadow: Shadow,
         pending: Pending,
         Answer { ask, result, said }: Answer,
-    ) -> Option<Shadow> {
-        match (pending.kind, result.and_then(|given| self.fitting(&shadow.slot, given))) {
+        known: &Known,
+        happened: &mut Happened,
+    ) -> Result<(), String> {
+        match (pending.kind, result.and_then(|given| known.fitting(&self.worker, given))) {
             (PendingKind::Open, Ok(Given::Opened(info))) => {
-                self.pass_on_of_shadow(&mut shadow, said);
-                (shadow.slot.info, shadow.slot.is_ready) = (Some((*info).clone()), true);
-                let choice = shadow.slot.choice.clone();
-                self.happened.of_shadow.push(EventKind::ShadowBegan { ask, choice, info });
-                Some(shadow)
+                self.pass_on(said, happened);
+                self.worker.info = Some((*info).clone());
+                let choice = self.worker.choice.clone();
+                happened.of_shadow.push(EventKind::ShadowBegan { ask, choice, info });
             }
             (PendingKind::Plan(asked), Ok(Given::Plan(plan))) => {
-                self.pass_on_of_shadow(&mut shadow, said);
-                Some(self.shadow_planned(shadow, ask, &asked, plan))
+                self.pass_on(said, happened);
+                let plan = after(&asked.return_path, plan);
+                self.note(planned(Some(ask), self.worker.id(), &asked, &plan), happened);
+                self.take_plan(plan, &asked, known);
             }
             (PendingKind::Step { .. }, Ok(Given::Command(command))) => {
-                self.shadow_stepped(&mut shadow, (ask, self.tick - pending.tick), command, said);
-                Some(shadow)
+                self.take_command((ask, known.tick - pending.tick), command, said, happened);
             }
             (_, result) => {
-                // It counts against nobody: the plugin may be the one that drives.
-                let fault = result.err().unwrap_or_else(|| mismatch(&shadow.slot.choice.id));
-                self.pass_on_of_shadow(&mut shadow, said);
+                let fault = result.err().unwrap_or_else(|| mismatch(self.worker.id()));
+                self.pass_on(said, happened);
                 let why = fault.message.clone();
-                self.note_shadow(&mut shadow, EventKind::PlannerFailed { ask: Some(ask), fault });
-                self.close_shadow(shadow, why);
-                None
+                self.note(EventKind::PlannerFailed { ask: Some(ask), fault }, happened);
+                return Err(why);
             }
         }
+        Ok(())
     }
 
-    fn shadow_stepped(
+    fn take_command(
         &mut self,
-        shadow: &mut Shadow,
         (ask, ticks): (AskId, u64),
         command: Command,
         said: Said,
+        happened: &mut Happened,
     ) {
         if ticks > IN_TIME_TICKS {
             let missed = EventKind::ShadowMissed { ask, ticks: ticks - IN_TIME_TICKS };
-            shadow.tally.apply(&missed);
-            return self.happened.of_shadow.push(missed);
+            self.tally.apply(&missed);
+            return happened.of_shadow.push(missed);
         }
-        self.pass_on_of_shadow(shadow, said);
-        self.note_shadow(shadow, EventKind::Commanded { ask: Some(ask), command, asked: None });
+        self.pass_on(said, happened);
+        self.note(EventKind::Commanded { ask: Some(ask), command, asked: None }, happened);
     }
 
-    /// Takes a plan; whether it flies from where the robot is decides who promotes the planner.
-    fn shadow_planned(&mut self, mut shadow: Shadow, ask: AskId, asked: &AskedPlan, plan: Plan) -> Shadow {
-        let id = shadow.slot.choice.id.clone();
-        let plan = after(&asked.return_path, plan);
-        let planned = Self::planned(Some(ask), &id, asked, &plan);
-        self.note_shadow(&mut shadow, planned);
-        shadow.take_plan(plan, self.task.clone(), asked);
+    /// Takes a plan for what is left of the task; whether it flies from where the robot is decides who promotes the planner.
+    fn take_plan(&mut self, plan: Plan, asked: &AskedPlan, known: &Known) {
+        self.task = known.task.clone();
+        self.task.take_plan(&plan);
+        self.course.take(&plan);
+        self.from_anchor = asked.from_anchor;
+        self.plan = plan;
         // The robot went on meanwhile: perhaps along this plan.
-        for flown in &self.trail[shadow.n_flown..shadow.now.n_flown] {
-            self.advance_shadow(&mut shadow, *flown);
+        for flown in &known.trail[self.n_flown..self.now.n_flown] {
+            self.advance(*flown, known);
         }
-        self.advance_shadow(&mut shadow, self.locator.position());
-        let room_m = self.config.room_m();
-        let found = std::mem::take(&mut shadow.slot.found_since);
-        if found.iter().any(|shape| shadow.task.is_in_the_way(shape, room_m)) {
-            shadow.slot.want_plan(Reason::MapChanged);
-        }
-        shadow
+        self.advance(known.position(), known);
+        self.course.doubt_fresh_plan(&self.task, known.config.room_m());
     }
 
-    /// Reports what the shadow drew, reported and said besides an answer.
-    fn pass_on_of_shadow(&mut self, shadow: &mut Shadow, said: Said) {
-        let planner = shadow.slot.choice.id.clone();
-        for kind in said.into_events(&planner) {
-            self.note_shadow(shadow, kind);
+    /// Reports what it drew, reported and said besides an answer.
+    fn pass_on(&mut self, said: Said, happened: &mut Happened) {
+        for kind in said.into_events(&self.worker.choice.id.clone()) {
+            self.note(kind, happened);
         }
     }
 
-    /// Reports what the shadow did, as what moved nothing.
-    fn note_shadow(&mut self, shadow: &mut Shadow, kind: EventKind) {
+    /// Reports what it did, as what moved nothing.
+    fn note(&mut self, kind: EventKind, happened: &mut Happened) {
         let event = EventKind::Shadowed { of: Box::new(kind) };
-        shadow.tally.apply(&event);
-        self.happened.of_shadow.push(event);
-    }
-
-    fn close_shadow(&mut self, mut shadow: Shadow, why: String) {
-        self.workers.close(shadow.slot.leave_worker());
-        self.happened.of_shadow.push(EventKind::ShadowEnded { planner: shadow.slot.choice.id, why });
+        self.tally.apply(&event);
+        happened.of_shadow.push(event);
     }
 }

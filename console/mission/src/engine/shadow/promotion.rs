@@ -3,16 +3,19 @@
 use super::{
     super::{
         Mission,
+        course::Due,
+        driving::{Driving, Prepare},
         planning::Evaluated,
-        slot::{AskedPlan, PendingKind, PlanState, Prepare},
+        requests::AskedPlan,
+        worker::PendingKind,
     },
-    Promotion, Shadow,
+    Shadow,
 };
 use crate::{
+    ask::Said,
     event::EventKind,
     order::Order,
     phase::Phase,
-    standing::Standing,
     task::{Task, rest_of},
 };
 use planner_api::{Plan, Reason};
@@ -22,6 +25,16 @@ use world::{Point, polyline};
 const MOST_PLANS: u32 = 3;
 /// The robot goes back so far at most to where the plan that takes over begins, metres.
 const MOST_BACK_M: f64 = 3.0;
+
+/// Whether a planner in shadow is to take over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Promotion {
+    No,
+    /// As soon as it can; it was asked so often for a plan from where the robot is.
+    Ordered {
+        n_plans: u32,
+    },
+}
 
 impl Mission {
     /// The planner in shadow is to take over as soon as its plan flies from where the robot is: in this tick, if the robot is
@@ -40,88 +53,76 @@ impl Mission {
         }
     }
 
-    /// Lets the shadow take over if it was ordered to and can; gives it back if not.
-    pub(super) fn promote_if_due(&mut self, mut shadow: Shadow) -> Option<Shadow> {
-        let Promotion::Ordered { n_plans } = shadow.promotion else { return Some(shadow) };
+    /// Lets the planner in shadow take over if that was ordered and it can.
+    pub(in crate::engine) fn promote_if_due(&mut self) {
+        let is_ordered = |shadow: &&Shadow| shadow.promotion != Promotion::No;
+        let Some(shadow) = self.shadow.as_ref().filter(is_ordered) else { return };
         // Nobody expects another planner to take over long after the order.
-        let refusal = self.standing_of(&shadow).allows(&Order::Promote).err().map(|why| why.to_string());
-        let barred = || shadow.slot.info.as_ref().and_then(|info| self.barred(info));
+        let refusal = self.standing().allows(&Order::Promote).err().map(|why| why.to_string());
+        let barred = || shadow.worker.info.as_ref().and_then(|info| self.barred(info));
         if let Some(why) = refusal.or_else(barred) {
-            self.refuse_promotion(&mut shadow, why);
-            return Some(shadow);
+            return self.refuse_promotion(why);
         }
-        if !shadow.may_take_over(self.tick) {
-            return Some(shadow);
+        if !shadow.may_take_over(self.known.tick) {
+            return;
         }
-        let from = self.active.choice.id.clone();
-        let Some(rest) = shadow.rest_from(self.locator.position(), &self.trail) else {
-            if n_plans == MOST_PLANS {
-                self.refuse_promotion(
-                    &mut shadow,
-                    "the robot leaves its plans before they are made; HOLD first".into(),
-                );
-            } else {
-                shadow.promotion = Promotion::Ordered { n_plans: n_plans + 1 };
-                shadow.want_plan(&from);
-            }
-            return Some(shadow);
-        };
-        let here = self.locator.position();
-        let reason = Reason::Swap { from };
+        let here = self.known.position();
+        let Some(rest) = shadow.rest_from(here, &self.known.trail) else { return self.promote_later() };
+        let reason = Reason::Swap { from: self.driving.id().to_owned() };
         let asked = AskedPlan { from_anchor: shadow.from_anchor, ..AskedPlan::from_here(reason, here) };
-        let evaluated = self.evaluate(None, &shadow.slot.choice.id, &asked, rest);
-        match &evaluated.objection {
-            None => {
-                self.take_over(shadow, evaluated);
-                return None;
+        let mut evaluated = self.known.evaluate(None, shadow.worker.id(), &asked, rest);
+        match evaluated.objection.take() {
+            None => self.promote(evaluated),
+            Some(objection) if objection.by_tether && self.known.may_try_from_anchor(&asked) => {
+                let due = Due::from_anchor(asked.reason);
+                self.shadow.iter_mut().for_each(|shadow| shadow.course.due = Some(due.clone()));
             }
-            Some(objection) if objection.by_tether && self.may_try_from_anchor(&asked) => {
-                shadow.slot.plan = PlanState::Due { reason: asked.reason, from_anchor: true };
+            Some(objection) => self.refuse_promotion(objection.message),
+        }
+    }
+
+    /// The robot is beside the plan of the planner in shadow, which plans once more, unless it has done so too often.
+    fn promote_later(&mut self) {
+        match &mut self.shadow {
+            Some(Shadow { promotion: Promotion::Ordered { n_plans }, course, .. })
+                if *n_plans < MOST_PLANS =>
+            {
+                *n_plans += 1;
+                course.want_plan(Reason::Swap { from: self.driving.id().to_owned() });
             }
-            Some(objection) => self.refuse_promotion(&mut shadow, objection.message.clone()),
+            _ => self.refuse_promotion("the robot leaves its plans before they are made; HOLD first".into()),
         }
-        Some(shadow)
     }
 
-    /// What decides about orders while this planner flies in shadow.
-    fn standing_of(&self, shadow: &Shadow) -> Standing<'_> {
-        Standing { shadow: Some(shadow.tally), ..self.standing() }
-    }
-
-    fn refuse_promotion(&mut self, shadow: &mut Shadow, why: String) {
-        shadow.promotion = Promotion::No;
-        self.happened.push(EventKind::PromotionRefused { planner: shadow.slot.choice.id.clone(), why });
-    }
-
-    fn take_over(
-        &mut self,
-        Shadow { mut slot, tally, .. }: Shadow,
-        Evaluated { plan, events, .. }: Evaluated,
-    ) {
-        let planner = slot.choice.id.clone();
-        self.drop_better_plan("another planner drives");
-        if let Some(candidate) = self.candidate.take() {
-            self.reject(candidate, format!("planner {planner} was promoted from shadow"));
+    fn refuse_promotion(&mut self, why: String) {
+        if let Some(shadow) = &mut self.shadow {
+            shadow.promotion = Promotion::No;
+            let planner = shadow.worker.id().to_owned();
+            self.happened.push(EventKind::PromotionRefused { planner, why });
         }
-        slot.before = self.active.known().cloned();
-        if let Some(pending) = &mut slot.pending {
+    }
+
+    fn promote(&mut self, evaluated: Evaluated) {
+        let Some(Shadow { mut worker, course, tally, .. }) = self.shadow.take() else { return };
+        let planner = worker.id().to_owned();
+        self.reject_preparing(&format!("planner {planner} was promoted from shadow"));
+        worker.before = self.driving.worker.seen().cloned();
+        if let Some(pending) = &mut worker.pending {
             pending.kind = PendingKind::StepInShadow;
         }
         // A hold that blames the planner before has lost its reason.
-        slot.prepare = if matches!(self.phase, Phase::Held(_)) { Prepare::Plan } else { Prepare::No };
+        let is_held = matches!(self.known.phase, Phase::Held(_));
+        let prepare = if is_held { Prepare::Plan } else { Prepare::No };
         self.happened.push(EventKind::Promoted { planner, tally });
-        self.promote(slot);
-        self.happened.extend(events);
-        self.take_plan(&plan);
-        self.plan_is_there();
+        self.take_over(Driving::with_plan(worker, course.found_since, prepare), Said::default(), evaluated);
     }
 }
 
 impl Shadow {
     /// Whether it has a plan, and no answer of it is overdue.
     fn may_take_over(&self, tick: u64) -> bool {
-        let owes = self.slot.pending.as_ref().is_some_and(|pending| pending.tick + 1 < tick);
-        self.slot.has_plan() && !owes
+        let owes = self.worker.pending.as_ref().is_some_and(|pending| pending.tick + 1 < tick);
+        self.course.has_plan() && !owes
     }
 
     /// What is left of its plan from where the robot is, which has flown this way. `None` if the plan is too far off.

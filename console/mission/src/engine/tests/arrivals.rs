@@ -27,7 +27,7 @@ fn a_late_step_costs_its_tick_and_is_used_while_it_is_fresh() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    let tick = flight.mission.tick;
+    let tick = flight.mission.known.tick;
     flight.delay = step_delay(1, tick, tick + 1);
     assert_eq!(moves(&mut flight, 4), [false, true, true, true]);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::PlannerLate { ticks: 1, .. })), 1);
@@ -42,7 +42,7 @@ fn a_step_older_than_two_ticks_is_dropped_and_asked_again() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    let tick = flight.mission.tick;
+    let tick = flight.mission.known.tick;
     flight.delay = step_delay(3, tick, tick + 1);
     assert_eq!(moves(&mut flight, 5), [false, false, false, true, true]);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Discarded { .. })), 1);
@@ -53,7 +53,7 @@ fn a_planner_that_is_silent_for_two_seconds_holds_the_robot_until_it_answers() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    let tick = flight.mission.tick;
+    let tick = flight.mission.known.tick;
     flight.delay = step_delay(50, tick, tick + 1);
     flight.fly(25);
     let Phase::Held(hold) = flight.mission.phase() else { panic!("{:?}", flight.mission.phase()) };
@@ -122,7 +122,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     flight.fly(10);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     let value = ParamValue::Float(2.0);
     let events = flight.tick(&[Order::SetParameter { key: "gain".into(), value: value.clone() }]);
     let at = |is: fn(&EventKind) -> bool| events.iter().position(is);
@@ -131,7 +131,7 @@ fn a_live_parameter_goes_to_the_planner_before_its_next_step() {
         changed.is_some() && changed < at(|kind| matches!(kind, EventKind::Commanded { .. })),
         "{events:?}"
     );
-    assert_eq!(flight.mission.active.choice.parameters["gain"], value);
+    assert_eq!(flight.mission.driving.worker.choice.parameters["gain"], value);
 }
 
 #[test]
@@ -141,8 +141,8 @@ fn state_is_saved_every_second_and_given_to_the_next_instance() {
     flight.tick(&[Order::Start]);
     flight.fly(35);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Snapshotted { .. })), 3);
-    let newest = flight.mission.active.saved;
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    let newest = flight.mission.driving.worker.saved;
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     flight.delay = Box::new(|ask, _| u64::from(matches!(ask.what, What::Open { .. })));
     flight.tick(&[Order::Resume]);
@@ -155,7 +155,7 @@ fn a_plugin_that_fails_three_times_within_a_minute_may_not_drive_again() {
     let mut flight = Flight::new(config());
     flight.tick(&[Order::Start]);
     for _ in 0..3 {
-        flight.planner.fail_at_tick = Some(flight.mission.tick);
+        flight.planner.fail_at_tick = Some(flight.mission.known.tick);
         flight.tick(&[]);
         flight.tick(&[Order::Resume]);
     }
@@ -181,7 +181,7 @@ pub(super) fn replay_asking(
     let mut again = Flight::new(config);
     let (mut events, mut answers) = (Vec::new(), RecordedAnswers::default());
     for (readings, orders) in &recorded.inputs {
-        let tick = again.mission.tick;
+        let tick = again.mission.known.tick;
         answers
             .begin_tick(recorded.events.iter().filter(|event| event.tick == tick).map(|event| &event.kind));
         again.mission.sense(&Input { readings, orders });
@@ -281,7 +281,7 @@ proptest! {
                 prop_assert_ne!(leave, Leave::None, "tick {}: it moves by itself", tick);
                 leave = if leave == Leave::OneTick { Leave::None } else { leave };
             }
-            for event in flight.events.iter().filter(|event| event.tick == flight.mission.tick - 1) {
+            for event in flight.events.iter().filter(|event| event.tick == flight.mission.known.tick - 1) {
                 folded.apply(&event.kind);
             }
             let standing = flight.mission.standing();

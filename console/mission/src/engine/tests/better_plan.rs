@@ -1,6 +1,7 @@
 //! A plan for all that is left, made while a repaired one is flown.
 
 use super::{
+    super::preparing::Role,
     arrivals::replay,
     covering::{covered, covering},
     *,
@@ -87,7 +88,7 @@ fn texts(flight: &Flight) -> Vec<String> {
 }
 
 fn driven_s(flight: &Flight) -> f64 {
-    flight.mission.now_s()
+    flight.mission.known.now_s()
 }
 
 #[test]
@@ -113,10 +114,12 @@ fn a_better_plan_is_taken_where_it_begins_in_one_tick_and_without_a_hold() {
 #[test]
 fn the_plan_is_asked_from_a_place_ahead_for_what_will_be_left_there() {
     let mut flight = with_offer();
-    let better = flight.mission.candidate.as_ref().and_then(|slot| slot.better.clone()).unwrap();
+    let Some(Preparing { role: Role::Better(better), .. }) = &flight.mission.preparing else {
+        panic!("none is made")
+    };
     let (kept, asked) = (flight.planner.regions_m2[1], flight.planner.regions_m2[2]);
     assert!(asked < kept - 2.0, "{kept} m² at the repair, {asked} m² for the better plan");
-    let at = better.begins().unwrap();
+    let at = better.joint().unwrap().at;
     let mut nearest_m = f64::INFINITY;
     let away_m = (at - flight.pose.position).norm();
     for _ in 0..2000 {
@@ -244,7 +247,7 @@ fn orders_that_change_the_plan_drop_it() {
         assert!(!flight.mission.standing().has_offer && !folded(&flight).standing().has_offer);
         assert_eq!(texts(&flight)[1], format!("no better plan of straight: {why}"));
         assert_eq!(flight.closed[0], WorkerId(2));
-        assert!(flight.mission.candidate.is_none());
+        assert!(flight.mission.preparing.is_none());
     }
 }
 
@@ -262,7 +265,7 @@ fn a_planner_that_fails_at_it_is_named_and_harms_nobody() {
 #[test]
 fn a_fault_of_the_planner_that_drives_drops_it() {
     let mut flight = with_offer();
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     assert_eq!(texts(&flight)[1], "no better plan of straight: the planner that drives failed");
     flight.tick(&[Order::Resume]);
@@ -275,7 +278,7 @@ fn a_forecast_makes_none_unless_they_are_taken_without_asking() {
     for (better_plan, in_fork) in [(BetterPlan::Offer, BetterPlan::Off), (BetterPlan::Take, BetterPlan::Take)]
     {
         let flight = flight(wasteful(better_plan));
-        assert_eq!(flight.mission.fork().mission.config.better_plan, in_fork);
+        assert_eq!(flight.mission.fork().mission.known.config.better_plan, in_fork);
     }
 }
 
@@ -288,7 +291,7 @@ fn a_turn_at_the_joint_counts_for_both() {
         _ => None,
     });
     let (flown, better, path) = said.unwrap();
-    let alone = Effort::of(&path, &taken.mission.config.limits);
+    let alone = Effort::of(&path, &taken.mission.known.config.limits);
     assert!(better.length_m > alone.length_m && flown.length_m > better.length_m);
     let planned = taken.events.iter().rev().find_map(|event| match &event.kind {
         EventKind::Planned { ask: None, reason: Reason::MapChanged, length_m, .. } => Some(*length_m),

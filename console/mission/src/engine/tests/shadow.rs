@@ -54,7 +54,7 @@ fn a_thousand_planners_take_over_without_a_hold_or_a_lost_tick() {
     flight.fly(5);
     assert_eq!(count(&flight, |kind| matches!(kind, EventKind::Held { .. })), 0);
     let ticks: Vec<u64> = commanded_by(&flight).into_iter().map(|(tick, _)| tick).collect();
-    assert_eq!(ticks, (0..flight.mission.tick).collect::<Vec<_>>(), "one command in every tick");
+    assert_eq!(ticks, (0..flight.mission.known.tick).collect::<Vec<_>>(), "one command in every tick");
     let mut drivers: Vec<u16> = commanded_by(&flight).into_iter().map(|(_, worker)| worker.0).collect();
     drivers.dedup();
     assert_eq!(drivers, (1..=1001).collect::<Vec<_>>());
@@ -158,7 +158,7 @@ fn a_shadow_may_take_over_from_a_planner_that_has_failed() {
     flight.tick(&[Order::Start]);
     flight.tick(&[shadow("other")]);
     flight.fly(20);
-    let tick = flight.mission.tick;
+    let tick = flight.mission.known.tick;
     flight.delay = Box::new(move |ask, now| if ask.id.worker.0 == 1 && now >= tick { 100 } else { 0 });
     flight.fly(25);
     assert!(matches!(flight.held_by(), Some(HoldReason::PlannerSilent { .. })));

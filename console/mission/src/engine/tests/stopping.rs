@@ -63,13 +63,13 @@ fn without_return_path() -> Flight {
     let mut flight = started(tethered(20.0));
     let hold =
         Hold { by: HoldReason::Tether { message: "no return path".into() }, resumes: Resumes::WhenCleared };
-    flight.mission.phase = Phase::Held(hold);
+    flight.mission.known.phase = Phase::Held(hold);
     flight
 }
 
 fn fallback_under_way() -> Flight {
     let mut flight = started(fallback());
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.delay =
         Box::new(|ask, tick| if matches!(ask.what, What::Open { .. }) { never(ask, tick) } else { 0 });
     flight.fly(5);
@@ -184,7 +184,7 @@ fn a_fault_while_only_an_order_ends_the_hold_does_not_hand_over_to_the_fallback(
     flight.fly(3);
     flight.tick(&[Order::Resume]);
     flight.fly(3);
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     flight.tick(&[Order::Hold]);
     let before = flight.pose;
@@ -216,7 +216,7 @@ fn a_planner_chosen_under_a_hold_that_ends_by_itself_waits_for_an_order() {
 #[test]
 fn a_planner_chosen_in_the_tick_after_a_fault_is_not_replaced_by_the_fallback() {
     let mut flight = started(fallback());
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
     flight.tick(&[swap_to("other")]);
     flight.fly(10);
@@ -234,7 +234,7 @@ fn a_candidate_that_the_fallback_displaces_is_reported() {
     });
     flight.tick(&[swap_to("other")]);
     flight.tick(&[Order::Resume]);
-    flight.planner.fail_at_tick = Some(flight.mission.tick);
+    flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.fly(5);
     assert_eq!(flight.mission.planner_id(), "fallback");
     let is_reported = |kind: &EventKind| matches!(kind, EventKind::PlannerRejected { planner, why } if planner == "other" && why.contains("fallback"));
@@ -255,7 +255,7 @@ fn a_robot_that_waits_for_a_planner_to_open_is_not_stuck() {
 fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
     let mut flight = started(config());
     flight.tick(&[Order::Hold]);
-    flight.mission.active.want_plan(Reason::MapChanged);
+    flight.mission.driving.course.want_plan(Reason::MapChanged);
     flight.planner.refuse = vec!["other"];
     flight.tick(&[swap_to("other")]);
     flight.fly(3);
@@ -270,11 +270,11 @@ fn a_planner_that_is_well_stays_when_the_chosen_one_cannot_be_opened() {
 fn a_step_ends_after_a_metre_without_lanes_and_goes_on_until_something_happens() {
     let mut flight = started(config());
     flight.tick(&[Order::Hold]);
-    let from = flight.mission.locator.position();
+    let from = flight.mission.known.locator.position();
     flight.tick(&[Order::StepTo(StepTo::LaneEnd)]);
     flight.fly(200);
     assert!(matches!(flight.mission.phase(), Phase::Held(hold) if hold.by == HoldReason::Stepped));
-    let way_m = (flight.mission.locator.position() - from).norm();
+    let way_m = (flight.mission.known.locator.position() - from).norm();
     assert!((0.9..1.6).contains(&way_m), "{way_m} m");
     flight.tick(&[Order::StepTo(StepTo::Event)]);
     flight.fly(3);

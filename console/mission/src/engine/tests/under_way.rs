@@ -35,14 +35,14 @@ fn a_planner_that_starts_again_is_given_what_is_left_of_its_plan() {
     flight.planner.cut = Some(vec![Point::new(0.0, 1.0), Point::new(0.0, 2.0)]);
     flight.tick(&[Order::Start]);
     flight.fly(199);
-    let (path, target) = (last_path(&flight), flight.mission.task.target());
+    let (path, target) = (last_path(&flight), flight.mission.known.task.target());
     flight.fly(2);
     assert!(flight.held_by().is_some());
     flight.tick(&[Order::Resume]);
     flight.fly(2);
     let [None, Some(kept)] = &flight.planner.kept[..] else { panic!("{:?}", kept_m(&flight)) };
     assert!((kept.path[0] - target).norm() < 0.1 && kept.path.last() == path.last());
-    let left_m = polyline::length_m(&path) - flight.mission.now_s() * 0.4;
+    let left_m = polyline::length_m(&path) - flight.mission.known.now_s() * 0.4;
     assert!((polyline::length_m(&kept.path) - left_m).abs() < 1.5, "{left_m} m, {:?}", kept_m(&flight));
     assert_eq!(kept.check(), Ok(()));
     assert_eq!((kept.cuts.len(), kept.legs.last().map(|leg| leg.tag)), (1, Some(api::LegTag::Travel)));
@@ -60,7 +60,7 @@ fn another_planner_and_other_values_begin_anew() {
 #[test]
 fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_values() {
     let mut flight = held_on_the_way();
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     let chosen = |value| {
         let parameters = Parameters::from([("gain".to_owned(), ParamValue::Float(value))]);
         Order::ChoosePlanner(PlannerChoice { id: "straight".into(), parameters })
@@ -73,9 +73,9 @@ fn the_planner_that_drives_keeps_its_plan_when_it_is_chosen_with_other_live_valu
     // The same choice once more plans anew, and so does one that changes the plan or takes a value back.
     flight.tick(&[chosen(2.0)]);
     assert_eq!(flight.planner.plans, 2);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(false)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(false)];
     flight.tick(&[chosen(3.0)]);
-    flight.mission.active.info.as_mut().unwrap().parameters = vec![gain(true)];
+    flight.mission.driving.worker.info.as_mut().unwrap().parameters = vec![gain(true)];
     flight.tick(&[swap_to("straight")]);
     assert_eq!((flight.planner.plans, flight.planner.chosen.len()), (4, 4));
 }
@@ -87,17 +87,17 @@ fn a_planner_that_begins_again_with_other_live_values_keeps_to_its_plan() {
     flight.tick(&[Order::Start]);
     flight.fly(200);
     flight.tick(&[Order::Hold]);
-    let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
+    let left_m = flight.mission.known.task.under_way().map(|plan| polyline::length_m(&plan.path));
     flight.tick(&[Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) }]);
     flight.fly(2);
     assert_eq!((flight.planner.chosen.len(), kept_m(&flight)), (2, vec![None, left_m]));
-    assert_eq!(flight.mission.active.choice.parameters["gain"], ParamValue::Float(2.0));
+    assert_eq!(flight.mission.driving.worker.choice.parameters["gain"], ParamValue::Float(2.0));
 }
 
 #[test]
 fn a_planner_that_is_called_back_to_where_it_left_goes_on_with_its_plan() {
     let mut flight = held_on_the_way();
-    let left_m = flight.mission.task.under_way().map(|plan| polyline::length_m(&plan.path));
+    let left_m = flight.mission.known.task.under_way().map(|plan| polyline::length_m(&plan.path));
     flight.tick(&[swap_to("other")]);
     flight.tick(&[swap_to("straight")]);
     assert_eq!(kept_m(&flight), [None, None, left_m]);

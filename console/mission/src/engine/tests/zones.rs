@@ -18,12 +18,12 @@ fn under_way() -> Flight {
 #[test]
 fn a_zone_drawn_under_way_is_no_floor_and_the_planner_goes_on_with_it_on_its_map() {
     let mut flight = under_way();
-    let before = flight.mission.floor.coverage.counts().reachable;
+    let before = flight.mission.known.floor.coverage.counts().reachable;
     let events = flight.tick(&[zone((-1.0, 0.0), (1.0, 2.0))]);
     assert!(
         events.iter().any(|kind| matches!(kind, EventKind::ZoneDrawn { zone } if zone.name == "no-go 1"))
     );
-    let lost = (before - flight.mission.floor.coverage.counts().reachable) as f64 * 0.01;
+    let lost = (before - flight.mission.known.floor.coverage.counts().reachable) as f64 * 0.01;
     assert!(lost > 3.0 && lost < 12.0, "{lost} m2 of floor");
     assert_eq!(flight.planner.chosen, ["straight", "straight"], "its steering has to know the zone, too");
     let site = flight.planner.sites.last().unwrap();
@@ -82,7 +82,8 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let good = zone((-1.0, 0.0), (1.0, 2.0));
     assert_eq!(refusal(&flight.tick(std::slice::from_ref(&good))), None);
     assert_eq!(refusal(&flight.tick(&[good])), None, "it gets another name");
-    let names: Vec<&str> = flight.mission.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
+    let names: Vec<&str> =
+        flight.mission.known.chart.world().zones.iter().map(|zone| zone.name.as_str()).collect();
     assert_eq!(names, ["no-go 1", "no-go 2"]);
 }
 
@@ -97,11 +98,11 @@ fn a_zone_over_a_part_of_a_preset_path_is_gone_round_and_one_over_all_of_the_res
     let events = flight.tick(&[over(0.0, 9.0)]);
     assert!(refusal(&events).is_some_and(|text| text.contains("end of the path")), "{events:?}");
     assert_eq!(refusal(&flight.tick(&[over(-1.0, 1.0)])), None);
-    let is_beyond = |flight: &Flight| flight.mission.task.target().x > 1.0;
+    let is_beyond = |flight: &Flight| flight.mission.known.task.target().x > 1.0;
     let targets: Vec<f64> = (0..200)
         .map(|_| {
             flight.tick(&[]);
-            flight.mission.task.target().x
+            flight.mission.known.task.target().x
         })
         .collect();
     let within = targets.iter().filter(|x| (-1.0..=1.0).contains(*x)).count();

@@ -1,0 +1,89 @@
+//! What a plan for all that is left has to be worth, and where it begins.
+
+use super::super::{known::Known, requests::AskedPlan};
+use crate::{ask::PlanAsk, event::Effort, task::Joint};
+use planner_api::{Plan, PoseEstimate, Reason};
+use world::{CoverageGrid, Point, Tool};
+
+/// It begins so far ahead at least, seconds of driving: time to plan, and for an operator to decide ...
+const LEAD_S: f64 = 60.0;
+/// ... and so far as a share of what is left of the plan: in a large tank both take longer.
+const LEAD_SHARE: f64 = 0.05;
+/// Less than this is not worth another plan, seconds of driving: 2 % of it and the half minute below are a seventh of it.
+const WORTH_S: f64 = 300.0;
+/// A change is worth it if it saves more than this, seconds: what an operator needs to look at it ...
+const CHANGE_S: f64 = 30.0;
+/// ... and this share of the rest: so much longer than planned is the way driven, after finds that nobody foresees.
+const CHANGE_SHARE: f64 = 0.02;
+/// Two plans scan the same if they leave the same up to this share of what is left to scan: cells count by their centres, so that two
+/// plans of other lanes differ by single cells.
+const SAME_FLOOR_SHARE: f64 = 0.0005;
+
+impl Known {
+    /// Where a better plan would begin; `None` if too little is left from there on.
+    pub(super) fn joint(&self) -> Option<Joint> {
+        let (cover, lanes) = (self.task.cover()?, self.task.lanes()?);
+        let v_m_per_s = self.config.limits.v_max_m_per_s;
+        let left_m = lanes.length_m() - lanes.along_m();
+        let joint = cover.joint((LEAD_S * v_m_per_s).max(LEAD_SHARE * left_m))?;
+        (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
+    }
+
+    /// The inputs of a plan for all that will be left where it begins, and that place; `None` if too little is left.
+    pub(in crate::engine) fn better_plan_ask(&self) -> Option<(Joint, (AskedPlan, PlanAsk))> {
+        let joint = self.joint()?;
+        let way = self.task.cover()?.way_to(&joint);
+        let coverage = self.coverage_after(&way);
+        let heading_rad = way.windows(2).next_back().map(|pair| pair[1] - pair[0]).map(|w| w.y.atan2(w.x));
+        let here = self.locator.pose_estimate();
+        let start =
+            PoseEstimate { position: joint.at, heading_rad: heading_rad.unwrap_or(here.heading_rad), ..here };
+        let previous = self.trail.iter().chain(&way).copied().collect();
+        let ask = self.plan_from(start, previous, &coverage, (Reason::MapChanged, None));
+        Some((joint, (AskedPlan::from_here(Reason::MapChanged, here.position), ask)))
+    }
+
+    /// What will have been scanned after some way.
+    fn coverage_after(&self, way: &[Point]) -> CoverageGrid {
+        let mut coverage = self.floor.coverage.clone();
+        Tool::along(way, |from, to| coverage.mark(self.config.tool(), from, to));
+        coverage
+    }
+
+    /// Why a plan after some way is not offered in place of a path: for what it saves, for the floor that it scans, or for the
+    /// tether.
+    pub(super) fn objection_to_better(
+        &self,
+        way: &[Point],
+        rest: &[Point],
+        (flown, better): (Effort, Effort),
+        plan: &Plan,
+    ) -> Option<String> {
+        let (saves_s, worth_s) = (flown.time_s - better.time_s, CHANGE_S + CHANGE_SHARE * flown.time_s);
+        if saves_s <= worth_s {
+            let [flown_min, better_min, worth_min] = [flown.time_s, better.time_s, worth_s].map(|s| s / 60.0);
+            return Some(format!(
+                "{better_min:.1} min instead of {flown_min:.1}; a change is worth {worth_min:.1} min"
+            ));
+        }
+        let coverage = self.coverage_after(way);
+        let cell_m2 = coverage.floor().cell_m2();
+        let same = SAME_FLOOR_SHARE * self.task.floor_left(&coverage).len() as f64;
+        let [left, as_now] = [&plan.path[..], rest].map(|path| {
+            let mut coverage = coverage.clone();
+            Tool::along(path, |from, to| coverage.mark(self.config.tool(), from, to));
+            self.task.floor_left(&coverage).len()
+        });
+        let less = left as f64 - as_now as f64;
+        if less > same {
+            let missed_m2 = less * cell_m2;
+            return Some(format!("it saves {} but scans {missed_m2:.2} m² less", better.saving(&flown)));
+        }
+        let certificate = self
+            .tether
+            .as_ref()
+            .map(|tether| tether.certify_after(way, plan, self.chart.world(), self.task_ends_at_anchor()))?;
+        let why = || format!("it is not safe for the tether: {}", certificate.reasons.join("; "));
+        (!certificate.certified).then(why)
+    }
+}

@@ -1,0 +1,135 @@
+//! Commands of the planner that drives: which one is sent, and what the robot is sent then.
+
+use super::{
+    super::{
+        happened::Happened,
+        known::Known,
+        rules::{LatePlannerRule, Verdict},
+        worker::{Pending, PendingKind},
+    },
+    Driving,
+};
+use crate::{
+    ask::{AskId, Said},
+    event::{EventKind, rounded_command},
+};
+use geometry::motion::drive_for;
+use planner_api::{Command, Drive, Limits};
+
+/// Distance between the points of the path flown that are kept for planners, metres.
+const TRAIL_M: f64 = 0.1;
+
+/// A command that has arrived.
+#[derive(Clone)]
+pub(super) struct Arrived {
+    ask: AskId,
+    command: Command,
+    said: Said,
+    /// For how many ticks the robot stood still for it, if a row of late ones begins with it.
+    late_ticks: Option<u64>,
+}
+
+impl Driving {
+    /// Takes a command, which was asked for in this tick or in an earlier one. The freshest one that arrives before the tick
+    /// ends is sent.
+    pub(in crate::engine) fn take_command(
+        &mut self,
+        (asked, usable): (&Pending, bool),
+        (command, said): (Command, Said),
+        known: &Known,
+        happened: &mut Happened,
+    ) {
+        let ticks = known.tick - asked.tick;
+        let late_ticks = self.late.arrived(ticks).then_some(ticks);
+        let arrived = Arrived { ask: asked.id, command, said, late_ticks };
+        let is_fresh = LatePlannerRule::is_fresh(ticks as f64 * known.config.tick_s);
+        if !(usable && known.is_running() && is_fresh) {
+            return self.discard(arrived, happened);
+        }
+        self.saved_at_s.get_or_insert(known.now_s());
+        if let Some(older) = self.command.replace(arrived) {
+            self.discard(older, happened);
+        }
+    }
+
+    /// Sends the command of this tick, if there is one.
+    pub(in crate::engine) fn send(&mut self, known: &mut Known, happened: &mut Happened) -> Option<Drive> {
+        let arrived = self.command.take()?;
+        let (ask, command) = (arrived.ask, arrived.command);
+        self.pass_on(arrived, happened);
+        let (is_coverage, tick_s) = (known.is_coverage(), known.config.tick_s);
+        let verdict = self.blocked.update(command.status, known.position(), is_coverage, tick_s);
+        if let Some(Verdict::Replan(reason)) = verdict {
+            self.course.want_plan(reason);
+        }
+        let wanted = known.sending().as_sent(command);
+        let sent = known.governed(wanted);
+        let asked = (sent != wanted).then_some(wanted);
+        happened.push(EventKind::Commanded { ask: Some(ask), command: sent, asked });
+        happened.extend(known.note_limit(wanted, sent));
+        Some(sent.drive)
+    }
+
+    /// Sends no command that has arrived.
+    pub(in crate::engine) fn drop_command(&mut self, happened: &mut Happened) {
+        if let Some(unsent) = self.command.take() {
+            self.discard(unsent, happened);
+        }
+    }
+
+    /// No answer to a step that was asked before is of use any more.
+    pub(in crate::engine) fn outdate_step(&mut self) {
+        if let Some(Pending { kind: PendingKind::Step { usable }, .. }) = &mut self.worker.pending {
+            *usable = false;
+        }
+    }
+
+    /// Notes that a command is not sent; what the planner said with it is passed on all the same.
+    fn discard(&self, arrived: Arrived, happened: &mut Happened) {
+        let ask = arrived.ask;
+        self.pass_on(arrived, happened);
+        happened.push(EventKind::Discarded { ask, plan: None });
+    }
+
+    /// What there is to report with a command, directly before what becomes of it.
+    fn pass_on(&self, arrived: Arrived, happened: &mut Happened) {
+        if let Some(ticks) = arrived.late_ticks {
+            happened.push(EventKind::PlannerLate { planner: self.id().to_owned(), ticks });
+        }
+        happened.pass_on(arrived.said, self.id());
+    }
+}
+
+/// What a command becomes on its way to the robot, at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sending {
+    heading_rad: f64,
+    limits: Limits,
+    turn_first_rad: f64,
+}
+
+impl Sending {
+    /// A command as the robot is sent it: within its limits, in its own way of moving, and rounded as everything that is
+    /// reported. Doing this to a command that was sent changes nothing, so that recorded commands can be fed in again.
+    pub fn as_sent(&self, command: Command) -> Command {
+        let drive = drive_for(command.drive, self.heading_rad, &self.limits, self.turn_first_rad);
+        rounded_command(Command { drive, status: command.status })
+    }
+}
+
+impl Known {
+    pub(in crate::engine) fn sending(&self) -> Sending {
+        Sending {
+            heading_rad: self.locator.pose().heading_rad,
+            limits: self.config.limits,
+            turn_first_rad: self.config.task.turn_first_rad(),
+        }
+    }
+
+    pub(in crate::engine) fn keep_trail(&mut self) {
+        let here = self.position();
+        if self.trail.last().is_none_or(|last| (here - last).norm() >= TRAIL_M) {
+            self.trail.push(here);
+        }
+    }
+}

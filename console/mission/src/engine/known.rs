@@ -1,0 +1,104 @@
+//! What a mission knows, its planners apart.
+
+use super::{floor::ScannedFloor, governing::Governor};
+use crate::{
+    chart::Chart,
+    config::MissionConfig,
+    locate::Locator,
+    phase::Phase,
+    standing::PositionTrust,
+    task::Task,
+    tether::{Tether, ends_at_anchor},
+};
+use planner_api::Drive;
+use world::{Floor, Point, World};
+
+/// A robot that turns at least this fast turns about in the time that it is given at a corner, radians per second.
+const BRISK_RAD_PER_S: f64 = 0.75;
+
+/// Everything that the mission knows of robot, tank and task, and where it stands with them.
+#[derive(Clone)]
+pub(super) struct Known {
+    pub config: MissionConfig,
+    pub tick: u64,
+    pub phase: Phase,
+    pub locator: Locator,
+    pub chart: Chart,
+    pub task: Task,
+    pub floor: ScannedFloor,
+    /// `None` without a tether, or if its anchor cannot be.
+    pub tether: Option<Tether>,
+    /// The path flown, a point each decimetre.
+    pub trail: Vec<Point>,
+    /// What limits the commands.
+    pub governor: Governor,
+    /// The command at the end of the last tick.
+    pub last_drive: Drive,
+}
+
+impl Known {
+    /// What is known before the start; arguments as of [`Mission::new`](super::Mission::new).
+    pub(super) fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
+        let (start, radius_m) = (config.start.position, config.limits.radius_m);
+        let tether = config.tether.as_ref();
+        Self {
+            tick: 0,
+            phase: Phase::Waiting,
+            tether: tether.and_then(|tether| Tether::new(tether, radius_m, &drawing, start).ok()),
+            locator: Locator::new(&config, &drawing),
+            governor: Governor::new(&config, &drawing.zones),
+            chart: Chart::new(drawing, &config, seed),
+            task: Task::new(&config.task, start),
+            floor: ScannedFloor::new(floor),
+            trail: vec![start],
+            last_drive: Drive::STILL,
+            config,
+        }
+    }
+
+    /// Mission time at the top of the tick, seconds.
+    pub(super) fn now_s(&self) -> f64 {
+        self.tick as f64 * self.config.tick_s
+    }
+
+    pub(super) fn is_running(&self) -> bool {
+        matches!(self.phase, Phase::Running(_))
+    }
+
+    pub(super) fn is_waiting(&self) -> bool {
+        self.phase == Phase::Waiting
+    }
+
+    pub(super) fn is_coverage(&self) -> bool {
+        self.task.cover().is_some()
+    }
+
+    /// Estimated position of the robot.
+    pub(super) fn position(&self) -> Point {
+        self.locator.position()
+    }
+
+    pub(super) fn position_trust(&self) -> PositionTrust {
+        if self.locator.is_lost() {
+            PositionTrust::Lost { limit_m: self.config.position_limit_m }
+        } else if self.locator.is_alarmed() {
+            PositionTrust::Alarmed
+        } else {
+            PositionTrust::Good
+        }
+    }
+
+    /// How fast time passes for a robot at a corner: one that turns slowly is given longer to come round.
+    pub(super) fn briskness(&self) -> f64 {
+        (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
+    }
+
+    pub(super) fn task_ends_at_anchor(&self) -> bool {
+        self.config.tether.as_ref().is_some_and(|tether| ends_at_anchor(tether, &self.config))
+    }
+
+    /// Whether the mission puts return paths along the cable before plans.
+    pub(super) fn plans_ways_home(&self) -> bool {
+        self.is_coverage() && self.task_ends_at_anchor()
+    }
+}

@@ -1,0 +1,110 @@
+//! What planners are given with an ask: the inputs of a plan and of a command.
+
+use super::{course::Due, known::Known};
+use crate::{
+    ask::{PlanAsk, StepAsk},
+    task::Task,
+};
+use geometry::PathFollower;
+use planner_api::{Drive, Plan, PoseEstimate, Reason};
+use std::sync::Arc;
+use world::{CoverageGrid, Point};
+
+/// How much of the targets and of the plan a planner sees ahead, metres.
+const AHEAD_M: f64 = 4.0;
+
+/// What has to be remembered of a plan that is being made.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AskedPlan {
+    pub reason: Reason,
+    /// The return path before the plan; empty for a plan from where the robot stood.
+    pub return_path: Vec<Point>,
+    /// Whether that return path was the second try.
+    pub from_anchor: bool,
+    /// Whether the planner was to keep to the plan that is flown, changed where the map has changed.
+    pub is_repair: bool,
+    /// Where the robot stood.
+    pub here: Point,
+}
+
+impl AskedPlan {
+    /// A plan from where the robot stands, which is not asked of the planner.
+    pub(super) fn from_here(reason: Reason, here: Point) -> Self {
+        Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
+    }
+}
+
+impl Known {
+    /// The inputs of a plan from the end of a return path, or from where the robot stands.
+    ///
+    /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
+    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are given
+    /// of the first `n_flown` points of the path flown.
+    pub(super) fn plan_ask(
+        &self,
+        Due { reason, from_anchor }: &Due,
+        n_flown: usize,
+        keep: Option<Plan>,
+    ) -> (AskedPlan, PlanAsk) {
+        let return_path =
+            if *from_anchor { self.way_to_anchor() } else { self.way_out() }.unwrap_or_default();
+        let here = self.locator.pose_estimate();
+        let start = return_path.last().map_or(here, |home| PoseEstimate { position: *home, ..here });
+        let previous: Vec<Point> = self.trail[..n_flown].iter().chain(&return_path).copied().collect();
+        let is_repair = keep.is_some() && matches!(reason, Reason::MapChanged | Reason::Blocked);
+        let ask = self.plan_from(start, previous, &self.floor.coverage, (reason.clone(), keep));
+        let asked = AskedPlan::from_here(reason.clone(), here.position);
+        let asked = AskedPlan { return_path, from_anchor: *from_anchor, is_repair, ..asked };
+        (asked, ask)
+    }
+
+    /// The inputs of a plan for what is left of the task from some place on, with the way to there from the start of the
+    /// mission and what is scanned by then; why it is made, and the plan that it is to keep to.
+    pub(super) fn plan_from(
+        &self,
+        start: PoseEstimate,
+        previous: Vec<Point>,
+        coverage: &CoverageGrid,
+        (reason, under_way): (Reason, Option<Plan>),
+    ) -> PlanAsk {
+        let task = self.task.left(coverage, self.config.lane_m(), self.config.tether_limits());
+        PlanAsk { reason, start, task, site: Arc::new(self.chart.site()), previous, under_way }
+    }
+
+    /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
+    pub(super) fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
+        asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
+    }
+
+    /// The inputs of a command on the way along a task and a plan.
+    pub(super) fn step_ask(&self, task: &Task, plan: Option<&PathFollower>) -> StepAsk {
+        let pose = self.locator.pose_estimate();
+        let w_rad_per_s = match self.last_drive {
+            Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
+            Drive::Velocity(_) => 0.0,
+        };
+        // Lanes are followed by the task itself, which knows how far it is.
+        let path_ahead = match task {
+            Task::Cover(_) => task.targets_ahead(AHEAD_M),
+            Task::Goto(_) | Task::Follow { .. } => plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M)),
+        };
+        StepAsk {
+            tick: self.tick,
+            t_s: self.now_s(),
+            dt_s: self.config.tick_s,
+            pose,
+            v_m_per_s: self.speed_m_per_s(),
+            w_rad_per_s,
+            target: task.target(),
+            targets_ahead: task.targets_ahead(AHEAD_M).to_vec(),
+            path_ahead: path_ahead.to_vec(),
+            obstacles: self.chart.near(pose.position),
+        }
+    }
+}
+
+/// What is left of a plan that goes on being flown with a change, for the same planner.
+pub(super) fn under_way(task: &Task, reason: &Reason) -> Option<Plan> {
+    let goes_on = matches!(reason, Reason::MapChanged | Reason::Blocked | Reason::Recover);
+    goes_on.then(|| task.under_way()).flatten()
+}
