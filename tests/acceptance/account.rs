@@ -1,8 +1,8 @@
 //! One account of the floor: whoever prints a share prints the same one, to the last digit.
 
 use crate::bench::{Bench, scenario};
+use account::{Percent, Shares};
 use recording::{JOURNAL_FILE, JournalReader, RECORDING_FILE};
-use report::account::{Percent, Shares};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tui::model::Run;

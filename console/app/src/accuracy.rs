@@ -4,13 +4,14 @@ use crate::{
     cli::AccuracyArgs,
     output::{check_free, say_json, write_file},
 };
+use account::estimate::forecast;
 use flight::{
     failure::{COMPLETE, bad_input},
     scenarios,
 };
 use positioning::{AccuracyMap, advise};
 use report::{
-    forecast::{ForecastReport, clearance_warning, forecast, mirror_warning},
+    forecast::{ForecastReport, clearance_warning, mirror_warning},
     print::{say, warn_line},
 };
 use scenario::Scenario;

@@ -8,16 +8,14 @@ use crate::{
     output::{check_free, say_json},
 };
 use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
+use account::{Expect, PlannerCalls};
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
     scenarios,
 };
 use mission::Event;
 use positioning::Wrong;
-use report::{
-    Expect, PlannerCalls,
-    print::{say, say_line, warn_line},
-};
+use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
 use serde::Serialize;

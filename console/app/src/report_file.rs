@@ -8,13 +8,14 @@ use crate::{
         refuse_other_signer, seal, signature,
     },
 };
+use account::Inspection;
 use flight::{
     failure::{COMPLETE, bad_input},
     texts,
 };
 use planner_host::PluginDirs;
 use report::{
-    Document, Inspection, PastRun,
+    Document, PastRun,
     document::{Context, Revision, csv, dxf, geojson, html, located_json},
     print::say_line,
 };

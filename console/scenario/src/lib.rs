@@ -35,8 +35,8 @@ pub use renamed::with_todays_keys;
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 
+use account::{Expect, Inspection};
 use mission::MissionConfig;
-use report::{Expect, Inspection};
 use sim::SimConfig;
 use source::Source;
 use std::{io::Read, path::Path};

@@ -1,10 +1,7 @@
 //! What maps show, cell by cell.
 
-use crate::{
-    account::{Evidence, areas::together, plate_map},
-    drawing::{frame::Fixtures, plates::PlateLines},
-    scanned::Scanned,
-};
+use crate::drawing::{frame::Fixtures, plates::PlateLines};
+use account::{Evidence, Scanned, plate_map, together};
 use mission::{RunOpened, TaskConfig};
 use world::{Cell, Floor, Plate, PlateMap, Point, ShellStretch};
 

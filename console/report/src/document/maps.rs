@@ -202,7 +202,7 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
 }
 
 /// What is guaranteed, and what is scanned only if the position was as estimated.
-pub(super) fn guaranteed(layers: &Layers<'_>, whole: &crate::account::Shares) -> Figure {
+pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "g", HALF_MM, 5.5);
     let missed = sheet.pattern("missed");
@@ -340,7 +340,7 @@ fn mark_lay(sheet: &mut Sheet, letter: &str, lay: &Lay, dash: &str) {
 }
 
 /// A tiny bar of what is not guaranteed of a plate; `top` is the share at full width.
-pub(super) fn plate_bar(shares: &crate::account::Shares, top: f64) -> String {
+pub(super) fn plate_bar(shares: &account::Shares, top: f64) -> String {
     let not_guaranteed = (1.0 - shares.guaranteed.unwrap_or(0.0)).max(0.0);
     let thin = (not_guaranteed - shares.missed - shares.unreachable - shares.margin).max(0.0);
     let parts = [

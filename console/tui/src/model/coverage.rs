@@ -4,8 +4,8 @@ mod class;
 
 pub use class::FloorClass;
 
+use account::{Overlap, Shares};
 use class::Tally;
-use report::{Overlap, account::Shares};
 use serde::{Deserialize, Serialize};
 use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, Tool, coverage::Counts};
 

@@ -7,8 +7,8 @@ use crate::actions::ActionId;
 use crate::model::log::clock;
 use crate::model::replay::{Jump, Other, Side};
 use crate::model::{LineEdit, Model, Overlay, Replay, RunId, RunResult, Screen};
+use account::Notes;
 use mission::{Event, Severity};
-use report::notes::Notes;
 
 /// Whether something can be done with the replay that is open.
 pub(super) fn can(model: &Model, id: ActionId) -> Result<(), String> {

@@ -5,12 +5,12 @@ use super::shade::{Shade, compared};
 use crate::model::{Raster, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
+use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
-use report::account::Shares;
 
 /// Columns of the right side, and most rows.
 const SIZE: (u16, u16) = (12, 10);

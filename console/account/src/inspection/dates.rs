@@ -14,7 +14,7 @@ impl Date {
     /// Reads `2027-03-31`, or the last day of `2027-03`; none if it is neither.
     ///
     /// ```
-    /// use report::document::Date;
+    /// use account::Date;
     /// assert_eq!(Date::read("2028-02"), Date::read("2028-02-29"));
     /// assert!(Date::read("2027-02-29").is_none() && Date::read("next year").is_none());
     /// ```
@@ -34,7 +34,7 @@ impl Date {
     }
 
     /// The last day that a text names behind a word as `until`: of `valid to 2027-05`, `expires 2019` (the end of the year).
-    pub(super) fn until(text: &str) -> Option<Self> {
+    pub fn until(text: &str) -> Option<Self> {
         let lower = text.to_lowercase();
         let words: Vec<&str> = lower
             .split(|letter: char| !(letter.is_alphanumeric() || letter == '-'))

@@ -7,11 +7,8 @@ use super::{
     style,
 };
 use crate::{error::RecordingError, rr};
+use account::{Area, MissReason, Shares, Summary};
 use mission::event::RunOpened;
-use report::{
-    Summary,
-    account::{Area, MissReason, Shares},
-};
 use std::sync::Arc;
 use world::shape::rectangle;
 

@@ -38,7 +38,7 @@ impl Measure {
     }
 
     /// The distance, or from where to where it goes, metres.
-    pub(crate) fn range(&self) -> String {
+    pub fn range(&self) -> String {
         let to_m = self.to_m.filter(|to_m| format!("{to_m:.2}") != format!("{:.2}", self.value_m));
         to_m.map_or_else(
             || format!("{:.2} m", self.value_m),

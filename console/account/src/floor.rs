@@ -1,22 +1,23 @@
 //! The floor as an inspector accounts for it: what was scanned, what was missed and why, what nobody could reach.
 
-pub(crate) mod areas;
+mod areas;
 mod evidence;
 mod measure;
 mod reason;
 mod reasons;
+mod updated;
 mod zone;
 
-pub use areas::{Area, Cause, Explained, Slivers};
+pub use areas::{Area, Cause, Explained, Slivers, area_of, areas, together};
 pub use evidence::{Evidence, Solid};
 pub use measure::Measure;
 pub use reason::{MissReason, OutOfReach};
 pub use reasons::Reasons;
+pub use updated::updated_floor;
 use zone::rim;
 pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
 
-use crate::{accuracy::nearest_rank, joined::updated_floor, scanned::Scanned};
-use areas::areas;
+use crate::{accuracy::nearest_rank, scanned::Scanned};
 use mission::event::RunOpened;
 use serde::{Deserialize, Serialize};
 use world::{
@@ -58,7 +59,8 @@ pub struct Account {
 
 impl Account {
     /// The account of a floor that nobody was to scan: nothing of it is missed, nor asked for along the shell.
-    pub(crate) fn of_no_scan(self) -> Self {
+    #[must_use]
+    pub fn of_no_scan(self) -> Self {
         Self {
             whole: Shares::default(),
             reachable: Shares::default(),
@@ -74,7 +76,7 @@ impl Account {
     }
 
     /// Whether it is that of a floor that nobody was to scan.
-    pub(crate) fn is_of_no_scan(&self) -> bool {
+    pub fn is_of_no_scan(&self) -> bool {
         self.whole.area_m2 <= 0.0
     }
 }
@@ -175,7 +177,7 @@ impl Tally {
 }
 
 /// Accounts for a floor. Costs one look at every cell.
-pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Account {
+pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Account {
     let grid = scanned.believed();
     let floor = grid.floor();
     let plates = plate_map(run, floor);
@@ -223,7 +225,7 @@ pub(crate) fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -
 }
 
 /// The plates of a floor, if their layout is known.
-pub(crate) fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
+pub fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
     run.plates.as_ref().map(|layout| layout.map(&run.world.boundary, floor))
 }
 

@@ -141,13 +141,13 @@ impl Evidence {
     }
 
     /// The scanned share of the reachable floor by the area that the tool passed, 0 to 1; `None` if there is no such floor.
-    pub(crate) fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
+    pub fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
         let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
         self.area.share_of(floor, &self.boundary, &shapes)
     }
 
     /// The zones that the robot must not enter.
-    pub(crate) fn no_go(&self) -> impl Iterator<Item = &Solid> {
+    pub fn no_go(&self) -> impl Iterator<Item = &Solid> {
         self.no_go.iter()
     }
 
@@ -173,12 +173,12 @@ impl Evidence {
     }
 
     /// A no-go zone was drawn; `words` say what it is.
-    pub(crate) fn forbid(&mut self, words: String, outline: &Shape) {
+    pub fn forbid(&mut self, words: String, outline: &Shape) {
         self.no_go.push(Solid { name: words, shape: outline.clone() });
     }
 
     /// The zone that was drawn last changed the kind of these cells.
-    pub(crate) fn shut(&mut self, changes: &[KindRun]) {
+    pub fn shut(&mut self, changes: &[KindRun]) {
         let zone = u16::try_from(self.no_go.len().saturating_sub(1)).unwrap_or(OF_NONE);
         for KindRun(kind, first, count) in changes {
             let first = (*first as usize).min(self.shut_by.len());
@@ -244,7 +244,7 @@ impl Evidence {
     }
 
     /// Gives what was found other names.
-    pub(crate) fn name_found(&mut self, name: impl Fn(&str) -> String) {
+    pub fn name_found(&mut self, name: impl Fn(&str) -> String) {
         for (_, solid) in &mut self.found {
             solid.name = name(&solid.name);
         }
@@ -256,7 +256,7 @@ impl Evidence {
     }
 
     /// Whether all of the floor was to be scanned.
-    pub(crate) fn asks_for_everything(&self) -> bool {
+    pub fn asks_for_everything(&self) -> bool {
         self.asked.is_none()
     }
 
@@ -289,7 +289,7 @@ impl Evidence {
     }
 
     /// Name and distance of the nearest solid thing, the shell included, metres.
-    pub(crate) fn nearest_solid(&self, place: Point) -> (&str, f64) {
+    pub fn nearest_solid(&self, place: Point) -> (&str, f64) {
         let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
         let shell = ("the shell", self.boundary.wall_distance_m(place));
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })

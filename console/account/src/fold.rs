@@ -1,9 +1,10 @@
 //! Events of a run, one after the other, into its summary.
 
 use crate::{
-    account::{Account, Evidence, account},
+    Account, Evidence, Solid,
     accuracy::{Accuracy, Claimed, Estimate},
     drawn::DrawnZone,
+    floor::account,
     scanned::Scanned,
     summary::{REPORT_VERSION, Summary, Tether},
     tethered::Tethered,
@@ -27,7 +28,7 @@ const MOST_PLANNERS: usize = 1000;
 pub struct Fold {
     known: Summary,
     truth: Option<Pose>,
-    pub(crate) scanned: Option<Scanned>,
+    scanned: Option<Scanned>,
     tracker: Option<Tracker>,
     accuracy: Accuracy,
     claimed: Claimed,
@@ -36,8 +37,8 @@ pub struct Fold {
     tethered: Option<Tethered>,
     /// The tool of readings that were located; none for a run that was flown.
     tool: Option<ToolTrack>,
-    pub(crate) run: Option<Box<RunOpened>>,
-    pub(crate) evidence: Option<Evidence>,
+    run: Option<Box<RunOpened>>,
+    evidence: Option<Evidence>,
     /// Whether the event before drew a zone: the change of the floor that follows is its.
     is_zone_new: bool,
     /// Whether the account of the floor is left out.
@@ -246,8 +247,23 @@ impl Fold {
         self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
     }
 
+    /// The run as it was opened, with the zones that were drawn since; `None` before that.
+    pub fn run(&self) -> Option<&RunOpened> {
+        self.run.as_deref()
+    }
+
+    /// What was scanned; `None` before the run is opened.
+    pub fn scanned(&self) -> Option<&Scanned> {
+        self.scanned.as_ref()
+    }
+
+    /// Why floor was missed; `None` before the run is opened, and without the account of the floor.
+    pub fn evidence(&self) -> Option<&Evidence> {
+        self.evidence.as_ref()
+    }
+
     /// Whether it is known what was scanned: of readings that were located, only if they say when the tool was on.
-    pub(crate) fn says_what_was_scanned(&self) -> bool {
+    pub fn says_what_was_scanned(&self) -> bool {
         self.tool.as_ref().is_none_or(ToolTrack::is_known)
     }
 
@@ -257,18 +273,18 @@ impl Fold {
     }
 
     /// Whether the task is to scan the floor; what was located from readings has no task that speaks against it.
-    pub(crate) fn has_floor_to_scan(&self) -> bool {
+    pub fn has_floor_to_scan(&self) -> bool {
         let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
         self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
     }
 
     /// What was found that is not on the drawing.
-    pub(crate) fn found(&self) -> impl Iterator<Item = &crate::account::Solid> {
+    pub fn found(&self) -> impl Iterator<Item = &Solid> {
         self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
     }
 
     /// Where the robot truly was at the end; `None` outside simulation.
-    pub(crate) fn true_place(&self) -> Option<Point> {
+    pub fn true_place(&self) -> Option<Point> {
         self.truth.map(|pose| pose.position)
     }
 
@@ -387,4 +403,4 @@ fn defaults(info: &PlannerInfo) -> Parameters {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

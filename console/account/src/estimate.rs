@@ -1,9 +1,11 @@
 //! What a plan promises before anything moves: time, coverage, clearance, tether, accuracy, and where each is worst.
 
-pub(crate) mod time;
+mod time;
+
+pub use time::time_s;
 
 use mission::{MissionConfig, TaskConfig};
-use positioning::AccuracyMap;
+use positioning::{AccuracyMap, Forecast};
 use serde::{Deserialize, Serialize};
 use world::{
     CoverageGrid, Floor, ObstacleMap, Point, Shape, World, polyline,
@@ -12,6 +14,8 @@ use world::{
 
 /// Distance between the points of a path that are looked at, metres.
 const SAMPLE_M: f64 = 0.1;
+/// Cells of a forecast along the longer side of the floor.
+const CELLS: f64 = 80.0;
 
 /// A figure and where on the path it is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -68,7 +72,7 @@ impl Estimate {
         let (accuracy_worst, without_fix_m) = accuracy(mission, drawing, &sampled);
         Self {
             length_m: polyline::length_m(path),
-            time_s: time::time_s(mission, &map, path),
+            time_s: time_s(mission, &map, path),
             complete,
             reachable: reachable(mission, drawing, path),
             clearance_min: clearance(mission, &map, &sampled),
@@ -140,7 +144,7 @@ fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option
     if drawing.stations.is_empty() {
         return (None, 0.0);
     }
-    let map = AccuracyMap::new(drawing, &crate::forecast::forecast(mission, drawing));
+    let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
     let (mut worst, mut without_fix_m) = (None::<Worst>, 0.0);
     for at in path {
         match map.at(*at).and_then(|accuracy| accuracy.error_95_m) {
@@ -152,6 +156,12 @@ fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option
         }
     }
     (worst, without_fix_m)
+}
+
+/// What the mission's own estimator may expect of its stations.
+pub fn forecast(mission: &MissionConfig, drawing: &World) -> Forecast {
+    let (low, high) = drawing.boundary.bounds();
+    mission.forecast((high - low).amax() / CELLS)
 }
 
 #[cfg(test)]

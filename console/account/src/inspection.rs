@@ -1,5 +1,11 @@
 //! What only people know of an inspection: `[inspection]` of the scenario, or of a file that is written after the run.
 
+mod dates;
+mod words;
+
+pub use dates::Date;
+pub use words::{is_placeholder, says_nothing};
+
 use serde::{Deserialize, Serialize};
 
 /// What only people know. What is absent is printed as missing.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::accuracy::Estimate;
-use crate::fold::tests::round_tank;
+use crate::samples::round_tank;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use world::{CellRun, CoverageGrid, Point, Pose, Tool, coverage::runs_of};

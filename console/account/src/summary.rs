@@ -1,6 +1,6 @@
 //! The figures of one run, as `run --json` prints them.
 
-use crate::{account::Account, drawn::DrawnZone};
+use crate::{Account, drawn::DrawnZone};
 use mission::{Check, Outcome, Parameters, Sandbox};
 use serde::{Deserialize, Serialize};
 

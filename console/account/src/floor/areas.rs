@@ -106,7 +106,7 @@ impl<R> fmt::Display for Area<R> {
 
 /// The areas of the cells that have a reason, the largest first, and what is too small to be listed. Cells lie
 /// together if they touch, be it at a corner, whatever their plates and reasons.
-pub(crate) fn areas<R: Explained>(
+pub fn areas<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
     reason_of: impl Fn(usize) -> Option<R>,
@@ -132,7 +132,7 @@ pub(crate) fn areas<R: Explained>(
 }
 
 /// Some cells, in order of their index, in groups of those that touch, be it at a corner; in the order of their first cells.
-pub(crate) fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
+pub fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
     let all: Vec<usize> = cells.into_iter().collect();
     let mut is_open = vec![false; floor.len()];
     for cell in &all {
@@ -163,7 +163,7 @@ pub(crate) fn around(floor: &Floor, cell: usize) -> impl Iterator<Item = usize> 
 }
 
 /// Some cells as an area.
-pub(crate) fn area_of<R: Explained>(
+pub fn area_of<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
     cells: &[usize],

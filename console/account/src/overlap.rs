@@ -59,7 +59,7 @@ impl Overlap {
     }
 
     /// Takes in another run over the same floor: what both scanned, one of them scanned again.
-    pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
+    pub fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
         for (cell, others) in other.again.iter().enumerate() {
             let twice = u8::from(is_in_both(cell));
             let own = self.again.at_mut(cell);

@@ -87,7 +87,7 @@ const EMPTY: [&str; 58] = [
 /// Whether a text stands for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`, `?`.
 ///
 /// ```
-/// use report::document::is_placeholder;
+/// use account::is_placeholder;
 /// assert!(["TBD", "xxx", "-", "?"].into_iter().all(is_placeholder) && !is_placeholder("Tbcom Ltd"));
 /// ```
 pub fn is_placeholder(text: &str) -> bool {
@@ -103,7 +103,7 @@ pub fn is_placeholder(text: &str) -> bool {
 /// there is none does: `No remarks`, `None above 20 % of the thickness`.
 ///
 /// ```
-/// use report::document::says_nothing;
+/// use account::says_nothing;
 /// assert!(["n.a.", "none", "To be done", "unknown", "?"].into_iter().all(says_nothing));
 /// assert!(!["No remarks", "None found", "7"].into_iter().any(says_nothing));
 /// ```

@@ -15,7 +15,7 @@ const ROOM_MOST_M: f64 = 0.1;
 const LOOK_M: f64 = 0.02;
 
 /// Time to drive a path in a tank as drawn, from rest to rest, seconds.
-pub(crate) fn time_s(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> f64 {
+pub fn time_s(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> f64 {
     let limits = &mission.limits;
     let mut time_s = 0.0;
     for (stretch, turn_rad) in stretches(path) {

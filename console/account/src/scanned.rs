@@ -9,7 +9,7 @@ use world::{CellRun, Counts, CoverageGrid, Floor, KindRun, Pose, Tool};
 
 /// The floor with what was scanned so far.
 #[derive(Debug, Clone)]
-pub(crate) struct Scanned {
+pub struct Scanned {
     believed: CoverageGrid,
     /// Cells that the tool truly passed.
     truth: Vec<bool>,
@@ -21,7 +21,7 @@ pub(crate) struct Scanned {
 
 impl Scanned {
     /// Nothing is scanned yet.
-    pub(crate) fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
+    pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
         let passes = Passes::new(&floor, tool);
         let truth = vec![false; floor.len()];
         let believed = CoverageGrid::new(floor);
@@ -29,12 +29,12 @@ impl Scanned {
     }
 
     /// The floor with what the mission believes to have scanned.
-    pub(crate) fn believed(&self) -> &CoverageGrid {
+    pub fn believed(&self) -> &CoverageGrid {
         &self.believed
     }
 
     /// What the tool passed by the estimated position.
-    pub(crate) fn passes(&self) -> &Passes {
+    pub fn passes(&self) -> &Passes {
         &self.passes
     }
 
@@ -44,12 +44,12 @@ impl Scanned {
     }
 
     /// An obstacle that was found changed the floor.
-    pub(crate) fn change(&mut self, changes: &[KindRun]) {
+    pub fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
     }
 
     /// Takes in what another run scanned of the same floor.
-    pub(crate) fn join(&mut self, other: &Self) {
+    pub fn join(&mut self, other: &Self) {
         let is_in_both = |cell| self.believed.is_covered(cell) && other.believed.is_covered(cell);
         self.passes.join(&other.passes, is_in_both);
         self.believed.join(&other.believed);
@@ -74,14 +74,14 @@ impl Scanned {
     }
 
     /// Whether a cell is floor that was scanned more than once.
-    pub(crate) fn is_again(&self, cell: usize) -> bool {
+    pub fn is_again(&self, cell: usize) -> bool {
         self.passes.overlap().again(cell) > 0
             && self.believed.is_covered(cell)
             && self.believed.floor().is_floor(cell)
     }
 
     /// The figures so far; what was missed only if the floor was `to_scan`.
-    pub(crate) fn coverage(&self, to_scan: bool) -> Coverage {
+    pub fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
         let again = (0..self.truth.len()).filter(|cell| self.is_again(*cell)).count() as f64;
         let missed = (counts.reachable - counts.covered_reachable) as f64 * self.believed.floor().cell_m2();

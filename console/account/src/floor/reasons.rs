@@ -55,7 +55,7 @@ impl Reasons<'_> {
     }
 
     /// How far a place lies beyond any lane, which keeps hull and clearance from what is solid, metres; negative within reach of one.
-    pub(crate) fn beyond_lanes_m(&self, place: Point) -> f64 {
+    pub fn beyond_lanes_m(&self, place: Point) -> f64 {
         let (_, solid_m) = self.evidence.nearest_kept_from(place);
         self.room_m - solid_m - self.lane_m / 2.0
     }
@@ -77,12 +77,7 @@ impl Reasons<'_> {
     }
 
     /// The number behind the reason for some cells, of which there is at least one.
-    pub(crate) fn measure(
-        &self,
-        grid: &CoverageGrid,
-        reason: MissReason,
-        cells: &[usize],
-    ) -> Option<Measure> {
+    pub fn measure(&self, grid: &CoverageGrid, reason: MissReason, cells: &[usize]) -> Option<Measure> {
         let (floor, evidence) = (grid.floor(), self.evidence);
         let most =
             |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::max);

@@ -8,7 +8,7 @@ const NEVER: u16 = u16::MAX;
 
 /// The passes over a floor that counted.
 #[derive(Debug, Clone)]
-pub(crate) struct Passes {
+pub struct Passes {
     tool: Tool,
     guaranteed: Vec<bool>,
     /// The smallest 95 % error with which each cell was passed, millimetres.
@@ -69,17 +69,17 @@ impl Passes {
     }
 
     /// Whether a cell was under the tool for every position within the 95 % error.
-    pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
+    pub fn is_guaranteed(&self, cell: usize) -> bool {
         self.guaranteed[cell]
     }
 
     /// The smallest 95 % error with which a cell was passed, millimetres; `None` if it never was.
-    pub(crate) fn error_mm(&self, cell: usize) -> Option<u16> {
+    pub fn error_mm(&self, cell: usize) -> Option<u16> {
         Some(self.error_mm[cell]).filter(|mm| *mm != NEVER)
     }
 
     /// How often cells were scanned again.
-    pub(crate) fn overlap(&self) -> &Overlap {
+    pub fn overlap(&self) -> &Overlap {
         &self.overlap
     }
 }
