@@ -1,35 +1,9 @@
 //! How good the estimated position was: by its own covariance, and by the truth where there is one.
 
 use crate::summary::{Accuracy as Statement, Positioning};
+use nalgebra::Matrix2;
+use positioning::fix::ELLIPSE_95;
 use world::Point;
-
-/// Quantile of the chi-squared distribution with two degrees of freedom: `-2 ln 0.05`.
-const CHI2_95: f64 = 5.991_464_547_107_98;
-
-/// An estimated position and how sure it is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Estimate {
-    /// Position, metres.
-    pub position: Point,
-    /// Covariance xx, xy, yy, square metres.
-    pub covariance_m2: [f64; 3],
-}
-
-impl Estimate {
-    /// Longer half axis of the 95 % ellipse, metres.
-    pub(crate) fn error_95_m(&self) -> f64 {
-        let [a, b, c] = self.covariance_m2;
-        let largest = f64::midpoint(a, c) + (((a - c) / 2.0).powi(2) + b * b).sqrt();
-        (CHI2_95 * largest.max(0.0)).sqrt()
-    }
-
-    /// Half width of the 95 % ellipse across a heading, metres.
-    pub(crate) fn across_95_m(&self, heading_rad: f64) -> f64 {
-        let [a, b, c] = self.covariance_m2;
-        let (sin, cos) = heading_rad.sin_cos();
-        (CHI2_95 * (a * sin * sin - 2.0 * b * sin * cos + c * cos * cos).max(0.0)).sqrt()
-    }
-}
 
 /// The 95 % error by the covariance, tick by tick.
 #[derive(Debug, Default)]
@@ -47,13 +21,12 @@ pub(crate) struct Claimed {
 }
 
 impl Claimed {
-    /// Takes in the estimate of a tick.
-    pub(crate) fn estimate(&mut self, estimate: &Estimate, limit_m: f64) {
-        let error_m = estimate.error_95_m();
+    /// Takes in the estimate of a tick and its 95 % error, metres.
+    pub(crate) fn estimate(&mut self, position: Point, error_m: f64, limit_m: f64) {
         self.errors_m.push(error_m as f32);
         self.tips_m[0] = self.tips_m[0].max(error_m);
-        let step_m = self.last.map_or(0.0, |last| (estimate.position - last).norm());
-        self.last = Some(estimate.position);
+        let step_m = self.last.map_or(0.0, |last| (position - last).norm());
+        self.last = Some(position);
         self.way_m += step_m;
         self.way_over_m += if error_m > limit_m { step_m } else { 0.0 };
     }
@@ -102,7 +75,7 @@ pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
 #[derive(Debug, Default)]
 pub(crate) struct Accuracy {
     truth: Option<(u64, Point)>,
-    estimate: Option<(u64, Estimate)>,
+    estimate: Option<(u64, Point, Matrix2<f64>)>,
     errors_m: Vec<f64>,
     in_ellipse: usize,
     lost_since_s: Option<f64>,
@@ -116,9 +89,9 @@ impl Accuracy {
         self.pair();
     }
 
-    /// Where it believed to be.
-    pub(crate) fn estimate(&mut self, tick: u64, estimate: Estimate) {
-        self.estimate = Some((tick, estimate));
+    /// Where it believed to be, with the covariance of that, square metres.
+    pub(crate) fn estimate(&mut self, tick: u64, position: Point, covariance: Matrix2<f64>) {
+        self.estimate = Some((tick, position, covariance));
         self.pair();
     }
 
@@ -133,20 +106,21 @@ impl Accuracy {
     }
 
     fn pair(&mut self) {
-        let (Some((tick, truth)), Some((estimate_tick, estimate))) = (self.truth, self.estimate) else {
+        let (Some((tick, truth)), Some((estimate_tick, position, covariance))) = (self.truth, self.estimate)
+        else {
             return;
         };
         if tick != estimate_tick {
             return;
         }
         self.estimate = None;
-        let error = truth - estimate.position;
+        let error = truth - position;
         self.errors_m.push(error.norm());
-        let [a, b, c] = estimate.covariance_m2;
+        let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
         let determinant = a * c - b * b;
         // Squared Mahalanobis distance, multiplied by the determinant so that nothing is divided by zero.
         let scaled = c * error.x * error.x - 2.0 * b * error.x * error.y + a * error.y * error.y;
-        self.in_ellipse += usize::from(scaled <= CHI2_95 * determinant);
+        self.in_ellipse += usize::from(scaled <= ELLIPSE_95 * determinant);
     }
 
     /// The figures of a run that has come to `now_s`; none if truth and estimate never came together.

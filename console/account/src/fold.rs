@@ -2,7 +2,7 @@
 
 use crate::{
     Account, Evidence, Solid,
-    accuracy::{Accuracy, Claimed, Estimate},
+    accuracy::{Accuracy, Claimed},
     drawn::DrawnZone,
     floor::account,
     scanned::Scanned,
@@ -12,10 +12,13 @@ use crate::{
     turning::Turning,
 };
 use mission::{
-    Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Phase, PlannerChoice,
-    PlannerInfo, TaskConfig,
+    Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Passage,
+    PlannerChoice, PlannerInfo, TaskConfig,
     event::{RunOpened, TetherAlarm, ToolTrack},
 };
+use nalgebra::Matrix2;
+use planner_api::PoseEstimate;
+use positioning::fix::{ellipse_95, position_covariance};
 use world::{Obstacle, Point, Pose, Zone};
 
 /// So many faults are named.
@@ -74,16 +77,7 @@ impl Fold {
                     tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
                 }
             }
-            EventKind::Estimated { pose } => {
-                let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
-                let estimate = Estimate { position: pose.position, covariance_m2 };
-                let here = Pose { position: pose.position, heading_rad: pose.heading_rad };
-                match self.tool.as_mut().map(|tool| tool.visit(event.t_s, pose)) {
-                    Some(passed) => self.believe_located(here, estimate, passed),
-                    None => self.believe(here, estimate),
-                }
-                self.accuracy.estimate(event.tick, estimate);
-            }
+            EventKind::Estimated { pose } => self.estimate(event, pose),
             EventKind::Ranged { .. } => self.claimed.end_cycle(),
             EventKind::Fixed { fix } => self.claimed.fix(fix.used.len()),
             EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
@@ -167,40 +161,34 @@ impl Fold {
         }
     }
 
-    /// The robot believes to be here.
-    fn believe(&mut self, here: Pose, estimate: Estimate) {
-        let limit_m = self.scan_limit_m();
-        self.claimed.estimate(&estimate, limit_m);
-        let (error_m, runs) = (estimate.error_95_m(), matches!(self.standing.phase, Phase::Running(_)));
-        if let Some(scanned) = &mut self.scanned {
-            let counts = runs && error_m <= limit_m;
-            scanned.visit(here, &estimate, counts.then(|| self.claimed.tip_m()));
-        }
-        if let Some(evidence) = &mut self.evidence {
-            evidence.visit(here, error_m, limit_m);
-        }
+    /// The robot believes to be somewhere; what its tool passed on the way there counts as the mission has it, and of readings that
+    /// were located between the two poses that are known well enough.
+    fn estimate(&mut self, event: &Event, estimate: &PoseEstimate) {
+        let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
+        let covariance = position_covariance(&estimate.covariance);
+        let (error_m, limit_m) = (ellipse_95(&covariance).0, self.scan_limit_m());
+        self.accuracy.estimate(event.tick, here.position, covariance);
+        self.claimed.estimate(here.position, error_m, limit_m);
+        let counts = match self.tool.as_mut().map(|tool| tool.visit(event.t_s, estimate)) {
+            None => Passage::of(&self.standing.phase, error_m, limit_m) == Passage::Counts,
+            Some(passed) => {
+                if passed.is_some_and(|(from, to)| from == to) {
+                    // One place: nothing counts on the way there.
+                    self.visit(here, &covariance, error_m, false);
+                }
+                passed.is_some()
+            }
+        };
+        self.visit(here, &covariance, error_m, counts);
     }
 
-    /// What was located was here; what its tool passed that counts lies between two poses.
-    fn believe_located(&mut self, here: Pose, estimate: Estimate, passed: Option<(Pose, Pose)>) {
-        let limit_m = self.scan_limit_m();
-        self.claimed.estimate(&estimate, limit_m);
-        let Some(scanned) = &mut self.scanned else { return };
-        let is_one_place = passed.is_some_and(|(from, to)| from == to);
-        if is_one_place {
-            // Nothing counts on the way there.
-            scanned.visit(here, &estimate, None);
+    /// The tool has come here; whether what it passed counts.
+    fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
+        if let Some(scanned) = &mut self.scanned {
+            scanned.visit(here, covariance, counts.then(|| self.claimed.tip_m()));
         }
-        scanned.visit(here, &estimate, passed.map(|_| self.claimed.tip_m()));
         if let Some(evidence) = &mut self.evidence {
-            if is_one_place {
-                evidence.visit(here, f64::INFINITY, limit_m);
-            }
-            evidence.visit(
-                here,
-                if passed.is_some() { estimate.error_95_m() } else { f64::INFINITY },
-                limit_m,
-            );
+            evidence.visit(here, error_m, counts);
         }
     }
 

@@ -1,6 +1,8 @@
 //! What the tool passed by the estimated position: how well the position was known, how often, and what is guaranteed.
 
-use crate::{accuracy::Estimate, overlap::Overlap};
+use crate::overlap::Overlap;
+use nalgebra::Matrix2;
+use positioning::fix::{across_95_m, ellipse_95};
 use world::{CoverageGrid, Floor, Pose, Tool};
 
 /// The error of a cell that was never passed.
@@ -30,12 +32,12 @@ impl Passes {
     /// The tool passed from one estimated pose to the next, and that counts.
     ///
     /// What lies under it for every position within the 95 % ellipse is guaranteed: the tool is narrowed on each side by the
-    /// half width of the ellipse across the heading. `error_m`: the largest 95 % error since the fix before the last.
+    /// half width of the ellipse of the covariance, square metres, across the heading. `error_m`: the largest 95 % error since the fix before the last.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,
         (from, to): (Pose, Pose),
-        estimate: &Estimate,
+        covariance: &Matrix2<f64>,
         error_m: f64,
     ) {
         let floor = believed.floor();
@@ -51,8 +53,8 @@ impl Passes {
             self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
         }
         let across_m = match self.tool {
-            Tool::Bar { .. } => estimate.across_95_m(to.heading_rad),
-            Tool::Disc { .. } => estimate.error_95_m(),
+            Tool::Bar { .. } => across_95_m(covariance, to.heading_rad),
+            Tool::Disc { .. } => ellipse_95(covariance).0,
         };
         if let Some(narrowed) = self.tool.narrowed(across_m) {
             for run in floor.runs_under(narrowed, from, to) {

@@ -1,11 +1,11 @@
 //! How much of the floor was scanned, as believed and by truth, and how much of it again.
 
 use crate::{
-    accuracy::Estimate,
     passes::Passes,
     summary::{Coverage, CoverageByTruth},
 };
-use world::{CellRun, Counts, CoverageGrid, Floor, KindRun, Pose, Tool};
+use nalgebra::Matrix2;
+use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool};
 
 /// The floor with what was scanned so far.
 #[derive(Debug, Clone)]
@@ -57,11 +57,12 @@ impl Scanned {
         self.has_truth &= other.has_truth;
     }
 
-    /// The robot believes to be here; `error_m`, if the passage counts: the largest 95 % error lately.
-    pub(crate) fn visit(&mut self, here: Pose, estimate: &Estimate, error_m: Option<f64>) {
+    /// The robot believes to be here, with this covariance, square metres; `error_m`, if the passage counts: the largest 95 % error
+    /// lately, metres.
+    pub(crate) fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: Option<f64>) {
         let before = std::mem::replace(&mut self.last, here);
         if let Some(error_m) = error_m {
-            self.passes.pass(&self.believed, (before, here), estimate, error_m);
+            self.passes.pass(&self.believed, (before, here), covariance, error_m);
         }
     }
 
@@ -73,17 +74,18 @@ impl Scanned {
         }
     }
 
-    /// Whether a cell is floor that was scanned more than once.
-    pub fn is_again(&self, cell: usize) -> bool {
-        self.passes.overlap().again(cell) > 0
-            && self.believed.is_covered(cell)
-            && self.believed.floor().is_floor(cell)
+    /// What a cell counts as while the mission lasts.
+    pub fn class(&self, cell: usize) -> FloorClass {
+        let again = u32::from(self.passes.overlap().again(cell));
+        let times = if self.believed.is_covered(cell) { 1 + again } else { 0 };
+        FloorClass::of(self.believed.floor().kind(cell), times)
     }
 
     /// The figures so far; what was missed only if the floor was `to_scan`.
     pub fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
-        let again = (0..self.truth.len()).filter(|cell| self.is_again(*cell)).count() as f64;
+        let again =
+            (0..self.truth.len()).filter(|cell| self.class(*cell) == FloorClass::Again).count() as f64;
         let missed = (counts.reachable - counts.covered_reachable) as f64 * self.believed.floor().cell_m2();
         Coverage {
             reachable: self.believed.fraction_reachable(),

@@ -11,7 +11,7 @@ pub use tether::{Lay, TetherPoint, TetherRecord};
 use incidents::Incidents;
 use mission::{Event, EventKind, PlannerInfo};
 use planner_api::LegTag;
-use positioning::fix::ellipse_95;
+use positioning::fix::{ellipse_95, position_covariance};
 use stations::Stations;
 use world::{Point, Pose};
 
@@ -82,7 +82,7 @@ impl Record {
             }
             EventKind::Truth { pose, .. } => self.truth = Some((event.tick, *pose)),
             EventKind::Estimated { pose } => {
-                let error_m = ellipse_95(&pose.covariance.fixed_view::<2, 2>(0, 0).into_owned()).0;
+                let error_m = ellipse_95(&position_covariance(&pose.covariance)).0;
                 let truth = self.truth.filter(|(tick, _)| *tick == event.tick);
                 let off = truth.map_or(f64::NAN, |(_, truth)| (truth.position - pose.position).norm());
                 self.track.push(TrackPoint {

@@ -123,12 +123,11 @@ impl Evidence {
         }
     }
 
-    /// The robot believed to be here, with this 95 % error, metres; what its tool passed since the last time counts if that
-    /// is within a limit.
-    pub fn visit(&mut self, here: Pose, error_m: f64, limit_m: f64) {
+    /// The robot believed to be here, with this 95 % error, metres; whether what its tool passed since the last time counts.
+    pub fn visit(&mut self, here: Pose, error_m: f64, counts: bool) {
         let before = std::mem::replace(&mut self.last, here);
         self.error_m = error_m;
-        if error_m <= limit_m {
+        if counts {
             self.shell.pass(self.tool, before, here);
             self.area.pass(self.tool, before, here);
         }

@@ -1,8 +1,8 @@
 //! Accounts of a small round tank: shares that sum up, gaps that have their reasons, plates and the zone at the shell.
 
 use super::*;
-use crate::accuracy::Estimate;
 use crate::samples::round_tank;
+use nalgebra::Matrix2;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use world::{CellRun, CoverageGrid, Point, Pose, Tool, coverage::runs_of};
@@ -36,7 +36,7 @@ fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
         grid.mark(Tool::Bar { swath_m: 0.6 }, from, to);
         for k in 0..=100 {
             let position = lane[0] + (lane[1] - lane[0]) * f64::from(k) / 100.0;
-            evidence.visit(Pose { position, heading_rad }, if k > 0 { 0.1 } else { 1.0 }, 0.3);
+            evidence.visit(Pose { position, heading_rad }, if k > 0 { 0.1 } else { 1.0 }, k > 0);
         }
         evidence.fly(world::polyline::length_m(&path[..2 * k + 2]));
     }
@@ -199,11 +199,11 @@ fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error(
     let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
     let mut believed = CoverageGrid::new(run.floor.clone());
     // Sure across the way and unsure along it, then the other way round.
-    for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.01])] {
+    for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.0, 0.01])] {
         let at = |y_m: f64| Pose::new(y_m, x_m, 0.0);
-        let estimate = |pose: Pose| Estimate { position: pose.position, covariance_m2 };
-        scanned.visit(at(-1.0), &estimate(at(-1.0)), None);
-        scanned.visit(at(1.0), &estimate(at(1.0)), Some(0.25));
+        let covariance = Matrix2::from_row_slice(&covariance_m2);
+        scanned.visit(at(-1.0), &covariance, None);
+        scanned.visit(at(1.0), &covariance, Some(0.25));
         believed.mark(run.mission.tool(), at(-1.0), at(1.0));
     }
     scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));
@@ -224,7 +224,7 @@ fn floor_passed_without_a_position_says_so() {
     let run = round_tank(0.05);
     let (grid, mut evidence) = scanned(&run, 0);
     for error_m in [0.74, 0.64, 0.9] {
-        evidence.visit(run.mission.start, error_m, 0.5);
+        evidence.visit(run.mission.start, error_m, error_m <= 0.5);
         evidence.leave_uncounted(&[CellRun(0, run.floor.len() as u32)]);
     }
     let account = account(&run, &grid, &evidence);
@@ -256,7 +256,7 @@ fn an_arc_over_the_beginning_of_the_shell_is_one_arc() {
     for k in 100..=1900 {
         let angle = std::f64::consts::TAU * f64::from(k) / 2000.0;
         let pose = Pose::new(4.7 * angle.cos(), 4.7 * angle.sin(), angle + std::f64::consts::FRAC_PI_2);
-        evidence.visit(pose, if k > 100 { 0.1 } else { 1.0 }, 0.3);
+        evidence.visit(pose, if k > 100 { 0.1 } else { 1.0 }, k > 100);
     }
     let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
     let [arc] = &zone.arcs[..] else { panic!("one arc: {:?}", zone.arcs) };
@@ -277,7 +277,7 @@ fn a_tool_that_goes_along_the_shell_does_the_critical_zone_however_coarse_the_ce
             let radius_m = 4.7 - off_m;
             let heading_rad = angle + std::f64::consts::FRAC_PI_2;
             let pose = Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), heading_rad);
-            evidence.visit(pose, if k > 0 { 0.1 } else { 1.0 }, 0.3);
+            evidence.visit(pose, if k > 0 { 0.1 } else { 1.0 }, k > 0);
         }
         let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
         assert!(zone.done == is_done && (zone.gap_m - gap_mm / 1000.0).abs() < 1e-9, "{zone:?}");

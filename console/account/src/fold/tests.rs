@@ -90,6 +90,37 @@ fn going_back_over_everything_is_an_overlap_of_nearly_one() {
 }
 
 #[test]
+fn floor_that_is_passed_while_a_held_robot_brakes_has_an_error_and_is_guaranteed() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let held = json!({ "event": "held", "by": "operator" });
+    // Held at 0.25 m; it stops 1 m further on.
+    let run = fold(&[
+        (0, opened()),
+        (0, start),
+        (1, estimated(0.25, 0.0, 0.01)),
+        (1, held),
+        (2, estimated(0.75, 0.0, 0.01)),
+        (3, estimated(1.25, 0.0, 0.01)),
+        (3, json!({ "event": "covered", "runs": [[24, 7], [32, 7]] })),
+    ]);
+    let scanned = run.scanned().unwrap();
+    let covered: Vec<usize> =
+        (0..scanned.believed().floor().len()).filter(|cell| scanned.believed().is_covered(*cell)).collect();
+    assert_eq!(covered.len(), 14);
+    for cell in covered {
+        let passes = scanned.passes();
+        assert!(passes.error_mm(cell).is_some() && passes.is_guaranteed(cell), "cell {cell}");
+    }
+}
+
+#[test]
+fn nothing_counts_before_the_start() {
+    let run = fold(&[(0, opened()), (0, estimated(-1.75, 0.0, 0.01)), (1, estimated(-1.25, 0.0, 0.01))]);
+    let passes = run.scanned().unwrap().passes();
+    assert!((0..64).all(|cell| passes.error_mm(cell).is_none()));
+}
+
+#[test]
 fn parameters_are_those_of_the_first_planner_with_defaults_and_changes() {
     let changed =
         json!({ "event": "parameters_changed", "choice": { "id": "rpf", "parameters": { "k_rep": 3.0 } } });

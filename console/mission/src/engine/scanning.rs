@@ -1,9 +1,9 @@
 //! What one tick of looking around and scanning adds to the map and to the coverage.
 
 use super::Mission;
-use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
+use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
 use planner_api::Reason;
-use world::{Cell, CellRun, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
+use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
@@ -72,15 +72,16 @@ impl Mission {
         let here = self.locator.pose();
         let (chart, room_m) = (&self.chart, self.config.room_m());
         self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
-        if self.phase == Phase::Waiting {
+        let passage = Passage::of(&self.phase, self.locator.error_95_m(), self.config.scan_limit_m());
+        if passage == Passage::Idle {
             return;
         }
         let fresh = self.floor.coverage.not_covered_under(self.config.tool(), before, here);
-        if self.locator.error_95_m() > self.config.scan_limit_m() {
-            self.leave_uncounted(fresh);
-        } else if !fresh.is_empty() {
+        if !fresh.is_empty() && passage == Passage::Counts {
             self.floor.coverage.apply(&fresh);
             self.happened.push(EventKind::Covered { runs: fresh });
+        } else if !fresh.is_empty() {
+            self.happened.push(EventKind::Uncounted { runs: fresh });
         }
         if self.locator.is_lost() {
             return;
@@ -94,13 +95,6 @@ impl Mission {
             covered_whole: self.floor.coverage.fraction_whole(),
             leg: self.task.leg(),
         });
-    }
-
-    /// The tool passed, but nobody knows well enough where.
-    fn leave_uncounted(&mut self, runs: Vec<CellRun>) {
-        if !runs.is_empty() {
-            self.happened.push(EventKind::Uncounted { runs });
-        }
     }
 
     /// Why a task counts as done, as a sentence.

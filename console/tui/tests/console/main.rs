@@ -16,6 +16,7 @@ mod panes;
 mod presets;
 mod reference;
 mod replay;
+mod scanned;
 mod screens;
 mod scripts;
 mod shadow;
