@@ -83,31 +83,19 @@ impl Fold {
             EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
             EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
             EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
-            EventKind::Covered { runs } => {
-                if let Some(scanned) = &mut self.scanned {
-                    scanned.believe(runs);
-                }
-            }
+            EventKind::Covered { runs } => self.scanned.iter_mut().for_each(|scanned| scanned.believe(runs)),
             EventKind::Planned { path, complete, cuts, .. } if !self.is_preset() => {
-                if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path, cuts, *complete);
-                }
+                self.evidence.iter_mut().for_each(|evidence| evidence.plan(path, cuts, *complete));
             }
             EventKind::Certified { refused: true, .. } => {
-                if let Some(evidence) = &mut self.evidence {
-                    evidence.refuse_plan();
-                }
+                self.evidence.iter_mut().for_each(Evidence::refuse_plan);
             }
             EventKind::Uncounted { runs } => {
-                if let Some(evidence) = &mut self.evidence {
-                    evidence.leave_uncounted(runs);
-                }
+                self.evidence.iter_mut().for_each(|evidence| evidence.leave_uncounted(runs));
             }
             EventKind::ObstacleMoved { obstacle, .. } => self.find(obstacle),
             EventKind::FloorChanged { changes } => {
-                if let Some(scanned) = &mut self.scanned {
-                    scanned.change(changes);
-                }
+                self.scanned.iter_mut().for_each(|scanned| scanned.change(changes));
                 if let Some(evidence) = self.evidence.as_mut().filter(|_| self.is_zone_new) {
                     evidence.shut(changes);
                 }
@@ -149,9 +137,7 @@ impl Fold {
     fn draw_zone(&mut self, zone: &Zone, t_s: f64) {
         self.run.iter_mut().for_each(|run| run.world.zones.push(zone.clone()));
         let drawn = DrawnZone::new(zone, t_s, &self.standing.phase);
-        if let Some(evidence) = &mut self.evidence {
-            evidence.forbid(drawn.words(), &zone.shape);
-        }
+        self.evidence.iter_mut().for_each(|evidence| evidence.forbid(drawn.words(), &zone.shape));
         self.known.zones_drawn.push(drawn);
     }
 
@@ -184,12 +170,9 @@ impl Fold {
 
     /// The tool has come here; whether what it passed counts.
     fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
-        if let Some(scanned) = &mut self.scanned {
-            scanned.visit(here, covariance, counts.then(|| self.claimed.tip_m()));
-        }
-        if let Some(evidence) = &mut self.evidence {
-            evidence.visit(here, error_m, counts);
-        }
+        let error_lately_m = counts.then(|| self.claimed.tip_m());
+        self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, covariance, error_lately_m));
+        self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
     }
 
     /// The 95 % error above which nothing counts as scanned, metres.
@@ -198,9 +181,7 @@ impl Fold {
     }
 
     fn snag(&mut self, snagged: bool) {
-        if let Some(tethered) = &mut self.tethered {
-            tethered.snag(snagged);
-        }
+        self.tethered.iter_mut().for_each(|tethered| tethered.snag(snagged));
     }
 
     /// The figures so far. Those that no event provides are absent; the app fills them in.
@@ -297,9 +278,7 @@ impl Fold {
     }
 
     fn find(&mut self, obstacle: &Obstacle) {
-        if let Some(evidence) = &mut self.evidence {
-            evidence.find(obstacle);
-        }
+        self.evidence.iter_mut().for_each(|evidence| evidence.find(obstacle));
     }
 
     fn open(&mut self, run: &RunOpened) {
@@ -308,28 +287,19 @@ impl Fold {
         self.known.seed = Some(run.seed);
         self.known.planner = Some(run.mission.planner.id.clone());
         self.known.parameters = Some(run.mission.planner.parameters.clone());
+        self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         if let Some(measured) = &run.measured {
             // Where something was, and of what it did there only where its tool was on.
             self.known.located = Some(measured.file.clone());
             self.tool = Some(ToolTrack::new(measured, &run.mission));
-            self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
-            self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
             return;
         }
-        if !self.leaves_out_floor {
-            self.evidence = Some(Evidence::new(run));
-        }
         self.tethered = run.mission.tether.as_ref().map(Tethered::new);
-        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
-        self.tracker = match &run.mission.task {
-            TaskConfig::Follow { path, .. } => {
-                if let Some(evidence) = &mut self.evidence {
-                    evidence.plan(path, &[], true);
-                }
-                Some(Tracker::new(path))
-            }
-            TaskConfig::Goto { .. } | TaskConfig::Cover { .. } => None,
-        };
+        if let TaskConfig::Follow { path, .. } = &run.mission.task {
+            self.evidence.iter_mut().for_each(|evidence| evidence.plan(path, &[], true));
+            self.tracker = Some(Tracker::new(path));
+        }
     }
 
     fn see_truth(&mut self, pose: Pose, clearance_m: f64, collided: bool) {
@@ -349,9 +319,7 @@ impl Fold {
         if let Some(scanned) = self.scanned.as_mut().filter(|_| self.tool.is_none()) {
             scanned.pass(before, pose);
         }
-        if let Some(tracker) = &mut self.tracker {
-            tracker.pass(before.position, pose.position);
-        }
+        self.tracker.iter_mut().for_each(|tracker| tracker.pass(before.position, pose.position));
     }
 
     fn choose(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {

@@ -63,7 +63,7 @@ impl<'a> Layers<'a> {
 
     fn gaps_at(&self, places: &[Point]) -> Vec<(Point, Vec<usize>)> {
         let floor = self.floor();
-        let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell));
+        let missed = (0..floor.len()).filter(|cell| self.is(*cell, FloorClass::Missed));
         let is_listed = |cells: &Vec<usize>| cells.len() as f64 * floor.cell_m2() >= LEAST_M2;
         let mut groups: Vec<Vec<usize>> = together(floor, missed).into_iter().filter(is_listed).collect();
         for cells in &mut groups {
@@ -135,29 +135,14 @@ impl<'a> Layers<'a> {
         self.classes[cell].is_scanned()
     }
 
-    /// Whether a cell was in reach and not scanned.
-    pub(crate) fn is_missed(&self, cell: usize) -> bool {
-        self.classes[cell] == FloorClass::Missed
-    }
-
-    /// Whether a cell is shell margin.
-    pub(crate) fn is_margin(&self, cell: usize) -> bool {
-        self.classes[cell] == FloorClass::Margin
-    }
-
-    /// Whether a cell is out of reach otherwise.
-    pub(crate) fn is_unreachable(&self, cell: usize) -> bool {
-        self.classes[cell] == FloorClass::Unreachable
+    /// Whether a cell counts as one of a class.
+    pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
+        self.classes[cell] == class
     }
 
     /// Whether a cell was scanned wherever the robot was within its 95 % error.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
         self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
-    }
-
-    /// Whether a cell was scanned more than once.
-    pub(crate) fn is_twice(&self, cell: usize) -> bool {
-        self.classes[cell] == FloorClass::Again
     }
 
     /// Where most cells around were scanned more than once: for the eye only.
