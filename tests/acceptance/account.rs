@@ -1,11 +1,13 @@
 //! One account of the floor: whoever prints a share prints the same one, to the last digit.
 
 use crate::bench::{Bench, scenario};
+use account::{Fold, Percent, Shares};
+use mission::{EventKind, Phase};
 use recording::{JOURNAL_FILE, JournalReader, RECORDING_FILE};
-use report::account::{Percent, Shares};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tui::model::Run;
+use world::FloorClass;
 
 /// The shipped scenarios that scan floor.
 fn cover() -> Vec<PathBuf> {
@@ -162,4 +164,47 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
         let truly = flown["coverage"]["by_truth"]["guaranteed_truly"].as_f64().unwrap();
         assert!(truly >= 0.95, "{file}: {truly}");
     }
+}
+
+/// Flies a scan that is held several times until the robot stands, and ended early; gives its run.
+fn held_scan(bench: &Bench) -> PathBuf {
+    let holds: String = (1..=4)
+        .map(|percent| {
+            format!(
+                "speed 16\nwait until coverage >= {percent} within 2m\nhold\nwait until phase held within 1m\n\
+                 wait until text \"0.00 m/s\" within 1m\nresume\nkey enter\nwait until phase running within 1m\n"
+            )
+        })
+        .collect();
+    let script = format!("start\nkey enter\n{holds}end\nkey enter\nwait until phase aborted within 1m\n");
+    let (file, tank) = (bench.file("holds.txt", script), scenario("cover-circle.toml"));
+    let ended = bench.tankops(&["console", tank.to_str().unwrap(), "--script", file.to_str().unwrap()]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    bench.runs().pop().unwrap()
+}
+
+#[test]
+fn floor_that_a_held_robot_passes_while_it_brakes_has_an_error_in_the_account_and_counts_on_the_screen() {
+    let bench = Bench::new();
+    let run = held_scan(&bench);
+    let (mut screen, mut fold, mut while_held) = (Run::default(), Fold::new(), 0);
+    for event in JournalReader::open(&run.join(JOURNAL_FILE)).unwrap() {
+        let event = event.unwrap();
+        screen.fold(&event);
+        fold.apply(&event);
+        let is_held = matches!(screen.phase(), Phase::Held(_));
+        while_held += usize::from(is_held && matches!(event.kind, EventKind::Covered { .. }));
+    }
+    assert!(while_held > 0, "nothing was scanned while the robot braked");
+    let (screen, account) = (screen.coverage.unwrap(), fold.scanned().unwrap());
+    let floor = screen.floor();
+    for cell in (0..floor.len()).filter(|cell| screen.is_scanned(*cell)) {
+        let at = floor.center(cell);
+        assert!(account.passes().error_mm(cell).is_some(), "no error at {at}");
+        let class = screen.class_at(at, false).map_or(FloorClass::Outside, |(class, _)| class);
+        assert_eq!(class, account.class(cell), "at {at}");
+    }
+    let figures = recording::inspect(&run.join(RECORDING_FILE)).unwrap().figures;
+    let guaranteed = fold.summary().floor.unwrap().whole.percent.guaranteed.unwrap();
+    assert!((figures["whole_guaranteed_percent"] - guaranteed).abs() < 1e-9);
 }

@@ -4,6 +4,7 @@ use crate::{
     cli::AccuracyArgs,
     output::{check_free, write_file},
 };
+use account::estimate::forecast;
 use command::json::say_json;
 use flight::{
     failure::{COMPLETE, bad_input},
@@ -11,7 +12,7 @@ use flight::{
 };
 use positioning::{AccuracyMap, advise};
 use report::{
-    forecast::{ForecastReport, clearance_warning, forecast, mirror_warning},
+    forecast::{ForecastReport, clearance_warning, mirror_warning},
     print::{say, warn_line},
 };
 use scenario::Scenario;

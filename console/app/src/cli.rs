@@ -144,7 +144,7 @@ pub(crate) enum Command {
 }
 
 fn person(text: &str) -> Result<String, String> {
-    let is_name = !report::document::says_nothing(text) && foreign::unplain(text).is_none();
+    let is_name = !account::says_nothing(text) && foreign::unplain(text).is_none();
     let name = is_name.then(|| text.trim().to_owned());
     name.ok_or_else(|| "name the person who answers for it".into())
 }

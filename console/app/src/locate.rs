@@ -8,6 +8,7 @@ use crate::{
     output::check_free,
 };
 use ::locate::{Doubts, Fixes, Refused, Survey, Tally, Task};
+use account::{Expect, PlannerCalls};
 use command::json::say_json;
 use flight::{
     failure::{COMPLETE, ENDED_OTHERWISE, bad_input, exit_code},
@@ -15,10 +16,7 @@ use flight::{
 };
 use mission::Event;
 use positioning::Wrong;
-use report::{
-    Expect, PlannerCalls,
-    print::{say, say_line, warn_line},
-};
+use report::print::{say, say_line, warn_line};
 use runs::{CLOSE_TIMEOUT, Kept, RunLog};
 use scenario::Scenario;
 use serde::Serialize;

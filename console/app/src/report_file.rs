@@ -8,6 +8,7 @@ use crate::{
         refuse_other_signer, seal, signature,
     },
 };
+use account::Inspection;
 use command::json::pretty_json;
 use flight::{
     failure::{COMPLETE, bad_input},
@@ -15,7 +16,7 @@ use flight::{
 };
 use planner_host::PluginDirs;
 use report::{
-    Document, Inspection, PastRun,
+    Document, PastRun,
     document::{Context, Revision, csv, dxf, geojson, html, located_json},
     print::say_line,
 };

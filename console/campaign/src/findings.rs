@@ -329,8 +329,8 @@ pub(crate) mod tests {
         row::Row,
         table::tests::{PLAN, file, row},
     };
+    use account::Summary;
     use mission::Outcome;
-    use report::Summary;
 
     pub(crate) fn example() -> Findings {
         let campaign = campaign(&format!("block = 160\n{PLAN}"));

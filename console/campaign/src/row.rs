@@ -1,7 +1,7 @@
 //! What came of a mission.
 
+use account::Summary;
 use mission::Outcome;
-use report::Summary;
 use serde_json::Value;
 
 /// Whether a mission was flown.

@@ -427,9 +427,9 @@ impl Table {
 pub(crate) mod tests {
     use super::*;
     use crate::{frozen::tests::campaign, part};
+    use account::Summary;
     use mission::Outcome;
     use proptest::prelude::*;
-    use report::Summary;
     use std::io::Write;
 
     pub(crate) const PLAN: &str = "scenarios = [\"a.toml\", \"b.toml\"]\nplanners = [\"p\", \"q\"]\n\

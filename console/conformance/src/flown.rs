@@ -1,11 +1,11 @@
 //! One flight, as fast as it goes.
 
 use crate::tape::Taping;
+use account::{Fold, Summary};
 use flight::{Flight, hosts};
 use mission::{Cause, Event, EventKind, Fault, Order, Outcome, Parameters, Phase, PlannerChoice};
 use planner_api::Code;
 use planner_host::{Host, PluginDirs};
-use report::{Fold, Summary};
 use scenario::Scenario;
 
 /// What came of a flight.

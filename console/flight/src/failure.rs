@@ -1,8 +1,8 @@
 //! Failures by who has to act: the user or the developers.
 
+use account::Summary;
 use mission::Outcome;
 use recording::JournalError;
-use report::Summary;
 use runs::{Kept, RunError};
 use std::fmt;
 

@@ -1,8 +1,8 @@
 //! A host for the planners of a scenario, and what it measured.
 
+use account::PlannerCalls;
 use mission::{MissionConfig, TaskConfig};
 use planner_host::{Host, HostConfig, PluginDirs};
-use report::PlannerCalls;
 use scenario::Scenario;
 use std::time::Duration;
 

@@ -1,8 +1,8 @@
 //! Missions of which only the report is wanted: nothing is written, and nobody looks on.
 
 use crate::{Flight, answers::InOrder};
+use account::{Fold, Summary};
 use mission::{Order, Phase};
-use report::{Fold, Summary};
 use scenario::Scenario;
 
 /// Flies a scenario to its end, every ask answered before time moves on; `None` if it was stopped before. Figures by the wall

@@ -1,12 +1,12 @@
 //! Another planner's plan of the mission that waits, made in a worker of its own; it is never flown.
 
 use super::inbox::RunOutbox;
+use account::Estimate;
 use flight::hosts;
 use mission::{
     Answer, Ask, AskId, Given, PlannerChoice, What, WorkerId, preview, tether::certify_from_start,
 };
 use planner_host::{Host, PluginDirs, Progress, Waker};
-use report::Estimate;
 use scenario::Scenario;
 use std::{
     sync::{

@@ -2,7 +2,10 @@
 
 use crate::columns::Kind;
 use mission::{Event, EventKind};
-use positioning::{Fix, Integrity, fix::ellipse_95};
+use positioning::{
+    Fix, Integrity,
+    fix::{ellipse_95, position_covariance},
+};
 use report::document::csv::cell;
 use std::io::{self, Write};
 use world::{Point, Pose, Station};
@@ -49,7 +52,7 @@ impl<W: Write> Fixes<W> {
         }
         let Point { coords: at } = pose.position;
         let [xx, xy, yy] = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
-        let error_m = ellipse_95(&pose.covariance.fixed_view::<2, 2>(0, 0).into_owned()).0;
+        let error_m = ellipse_95(&position_covariance(&pose.covariance)).0;
         write!(self.out, ",{},{},{},{xx},{xy},{yy},{error_m}", at.x, at.y, pose.heading_rad)?;
         match truth {
             Some(Pose { position, .. }) => writeln!(self.out, ",{},{}", position.x, position.y),

@@ -1,6 +1,6 @@
 //! What a position fix is, and why there may be none.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Matrix3};
 use serde::{Deserialize, Serialize};
 use world::{Boundary, Point, Station, StationId};
 
@@ -163,7 +163,7 @@ impl Fix {
 }
 
 /// Squared distance in standard deviations up to which 95 % of a normal distribution in the plane lie: -2 ln 0.05.
-pub(crate) const ELLIPSE_95: f64 = 5.991_464_547_107_982;
+pub const ELLIPSE_95: f64 = 5.991_464_547_107_982;
 
 /// Half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
@@ -172,6 +172,26 @@ pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
     let (middle, spread) = (f64::midpoint(a, c), (((a - c) / 2.0).powi(2) + b * b).sqrt());
     let half = |eigenvalue: f64| (scale * eigenvalue.max(0.0)).sqrt();
     (half(middle + spread), half(middle - spread), 0.5 * (2.0 * b).atan2(a - c))
+}
+
+/// Half width of the 95 % ellipse of a covariance across a heading, metres.
+///
+/// ```
+/// use positioning::fix::{across_95_m, ellipse_95};
+/// let covariance = nalgebra::Matrix2::new(0.04, 0.0, 0.0, 0.01);
+/// let (longer_m, shorter_m, _) = ellipse_95(&covariance);
+/// assert!((across_95_m(&covariance, 0.0) - shorter_m).abs() < 1e-12);
+/// assert!((across_95_m(&covariance, std::f64::consts::FRAC_PI_2) - longer_m).abs() < 1e-12);
+/// ```
+pub fn across_95_m(covariance: &Matrix2<f64>, heading_rad: f64) -> f64 {
+    let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
+    let (sin, cos) = heading_rad.sin_cos();
+    (ELLIPSE_95 * (a * sin * sin - 2.0 * b * sin * cos + c * cos * cos).max(0.0)).sqrt()
+}
+
+/// The part of the covariance of a pose that is about the position, square metres.
+pub fn position_covariance(pose: &Matrix3<f64>) -> Matrix2<f64> {
+    pose.fixed_view::<2, 2>(0, 0).into_owned()
 }
 
 /// Why there is no fix.

@@ -3,10 +3,10 @@
 #[path = "../tests/recording/synthetic.rs"]
 mod synthetic;
 
+use account::Fold;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use mission::Event;
 use recording::{Identity, JournalWriter, Options, Recorder, RunRecorder};
-use report::Fold;
 use std::{
     io,
     sync::Arc,

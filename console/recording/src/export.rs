@@ -1,7 +1,7 @@
 //! Regenerates the recording from the journal.
 
 use crate::{error::RecordingError, identity::Identity, journal::JournalReader, recorder::Recorder};
-use report::Fold;
+use account::Fold;
 use std::{path::Path, time::Instant};
 
 /// Regenerates the recording of a run from its journal, equal in content to the one that was made while it ran.

@@ -28,7 +28,7 @@ use std::{
     io::BufWriter,
     path::Path,
 };
-use world::{Cell, CoverageGrid, Floor, Point, Pose, Station};
+use world::{Cell, CoverageGrid, Floor, FloorClass, Point, Pose, Station};
 
 /// A picture of what is scanned is written this often, seconds.
 const COVERAGE_S: f64 = 5.0;
@@ -160,9 +160,10 @@ impl Export {
     fn coverage(&mut self, run: &mut Run) -> Done {
         run.changed_since_s = None;
         let (grid, floor) = (&run.coverage, run.coverage.floor());
-        self.grid("/coverage", run.now_s, floor, |index| match floor.kind(index) {
-            Cell::Outside => -1,
-            _ if grid.is_covered(index) => 100,
+        let class = |index| FloorClass::of(floor.kind(index), u32::from(grid.is_covered(index)));
+        self.grid("/coverage", run.now_s, floor, |index| match class(index) {
+            FloorClass::Outside => -1,
+            class if class.is_scanned() => 100,
             _ => 0,
         })
     }

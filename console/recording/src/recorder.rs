@@ -1,8 +1,8 @@
 //! Events to a recording for the rerun viewer.
 
-mod account;
 mod document;
 mod drawings;
+mod figures;
 mod fold;
 mod lane;
 mod layout;
@@ -18,7 +18,7 @@ mod table;
 mod tables;
 mod tick;
 
-pub(crate) use account::FIGURES;
+pub(crate) use figures::FIGURES;
 
 use crate::{
     error::RecordingError,
@@ -27,9 +27,9 @@ use crate::{
     merge,
     sink::{SafeSink, SinkHealth},
 };
+use account::Summary;
 use fold::Fold;
 use mission::{Event, EventKind};
-use report::Summary;
 use std::{
     io::Write,
     path::Path,
@@ -129,7 +129,7 @@ impl Recorder {
     pub fn push(
         &mut self,
         event: &Event,
-        account: &report::Fold,
+        account: &account::Fold,
         now: Instant,
     ) -> Result<(), RecordingError> {
         let Some(stream) = &self.stream else { return Ok(()) };

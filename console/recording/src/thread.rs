@@ -12,8 +12,8 @@ use crate::{
     recorder::{RECORDING_FILE, Recorder},
     sink::SinkHealth,
 };
+use account::Summary;
 use mission::Event;
-use report::Summary;
 use shared::Shared;
 use std::{
     fs::File,

@@ -3,10 +3,8 @@
 mod certificate;
 mod charts;
 pub mod csv;
-mod dates;
 mod decisions;
 pub mod dxf;
-mod facts;
 mod gate;
 pub mod geojson;
 mod indications;
@@ -19,10 +17,7 @@ mod run_part;
 mod sections;
 mod shapes;
 mod task;
-mod words;
 
-pub use dates::Date;
-pub use facts::Inspection;
 pub use gate::GateItem;
 pub use indications::Indication;
 pub use located::{Located, Readings, located_json};
@@ -30,15 +25,13 @@ pub use maps::Figure;
 pub use page::html;
 pub use run_part::{Driver, Files, Recovered, RunPart, TetherPart};
 pub use task::TaskPart;
-pub use words::{is_placeholder, says_nothing};
 
 use crate::{
-    account::Account,
     identity::{Stated, contradiction},
     joined::{Joined, PastRun, joined_or_located},
     record::Record,
-    summary::{Coverage, REPORT_VERSION},
 };
+use account::{Account, Coverage, Inspection, REPORT_VERSION};
 use indications::{Flown, Ground};
 use layers::Layers;
 use serde::Serialize;
@@ -275,7 +268,7 @@ impl Document {
             indications,
             gate: Vec::new(),
             pictures,
-            scenario: past[0].fold.run.as_deref().unwrap_or(run).scenario.clone(),
+            scenario: past[0].fold.run().unwrap_or(run).scenario.clone(),
             size: gate::size(run),
             shapes,
             is_to_scan,
@@ -299,7 +292,7 @@ fn flown(past: &PastRun) -> Flown<'_> {
         name: &past.name,
         record: &past.record,
         began: indications::began(name),
-        reach_m: past.fold.run.as_ref().map_or(f64::INFINITY, |run| run.mission.swath_m / 2.0),
+        reach_m: past.fold.run().map_or(f64::INFINITY, |run| run.mission.swath_m / 2.0),
     }
 }
 
@@ -312,7 +305,7 @@ fn of_run(layers: &Layers<'_>, past: &PastRun) -> [Option<Figure>; 3] {
         .filter(|(_, incident)| is_marked(incident))
         .map(|(index, incident)| (index + 1, incident.t_s))
         .collect();
-    let over_time = past.fold.run.as_ref().and_then(|run| charts::over_time(run, record, &marks));
+    let over_time = past.fold.run().and_then(|run| charts::over_time(run, record, &marks));
     [maps::track(layers, record), maps::tether(layers, record), over_time]
 }
 
@@ -326,7 +319,7 @@ fn number(past: &[PastRun]) -> String {
     let first = past.first();
     let name = first.map(|past| past.files.closed_as.as_ref().unwrap_or(&past.name));
     let began = name.map_or("", |name| name.split('-').next().unwrap_or_default());
-    let seed = first.and_then(|past| past.fold.run.as_ref()).map_or(0, |run| run.seed);
+    let seed = first.and_then(|past| past.fold.run()).map_or(0, |run| run.seed);
     format!("{began}-{seed}")
 }
 

@@ -4,15 +4,14 @@
 mod mirror;
 
 use crate::drawing::forecast::svg;
+use account::estimate::forecast;
 pub use mirror::{Mirrored, line_of_stations};
 use mission::{MissionConfig, TaskConfig};
-use positioning::{Accuracy, AccuracyMap, Advice, Forecast};
+use positioning::{Accuracy, AccuracyMap, Advice};
 use serde::Serialize;
 use std::fmt::Write;
 use world::{Point, World};
 
-/// Cells along the longer side of the floor.
-const CELLS: f64 = 80.0;
 /// The largest error of a whole scan, fixes and odometry filtered, as a share of a single fix's 95 % error; as measured in
 /// flights.
 const FILTERED: f64 = 0.65;
@@ -177,10 +176,4 @@ pub fn mirror_warning(mission: &MissionConfig, drawing: &World) -> Option<String
     let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
     let [first, second] = Mirrored::of(mission, drawing, &map)?.sentences();
     Some(format!("{first}; {second} (`tankops accuracy`)"))
-}
-
-/// What the mission's own estimator may expect of its stations.
-pub fn forecast(mission: &MissionConfig, drawing: &World) -> Forecast {
-    let (low, high) = drawing.boundary.bounds();
-    mission.forecast((high - low).amax() / CELLS)
 }

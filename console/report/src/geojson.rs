@@ -1,6 +1,7 @@
 //! Places and shapes as `GeoJSON`.
 
-use crate::{document::Inspection, drawing::polygons::Polygon};
+use crate::drawing::polygons::Polygon;
+use account::Inspection;
 use serde_json::{Value, json};
 use world::{Boundary, Point, Shape};
 

@@ -3,9 +3,8 @@
 pub(crate) mod floor;
 pub(crate) mod text;
 
-use crate::{
-    account::{Account, MissReason},
-    summary::{Accuracy, Coverage, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking},
+use account::{
+    Account, Accuracy, Coverage, MissReason, PlannerCalls, Positioning, Stops, Summary, Tether, Tracking,
 };
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
@@ -260,3 +259,6 @@ fn during(run: &Summary) -> Option<String> {
     parts.extend((run.holds > 0).then(|| counted(run.holds, "hold")));
     (!parts.is_empty()).then(|| parts.join(", "))
 }
+
+#[cfg(test)]
+mod tests;

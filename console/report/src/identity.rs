@@ -1,6 +1,7 @@
 //! What makes the floor of a run the one that it is, so that no report counts two floors as one.
 
-use crate::{difference::first_difference, document::Inspection, joined::PastRun};
+use crate::{difference::first_difference, joined::PastRun};
+use account::Inspection;
 use mission::RunOpened;
 use planner_api::Motion;
 use serde::{Deserialize, Serialize};
@@ -145,7 +146,7 @@ struct Candidate<'a> {
 
 impl<'a> Candidate<'a> {
     fn of(past: &'a PastRun) -> Result<Option<Self>, String> {
-        let Some(run) = past.fold.run.as_deref() else { return Ok(None) };
+        let Some(run) = past.fold.run() else { return Ok(None) };
         let stated = Stated::by(run).map_err(|why| format!("run {}: {why}", past.name))?;
         Ok(Some(Self {
             name: &past.name,

@@ -1,17 +1,10 @@
 //! Several runs on one floor as if they were one.
 
-use crate::{
-    account::{Account, Evidence, Solid, account},
-    document::Files,
-    fold::Fold,
-    identity::require_one_floor,
-    record::Record,
-    scanned::Scanned,
-    summary::{Logs, Summary},
-};
+use crate::{document::Files, identity::require_one_floor, record::Record};
+use account::{Account, Evidence, Fold, Logs, Scanned, Summary, account, updated_floor};
 use mission::{TaskConfig, event::RunOpened};
 use std::{borrow::Cow, collections::BTreeSet};
-use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
+use world::ObstacleId;
 
 /// A past run: its name, its files and what is known of it.
 #[derive(Debug)]
@@ -35,7 +28,7 @@ pub struct PastRun {
 impl PastRun {
     /// Whether it was located from readings and not flown.
     pub(crate) fn is_located(&self) -> bool {
-        self.fold.run.as_deref().is_some_and(|run| run.measured.is_some())
+        self.fold.run().is_some_and(|run| run.measured.is_some())
     }
 }
 
@@ -51,7 +44,7 @@ impl Joined<'_> {
     /// The account of the floor over all of the runs. What counted in any of them counts: the loosest limit of the position error is
     /// the one that holds for all of it.
     pub(crate) fn account(&self, runs: &[PastRun]) -> Account {
-        let limits = runs.iter().filter_map(|past| Some(past.fold.run.as_ref()?.mission.scan_limit_m()));
+        let limits = runs.iter().filter_map(|past| Some(past.fold.run()?.mission.scan_limit_m()));
         let position_limit_m = limits.fold(0.0, f64::max);
         Account { position_limit_m, ..account(self.run, &self.scanned, &self.evidence) }
     }
@@ -60,7 +53,7 @@ impl Joined<'_> {
 /// Refuses a run that was not there to scan the floor: nothing of it was missed.
 pub(crate) fn require_scans(runs: &[PastRun]) -> Result<(), String> {
     let Some(other) = runs.iter().find(|past| !past.fold.has_floor_to_scan()) else { return Ok(()) };
-    let task = match other.fold.run.as_deref().map(|run| &run.mission.task) {
+    let task = match other.fold.run().map(|run| &run.mission.task) {
         Some(TaskConfig::Follow { .. }) => "its task is to follow a preset path",
         Some(TaskConfig::Goto { .. }) => "its task is to reach a goal",
         _ => "its journal does not say what it was to do",
@@ -142,7 +135,7 @@ pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
 /// What one run scanned.
 fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
     let PastRun { name, fold, .. } = past;
-    let found = fold.scanned.as_ref().zip(fold.evidence.as_ref()).zip(fold.run.as_deref());
+    let found = fold.scanned().zip(fold.evidence()).zip(fold.run());
     found
         .map(|((scanned, evidence), run)| Joined {
             run,
@@ -173,22 +166,4 @@ fn require_aligned(
         return Ok(());
     }
     Err(format!("runs {name} and {last_name} have other cells; run both with the same mission.cell_m"))
-}
-
-/// The floor with everything that any of the runs found, and without what any of them forbade.
-pub(crate) fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> FloorMaker {
-    let mut world = run.world.as_drawn();
-    let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();
-    for (id, solid) in evidence.found().filter(|(id, _)| !drawn.contains(id)) {
-        let (name, shape) = (solid.name.clone(), solid.shape.clone());
-        world.obstacles.push(Obstacle { id, name, shape, known: true });
-    }
-    let zone = |Solid { name, shape }: &Solid| Zone {
-        name: name.clone(),
-        kind: ZoneKind::NoGo,
-        shape: shape.clone(),
-    };
-    world.zones = evidence.no_go().map(zone).collect();
-    let mission = &run.mission;
-    FloorMaker::of(grid, &world, mission.room_m(), swath_m, mission.start.position)
 }

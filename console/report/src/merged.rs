@@ -2,14 +2,13 @@
 
 pub use crate::joined::PastRun;
 use crate::{
-    account::Account,
     human::{
         floor,
         text::{Text, overlap, percent},
     },
     joined::{joined, require_scans},
-    summary::{Coverage, Summary},
 };
+use account::{Account, Coverage, Summary};
 use serde::Serialize;
 
 /// What several runs scanned together. Every run keeps its own recording.
@@ -47,7 +46,7 @@ pub struct MergedRun {
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     require_scans(runs)?;
     let all = joined(runs)?;
-    let opened = |past: &PastRun| past.fold.run.as_ref().map(|run| run.mission.clone());
+    let opened = |past: &PastRun| past.fold.run().map(|run| run.mission.clone());
     let listed = runs.iter().filter_map(|past| {
         let mission = opened(past)?;
         Some(MergedRun {
@@ -107,12 +106,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use crate::{
-        document::Files,
-        fold::{Fold, tests::round_tank},
-        record::Record,
-        summary::Logs,
-    };
+    use crate::{document::Files, record::Record, samples::round_tank};
+    use account::{Fold, Logs};
     use mission::{Event, EventKind, RunOpened};
     use world::{CellRun, FloorMaker, Obstacle, ObstacleId, Shape};
 

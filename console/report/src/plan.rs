@@ -2,9 +2,9 @@
 
 use crate::{
     drawing::plan::{Drawn, svg},
-    estimate::time,
     leg::{Leg, legs},
 };
+use account::estimate::time_s;
 use mission::{MissionConfig, Parameters, TaskConfig, tether::certify_from_start};
 use planner_api::Plan;
 use serde::Serialize;
@@ -81,7 +81,7 @@ impl Planned {
             parameters: mission.planner.parameters.clone(),
             legs: legs(&plan),
             length_m: polyline::length_m(&plan.path),
-            mission_time_s: time::time_s(mission, &map, &plan.path),
+            mission_time_s: time_s(mission, &map, &plan.path),
             plan_time_ms: Some(plan_time_ms).filter(|time_ms| *time_ms >= RESOLVED_MS),
             complete: plan.complete,
             reason,
@@ -233,7 +233,7 @@ fn certified(certificate: &Certificate) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fold::tests::round_tank;
+    use crate::samples::round_tank;
 
     #[test]
     fn a_time_that_cannot_be_told_from_the_way_to_the_planner_is_no_figure() {

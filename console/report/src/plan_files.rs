@@ -36,7 +36,7 @@ impl Planned {
     }
 
     /// Shell, obstacles, the legs of the path and the cuts as one feature collection, tank frame.
-    pub fn geojson(&self, drawing: &World, facts: &crate::Inspection) -> String {
+    pub fn geojson(&self, drawing: &World, facts: &account::Inspection) -> String {
         let datum = Datum::of(facts);
         let mut features =
             vec![feature(datum.polygon(&outline(&drawing.boundary)), json!({ "layer": "shell" }))];
@@ -88,7 +88,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use crate::{fold::tests::round_tank, plan::Made};
+    use crate::{plan::Made, samples::round_tank};
     use planner_api::{LegTag, Plan};
 
     #[test]
@@ -101,7 +101,7 @@ mod tests {
         let planned = Planned::new(&run.mission, &run.world, made);
         let numbers: Vec<usize> = planned.lines().map(|(number, ..)| number).collect();
         assert_eq!(numbers, [2]);
-        let text = planned.geojson(&run.world, &crate::Inspection::default());
+        let text = planned.geojson(&run.world, &account::Inspection::default());
         assert_eq!(text.matches("\"layer\":\"path\"").count(), 1, "{text}");
     }
 }

@@ -8,10 +8,10 @@ pub use incidents::Incident;
 pub use stations::StationRecord;
 pub use tether::{Lay, TetherPoint, TetherRecord};
 
-use crate::accuracy::Estimate;
 use incidents::Incidents;
 use mission::{Event, EventKind, PlannerInfo};
 use planner_api::LegTag;
+use positioning::fix::{ellipse_95, position_covariance};
 use stations::Stations;
 use world::{Point, Pose};
 
@@ -82,8 +82,7 @@ impl Record {
             }
             EventKind::Truth { pose, .. } => self.truth = Some((event.tick, *pose)),
             EventKind::Estimated { pose } => {
-                let covariance_m2 = [(0, 0), (0, 1), (1, 1)].map(|at| pose.covariance[at]);
-                let error_m = Estimate { position: pose.position, covariance_m2 }.error_95_m();
+                let error_m = ellipse_95(&position_covariance(&pose.covariance)).0;
                 let truth = self.truth.filter(|(tick, _)| *tick == event.tick);
                 let off = truth.map_or(f64::NAN, |(_, truth)| (truth.position - pose.position).norm());
                 self.track.push(TrackPoint {

@@ -2,14 +2,8 @@
 
 mod text;
 
-use crate::{
-    account::{
-        Area, MissReason,
-        areas::{area_of, areas as areas_of},
-        plate_map,
-    },
-    joined::{Joined, PastRun, joined, require_scans, updated_floor},
-};
+use crate::joined::{Joined, PastRun, joined, require_scans};
+use account::{Area, MissReason, area_of, areas as areas_of, plate_map, updated_floor};
 use std::collections::{BTreeSet, VecDeque};
 use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 
@@ -147,12 +141,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
 
     use super::*;
-    use crate::{
-        document::Files,
-        fold::{Fold, tests::round_tank},
-        record::Record,
-        summary::Logs,
-    };
+    use crate::{document::Files, record::Record, samples::round_tank};
+    use account::{Fold, Logs};
     use mission::{Event, EventKind};
     use world::{CellRun, coverage::runs_of};
 

@@ -1,9 +1,9 @@
 //! Past runs as their journals tell them.
 
+use account::{Account, Expect, Inspection, Summary};
 use flight::failure::bad_input;
 use report::{
-    Document, Expect, Inspection, PastRun, Summary,
-    account::Account,
+    Document, PastRun,
     document::{Context, html},
     human, merged,
 };

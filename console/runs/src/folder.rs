@@ -7,8 +7,9 @@ use crate::{
     report_file::ReportFile,
     whole::{draft_of, write_whole},
 };
+use account::Summary;
 use recording::{FAILURE_FILE, JOURNAL_FILE, PLAIN_JOURNAL_FILE, RECORDING_FILE, journal_of};
-use report::{Summary, document::Recovered};
+use report::document::Recovered;
 use std::{
     fs::{self, File, TryLockError},
     io,

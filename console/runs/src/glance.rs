@@ -1,9 +1,9 @@
 //! What a journal says, for a list.
 
 use crate::budget::Budget;
+use account::{Fold, Summary};
 use mission::{Event, EventKind};
 use recording::{JournalError, JournalReader};
-use report::{Fold, Summary};
 use std::path::Path;
 
 /// What a journal says, up to the first damage.

@@ -44,8 +44,8 @@ impl Kept {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use account::Summary;
     use recording::{Options, RunRecorder};
-    use report::Summary;
     use std::{fs, time::Duration};
 
     fn ended(logs: &std::path::Path, meanwhile: impl Fn(&RunFolder)) -> (RunFolder, Kept) {

@@ -11,8 +11,9 @@ use crate::{
     signed::signatures,
     standing::{Standing, held, standing_within},
 };
+use account::{Notes, Summary};
 use recording::journal_of;
-use report::{Summary, document::Recovered, notes::Notes};
+use report::document::Recovered;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

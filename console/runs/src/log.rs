@@ -1,9 +1,9 @@
 //! What is written about a run while it is flown: journal, recording and, at its end, the report.
 
 use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
+use account::{Expect, Logs, PlannerCalls, Stops, Summary};
 use mission::{Event, EventKind};
 use recording::{Health, JournalWriter, Options, RunRecorder, sha256};
-use report::{Expect, Logs, PlannerCalls, Stops, Summary};
 use std::{
     path::Path,
     sync::Arc,

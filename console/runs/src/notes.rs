@@ -1,9 +1,9 @@
 //! The notes of people, in a file of their own beside the journal: no file of the run changes.
 
 use crate::whole::write_whole;
+use account::Notes;
 use foreign::read_json;
 use recording::journal_of;
-use report::notes::Notes;
 use serde_json::{Map, Value};
 use std::{io, path::Path};
 

@@ -5,12 +5,13 @@ use crate::{
     report_file::{Now, Reported},
     standing::is_locked,
 };
+use account::{Fold, Logs, Summary};
 use mission::{Event, EventKind, RunOpened};
 use recording::{
     JournalError, JournalReader, RECORDING_FILE, ahead, events_sha256_while, journal_of, sha256_of,
     sha256_while,
 };
-use report::{Fold, Logs, PastRun, Record, Summary, document::Files};
+use report::{PastRun, Record, document::Files};
 use std::{
     fs, iter,
     path::Path,

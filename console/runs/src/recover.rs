@@ -4,8 +4,9 @@
 use crate::{
     error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
 };
+use account::{Logs, Summary};
 use recording::{JournalError, recorded_failure, remove_reserve};
-use report::{Logs, Summary, document::Recovered};
+use report::document::Recovered;
 use std::{path::Path, time::SystemTime};
 
 /// What the process that was killed would have added at the end.

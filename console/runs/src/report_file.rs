@@ -3,10 +3,11 @@
 mod figures;
 
 use crate::{budget::Budget, files::REPORT_FILE};
+use account::Summary;
 use foreign::{plain_json, read_json};
 use mission::{Event, EventKind};
 use recording::{RECORDING_FILE, journal_of, read_ending, sha256_of};
-use report::{Summary, document::Recovered};
+use report::document::Recovered;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::{

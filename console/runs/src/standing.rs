@@ -1,9 +1,9 @@
 //! How a past run stands, by its report, its journal and the signs that its writer left.
 
 use crate::{budget::Budget, files::LOCK_FILE, report_file::Reported};
+use account::Summary;
 use foreign::open_regular;
 use recording::recorded_failure;
-use report::Summary;
 use std::{fs::TryLockError, path::Path};
 
 /// How a past run stands.

@@ -1,8 +1,8 @@
 //! The bounds that the run is held to: `[expect]`.
 
 use super::section::Section;
+use account::Expect;
 use mission::Outcome;
-use report::Expect;
 
 /// Reads `[expect]`; no bounds if it is not there.
 pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {

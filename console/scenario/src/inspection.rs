@@ -7,10 +7,7 @@ use super::{
     source::Source,
     syntax_error,
 };
-use report::{
-    Inspection,
-    document::{Date, is_placeholder},
-};
+use account::{Date, Inspection, is_placeholder};
 use toml::de::DeTable;
 
 /// Longest fact, characters: more than a sheet of paper.

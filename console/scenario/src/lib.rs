@@ -33,8 +33,8 @@ pub use problem::{Complaint, Problem, ScenarioErrors};
 pub use rescan::{Continued, rescan};
 pub use settings::Settings;
 
+use account::{Expect, Inspection};
 use mission::MissionConfig;
-use report::{Expect, Inspection};
 use sim::SimConfig;
 use source::Source;
 use std::{io::Read, path::Path};

@@ -33,7 +33,7 @@ pub use crate::screens::Screen;
 pub use alarms::{Alarm, Alarms, Cause};
 pub use change::{Change, Withdrawn};
 pub use console::{Console, Notice, Settling, Speed, Times};
-pub use coverage::{FloorClass, Raster};
+pub use coverage::Raster;
 pub use event_list::EventList;
 pub use health::{Health, Measured, Recording, Watches};
 pub use history::History;

@@ -1,6 +1,7 @@
 //! Which part of the floor has been scanned, in square cells.
 
 mod floor;
+mod floor_class;
 mod floor_maker;
 mod percents;
 pub mod regions;
@@ -12,6 +13,7 @@ mod tool;
 
 pub(crate) use floor::neighbours;
 pub use floor::{Cell, CellRun, Floor, KindRun};
+pub use floor_class::FloorClass;
 pub use floor_maker::FloorMaker;
 pub use percents::{percent, percent_text, percents};
 pub use shell::{ShellFigures, ShellStretch, ShellZone};

@@ -17,8 +17,8 @@ mod tiles;
 mod total;
 
 pub use coverage::{
-    Cell, CellRun, Counts, CoverageGrid, Floor, FloorMaker, KindRun, ShellFigures, ShellStretch, ShellZone,
-    SweptArea, Tool,
+    Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
+    ShellZone, SweptArea, Tool,
 };
 /// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};

@@ -9,13 +9,14 @@ use std::{
 };
 
 /// The crates whose types are written.
-const CRATES: [(&str, &str); 8] = [
+const CRATES: [(&str, &str); 9] = [
     ("geometry", "console/geometry/src"),
     ("world", "console/world/src"),
     ("positioning", "console/positioning/src"),
     ("sim", "console/sim/src"),
     ("planner_api", "plugins/planner-api/src"),
     ("mission", "console/mission/src"),
+    ("account", "console/account/src"),
     ("report", "console/report/src"),
     ("runs", "console/runs/src"),
 ];
@@ -55,7 +56,7 @@ fn is_committed(file: &str, schema: &serde_json::Value) {
 
 #[test]
 fn the_schema_of_reports_is_that_of_the_types() {
-    let version = version("console/report/src/summary.rs", "REPORT_VERSION");
+    let version = version("console/account/src/summary.rs", "REPORT_VERSION");
     let roots = [
         Root {
             of_crate: "runs",
@@ -63,7 +64,7 @@ fn the_schema_of_reports_is_that_of_the_types() {
             about: "The figures of one run, as `report.json` in its folder.",
         },
         Root {
-            of_crate: "report",
+            of_crate: "account",
             name: "Summary",
             about: "The figures of one run, as `tankops run --json` and `tankops report RUN --json` print them.",
         },

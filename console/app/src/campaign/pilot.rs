@@ -1,5 +1,6 @@
 //! Flies the missions of a campaign, one after the other, in this thread.
 
+use account::Summary;
 use campaign::{Campaign, Case, Row, Status};
 use flight::{
     answers::InOrder,
@@ -8,7 +9,6 @@ use flight::{
     unrecorded,
 };
 use planner_host::{Host, HostConfig, PluginDirs};
-use report::Summary;
 use scenario::Scenario;
 use std::{any::Any, panic::AssertUnwindSafe};
 

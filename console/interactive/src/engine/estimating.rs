@@ -1,8 +1,8 @@
 //! What the plan that is flown first promises; computed beside the engine, which waits for nothing.
 
 use super::EngineThread;
+use account::Estimate;
 use mission::{Event, EventKind, Phase};
-use report::Estimate;
 use std::thread;
 use tui::RunMsg;
 

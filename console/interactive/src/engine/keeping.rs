@@ -2,9 +2,9 @@
 
 use super::EngineThread;
 use crate::pace::Reached;
+use account::Stops;
 use flight::{hosts, remains};
 use mission::Event;
-use report::Stops;
 use runs::{CLOSE_TIMEOUT, Closed, Kept, RunLog};
 use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};

@@ -6,9 +6,9 @@ use super::{
     known::Known,
     preparing::{Preparing, Role},
 };
-use crate::{chart::Seen, event::EventKind, phase::Phase, task::Task};
+use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
 use planner_api::Reason;
-use world::{Cell, CellRun, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
+use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
 /// Floor left out below this is not worth a word at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
@@ -78,15 +78,16 @@ impl Known {
         let here = self.locator.pose();
         let (chart, room_m) = (&self.chart, self.config.room_m());
         self.task.advance(here.position, chart.map(), |at| chart.has_room(at, room_m));
-        if self.phase == Phase::Waiting {
+        let passage = Passage::of(&self.phase, self.locator.error_95_m(), self.config.scan_limit_m());
+        if passage == Passage::Idle {
             return;
         }
         let fresh = self.floor.coverage.not_covered_under(self.config.tool(), before, here);
-        if self.locator.error_95_m() > self.config.scan_limit_m() {
-            Self::leave_uncounted(fresh, happened);
-        } else if !fresh.is_empty() {
+        if !fresh.is_empty() && passage == Passage::Counts {
             self.floor.coverage.apply(&fresh);
             happened.push(EventKind::Covered { runs: fresh });
+        } else if !fresh.is_empty() {
+            happened.push(EventKind::Uncounted { runs: fresh });
         }
         if self.locator.is_lost() {
             return;
@@ -100,13 +101,6 @@ impl Known {
             covered_whole: self.floor.coverage.fraction_whole(),
             leg: self.task.leg(),
         });
-    }
-
-    /// The tool passed, but nobody knows well enough where.
-    fn leave_uncounted(runs: Vec<CellRun>, happened: &mut Happened) {
-        if !runs.is_empty() {
-            happened.push(EventKind::Uncounted { runs });
-        }
     }
 
     /// Why a task counts as done, as a sentence.

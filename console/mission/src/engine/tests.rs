@@ -2,6 +2,7 @@
 
 mod arrivals;
 mod better_plan;
+mod braking;
 mod caught;
 mod covering;
 mod shadow;
@@ -26,7 +27,7 @@ use std::sync::Arc;
 use world::tether::Cable;
 use world::{
     Amphibious, Boundary, Medium, Obstacle, ObstacleId, Odometry, Point, Pose, PressureSensor, RangeSet,
-    Shape, Sighting, Station, StationId,
+    Shape, Sighting, Station, StationId, Vector,
 };
 
 /// A planner that drives straight to its target, and otherwise behaves as the test demands.
@@ -259,6 +260,10 @@ struct Flight {
     planner: Straight,
     pose: Pose,
     moved: Odometry,
+    /// Its velocity, metres per second.
+    velocity: Vector,
+    /// How fast that can change, metres per second squared; infinite for a robot that stops dead.
+    braking_m_per_s2: f64,
     silent: bool,
     /// Metres by which the ranges of the first stations are too long.
     excess_range_m: Vec<f64>,
@@ -290,6 +295,8 @@ impl Flight {
             planner: Straight::default(),
             pose,
             moved: Odometry::default(),
+            velocity: Vector::zeros(),
+            braking_m_per_s2: f64::INFINITY,
             silent: false,
             excess_range_m: vec![],
             pressure_pa: None,
@@ -327,11 +334,14 @@ impl Flight {
         self.inputs.push((readings, orders.to_vec()));
         self.serve();
         let step = self.mission.act();
-        let Drive::Velocity(velocity) = step.drive else {
-            self.moved = Odometry::default();
-            self.events.extend(step.events.clone());
-            return step.events.into_iter().map(|event| event.kind).collect();
+        let wanted = if let Drive::Velocity(velocity) = step.drive { velocity } else { Vector::zeros() };
+        let (change, most_m_per_s) = (wanted - self.velocity, 0.1 * self.braking_m_per_s2);
+        self.velocity = if change.norm() > most_m_per_s {
+            self.velocity + change.normalize() * most_m_per_s
+        } else {
+            wanted
         };
+        let velocity = self.velocity;
         // The heading stays: the odometry of a point robot has both components.
         self.pose.position += velocity * 0.1;
         if let Some(cable) = &mut self.reel {

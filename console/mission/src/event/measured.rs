@@ -2,7 +2,7 @@
 
 use crate::config::MissionConfig;
 use planner_api::PoseEstimate;
-use positioning::fix::ellipse_95;
+use positioning::fix::{ellipse_95, position_covariance};
 use serde::{Deserialize, Serialize};
 use world::{Pose, Tool};
 
@@ -109,7 +109,7 @@ impl ToolTrack {
 
     /// Whether a place counts: every end of the tool is known to within the limit.
     fn is_good(&self, estimate: &PoseEstimate) -> bool {
-        let error_m = ellipse_95(&estimate.covariance.fixed_view::<2, 2>(0, 0).into_owned()).0;
+        let error_m = ellipse_95(&position_covariance(&estimate.covariance)).0;
         let sideways_m = match self.tool {
             Tool::Bar { .. } if !self.measured.has_motion => f64::INFINITY,
             Tool::Bar { swath_m } => NORMAL_95 * estimate.covariance[(2, 2)].max(0.0).sqrt() * swath_m / 2.0,

@@ -2,8 +2,8 @@
 
 use super::tables;
 use crate::rr;
+use account::Account;
 use mission::{Outcome, PlannerChoice, PlannerInfo, TaskConfig, event::RunOpened};
-use report::Account;
 use std::{fmt::Write, sync::Arc};
 use world::Boundary;
 

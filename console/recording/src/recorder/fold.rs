@@ -1,9 +1,9 @@
 //! The fold from events to entities.
 
 use super::{
-    account::Accounting,
     document::Document,
     drawings::Drawings,
+    figures::Accounting,
     layout, paths, ranging,
     raster::Raster,
     scene,
@@ -14,9 +14,9 @@ use super::{
     tick::Tick,
 };
 use crate::{error::RecordingError, rr};
+use account::Summary;
 use mission::{Event, EventKind, Severity, TaskConfig, event::RunOpened};
 use ranging::{Rangings, Residuals};
-use report::Summary;
 use world::{Obstacle, Point, Station};
 
 type Done = Result<(), RecordingError>;
@@ -49,7 +49,7 @@ impl Fold {
     pub(crate) fn apply(
         &mut self,
         event: &Event,
-        account: &report::Fold,
+        account: &account::Fold,
         stream: &Stream,
     ) -> Result<u32, RecordingError> {
         let at = At::of(event);
@@ -176,7 +176,7 @@ impl Opened {
         Ok(())
     }
 
-    fn close_tick(&mut self, account: &report::Fold, stream: &Stream, next: At) -> Done {
+    fn close_tick(&mut self, account: &account::Fold, stream: &Stream, next: At) -> Done {
         let at = self.tick.at;
         self.show_tick(stream, next)?;
         if self.accounting.is_due(at) { self.account(&account.summary(), stream, at) } else { Ok(()) }

@@ -7,19 +7,28 @@ use super::{
 };
 use crate::{error::RecordingError, rr};
 use mission::event::RunOpened;
-use world::{CellRun, KindRun, coverage::Cell};
+use world::{Cell, CellRun, FloorClass, KindRun};
 
 /// Seconds of mission time between two pictures of a small floor.
 const PERIOD_S: f64 = 5.0;
 /// Large floors are pictured more rarely: cells for each tick between two pictures.
 const CELLS_PER_TICK: usize = 500;
 
-/// What a cell looks like; class 0 is not drawn.
-const OUTSIDE: u8 = 0;
-const UNREACHABLE: u8 = 1;
-const SCANNED: u8 = 2;
-const TO_DO: u8 = 3;
-const MISSED: u8 = 4;
+/// How a cell is written by what it counts as; class 0 is not drawn.
+fn id(class: FloorClass) -> u8 {
+    match class {
+        FloorClass::Outside => 0,
+        FloorClass::Unreachable | FloorClass::Margin => 1,
+        FloorClass::Scanned | FloorClass::Again | FloorClass::Partial => 2,
+        FloorClass::ToDo => 3,
+        FloorClass::Missed => 4,
+    }
+}
+
+/// How a cell is written that was not scanned.
+fn unscanned(kind: Cell) -> u8 {
+    id(FloorClass::of(kind, 0))
+}
 
 /// The scanned floor, and when it was pictured last.
 pub(crate) struct Raster {
@@ -40,22 +49,22 @@ impl Raster {
             [floor.cell_m as f32, floor.cell_m as f32, 1.0],
         );
         stream.always(paths::COVERAGE, &place)?;
-        let class = |id: u8, label: &str, [red, green, blue, alpha]: [u8; 4]| rr::AnnotationInfo {
-            id: u16::from(id),
+        let class = |class: FloorClass, label: &str, [red, green, blue, alpha]: [u8; 4]| rr::AnnotationInfo {
+            id: u16::from(id(class)),
             label: Some(label.into()),
             color: Some(rr::Rgba32::from_unmultiplied_rgba(red, green, blue, alpha)),
         };
         let classes = [
-            class(OUTSIDE, "no floor", [0, 0, 0, 0]),
-            class(UNREACHABLE, "out of reach", style::OUT_OF_REACH),
-            class(SCANNED, "scanned", style::SCANNED),
-            class(TO_DO, "to do", style::TO_DO),
-            class(MISSED, "missed", style::MISSED),
+            class(FloorClass::Outside, "no floor", [0, 0, 0, 0]),
+            class(FloorClass::Unreachable, "out of reach", style::OUT_OF_REACH),
+            class(FloorClass::Scanned, "scanned", style::SCANNED),
+            class(FloorClass::ToDo, "to do", style::TO_DO),
+            class(FloorClass::Missed, "missed", style::MISSED),
         ];
         stream.always(paths::COVERAGE, &rr::AnnotationContext::new(classes))?;
-        let mut cells: Vec<u8> = (0..floor.len()).map(|index| bare(floor.kind(index))).collect();
+        let mut cells: Vec<u8> = (0..floor.len()).map(|index| unscanned(floor.kind(index))).collect();
         // A journal that was edited by hand may claim more cells than it lists.
-        cells.resize(floor.width * floor.height, OUTSIDE);
+        cells.resize(floor.width * floor.height, id(FloorClass::Outside));
         let small_floor = (PERIOD_S / run.mission.tick_s).round().max(1.0) as i64;
         Ok(Self {
             classes: cells,
@@ -73,7 +82,7 @@ impl Raster {
             let (first, count) = (run.0 as usize, run.1 as usize);
             let last = (first + count).min(self.classes.len());
             if let Some(cells) = self.classes.get_mut(first..last) {
-                cells.fill(SCANNED);
+                cells.fill(id(FloorClass::Scanned));
                 self.changed = true;
             }
         }
@@ -85,8 +94,8 @@ impl Raster {
             let first = (*first as usize).min(self.classes.len());
             let end = first.saturating_add(*count as usize).min(self.classes.len());
             for class in &mut self.classes[first..end] {
-                if *class != SCANNED || *kind == Cell::Outside {
-                    *class = bare(*kind);
+                if *class != id(FloorClass::Scanned) || *kind == Cell::Outside {
+                    *class = unscanned(*kind);
                 }
             }
             self.changed = true;
@@ -95,8 +104,8 @@ impl Raster {
 
     /// The mission has ended: what was to do is missed.
     pub(crate) fn end(&mut self) {
-        for class in self.classes.iter_mut().filter(|class| **class == TO_DO) {
-            *class = MISSED;
+        for class in self.classes.iter_mut().filter(|class| **class == id(FloorClass::ToDo)) {
+            *class = id(FloorClass::Missed);
             self.changed = true;
         }
     }
@@ -118,13 +127,5 @@ impl Raster {
         let format = rr::ImageFormat::segmentation(size, rr::ChannelDatatype::U8);
         let image = rr::SegmentationImage::new(self.classes.clone(), format);
         stream.once(paths::COVERAGE, at, &image.with_opacity(1.0).with_draw_order(-10.0))
-    }
-}
-
-fn bare(cell: Cell) -> u8 {
-    match cell {
-        Cell::Outside => OUTSIDE,
-        Cell::Reachable => TO_DO,
-        Cell::Unreachable | Cell::Margin | Cell::Beside | Cell::NoGo => UNREACHABLE,
     }
 }

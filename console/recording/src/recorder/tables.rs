@@ -1,7 +1,7 @@
 //! The account of the floor as tables of the text beside the map.
 
-use super::account::missed;
-use report::account::{Account, Shares};
+use super::figures::missed;
+use account::{Account, Shares};
 use std::fmt::Write;
 
 /// Missed areas that are listed; the report has all of them.

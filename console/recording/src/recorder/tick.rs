@@ -6,7 +6,10 @@ use super::{
 };
 use mission::{EventKind, event::taut_line};
 use planner_api::{Drawing, Drive};
-use positioning::{Fix, Ranging, fix::ellipse_95};
+use positioning::{
+    Fix, Ranging,
+    fix::{ellipse_95, position_covariance},
+};
 use world::{Point, Pose};
 
 /// Everything that one tick has reported so far.
@@ -87,7 +90,7 @@ impl Tick {
                 self.truth = Some(Truth { pose: *pose, clearance_m: *clearance_m });
             }
             EventKind::Estimated { pose } => {
-                let ellipse_95 = ellipse_95(&pose.covariance.fixed_view::<2, 2>(0, 0).into_owned());
+                let ellipse_95 = ellipse_95(&position_covariance(&pose.covariance));
                 self.believed = pose.position;
                 self.estimate = Some(Estimate { position: pose.position, ellipse_95 });
             }

@@ -8,8 +8,8 @@ use crate::{
     marker::FailureMarker,
     recorder::Recorder,
 };
+use account::{Fold, Summary};
 use mission::Event;
-use report::{Fold, Summary};
 use std::{
     sync::{
         Arc,

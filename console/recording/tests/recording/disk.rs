@@ -1,9 +1,9 @@
 //! A disk that fails.
 
 use crate::{events, synthetic};
+use account::{Fold, Summary};
 use mission::Event;
 use recording::{Identity, JournalError, JournalWriter, Recorder, RecordingError, RunRecorder};
-use report::{Fold, Summary};
 use std::{
     io::{self, Read, Write},
     sync::{

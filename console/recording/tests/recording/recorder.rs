@@ -4,9 +4,9 @@ use crate::{
     content::{Content, content},
     events, synthetic,
 };
+use account::{Fold, Summary};
 use mission::{Event, EventKind};
 use recording::{Identity, Recorder, RecordingError, export, inspect};
-use report::{Fold, Summary};
 use std::{
     path::Path,
     time::{Duration, Instant},

@@ -1,6 +1,7 @@
 //! Whether the inspector's certificate was valid on the day of the inspection.
 
-use super::{Document, dates::Date};
+use super::Document;
+use account::Date;
 
 /// Words of a certificate that is not valid any more.
 const ENDED: [&str; 7] = ["expired", "lapsed", "invalid", "revoked", "suspended", "withdrawn", "abgelaufen"];

@@ -2,11 +2,10 @@
 
 use super::maps::{Figure, chart};
 use crate::{
-    account::Account,
-    clock,
     drawing::{sheet::colour, trace::thinned},
     record::{Incident, Record, Span},
 };
+use account::{Account, clock};
 use mission::{RunOpened, TaskConfig};
 use std::fmt::Write;
 use world::{Boundary, Point, ShellStretch};

@@ -1,11 +1,8 @@
 //! The report as tables for spreadsheets.
 
 use super::Document;
-use crate::{
-    account::{Shares, ZoneArc},
-    geojson::rounded,
-    joined::PastRun,
-};
+use crate::{geojson::rounded, joined::PastRun};
+use account::{Shares, ZoneArc};
 use csv::Writer;
 
 /// What the names of the files of the tables have behind that of the first.

@@ -6,11 +6,11 @@
 
 use super::{Document, shapes::zones};
 use crate::{
-    account::plate_map,
     drawing::{plates::PlateLines, polygons::Polygon, trace::thinned},
     dxf::Drawing,
     joined::{PastRun, found_name},
 };
+use account::plate_map;
 use mission::RunOpened;
 use world::{PlateLayout, Point, Shape, ZoneKind};
 
@@ -32,7 +32,7 @@ const TRACK_M: f64 = 0.01;
 /// The drawing.
 pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     let mut drawing = Drawing::new(&LAYERS);
-    if let Some(run) = past.last().and_then(|past| past.fold.run.as_ref()) {
+    if let Some(run) = past.last().and_then(|past| past.fold.run()) {
         drawing.boundary("SHELL", &run.world.boundary);
         plates(&mut drawing, run);
         for obstacle in run.world.obstacles.iter().filter(|obstacle| obstacle.known) {
@@ -45,7 +45,7 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
             }
         }
     }
-    if let Some(run) = past.last().and_then(|past| past.fold.run.as_deref()) {
+    if let Some(run) = past.last().and_then(|past| past.fold.run()) {
         zones_and_stations(&mut drawing, run, past);
     }
     for (number, (area, polygons)) in (1..).zip(document.floor.missed.iter().zip(&document.shapes.missed)) {

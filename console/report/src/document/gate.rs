@@ -5,9 +5,9 @@ use super::{
     decisions::{MISSED, SCOPE, TANK, decisions, is_complete},
     located,
     sections::number_of,
-    words::says_nothing,
 };
-use crate::{clock, human::text::counted, record::Incident};
+use crate::{human::text::counted, record::Incident};
+use account::{clock, says_nothing};
 use mission::RunOpened;
 use serde::Serialize;
 use world::Boundary;
@@ -199,7 +199,7 @@ fn plates(document: &Document) -> Answered {
     }
     // A plate of which nothing could be scanned needs no accuracy. Readings were to scan none: what the tool did not pass is accepted
     // as missed.
-    let has_figure = |plate: &&crate::account::PlateAccount| {
+    let has_figure = |plate: &&account::PlateAccount| {
         let could_be_scanned = plate.shares.missed > 0.0 && document.located.is_none();
         plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && !could_be_scanned
     };
@@ -249,7 +249,7 @@ fn unreachable(document: &Document) -> Answered {
 
 fn accuracy(document: &Document) -> Answered {
     let stated: Vec<_> = document.runs.iter().filter_map(|run| run.accuracy).collect();
-    let text = |a: &crate::Accuracy| {
+    let text = |a: &account::Accuracy| {
         format!("95 % error p95 {:.3} m, largest {:.3} m, limit {} m", a.p95_m, a.max_m, a.limit_m)
     };
     let lacks = if stated.len() < document.runs.len() {

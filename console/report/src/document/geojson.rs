@@ -2,11 +2,11 @@
 
 use super::{Document, located, shapes::zones};
 use crate::{
-    account::Solid,
     drawing::trace::thinned,
     geojson::{Datum, feature, outline, rounded},
     joined::{PastRun, found_name},
 };
+use account::Solid;
 use mission::RunOpened;
 use serde_json::{Value, json};
 use world::{Point, ZoneKind};
@@ -20,7 +20,7 @@ const TRACK_M: f64 = 0.01;
 pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     let datum = Datum::of(&document.inspection);
     let mut features = tracks(&datum, past);
-    if let Some(run) = past.last().and_then(|past| past.fold.run.as_deref()) {
+    if let Some(run) = past.last().and_then(|past| past.fold.run()) {
         features.extend(tank(&datum, run, past));
     }
     if document.located.is_some() {
@@ -110,7 +110,7 @@ fn plates(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
 
 fn missed(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
     let areas = (1..).zip(document.floor.missed.iter().zip(&document.shapes.missed));
-    let area = |(number, (area, polygons)): (usize, (&crate::account::Area<_>, &Vec<_>))| {
+    let area = |(number, (area, polygons)): (usize, (&account::Area<_>, &Vec<_>))| {
         let properties = json!({
             "layer": "missed", "number": number, "area_m2": rounded(area.area_m2), "plates": area.plates,
             "reason": area.why(),

@@ -1,12 +1,9 @@
 //! What maps show, cell by cell.
 
-use crate::{
-    account::{Evidence, areas::together, plate_map},
-    drawing::{frame::Fixtures, plates::PlateLines},
-    scanned::Scanned,
-};
+use crate::drawing::{frame::Fixtures, plates::PlateLines};
+use account::{Evidence, Scanned, plate_map, together};
 use mission::{RunOpened, TaskConfig};
-use world::{Cell, Floor, Plate, PlateMap, Point, ShellStretch};
+use world::{Floor, FloorClass, Plate, PlateMap, Point, ShellStretch};
 
 /// Smallest missed area with a number, square metres.
 const LEAST_M2: f64 = 0.01;
@@ -26,35 +23,7 @@ pub(crate) struct Layers<'a> {
     /// Whether the runs were there to scan the floor.
     pub(crate) is_to_scan: bool,
     /// What each cell counts as.
-    classes: Vec<Class>,
-}
-
-/// What a cell counts as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Class {
-    Outside,
-    /// Not scanned, and not to be.
-    Free,
-    /// Once.
-    Scanned,
-    /// More than once.
-    Again,
-    Missed,
-    Margin,
-    Unreachable,
-}
-
-impl Class {
-    fn of(scanned: &Scanned, cell: usize) -> Self {
-        match scanned.believed().floor().kind(cell) {
-            Cell::Outside => Self::Outside,
-            _ if scanned.is_again(cell) => Self::Again,
-            _ if scanned.believed().is_covered(cell) => Self::Scanned,
-            Cell::Reachable => Self::Missed,
-            Cell::Margin => Self::Margin,
-            Cell::Unreachable | Cell::Beside | Cell::NoGo => Self::Unreachable,
-        }
-    }
+    classes: Vec<FloorClass>,
 }
 
 impl<'a> Layers<'a> {
@@ -72,7 +41,7 @@ impl<'a> Layers<'a> {
             .as_ref()
             .zip(map.as_ref())
             .map(|(layout, map)| PlateLines::new(layout, &run.world.boundary, floor, map));
-        let classes = (0..floor.len()).map(|cell| Class::of(scanned, cell)).collect();
+        let classes = (0..floor.len()).map(|cell| scanned.class(cell).when_over()).collect();
         let (gaps, plate_map) = (Vec::new(), map);
         let is_to_scan = true;
         let mut layers = Self { run, scanned, evidence, plates, gaps, plate_map, is_to_scan, classes };
@@ -85,10 +54,8 @@ impl<'a> Layers<'a> {
         self.is_to_scan = is_to_scan;
         if !is_to_scan {
             self.gaps.clear();
-            for class in &mut self.classes {
-                if matches!(class, Class::Missed | Class::Margin | Class::Unreachable) {
-                    *class = Class::Free;
-                }
+            for class in self.classes.iter_mut().filter(|class| !class.is_scanned()) {
+                *class = FloorClass::Outside;
             }
         }
         self
@@ -96,7 +63,7 @@ impl<'a> Layers<'a> {
 
     fn gaps_at(&self, places: &[Point]) -> Vec<(Point, Vec<usize>)> {
         let floor = self.floor();
-        let missed = (0..floor.len()).filter(|cell| self.is_missed(*cell));
+        let missed = (0..floor.len()).filter(|cell| self.is(*cell, FloorClass::Missed));
         let is_listed = |cells: &Vec<usize>| cells.len() as f64 * floor.cell_m2() >= LEAST_M2;
         let mut groups: Vec<Vec<usize>> = together(floor, missed).into_iter().filter(is_listed).collect();
         for cells in &mut groups {
@@ -165,22 +132,12 @@ impl<'a> Layers<'a> {
 
     /// Whether a cell of floor was scanned.
     pub(crate) fn is_scanned(&self, cell: usize) -> bool {
-        matches!(self.classes[cell], Class::Scanned | Class::Again)
+        self.classes[cell].is_scanned()
     }
 
-    /// Whether a cell was in reach and not scanned.
-    pub(crate) fn is_missed(&self, cell: usize) -> bool {
-        self.classes[cell] == Class::Missed
-    }
-
-    /// Whether a cell is shell margin.
-    pub(crate) fn is_margin(&self, cell: usize) -> bool {
-        self.classes[cell] == Class::Margin
-    }
-
-    /// Whether a cell is out of reach otherwise.
-    pub(crate) fn is_unreachable(&self, cell: usize) -> bool {
-        self.classes[cell] == Class::Unreachable
+    /// Whether a cell counts as one of a class.
+    pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
+        self.classes[cell] == class
     }
 
     /// Whether a cell was scanned wherever the robot was within its 95 % error.
@@ -188,16 +145,12 @@ impl<'a> Layers<'a> {
         self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
     }
 
-    /// Whether a cell was scanned more than once.
-    pub(crate) fn is_twice(&self, cell: usize) -> bool {
-        self.classes[cell] == Class::Again
-    }
-
     /// Where most cells around were scanned more than once: for the eye only.
     pub(crate) fn smoothed_twice(&self) -> Vec<bool> {
         let width = self.floor().width;
         let at = |cell: Option<usize>| {
-            cell.and_then(|cell| self.classes.get(cell)).map_or(0, |class| u8::from(*class == Class::Again))
+            cell.and_then(|cell| self.classes.get(cell))
+                .map_or(0, |class| u8::from(*class == FloorClass::Again))
         };
         // Sums of three along the rows first; nothing is scanned along the edges of the grid.
         let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));

@@ -12,10 +12,8 @@ pub(super) use map::map;
 pub(super) use sections::sections;
 
 use super::Document;
-use crate::{
-    account::{Account, Slivers},
-    joined::PastRun,
-};
+use crate::joined::PastRun;
+use account::{Account, Slivers};
 use serde::Serialize;
 use serde_json::{Value, json};
 use world::Point;
@@ -51,7 +49,7 @@ pub struct Located {
 impl Located {
     /// What was located in some runs; none if they were flown.
     pub(super) fn of(past: &[PastRun]) -> Option<Self> {
-        let measured = |past: &PastRun| past.fold.run.as_ref()?.measured.clone();
+        let measured = |past: &PastRun| past.fold.run()?.measured.clone();
         let all: Vec<_> = past.iter().map(measured).collect::<Option<_>>()?;
         let of_run = |(past, measured): (&PastRun, &mission::event::Measured)| Readings {
             run: past.name.clone(),
@@ -143,7 +141,7 @@ pub fn located_json(document: &Document) -> serde_json::Result<Value> {
 }
 
 /// How much of some floor the tool passed.
-fn passed(shares: &crate::account::Shares, is_known: bool) -> Value {
+fn passed(shares: &account::Shares, is_known: bool) -> Value {
     json!({
         "area_m2": shares.area_m2,
         "scanned": is_known.then_some(shares.scanned),

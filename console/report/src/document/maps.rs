@@ -13,7 +13,7 @@ use crate::{
 use mission::MissionConfig;
 use serde::Serialize;
 use std::fmt::Write;
-use world::{Point, coverage::percent_text};
+use world::{FloorClass, Point, coverage::percent_text};
 
 /// Widths of maps on paper, millimetres.
 pub(super) const FULL_MM: f64 = 180.0;
@@ -74,13 +74,13 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     }
     sheet.plates(layers.plates.as_ref());
     let line = |fill: &str, stroke: &str| format!(r#"fill="{fill}" stroke="{stroke}" stroke-width=".2""#);
-    sheet.cells(floor, |cell| layers.is_margin(cell), 0.0, &line(&margin, colour::MARGIN));
-    sheet.cells(floor, |cell| layers.is_unreachable(cell), 0.0, &line(&out, colour::OUT));
+    sheet.cells(floor, |cell| layers.is(cell, FloorClass::Margin), 0.0, &line(&margin, colour::MARGIN));
+    sheet.cells(floor, |cell| layers.is(cell, FloorClass::Unreachable), 0.0, &line(&out, colour::OUT));
     let style = format!(
         r#"fill="{missed}" stroke="{}" stroke-width=".25" stroke-linejoin="round""#,
         colour::MISSED_LINE
     );
-    sheet.cells(floor, |cell| layers.is_missed(cell), 0.0, &style);
+    sheet.cells(floor, |cell| layers.is(cell, FloorClass::Missed), 0.0, &style);
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.4);
     let mut names = sheet.plate_names(layers.plates.as_ref(), 2.1);
@@ -94,10 +94,8 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
         .collect();
     let most = &numbered[..numbered.len().min(MOST_BADGES)];
     let shown = badges::draw(&mut sheet, (floor, &fixtures), most, &names);
-    let m2 = |cells: usize| format!("{:.2} m²", cells as f64 * floor.cell_m2());
-    let count = |is: &dyn Fn(usize) -> bool| (0..floor.len()).filter(|cell| is(*cell)).count();
-    let again = count(&|cell| layers.is_twice(cell));
-    let once = count(&|cell| layers.is_scanned(cell)) - again;
+    let cells_of = |class: FloorClass| (0..floor.len()).filter(|cell| layers.is(*cell, class)).count();
+    let m2_of = |class: FloorClass| format!("{:.2} m²", cells_of(class) as f64 * floor.cell_m2());
     let solid = colour::SOLID;
     let dot = |attributes: &str| swatch(&format!(r#"<circle cx="3.5" cy="2" r="1.3" {attributes}/>"#));
     let station = concat!(
@@ -107,11 +105,11 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     let anchor = r##"<path d="M2.2,3L4.8,3L3.5,.7z" fill="#fff" stroke="#1C2731" stroke-width=".35"/>"##;
     let found = format!(r#"fill="url(#cfound)" stroke="{solid}" stroke-width=".3""#);
     let mut entries = vec![
-        legend(filled(colour::ONCE), "scanned once", m2(once)),
-        legend(filled(colour::TWICE), "scanned more than once", m2(again)),
-        legend(filled("url(#cmissedL)"), "missed", m2(count(&|cell| layers.is_missed(cell)))),
-        legend(filled("url(#cmarginL)"), "shell margin", m2(count(&|cell| layers.is_margin(cell)))),
-        legend(filled("url(#coutL)"), "unreachable", m2(count(&|cell| layers.is_unreachable(cell)))),
+        legend(filled(colour::ONCE), "scanned once", m2_of(FloorClass::Scanned)),
+        legend(filled(colour::TWICE), "scanned more than once", m2_of(FloorClass::Again)),
+        legend(filled("url(#cmissedL)"), "missed", m2_of(FloorClass::Missed)),
+        legend(filled("url(#cmarginL)"), "shell margin", m2_of(FloorClass::Margin)),
+        legend(filled("url(#coutL)"), "unreachable", m2_of(FloorClass::Unreachable)),
         legend(dot(&format!(r#"fill="{solid}""#)), "obstacle on the drawing", String::new()),
         legend(dot(&found), "obstacle found during the run", String::new()),
         legend(swatch(station), "station of the position system", String::new()),
@@ -141,6 +139,7 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
             " {unnumbered} have no room for their numbers: their places are in section {section}."
         );
     }
+    let (once, again) = (cells_of(FloorClass::Scanned), cells_of(FloorClass::Again));
     let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
     let missed = if layers.is_to_scan {
         " Missed cells have an outline of 0.25 mm so that they stay visible."
@@ -175,7 +174,7 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
         sheet.cells(floor, is_in, 0.9, &format!(r#"fill="{colour}""#));
     }
     let style = format!(r#"fill="{missed}" stroke="{}" stroke-width=".15""#, colour::MISSED_LINE);
-    sheet.cells(floor, |cell| layers.is_missed(cell), 0.0, &style);
+    sheet.cells(floor, |cell| layers.is(cell, FloorClass::Missed), 0.0, &style);
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.2);
     let scanned = classes.iter().filter(|class| **class != u8::MAX).count().max(1);
@@ -202,7 +201,7 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
 }
 
 /// What is guaranteed, and what is scanned only if the position was as estimated.
-pub(super) fn guaranteed(layers: &Layers<'_>, whole: &crate::account::Shares) -> Figure {
+pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "g", HALF_MM, 5.5);
     let missed = sheet.pattern("missed");
@@ -212,10 +211,10 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &crate::account::Shares) ->
     sheet.cells(floor, sure, 0.9, &format!(r#"fill="{}""#, colour::ONCE));
     let thin = format!(r#"fill="{}" stroke="{}" stroke-width=".12""#, colour::THIN, colour::THIN_LINE);
     sheet.cells(floor, |cell| layers.is_scanned(cell) && !sure(cell), 0.6, &thin);
-    let out = |cell: usize| layers.is_unreachable(cell) || layers.is_margin(cell);
+    let out = |cell: usize| layers.is(cell, FloorClass::Unreachable) || layers.is(cell, FloorClass::Margin);
     sheet.cells(floor, out, 0.0, &format!(r#"fill="{}""#, colour::OUT));
     let style = format!(r#"fill="{missed}" stroke="{}" stroke-width=".15""#, colour::MISSED_LINE);
-    sheet.cells(floor, |cell| layers.is_missed(cell), 0.0, &style);
+    sheet.cells(floor, |cell| layers.is(cell, FloorClass::Missed), 0.0, &style);
     sheet.obstacles(&fixtures);
     sheet.frame(&fixtures, 2.2);
     let percent = whole.percent;
@@ -340,7 +339,7 @@ fn mark_lay(sheet: &mut Sheet, letter: &str, lay: &Lay, dash: &str) {
 }
 
 /// A tiny bar of what is not guaranteed of a plate; `top` is the share at full width.
-pub(super) fn plate_bar(shares: &crate::account::Shares, top: f64) -> String {
+pub(super) fn plate_bar(shares: &account::Shares, top: f64) -> String {
     let not_guaranteed = (1.0 - shares.guaranteed.unwrap_or(0.0)).max(0.0);
     let thin = (not_guaranteed - shares.missed - shares.unreachable - shares.margin).max(0.0);
     let parts = [

@@ -4,8 +4,8 @@ use crate::{
     human::pre_flight,
     joined::PastRun,
     record::{Incident, StationRecord},
-    summary::{Accuracy, Positioning, Summary, Tether},
 };
+use account::{Accuracy, Positioning, Summary, Tether};
 use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -142,7 +142,7 @@ pub struct RunPart {
 
 impl RunPart {
     pub(super) fn of(past: &PastRun) -> Option<Self> {
-        let run = past.fold.run.as_deref()?;
+        let run = past.fold.run()?;
         let summary = &past.summary;
         let record = &past.record;
         let driver = |info: &mission::PlannerInfo| Driver {

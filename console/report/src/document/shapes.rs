@@ -2,10 +2,10 @@
 
 use super::layers::Layers;
 use crate::{
-    account::{Area, MissReason},
     drawing::polygons::{Polygon, polygons},
     joined::PastRun,
 };
+use account::{Area, MissReason};
 use world::{PlateKind, Zone};
 
 /// The outlines of the missed areas and of the plates, as their cells make them.
@@ -47,7 +47,7 @@ impl Shapes {
 /// The zones of some runs, each once: those of their scenarios, and those drawn under way.
 pub(super) fn zones(past: &[PastRun]) -> Vec<&Zone> {
     let mut zones: Vec<&Zone> = Vec::new();
-    for zone in past.iter().flat_map(|past| &past.fold.run).flat_map(|run| &run.world.zones) {
+    for zone in past.iter().filter_map(|past| past.fold.run()).flat_map(|run| &run.world.zones) {
         if !zones.contains(&zone) {
             zones.push(zone);
         }

@@ -1,7 +1,8 @@
 //! What a run did that was not there to scan the floor.
 
 use super::Document;
-use crate::{joined::PastRun, summary::Tracking};
+use crate::joined::PastRun;
+use account::Tracking;
 use mission::TaskConfig;
 use serde::Serialize;
 use world::{Point, coverage::percent, polyline};
@@ -37,7 +38,7 @@ pub enum TaskPart {
 impl TaskPart {
     /// The task of a run; `None` if it was there to scan.
     pub(super) fn of(past: &PastRun) -> Option<Self> {
-        let run = past.fold.run.as_deref().filter(|_| !past.fold.has_floor_to_scan())?;
+        let run = past.fold.run().filter(|_| !past.fold.has_floor_to_scan())?;
         match &run.mission.task {
             TaskConfig::Cover { .. } => None,
             TaskConfig::Follow { path, .. } => Some(Self::Follow {

@@ -4,25 +4,43 @@
 
 use super::*;
 use crate::record::TrackPoint;
-use crate::{
-    fold::{Fold, tests::round_tank},
-    summary::Logs,
-};
+use crate::samples::round_tank;
+use account::{Fold, Logs};
 use mission::{Event, EventKind, RunOpened, TaskConfig};
+use planner_api::Reason;
 use world::{Floor, Obstacle, ObstacleId, Shape};
+
+/// Places of two cells in the middle.
+const MISSED: [Point; 2] = [Point::new(1.0, -1.0), Point::new(1.1, -1.0)];
 
 /// A run that scanned everything but two cells out of the middle.
 fn past() -> PastRun {
-    past_without(&[Point::new(1.0, -1.0), Point::new(1.1, -1.0)])
+    past_without(&MISSED)
 }
 
 /// A run that scanned everything but the cells at some places, where its plan does not lead.
 fn past_without(missed: &[Point]) -> PastRun {
     let mut past = past_of(round_tank(0.1), missed);
-    let plan = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
-    past.fold.evidence.as_mut().unwrap().plan(&plan, &[], true);
-    past.summary = past.fold.summary();
+    plan(&mut past, vec![]);
     past
+}
+
+/// Gives a run a plan that leads away from what was missed, with lines that it does not cross.
+fn plan(past: &mut PastRun, cuts: Vec<Vec<Point>>) {
+    let path = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
+    let kind = EventKind::Planned {
+        ask: None,
+        return_path: 0,
+        planner: String::new(),
+        reason: Reason::Start,
+        path: path.to_vec(),
+        length_m: 0.75,
+        complete: true,
+        legs: vec![],
+        cuts,
+    };
+    past.fold.apply(&Event { tick: 0, t_s: 0.0, kind });
+    past.summary = past.fold.summary();
 }
 
 /// The same of some run, without a plan.
@@ -158,9 +176,15 @@ fn a_run_that_was_cut_off_and_gaps_block_the_signature_until_they_are_decided() 
 
 /// Two runs, each of which found an obstacle and has a track.
 fn two_runs() -> [PastRun; 2] {
+    two_runs_of([round_tank(0.1), round_tank(0.1)])
+}
+
+/// The same, opened so.
+fn two_runs_of([first, second]: [RunOpened; 2]) -> [PastRun; 2] {
     // The second one stands beside what both missed.
-    [("20261122T040132Z-a", 2.0), ("20261122T050132Z-b", -1.0)].map(|(name, y)| {
-        let mut run = past();
+    [("20261122T040132Z-a", 2.0, first), ("20261122T050132Z-b", -1.0, second)].map(|(name, y, opened)| {
+        let mut run = past_of(opened, &MISSED);
+        plan(&mut run, vec![]);
         run.name = name.into();
         let shape = Shape::Disc { center: Point::new(1.7, y), radius_m: 0.2 };
         let found = Obstacle { id: ObstacleId(7), name: "found 1".into(), shape, known: false };
@@ -221,7 +245,7 @@ fn what_was_found_in_several_runs_is_named_by_its_run_in_every_format() {
         "{drawing}"
     );
     assert!(map.contains(r#""number":2,"plate""#) && map.contains(r#""run":"20261122T050132Z-b""#), "{map}");
-    let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
+    let reasons: String = document.floor.missed.iter().map(account::Area::why).collect();
     assert!(reasons.contains("from found 1 of run 2, found during the run"), "{reasons}");
     // A run of its own needs no number.
     let [run, _] = two_runs();
@@ -268,14 +292,13 @@ fn the_balance_of_the_floor_adds_up_to_its_last_digit() {
 
 #[test]
 fn a_report_of_a_scan_and_its_rescan_is_called_after_the_scan_and_a_copy_of_a_run_is_refused() {
-    let [mut first, mut second] = two_runs();
     let digest = "a1".repeat(32);
-    first.files.journal_sha256 = Some(digest.clone());
-    let opened = second.fold.run.as_mut().unwrap();
-    opened.scenario = "tiny-rescan".into();
-    opened.scenario_toml = format!("continues_sha256 = [\"{digest}\"]\n{}", opened.scenario_toml);
-    let scenario = first.fold.run.as_ref().unwrap().scenario.clone();
-    let mut runs = [first, second];
+    let (opened, mut again) = (round_tank(0.1), round_tank(0.1));
+    again.scenario = "tiny-rescan".into();
+    again.scenario_toml = format!("continues_sha256 = [\"{digest}\"]\n{}", again.scenario_toml);
+    let scenario = opened.scenario.clone();
+    let mut runs = two_runs_of([opened, again]);
+    runs[0].files.journal_sha256 = Some(digest.clone());
     assert_eq!(Document::new(&runs, Context::default()).unwrap().scenario, scenario);
     for run in &mut runs {
         run.files.journal_sha256 = Some(digest.clone());
@@ -442,16 +465,10 @@ fn a_run_that_was_not_there_to_scan_is_reported_alone() {
 fn a_run_without_a_plan_and_without_a_tether_speaks_of_neither() {
     let document =
         Document::new(&[past_of(round_tank(0.1), &ring_with_island())], Context::default()).unwrap();
-    let reasons: String = document.floor.missed.iter().map(crate::account::Area::why).collect();
+    let reasons: String = document.floor.missed.iter().map(account::Area::why).collect();
     assert!(reasons.contains("the run had no plan") && !reasons.contains("lanes"), "{reasons}");
     let mut cut = past_without(&ring_with_island());
-    let plan = [Point::new(-1.75, 0.0), Point::new(-2.5, 0.0)];
-    cut.fold.evidence.as_mut().unwrap().plan(
-        &plan,
-        &[vec![Point::new(1.0, 5.0), Point::new(1.0, -5.0)]],
-        true,
-    );
-    cut.summary = cut.fold.summary();
+    plan(&mut cut, vec![vec![Point::new(1.0, 5.0), Point::new(1.0, -5.0)]]);
     let page = html(&Document::new(&[cut], Context::default()).unwrap());
     assert!(!page.contains("unwound") && !page.contains("start and anchor"), "no tether");
 }

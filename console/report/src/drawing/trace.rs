@@ -1,6 +1,6 @@
 //! Cells as outlines: rings on the lattice of their corners, simplified, as SVG path data.
 
-use crate::account::areas::together;
+use account::together;
 use std::fmt::Write;
 use world::{Floor, Point};
 

@@ -1,7 +1,7 @@
 //! The account of the floor as lines for people.
 
 use super::text::counted;
-use crate::account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
+use account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use world::{Point, coverage::percent_text};
 
 /// Areas out of reach that are listed; the report as JSON has all of them.
@@ -124,7 +124,7 @@ fn areas<R>(areas: &[Area<R>]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::account::{Cause, MissReason};
+    use account::{Cause, MissReason};
     use world::PlateKind;
 
     #[test]

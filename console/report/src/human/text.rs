@@ -43,12 +43,6 @@ pub(crate) fn counted(n: u64, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
-/// A span of time as hours, minutes and whole seconds; what is left of a second is cut off.
-pub fn clock(seconds: f64) -> String {
-    let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
-    format!("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
-}
-
 /// A share in per cent, as it is printed everywhere.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", world::coverage::percent(share))

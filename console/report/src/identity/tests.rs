@@ -1,12 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
-use crate::{
-    document::Files,
-    fold::{Fold, tests::round_tank},
-    record::Record,
-    summary::Logs,
-};
+use crate::{document::Files, record::Record, samples::round_tank};
+use account::{Fold, Logs};
 use mission::{Event, EventKind};
 use proptest::prelude::*;
 use std::sync::LazyLock;

@@ -1,7 +1,7 @@
 //! What is scanned again and what is left, for people.
 
 use super::Rescan;
-use crate::account::Area;
+use account::Area;
 use std::fmt::Write;
 
 /// Areas that are listed one by one.

@@ -3,9 +3,9 @@ use crate::{
     report_file::{ReportFile, Reported, journal_doubt},
     standing::{Standing, standing},
 };
+use account::{Fold, Logs};
 use mission::{Event, EventKind, Outcome};
 use recording::{Finished, Options, PLAIN_JOURNAL_FILE, RunRecorder, events_sha256, sha256_of};
-use report::{Fold, Logs};
 use std::time::{Duration, UNIX_EPOCH};
 
 #[test]

@@ -1,6 +1,7 @@
 //! The figures of a report beside those that its journal gives.
 
-use report::{Summary, first_difference};
+use account::Summary;
+use report::first_difference;
 
 /// The first figure of a report that the journal gives otherwise, with both values; what is not an event is not compared.
 pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String> {

@@ -2,10 +2,8 @@
 
 mod class;
 
-pub use class::FloorClass;
-
+use account::{Overlap, Shares};
 use class::Tally;
-use report::{Overlap, account::Shares};
 use serde::{Deserialize, Serialize};
 use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, Tool, coverage::Counts};
 
@@ -166,7 +164,7 @@ impl Raster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use world::{Boundary, Point, World};
+    use world::{Boundary, FloorClass, Point, World};
 
     fn raster() -> Raster {
         let vertices =
@@ -246,7 +244,7 @@ mod tests {
         assert_eq!((class(&raster), raster.overlap()), (Some((FloorClass::Scanned, 1)), Some(0.0)));
         (0..11).rev().for_each(|step| raster.pass(tool, at(step + 1), at(step)));
         stamps.push(raster.stamp());
-        assert_eq!(class(&raster), Some((FloorClass::Overlap, 2)));
+        assert_eq!(class(&raster), Some((FloorClass::Again, 2)));
         assert!(raster.overlap() > Some(0.5), "{:?}", raster.overlap());
         assert!(stamps[0] != stamps[1] && stamps[1] != stamps[2]);
     }

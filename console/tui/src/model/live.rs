@@ -1,11 +1,8 @@
 //! The run that is open, and what is between the operator and its mission.
 
 use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
+use account::{Account, Area, Estimate, MissReason, Summary};
 use mission::{Order, Phase};
-use report::{
-    Estimate, Summary,
-    account::{Account, Area, MissReason},
-};
 use serde::{Deserialize, Serialize};
 
 /// Names a run that was opened since the console was started; 0 is none.

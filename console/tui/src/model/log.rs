@@ -7,8 +7,8 @@ mod lines;
 pub mod matches;
 mod occurrence;
 
+pub use account::clock;
 pub use entry::{Entry, severity_word};
 pub use lines::{Log, MAX_LINES};
 pub(in crate::model) use occurrence::slim;
 pub use occurrence::{Occurrence, Robot, What};
-pub use report::clock;

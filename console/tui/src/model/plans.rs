@@ -1,7 +1,7 @@
 //! What is known of a mission before it moves: what its plan promises, and a second plan beside it.
 
+use account::Estimate;
 use mission::{AskId, PlannerChoice};
-use report::Estimate;
 use serde::{Deserialize, Serialize};
 use world::Point;
 

@@ -1,9 +1,8 @@
 //! Where the robot believes to be, and how well it knows.
 
 use super::History;
-use nalgebra::Matrix2;
 use planner_api::PoseEstimate;
-use positioning::{Fix, Ranging};
+use positioning::{Fix, Ranging, fix};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use world::{Point, StationId};
@@ -112,14 +111,13 @@ fn error_95_m(pose: &PoseEstimate) -> f64 {
 
 /// Half axes of the 95 % ellipse of a pose, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(pose: &PoseEstimate) -> (f64, f64, f64) {
-    let c = &pose.covariance;
-    positioning::fix::ellipse_95(&Matrix2::new(c[(0, 0)], c[(0, 1)], c[(1, 0)], c[(1, 1)]))
+    fix::ellipse_95(&fix::position_covariance(&pose.covariance))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Matrix3;
+    use nalgebra::{Matrix2, Matrix3};
 
     fn pose(x: f64, sigma_m: f64) -> PoseEstimate {
         let covariance = Matrix3::from_diagonal_element(sigma_m * sigma_m);

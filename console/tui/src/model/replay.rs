@@ -9,7 +9,7 @@ pub use difference::{Scans, Shares};
 pub use mark::{Mark, MarkKind, Marker};
 
 use super::Run;
-use report::{Summary, notes::Notes};
+use account::{Notes, Summary};
 use serde::{Deserialize, Serialize};
 
 /// Times this close together are one, seconds.

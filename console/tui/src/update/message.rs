@@ -7,8 +7,8 @@ use crate::model::{
     home::Found,
     replay::{Align, Reel, Side},
 };
+use account::{Account, Estimate, Notes, Summary};
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity};
-use report::{Estimate, Summary, account::Account, notes::Notes};
 use serde::{Deserialize, Serialize};
 use world::Point;
 

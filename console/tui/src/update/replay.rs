@@ -6,8 +6,8 @@ use super::offer::{self, demand, nothing_under_way, refuse};
 use crate::model::log::clock;
 use crate::model::replay::{Jump, Other, Side};
 use crate::model::{LineEdit, Model, Overlay, Replay, RunId, RunResult, Screen};
+use account::Notes;
 use mission::{Event, Severity};
-use report::notes::Notes;
 
 /// Whether a run is selected that can be played back.
 pub(crate) fn can_open(model: &Model) -> Result<(), String> {

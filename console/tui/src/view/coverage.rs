@@ -5,10 +5,10 @@ use super::text;
 use crate::model::coverage::Raster;
 use crate::model::{Pane, Run};
 use crate::theme::Role;
+use account::{Percent, Shares};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use report::account::{Percent, Shares};
 
 /// What the two columns of shares are shares of, on a wide screen.
 const BASES: &str = "reachable  whole floor";

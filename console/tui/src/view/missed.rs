@@ -4,9 +4,9 @@ use super::look::{Look, fill};
 use super::text;
 use crate::model::Pane;
 use crate::theme::Role;
+use account::{Account, Area, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use report::account::{Account, Area, MissReason};
 
 /// The account of the floor of a run that is over.
 pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {

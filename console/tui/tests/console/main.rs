@@ -17,6 +17,7 @@ mod presets;
 mod printed_keys;
 mod reference;
 mod replay;
+mod scanned;
 mod screens;
 mod scripts;
 mod shadow;

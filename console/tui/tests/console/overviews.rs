@@ -3,8 +3,8 @@
 use crate::fixture::{RICH, Screen, choice};
 use crate::panes::missed_summary;
 use crate::screens::{drawn, text};
+use account::{Estimate, Fold, Summary, estimate::Worst};
 use mission::{AskId, EventKind, Order, Outcome, Outlook, Severity, WorkerId};
-use report::{Estimate, Fold, Summary, estimate::Worst};
 use tui::model::home::{Attention, Found};
 use tui::model::{Forecast, GhostPlan, PastRun, ScenarioEntry};
 use tui::{Effect, Msg, RunMsg, RunResult, Source};

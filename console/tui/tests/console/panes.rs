@@ -2,10 +2,10 @@
 
 use crate::fixture::{PLAIN, RICH, Screen, TICK_S, of_run};
 use crate::screens::{drawn, text};
+use account::Summary;
 use mission::{Event, EventKind, HoldReason, Order, Outcome, Severity};
 use positioning::{FixError, Integrity};
 use ratatui::style::Style;
-use report::Summary;
 use tui::{Msg, Redraw, RunMsg, redraw};
 
 const SIZES: [(u16, u16); 5] = [(80, 24), (100, 30), (120, 36), (160, 45), (200, 60)];

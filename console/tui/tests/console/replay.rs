@@ -2,8 +2,8 @@
 
 use crate::fixture::{RICH, Screen};
 use crate::screens::{drawn, text};
+use account::{Coverage, Fold, Notes, Summary};
 use mission::{Event, Severity};
-use report::{Coverage, Fold, Summary, notes::Notes};
 use std::sync::OnceLock;
 use tui::actions::ACTIONS;
 use tui::model::home::Found;

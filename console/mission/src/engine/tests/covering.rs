@@ -181,7 +181,7 @@ fn a_column_found_on_the_way_is_planned_around_and_what_is_scanned_stays_scanned
 #[test]
 fn an_area_without_floor_in_reach_is_named_when_the_rest_is_done() {
     let area = |x: f64, y: f64, half_m: f64| {
-        let half = world::Vector::new(half_m, half_m);
+        let half = Vector::new(half_m, half_m);
         world::shape::rectangle(Point::new(x, y) - half, Point::new(x, y) + half)
     };
     let anchor = covering().start.position;

@@ -8,7 +8,7 @@ use super::{
     },
     Located,
 };
-use crate::clock;
+use account::clock;
 
 /// Makes the first sheet of a mission that of readings.
 pub(in crate::document) fn as_located(document: &Document, located: &Located, mut page: Page) -> Page {

@@ -8,7 +8,7 @@ use super::{
     },
     Located,
 };
-use crate::clock;
+use account::clock;
 
 const NOT_KNOWN: &str = "The readings do not say when the tool was on (column tool_on, or --tool-on FILE of tankops locate), so that \
     nothing is stated about scanned floor.";

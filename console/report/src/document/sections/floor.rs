@@ -219,7 +219,7 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
         ],
     );
     let tenth = |value: f64| Value::from(format!("{value:.1}"));
-    let mut add = |name: &str, kind: &str, shares: &crate::account::Shares, error: Option<f64>, bar: bool| {
+    let mut add = |name: &str, kind: &str, shares: &account::Shares, error: Option<f64>, bar: bool| {
         let p = &shares.percent;
         let numbers: Vec<String> = (1..)
             .zip(&floor.missed)

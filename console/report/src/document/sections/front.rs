@@ -8,7 +8,7 @@ use super::{
     },
     Document, counted, escaped, number, number_of, task,
 };
-use crate::account::Shares;
+use account::Shares;
 use mission::Outcome;
 
 /// The page around its sections.
@@ -88,7 +88,7 @@ fn fields(document: &Document) -> Vec<Field> {
             "Date of the run (UTC)",
             began.map_or_else(|| Value { text: None, missing: Some("date".into()) }, Value::from),
         ),
-        field("", "Mission time", crate::clock(time_s).into()),
+        field("", "Mission time", account::clock(time_s).into()),
         field("", "Revision", document.revision.clone().into()),
         field("", "Language", "en".into()),
         field("w2 e f", "Made by", document.made_by.clone().into()),

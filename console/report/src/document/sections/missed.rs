@@ -4,7 +4,7 @@ use super::{
     super::page::{Block, Cell, Table, Value},
     Document, counted, number,
 };
-use crate::account::{Area, Cause, MissReason, OutOfReach};
+use account::{Area, Cause, MissReason, OutOfReach};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// With more missed areas than this, small ones are said in few words.

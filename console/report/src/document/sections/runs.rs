@@ -8,7 +8,7 @@ use super::{
     },
     Document, counted, number, picture,
 };
-use crate::clock;
+use account::clock;
 use mission::Severity;
 use world::coverage::percent_text;
 

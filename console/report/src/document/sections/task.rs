@@ -7,7 +7,7 @@ use super::{
     },
     Document, closing, floor, number, picture, runs, section,
 };
-use crate::{clock, summary::Tracking};
+use account::{Tracking, clock};
 use mission::Outcome;
 
 /// The sections in their order; their numbers are in [`super::number_of`].

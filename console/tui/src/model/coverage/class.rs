@@ -3,32 +3,13 @@
 use super::Raster;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
-use world::{Cell, Point};
+use world::{FloorClass, Point};
 
 /// From this share on floor counts as scanned, and from the other as scanned in part.
 const WHOLLY_SCANNED: f64 = 0.95;
 const PARTLY_SCANNED: f64 = 0.05;
 /// From this share of the scanned floor on it counts as scanned again.
 const MOSTLY_AGAIN: f64 = 0.5;
-
-/// What some floor counts as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FloorClass {
-    /// In reach and not scanned, while the mission lasts.
-    ToDo,
-    /// In reach and not scanned when the mission has ended.
-    Missed,
-    /// Scanned.
-    Scanned,
-    /// Scanned more than once.
-    Overlap,
-    /// Scanned in part.
-    Partial,
-    /// Out of reach along the shell.
-    Margin,
-    /// Out of reach elsewhere.
-    Unreachable,
-}
 
 /// Cells of a block: floor, those of it that have been scanned, and those that have been scanned again.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -60,7 +41,7 @@ impl Tally {
         match share {
             share if share < PARTLY_SCANNED => None,
             share if share < WHOLLY_SCANNED => Some(FloorClass::Partial),
-            _ if f64::from(self.again) >= MOSTLY_AGAIN * f64::from(self.scanned) => Some(FloorClass::Overlap),
+            _ if f64::from(self.again) >= MOSTLY_AGAIN * f64::from(self.scanned) => Some(FloorClass::Again),
             _ => Some(FloorClass::Scanned),
         }
     }
@@ -74,17 +55,24 @@ impl Raster {
         if tally.floor == 0 {
             return None;
         }
-        let middle =
-            || self.floor().cell_at(center).map_or(Cell::Reachable, |index| self.floor().kind(index));
-        tally.class().or_else(|| Some(unscanned(middle(), has_ended)))
+        let unscanned =
+            || self.floor().cell_at(center).map_or(FloorClass::ToDo, |index| self.unscanned(index));
+        Some(seen(tally.class().unwrap_or_else(unscanned), has_ended))
     }
 
     /// What the cell under a point counts as, and how often it was scanned; `None` where there is no floor.
     pub fn class_at(&self, point: Point, has_ended: bool) -> Option<(FloorClass, u32)> {
         let index = self.floor().cell_at(point).filter(|index| self.floor().is_floor(*index))?;
-        let tally = self.cell_tally(index);
-        let class = tally.class().unwrap_or_else(|| unscanned(self.floor().kind(index), has_ended));
-        Some((class, tally.scanned * (1 + u32::from(self.overlap.again(index)))))
+        let times = self.cell_tally(index).scanned * (1 + u32::from(self.overlap.again(index)));
+        Some((seen(FloorClass::of(self.floor().kind(index), times), has_ended), times))
+    }
+
+    /// What a cell counts as of which next to nothing is scanned; a block of some floor may have no floor in its middle.
+    fn unscanned(&self, index: usize) -> FloorClass {
+        match FloorClass::of(self.floor().kind(index), 0) {
+            FloorClass::Outside => FloorClass::ToDo,
+            class => class,
+        }
     }
 
     /// A single cell.
@@ -124,11 +112,7 @@ impl Raster {
     }
 }
 
-fn unscanned(kind: Cell, has_ended: bool) -> FloorClass {
-    match kind {
-        Cell::Margin => FloorClass::Margin,
-        Cell::Unreachable | Cell::Beside | Cell::NoGo => FloorClass::Unreachable,
-        Cell::Reachable | Cell::Outside if has_ended => FloorClass::Missed,
-        Cell::Reachable | Cell::Outside => FloorClass::ToDo,
-    }
+/// The same in a mission that has ended or not.
+fn seen(class: FloorClass, has_ended: bool) -> FloorClass {
+    if has_ended { class.when_over() } else { class }
 }

@@ -1,7 +1,7 @@
 //! Events of the robot's position into a run.
 
 use crate::model::{Cause, Change, Run, Withdrawn, position};
-use mission::{Event, EventKind, Severity};
+use mission::{Event, EventKind, Passage, Severity};
 use planner_api::PoseEstimate;
 use world::Pose;
 
@@ -54,12 +54,12 @@ impl Run {
 
     /// Passes the tool over the floor between the last estimate and this one, as the mission does.
     fn scan(&mut self, here: &PoseEstimate) {
-        let Some((about, before)) = self.about.as_ref().zip(self.position.pose) else { return };
-        let error_m = position::ellipse_95(here).0;
-        let counts = self.is_running() && error_m <= about.mission.scan_limit_m();
-        if let Some(coverage) = self.coverage.as_mut().filter(|_| counts) {
+        let Some(mission) = self.about.as_ref().map(|about| &about.mission) else { return };
+        let passage = Passage::of(self.phase(), position::ellipse_95(here).0, mission.scan_limit_m());
+        if let Some(coverage) = self.coverage.as_mut().filter(|_| passage == Passage::Counts) {
             let at = |pose: &PoseEstimate| Pose { position: pose.position, heading_rad: pose.heading_rad };
-            coverage.pass(about.mission.tool(), at(&before), at(here));
+            let before = self.position.pose.as_ref().map_or(mission.start, at);
+            coverage.pass(mission.tool(), before, at(here));
         }
     }
 }

@@ -1,8 +1,8 @@
 //! A line of the log.
 
 use super::occurrence::What;
+use account::clock;
 use mission::Severity;
-use report::clock;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 

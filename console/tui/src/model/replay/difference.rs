@@ -1,7 +1,7 @@
 //! Which floor only one of two runs has scanned.
 
-use crate::model::{FloorClass, Raster};
-use world::Point;
+use crate::model::Raster;
+use world::{FloorClass, Point};
 
 /// Which of two runs scanned some floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,10 +28,9 @@ impl Scans {
 
     /// Which of two runs scanned the floor in a square of some edge about a point; `None` where the first has no floor.
     pub fn in_square(a: &Raster, b: &Raster, center: Point, edge_m: f64) -> Option<Self> {
-        let scans = |class| matches!(class, FloorClass::Scanned | FloorClass::Overlap | FloorClass::Partial);
         let first = a.class_in(center, edge_m, false)?;
-        let second = b.class_in(center, edge_m, false).is_some_and(scans);
-        Some(Self::of(scans(first), second))
+        let second = b.class_in(center, edge_m, false).is_some_and(FloorClass::is_scanned);
+        Some(Self::of(first.is_scanned(), second))
     }
 }
 

@@ -5,12 +5,13 @@ use super::shade::{Shade, compared};
 use crate::model::{Raster, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
+use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
-use report::account::Shares;
+use world::FloorClass;
 
 /// Columns of the right side, and most rows.
 const SIZE: (u16, u16) = (12, 10);
@@ -46,16 +47,17 @@ fn floor(look: &Look) -> Vec<Entry> {
     };
     let again = run.coverage.as_ref().and_then(Raster::overlap).is_some_and(|share| share > 0.0);
     if compared(look).is_some() {
-        let shades = [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Partial, "both")];
+        let shades =
+            [(Shade::OnlyA, "only A"), (Shade::OnlyB, "only B"), (Shade::Floor(FloorClass::Partial), "both")];
         return shades.map(|(shade, word)| (shade.role(), shade.glyph().to_string().repeat(2), word)).into();
     }
     let entries = [
-        (scanned, Shade::Scanned, "scanned"),
-        (scanned && again, Shade::Overlap, "overlap"),
-        (scanned, Shade::Partial, "partial"),
-        (run.has_missed() && some(|division| division.missed), Shade::Missed, "missed"),
-        (some(|division| division.unreachable), Shade::Unreachable, "unreachable"),
-        (some(|division| division.margin), Shade::Margin, "margin"),
+        (scanned, Shade::Floor(FloorClass::Scanned), "scanned"),
+        (scanned && again, Shade::Floor(FloorClass::Again), "overlap"),
+        (scanned, Shade::Floor(FloorClass::Partial), "partial"),
+        (run.has_missed() && some(|division| division.missed), Shade::Floor(FloorClass::Missed), "missed"),
+        (some(|division| division.unreachable), Shade::Floor(FloorClass::Unreachable), "unreachable"),
+        (some(|division| division.margin), Shade::Floor(FloorClass::Margin), "margin"),
         (layers.shows(MapLayer::Accuracy), Shade::PoorFix, "poor fix"),
         (layers.shows(MapLayer::Accuracy), Shade::WeakFix, "weak fix"),
     ];

@@ -1,11 +1,11 @@
 //! The lines at the foot of the map: where the robot is, and what is known of the place under the cursor.
 
 use super::plates;
-use crate::model::{FloorClass, ui::Ui};
+use crate::model::ui::Ui;
 use crate::theme::Role;
 use crate::view::look::Look;
 use crate::view::text;
-use world::Point;
+use world::{FloorClass, Point};
 
 /// The robot's place and the error of it, in words.
 pub(super) fn robot(look: &Look, width: u16) -> (Role, String) {
@@ -48,10 +48,10 @@ pub(super) fn floor(look: &Look, at: Point) -> String {
 
 fn word(class: FloorClass, times: u32) -> String {
     match class {
-        FloorClass::ToDo => "to do".into(),
+        FloorClass::Outside | FloorClass::ToDo => "to do".into(),
         FloorClass::Missed => "missed".into(),
         FloorClass::Scanned => "scanned".into(),
-        FloorClass::Overlap => format!("scanned ×{times}"),
+        FloorClass::Again => format!("scanned ×{times}"),
         FloorClass::Partial => "partially scanned".into(),
         FloorClass::Margin => "shell margin".into(),
         FloorClass::Unreachable => "unreachable".into(),

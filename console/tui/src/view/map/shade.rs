@@ -1,23 +1,19 @@
 //! The floor below everything else on the map: what has been scanned and what not, each by a character and a colour.
 
 use super::shapes::Window;
-use crate::model::{FloorClass, Raster, replay::Scans, ui::MapLayer};
+use crate::model::{Raster, replay::Scans, ui::MapLayer};
 use crate::theme::Role;
 use crate::view::look::Look;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::rc::Rc;
-use world::Point;
+use world::{FloorClass, Point};
 
 /// How some floor is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shade {
-    Scanned,
-    Overlap,
-    Partial,
-    Missed,
-    Unreachable,
-    Margin,
+    /// By what it counts as; never [`FloorClass::ToDo`].
+    Floor(FloorClass),
     /// The stations are forecast to locate beyond the limit here, or not at all.
     PoorFix,
     /// They are forecast to locate beyond half of the limit here.
@@ -29,53 +25,41 @@ pub(crate) enum Shade {
 }
 
 impl Shade {
+    /// What is still to be scanned, and what is no floor, is not shaded.
     fn of(class: FloorClass) -> Option<Self> {
-        match class {
-            FloorClass::ToDo => None,
-            FloorClass::Missed => Some(Self::Missed),
-            FloorClass::Scanned => Some(Self::Scanned),
-            FloorClass::Overlap => Some(Self::Overlap),
-            FloorClass::Partial => Some(Self::Partial),
-            FloorClass::Margin => Some(Self::Margin),
-            FloorClass::Unreachable => Some(Self::Unreachable),
+        (!matches!(class, FloorClass::Outside | FloorClass::ToDo)).then_some(Self::Floor(class))
+    }
+
+    /// The character for it, and what its colour stands for.
+    fn look(self) -> (char, Role) {
+        match self {
+            Self::Floor(FloorClass::Outside | FloorClass::ToDo) => (' ', Role::Dim),
+            Self::Floor(FloorClass::Scanned) => ('▒', Role::Scanned),
+            Self::Floor(FloorClass::Again) => ('▚', Role::Overlap),
+            Self::Floor(FloorClass::Partial) => ('░', Role::Partly),
+            Self::Floor(FloorClass::Missed) => ('▓', Role::Missed),
+            Self::Floor(FloorClass::Unreachable) => ('/', Role::Unreachable),
+            Self::Floor(FloorClass::Margin) => ('-', Role::Margin),
+            Self::PoorFix => ('%', Role::Crit),
+            Self::WeakFix => (':', Role::Warn),
+            Self::OnlyA => ('A', Role::Good),
+            Self::OnlyB => ('B', Role::Ghost),
         }
     }
 
     /// The character for it.
     pub(super) fn glyph(self) -> char {
-        match self {
-            Self::Scanned => '▒',
-            Self::Overlap => '▚',
-            Self::Partial => '░',
-            Self::Missed => '▓',
-            Self::Unreachable => '/',
-            Self::Margin => '-',
-            Self::PoorFix => '%',
-            Self::WeakFix => ':',
-            Self::OnlyA => 'A',
-            Self::OnlyB => 'B',
-        }
+        self.look().0
     }
 
     /// What its colour stands for.
     pub(super) fn role(self) -> Role {
-        match self {
-            Self::Scanned => Role::Scanned,
-            Self::Overlap => Role::Overlap,
-            Self::Partial => Role::Partly,
-            Self::Missed => Role::Missed,
-            Self::Unreachable => Role::Unreachable,
-            Self::Margin => Role::Margin,
-            Self::PoorFix => Role::Crit,
-            Self::WeakFix => Role::Warn,
-            Self::OnlyA => Role::Good,
-            Self::OnlyB => Role::Ghost,
-        }
+        self.look().1
     }
 
     /// The colour behind it, on which lines are drawn.
     fn ground(self) -> Option<Role> {
-        matches!(self, Self::Scanned | Self::Overlap).then_some(Role::Scanned)
+        matches!(self, Self::Floor(FloorClass::Scanned | FloorClass::Again)).then_some(Role::Scanned)
     }
 }
 
@@ -164,7 +148,7 @@ fn difference(scans: Scans) -> Option<Shade> {
         Scans::None => None,
         Scans::OnlyA => Some(Shade::OnlyA),
         Scans::OnlyB => Some(Shade::OnlyB),
-        Scans::Both => Some(Shade::Partial),
+        Scans::Both => Some(Shade::Floor(FloorClass::Partial)),
     }
 }
 

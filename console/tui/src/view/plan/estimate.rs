@@ -3,10 +3,10 @@
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
+use account::Estimate;
 use mission::MissionConfig;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use report::Estimate;
 
 /// Rows of the table, its head included.
 pub(super) const ROWS: u16 = 9;
@@ -105,7 +105,7 @@ const FIGURES: [(&str, Figure); 8] = [
     ("without fix", |e, _| format!("{} m", text::number(e.without_fix_m, 1))),
 ];
 
-fn worst(worst: Option<report::estimate::Worst>, unit: &str, decimals: usize, width: usize) -> String {
+fn worst(worst: Option<account::estimate::Worst>, unit: &str, decimals: usize, width: usize) -> String {
     let Some(worst) = worst else { return "-".into() };
     let figure = format!("{} {unit}", text::number(worst.value, decimals));
     text::wording([format!("{figure} at {}", text::place(worst.at)), figure], width)

@@ -4,10 +4,10 @@ use crate::model::{RunResult, Source};
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::text;
+use account::Shares;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use report::account::Shares;
 
 /// Missed share of a plate, per cent, up to which it counts as scanned but for slivers.
 const MISSED_PERCENT: f64 = 1.0;

@@ -6,9 +6,9 @@ use crate::update::Rows;
 use crate::view::look::{Look, Parts, fill};
 use crate::view::missed::brief;
 use crate::view::{table, text};
+use account::{Area, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use report::account::{Area, MissReason};
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
     let listed = &look.model.live.missed()[..];

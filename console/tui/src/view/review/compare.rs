@@ -5,10 +5,10 @@ use crate::model::replay::Other;
 use crate::theme::Role;
 use crate::view::look::{Look, fill};
 use crate::view::text;
+use account::Summary;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use report::Summary;
 use world::coverage::percent;
 
 /// A figure of a report.

@@ -1,0 +1,141 @@
+//! How good the estimated position was: by its own covariance, and by the truth where there is one.
+
+use crate::summary::{Accuracy as Statement, Positioning};
+use nalgebra::Matrix2;
+use positioning::fix::ELLIPSE_95;
+use world::Point;
+
+/// The 95 % error by the covariance, tick by tick.
+#[derive(Debug, Default)]
+pub(crate) struct Claimed {
+    errors_m: Vec<f32>,
+    way_m: f64,
+    way_over_m: f64,
+    last: Option<Point>,
+    /// Largest error since the last ranging cycle, and in the cycle before it: between two fixes the error grows and falls
+    /// like a saw, and the tip is what counts.
+    tips_m: [f64; 2],
+    fixes: u64,
+    stations: u64,
+    stations_min: Option<u64>,
+}
+
+impl Claimed {
+    /// Takes in the estimate of a tick and its 95 % error, metres.
+    pub(crate) fn estimate(&mut self, position: Point, error_m: f64, limit_m: f64) {
+        self.errors_m.push(error_m as f32);
+        self.tips_m[0] = self.tips_m[0].max(error_m);
+        let step_m = self.last.map_or(0.0, |last| (position - last).norm());
+        self.last = Some(position);
+        self.way_m += step_m;
+        self.way_over_m += if error_m > limit_m { step_m } else { 0.0 };
+    }
+
+    /// A ranging cycle ended.
+    pub(crate) fn end_cycle(&mut self) {
+        self.tips_m = [0.0, self.tips_m[0]];
+    }
+
+    /// The ranges of so many stations gave a position.
+    pub(crate) fn fix(&mut self, stations: usize) {
+        let stations = stations as u64;
+        self.fixes += 1;
+        self.stations += stations;
+        self.stations_min = Some(self.stations_min.map_or(stations, |least| least.min(stations)));
+    }
+
+    /// Largest 95 % error in this ranging cycle and the one before, metres.
+    pub(crate) fn tip_m(&self) -> f64 {
+        self.tips_m[0].max(self.tips_m[1])
+    }
+
+    /// The figures; none without an estimate.
+    pub(crate) fn statement(&self, limit_m: f64) -> Option<Statement> {
+        let mut sorted = self.errors_m.clone();
+        sorted.sort_by(f32::total_cmp);
+        Some(Statement {
+            mean_m: sorted.iter().map(|m| f64::from(*m)).sum::<f64>() / sorted.len() as f64,
+            p95_m: f64::from(nearest_rank(&sorted, 0.95)?),
+            max_m: f64::from(*sorted.last()?),
+            limit_m,
+            over_limit: if self.way_m > 0.0 { self.way_over_m / self.way_m } else { 0.0 },
+            fixes: self.fixes,
+            stations_mean: (self.fixes > 0).then(|| self.stations as f64 / self.fixes as f64),
+            stations_min: self.stations_min,
+        })
+    }
+}
+
+/// The value that a share of sorted values does not exceed.
+pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
+    sorted.get(((share * sorted.len() as f64).ceil() as usize).max(1) - 1).copied()
+}
+
+/// Errors so far; truth and estimate of a tick are paired in whichever order they come.
+#[derive(Debug, Default)]
+pub(crate) struct Accuracy {
+    truth: Option<(u64, Point)>,
+    estimate: Option<(u64, Point, Matrix2<f64>)>,
+    errors_m: Vec<f64>,
+    in_ellipse: usize,
+    lost_since_s: Option<f64>,
+    position_lost_s: f64,
+}
+
+impl Accuracy {
+    /// Where the robot truly was in a tick.
+    pub(crate) fn truth(&mut self, tick: u64, position: Point) {
+        self.truth = Some((tick, position));
+        self.pair();
+    }
+
+    /// Where it believed to be, with the covariance of that, square metres.
+    pub(crate) fn estimate(&mut self, tick: u64, position: Point, covariance: Matrix2<f64>) {
+        self.estimate = Some((tick, position, covariance));
+        self.pair();
+    }
+
+    /// The position counts as lost from now on.
+    pub(crate) fn lost(&mut self, t_s: f64) {
+        self.lost_since_s.get_or_insert(t_s);
+    }
+
+    /// The position is good again.
+    pub(crate) fn regained(&mut self, t_s: f64) {
+        self.position_lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
+    }
+
+    fn pair(&mut self) {
+        let (Some((tick, truth)), Some((estimate_tick, position, covariance))) = (self.truth, self.estimate)
+        else {
+            return;
+        };
+        if tick != estimate_tick {
+            return;
+        }
+        self.estimate = None;
+        let error = truth - position;
+        self.errors_m.push(error.norm());
+        let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
+        let determinant = a * c - b * b;
+        // Squared Mahalanobis distance, multiplied by the determinant so that nothing is divided by zero.
+        let scaled = c * error.x * error.x - 2.0 * b * error.x * error.y + a * error.y * error.y;
+        self.in_ellipse += usize::from(scaled <= ELLIPSE_95 * determinant);
+    }
+
+    /// The figures of a run that has come to `now_s`; none if truth and estimate never came together.
+    pub(crate) fn positioning(&self, now_s: f64) -> Option<Positioning> {
+        let mut sorted = self.errors_m.clone();
+        sorted.sort_by(f64::total_cmp);
+        let n = sorted.len();
+        let rank = |share: f64| nearest_rank(&sorted, share);
+        Some(Positioning {
+            mean_error_m: sorted.iter().sum::<f64>() / n as f64,
+            p50_m: rank(0.5)?,
+            p95_m: rank(0.95)?,
+            max_m: *sorted.last()?,
+            in_95_ellipse: self.in_ellipse as f64 / n as f64,
+            position_lost_s: self.position_lost_s + self.lost_since_s.map_or(0.0, |since_s| now_s - since_s),
+        })
+    }
+}

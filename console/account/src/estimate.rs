@@ -1,0 +1,232 @@
+//! What a plan promises before anything moves: time, coverage, clearance, tether, accuracy, and where each is worst.
+
+mod time;
+
+pub use time::time_s;
+
+use mission::{MissionConfig, TaskConfig};
+use positioning::{AccuracyMap, Forecast};
+use serde::{Deserialize, Serialize};
+use world::{
+    CoverageGrid, Floor, ObstacleMap, Point, Shape, World, polyline,
+    tether::{Bearing, Cable},
+};
+
+/// Distance between the points of a path that are looked at, metres.
+const SAMPLE_M: f64 = 0.1;
+/// Cells of a forecast along the longer side of the floor.
+const CELLS: f64 = 80.0;
+
+/// A figure and where on the path it is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// The figure; metres or radians.
+    pub value: f64,
+    /// Where, metres, tank frame.
+    pub at: Point,
+}
+
+/// What a plan does to the tether.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TetherEstimate {
+    /// Most cable out, metres.
+    pub length_max: Worst,
+    /// Largest angle about one obstacle, radians.
+    pub wrap_max: Worst,
+    /// Name of that obstacle; empty if the cable touches none.
+    pub wrapped: String,
+    /// Largest sum of all angles, radians.
+    pub wrap_total_max_rad: f64,
+    /// Cable out at the end of the path, metres.
+    pub end_length_m: f64,
+}
+
+/// What a plan promises on the drawing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Length of the path, metres.
+    pub length_m: f64,
+    /// Time to drive it, as fast as the robot can stop in time, with stops to turn at corners, seconds.
+    pub time_s: f64,
+    /// Whether it achieves the whole task.
+    pub complete: bool,
+    /// Share of the reachable floor that it scans, 0 to 1; absent for missions that are not to scan.
+    pub reachable: Option<f64>,
+    /// Least distance from the hull to anything solid, metres.
+    pub clearance_min: Option<Worst>,
+    /// What it does to the tether; absent without one.
+    pub tether: Option<TetherEstimate>,
+    /// Largest 95 % error that the stations are forecast to give, metres; absent without stations.
+    pub accuracy_worst: Option<Worst>,
+    /// Way on which the stations are forecast to give no fix, metres.
+    pub without_fix_m: f64,
+}
+
+impl Estimate {
+    /// What a path promises.
+    ///
+    /// Costs one look at every tenth of a metre of the path; with a tether the cable is dragged along it once.
+    pub fn new(mission: &MissionConfig, drawing: &World, path: &[Point], complete: bool) -> Self {
+        let sampled = polyline::resampled(path, SAMPLE_M);
+        let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
+        let (accuracy_worst, without_fix_m) = accuracy(mission, drawing, &sampled);
+        Self {
+            length_m: polyline::length_m(path),
+            time_s: time_s(mission, &map, path),
+            complete,
+            reachable: reachable(mission, drawing, path),
+            clearance_min: clearance(mission, &map, &sampled),
+            tether: tether(mission, drawing, &sampled),
+            accuracy_worst,
+            without_fix_m,
+        }
+    }
+}
+
+fn reachable(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<f64> {
+    let TaskConfig::Cover { .. } = mission.task else { return None };
+    let start = mission.start.position;
+    let floor = Floor::new(drawing, mission.cell_m, mission.room_m(), mission.swath_m, start);
+    let mut grid = CoverageGrid::new(floor);
+    for pair in path.windows(2) {
+        grid.mark_swath(pair[0], pair[1], mission.swath_m);
+    }
+    Some(grid.fraction_reachable())
+}
+
+fn clearance(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> Option<Worst> {
+    let hull_m = mission.limits.radius_m;
+    path.iter()
+        .map(|at| Worst { value: map.clearance_m(*at) - hull_m, at: *at })
+        .min_by(|a, b| a.value.total_cmp(&b.value))
+}
+
+fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<TetherEstimate> {
+    let anchor = mission.tether.as_ref()?.anchor;
+    let shapes: Vec<Shape> = drawing.obstacles.iter().map(|obstacle| obstacle.shape.clone()).collect();
+    let mut cable = Cable::new(anchor, &drawing.boundary, &shapes).ok()?;
+    let none = Worst { value: 0.0, at: anchor };
+    let mut estimate = TetherEstimate {
+        length_max: none,
+        wrap_max: none,
+        wrapped: String::new(),
+        wrap_total_max_rad: 0.0,
+        end_length_m: 0.0,
+    };
+    for at in path {
+        cable.drag_to(*at);
+        if cable.length_m() > estimate.length_max.value {
+            estimate.length_max = Worst { value: cable.length_m(), at: *at };
+        }
+        if cable.wrap_max_rad() > estimate.wrap_max.value {
+            estimate.wrap_max = Worst { value: cable.wrap_max_rad(), at: *at };
+            estimate.wrapped = most_wrapped(&cable, drawing);
+        }
+        estimate.wrap_total_max_rad = estimate.wrap_total_max_rad.max(cable.wrap_total_rad());
+    }
+    estimate.end_length_m = cable.length_m();
+    Some(estimate)
+}
+
+/// Name of the obstacle about which a cable turns most.
+fn most_wrapped(cable: &Cable, drawing: &World) -> String {
+    let contacts = cable.contacts();
+    let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
+    match most.map(|contact| contact.on) {
+        Some(Bearing::Obstacle(index)) => drawing.obstacles[index].name.clone(),
+        Some(Bearing::Wall) => "wall".to_owned(),
+        None => String::new(),
+    }
+}
+
+/// The largest forecast error on a path, and the way without any fix, metres.
+fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option<Worst>, f64) {
+    if drawing.stations.is_empty() {
+        return (None, 0.0);
+    }
+    let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
+    let (mut worst, mut without_fix_m) = (None::<Worst>, 0.0);
+    for at in path {
+        match map.at(*at).and_then(|accuracy| accuracy.error_95_m) {
+            Some(value) if worst.is_none_or(|worst| value > worst.value) => {
+                worst = Some(Worst { value, at: *at });
+            }
+            Some(_) => {}
+            None => without_fix_m += SAMPLE_M,
+        }
+    }
+    (worst, without_fix_m)
+}
+
+/// What the mission's own estimator may expect of its stations.
+pub fn forecast(mission: &MissionConfig, drawing: &World) -> Forecast {
+    let (low, high) = drawing.boundary.bounds();
+    mission.forecast((high - low).amax() / CELLS)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+    use world::{Boundary, Obstacle, ObstacleId};
+
+    pub(super) fn mission() -> MissionConfig {
+        let limits = serde_json::json!({
+            "motion": "unicycle", "v_max_m_per_s": 0.5, "w_max_rad_per_s": 1.0, "radius_m": 0.3, "sensing_range_m": 2.0
+        });
+        let mission = serde_json::json!({
+            "task": { "goto": { "goal": [2.5, 5.0], "tolerance_m": 0.2 } },
+            "start": { "position": [-5.0, 0.0], "heading_rad": 0.0 },
+            "start_sigma_m": 0.0, "tick_s": 0.1, "time_limit_s": 100.0, "limits": limits, "swath_m": 0.6,
+            "clearance_m": 0.1, "cell_m": 0.1, "position_limit_m": 0.5, "position_lost_hold_s": 2.0, "stuck_s": 30.0,
+            "start_heading_sigma_rad": 0.02, "odometry_turn_sigma_per_rad": 0.02, "gyro_sigma_rad_per_s": 0.001,
+            "odometry_sigma_per_m": 0.02, "range_sigma_ratio": 0.03,
+            "planner": { "id": "rpf", "parameters": {} }, "fallback": null,
+        });
+        serde_json::from_value(mission).unwrap()
+    }
+
+    pub(super) fn drawing() -> World {
+        let column = Shape::Disc { center: Point::new(4.0, 0.0), radius_m: 0.5 };
+        let obstacle = Obstacle { id: ObstacleId(1), name: "C1".into(), shape: column, known: true };
+        World {
+            boundary: Boundary::Circle { radius_m: 10.0 },
+            obstacles: vec![obstacle],
+            stations: Vec::new(),
+            zones: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_worst_is_found_with_its_place() {
+        let (mission, drawing) = (mission(), drawing());
+        let path = [Point::new(-5.0, 0.0), Point::new(2.5, 0.0), Point::new(2.5, 5.0)];
+        let estimate = Estimate::new(&mission, &drawing, &path, true);
+        assert!((estimate.length_m - 12.5).abs() < 1e-9);
+        let clearance = estimate.clearance_min.unwrap();
+        assert!((clearance.at - Point::new(2.5, 0.0)).norm() < 0.2, "{clearance:?}");
+        assert!((clearance.value - (1.0 - mission.limits.radius_m)).abs() < 0.02, "{clearance:?}");
+        let limits = &mission.limits;
+        let drive_s = 12.5 / limits.v_max_m_per_s;
+        let turn_s = std::f64::consts::FRAC_PI_2 / limits.w_max_rad_per_s + limits.tick_s;
+        // It stops twice.
+        let stops_s = 2.0 * limits.v_max_m_per_s / limits.acceleration_m_per_s2;
+        assert!((estimate.time_s - drive_s - turn_s - stops_s).abs() < 0.1, "{}", estimate.time_s);
+        assert_eq!((estimate.tether, estimate.accuracy_worst, estimate.reachable), (None, None, None));
+    }
+
+    #[test]
+    fn a_smooth_curve_costs_no_stops() {
+        let mission = mission();
+        let circle: Vec<Point> = (0..=200)
+            .map(|i| {
+                let (sin, cos) = (f64::from(i) * 0.03).sin_cos();
+                Point::new(7.0 * cos, 7.0 * sin)
+            })
+            .collect();
+        let time_s = Estimate::new(&mission, &drawing(), &circle, true).time_s;
+        let start_and_stop_s = mission.limits.v_max_m_per_s / mission.limits.acceleration_m_per_s2;
+        let driven_s = polyline::length_m(&circle) / mission.limits.v_max_m_per_s;
+        assert!((time_s - driven_s - start_and_stop_s).abs() < 0.1, "{time_s}");
+    }
+}

@@ -1,0 +1,268 @@
+//! The floor as an inspector accounts for it: what was scanned, what was missed and why, what nobody could reach.
+
+mod areas;
+mod evidence;
+mod measure;
+mod reason;
+mod reasons;
+mod updated;
+mod zone;
+
+pub use areas::{Area, Cause, Explained, Slivers, area_of, areas, together};
+pub use evidence::{Evidence, Solid};
+pub use measure::Measure;
+pub use reason::{MissReason, OutOfReach};
+pub use reasons::Reasons;
+pub use updated::updated_floor;
+use zone::rim;
+pub use zone::{CriticalZone, ZoneArc, ZoneOfPlate};
+
+use crate::{accuracy::nearest_rank, scanned::Scanned};
+use mission::event::RunOpened;
+use serde::{Deserialize, Serialize};
+use world::{
+    Cell, Counts, Floor, PlateKind, PlateMap, Point,
+    coverage::{percent, percents},
+};
+
+/// The account of a floor, by the estimated position: a cell counts as scanned where the position error was within
+/// the mission's limit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Account {
+    /// Edge of a cell of the grid, metres.
+    pub cell_m: f64,
+    /// Width of floor scanned in one pass, metres.
+    pub swath_m: f64,
+    /// Half width of the 95 % position error above which nothing counted, metres.
+    pub position_limit_m: f64,
+    /// All floor.
+    pub whole: Shares,
+    /// The floor that the tool can reach: scanned and missed alone.
+    pub reachable: Shares,
+    /// Scanned share of the reachable floor by the area that the tool swept instead of by cells, 0 to 1.
+    #[serde(default)]
+    pub exact: Option<f64>,
+    /// The zone along the shell.
+    pub critical_zone: CriticalZone,
+    /// Every plate, also those of which nothing was scanned; empty if the layout of the plates is not known.
+    pub plates: Vec<PlateAccount>,
+    /// Reachable floor that was not scanned, the largest area first.
+    pub missed: Vec<Area<MissReason>>,
+    /// Missed areas that are too small to be listed.
+    pub slivers: Slivers<MissReason>,
+    /// Floor that the tool cannot reach, the largest area first.
+    pub unreachable: Vec<Area<OutOfReach>>,
+    /// Areas out of reach that are too small to be listed.
+    #[serde(default)]
+    pub unreachable_slivers: Slivers<OutOfReach>,
+}
+
+impl Account {
+    /// The account of a floor that nobody was to scan: nothing of it is missed, nor asked for along the shell.
+    #[must_use]
+    pub fn of_no_scan(self) -> Self {
+        Self {
+            whole: Shares::default(),
+            reachable: Shares::default(),
+            exact: None,
+            critical_zone: CriticalZone::default(),
+            plates: Vec::new(),
+            missed: Vec::new(),
+            slivers: Slivers::default(),
+            unreachable: Vec::new(),
+            unreachable_slivers: Slivers::default(),
+            ..self
+        }
+    }
+
+    /// Whether it is that of a floor that nobody was to scan.
+    pub fn is_of_no_scan(&self) -> bool {
+        self.whole.area_m2 <= 0.0
+    }
+}
+
+/// How a floor divides. The shares are of its area and sum to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Shares {
+    /// Area, square metres.
+    pub area_m2: f64,
+    /// Scanned.
+    pub scanned: f64,
+    /// In reach of the tool, but not scanned.
+    pub missed: f64,
+    /// Out of reach: closed off, beside obstacles, in zones that the robot must not enter.
+    pub unreachable: f64,
+    /// Out of reach because the robot keeps its distance from the shell.
+    pub margin: f64,
+    /// Scanned for every position within the 95 % error: a part of what was scanned. Absent while a mission lasts.
+    #[serde(default)]
+    pub guaranteed: Option<f64>,
+    /// The same shares as they are printed.
+    #[serde(default)]
+    pub percent: Percent,
+}
+
+/// Shares in per cent, rounded to one decimal so that they sum to 100.0; all 0 of an empty floor.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Percent {
+    /// Scanned.
+    pub scanned: f64,
+    /// In reach of the tool, but not scanned.
+    pub missed: f64,
+    /// Out of reach.
+    pub unreachable: f64,
+    /// Out of reach along the shell.
+    pub margin: f64,
+    /// Scanned for every position within the 95 % error: a part of what was scanned.
+    #[serde(default)]
+    pub guaranteed: Option<f64>,
+}
+
+/// One plate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlateAccount {
+    /// Its name.
+    pub name: String,
+    /// What kind of plate.
+    pub kind: PlateKind,
+    /// The 95 % error with which its floor was scanned: not exceeded by 95 % of its scanned cells, each with the best pass over
+    /// it, metres; absent if nothing of it was scanned.
+    #[serde(default)]
+    pub error_p95_m: Option<f64>,
+    /// How it divides.
+    #[serde(flatten)]
+    pub shares: Shares,
+}
+
+impl Shares {
+    /// How some floor divides whose cells are counted, each of so many square metres.
+    pub fn of(counts: Counts, cell_m2: f64) -> Self {
+        let Counts { floor, reachable, covered, covered_reachable, margin } = counts;
+        let missed = reachable - covered_reachable;
+        let unreachable = floor - covered - missed - margin;
+        let share = |part: usize| if floor == 0 { 0.0 } else { part as f64 / floor as f64 };
+        let shares = [covered, missed, unreachable, margin].map(share);
+        let [scanned, missed, unreachable, margin] = percents(shares);
+        let percent = Percent { scanned, missed, unreachable, margin, guaranteed: None };
+        let [scanned, missed, unreachable, margin] = shares;
+        let area_m2 = floor as f64 * cell_m2;
+        Shares { area_m2, scanned, missed, unreachable, margin, guaranteed: None, percent }
+    }
+
+    /// The same with so many guaranteed cells.
+    fn with_guaranteed(mut self, cells: usize, cell_m2: f64) -> Self {
+        let share = if self.area_m2 > 0.0 { cells as f64 * cell_m2 / self.area_m2 } else { 0.0 };
+        self.guaranteed = Some(share);
+        self.percent.guaranteed = Some(percent(share).min(self.percent.scanned));
+        self
+    }
+}
+
+/// Cells of some part of the floor.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    counts: Counts,
+    guaranteed: usize,
+}
+
+impl Tally {
+    fn count(&mut self, kind: Cell, is_scanned: bool, is_guaranteed: bool) {
+        self.counts.add(kind, is_scanned);
+        self.guaranteed += usize::from(is_guaranteed && kind != Cell::Outside);
+    }
+
+    fn shares(self, cell_m2: f64) -> Shares {
+        Shares::of(self.counts, cell_m2).with_guaranteed(self.guaranteed, cell_m2)
+    }
+}
+
+/// Accounts for a floor. Costs one look at every cell.
+pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Account {
+    let grid = scanned.believed();
+    let floor = grid.floor();
+    let plates = plate_map(run, floor);
+    let (mut whole, mut reachable) = (Tally::default(), Tally::default());
+    let mut by_plate = vec![Tally::default(); plates.as_ref().map_or(0, |map| map.plates.len())];
+    let covered: Vec<bool> = (0..floor.len()).map(|index| grid.is_covered(index)).collect();
+    for (index, is_scanned) in covered.iter().copied().enumerate() {
+        let kind = floor.kind(index);
+        let is_guaranteed = is_scanned && scanned.passes().is_guaranteed(index);
+        whole.count(kind, is_scanned, is_guaranteed);
+        if kind == Cell::Reachable {
+            reachable.count(kind, is_scanned, is_guaranteed);
+        }
+        if let Some(plate) = plates.as_ref().and_then(|map| map.plate_of(index)) {
+            by_plate[plate].count(kind, is_scanned, is_guaranteed);
+        }
+    }
+    let reasons = evidence.reasons(run);
+    let why_missed = |index: usize| {
+        let is_missed = floor.is_reachable(index) && !covered[index];
+        is_missed.then(|| reasons.why_missed(floor.center(index), index))
+    };
+    let why_out = |index: usize| OutOfReach::of(floor.kind(index)).filter(|_| !covered[index]);
+    let (missed, slivers) =
+        areas(floor, plates.as_ref(), why_missed, |why, cells| reasons.measure(grid, why, cells));
+    let (unreachable, unreachable_slivers) =
+        areas(floor, plates.as_ref(), why_out, |why, cells| reasons.measure_out_of_reach(grid, why, cells));
+    let plate_at = |place: Point| plate_beside(floor, plates.as_ref()?, place);
+    Account {
+        cell_m: floor.cell_m,
+        swath_m: run.mission.swath_m,
+        position_limit_m: run.mission.scan_limit_m(),
+        whole: whole.shares(floor.cell_m2()),
+        reachable: reachable.shares(floor.cell_m2()),
+        exact: evidence.exact_share(&updated_floor(run, floor, evidence, run.mission.swath_m)),
+        critical_zone: CriticalZone::of(&evidence.shell(), &rim(&run.mission), plate_at),
+        plates: plates
+            .as_ref()
+            .map_or_else(Vec::new, |map| plate_accounts(map, &by_plate, scanned, &covered)),
+        missed,
+        slivers,
+        unreachable,
+        unreachable_slivers,
+    }
+}
+
+/// The plates of a floor, if their layout is known.
+pub fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
+    run.plates.as_ref().map(|layout| layout.map(&run.world.boundary, floor))
+}
+
+/// The plate of the floor beside a place on the wall.
+fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
+    let near = floor.cells_near(place, place, 2.0 * floor.cell_m).into_iter();
+    let off_m = |cell: &usize| (floor.center(*cell) - place).norm();
+    let nearest =
+        near.filter(|cell| map.plate_of(*cell).is_some()).min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+    Some(map.plates[map.plate_of(nearest?)?].name.clone())
+}
+
+fn plate_accounts(
+    map: &PlateMap,
+    by_plate: &[Tally],
+    scanned: &Scanned,
+    covered: &[bool],
+) -> Vec<PlateAccount> {
+    let mut errors_mm: Vec<Vec<u16>> =
+        by_plate.iter().map(|tally| Vec::with_capacity(tally.counts.covered)).collect();
+    for cell in (0..covered.len()).filter(|cell| covered[*cell]) {
+        if let Some((plate, error_mm)) = map.plate_of(cell).zip(scanned.passes().error_mm(cell)) {
+            errors_mm[plate].push(error_mm);
+        }
+    }
+    let tallied = map.plates.iter().zip(by_plate).zip(errors_mm);
+    let plate = |((plate, tally), mut errors_mm): ((&world::Plate, &Tally), Vec<u16>)| {
+        errors_mm.sort_unstable();
+        PlateAccount {
+            name: plate.name.clone(),
+            kind: plate.kind,
+            error_p95_m: nearest_rank(&errors_mm, 0.95).map(|mm| f64::from(mm) / 1000.0),
+            shares: tally.shares(scanned.believed().floor().cell_m2()),
+        }
+    };
+    tallied.map(plate).collect()
+}
+
+#[cfg(test)]
+mod tests;

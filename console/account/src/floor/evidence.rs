@@ -1,0 +1,396 @@
+//! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
+
+use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
+use crate::sampled::sampled;
+use mission::{TaskConfig, event::RunOpened};
+use world::{
+    Boundary, Cell, CellRun, Floor, FloorMaker, KindRun, Obstacle, ObstacleId, Point, Pose, Shape,
+    ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
+};
+
+/// Plans are laid out on the floor in pieces no longer than this, metres.
+const PIECE_M: f64 = 0.5;
+/// The error of a cell over which nothing passed without counting.
+const NEVER: u16 = u16::MAX;
+/// The zone of a cell that none took out of reach.
+const OF_NONE: u16 = u16::MAX;
+/// Ways along a plan that differ by less are the same, metres.
+const NEARLY_M: f64 = 0.01;
+
+/// What was planned and done, cell by cell.
+#[derive(Debug, Clone)]
+pub struct Evidence {
+    grid: Floor,
+    tool: Tool,
+    /// Distance from a found obstacle within which it is to blame, metres.
+    beside_m: f64,
+    /// The plan under way.
+    plan: Planned,
+    /// The plan before the one that was made last, until that one is flown: it may be refused.
+    before: Option<Box<Planned>>,
+    /// A plan led there, and was flown past there.
+    passed: Vec<bool>,
+    /// The smallest 95 % error with which the tool passed without counting, millimetres; [`NEVER`] if it did not.
+    uncertain_mm: Vec<u16>,
+    /// The 95 % error now, metres.
+    error_m: f64,
+    /// What was to be scanned; `None` for everything.
+    asked: Option<Vec<bool>>,
+    found: Vec<(ObstacleId, Solid)>,
+    drawn: Vec<Solid>,
+    /// Zones that the robot must not enter: those of the scenario, and those drawn later.
+    no_go: Vec<Solid>,
+    /// Which of them took a cell out of reach when it was drawn; [`OF_NONE`] for none.
+    shut_by: Vec<u16>,
+    boundary: Boundary,
+    shell: ShellZone,
+    area: SweptArea,
+    last: Pose,
+}
+
+impl Evidence {
+    /// Nothing was planned or done yet.
+    pub fn new(run: &RunOpened) -> Self {
+        let none = vec![false; run.floor.len()];
+        Self {
+            grid: run.floor.clone(),
+            tool: run.mission.tool(),
+            beside_m: run.mission.room_m() + run.mission.swath_m / 2.0,
+            plan: Planned::none(run.floor.len()),
+            before: None,
+            passed: none,
+            uncertain_mm: vec![NEVER; run.floor.len()],
+            error_m: 0.0,
+            asked: asked(run),
+            found: Vec::new(),
+            no_go: no_go_zones(run),
+            shut_by: vec![OF_NONE; run.floor.len()],
+            drawn: run.world.obstacles.iter().filter(|o| o.known).map(Solid::of).collect(),
+            boundary: run.world.boundary.clone(),
+            shell: ShellZone::new(&run.world.boundary, CRITICAL_ZONE_M),
+            area: SweptArea::new(&run.world.boundary),
+            last: run.mission.start,
+        }
+    }
+
+    /// A plan was made for what is left; it takes the place of the one before.
+    pub fn plan(&mut self, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) {
+        self.leave_behind();
+        let path = sampled(path, PIECE_M);
+        let stations_m = world::polyline::stations_m(&path);
+        let mut plan = Planned {
+            length_m: stations_m.last().copied().unwrap_or(0.0),
+            flown_m: self.plan.flown_m + self.plan.along_m,
+            is_whole,
+            cuts: cuts.to_vec(),
+            ..Planned::none(self.grid.len())
+        };
+        for (pair, end_m) in
+            path.windows(2).zip(stations_m.iter().skip(1)).filter(|(pair, _)| pair[0] != pair[1])
+        {
+            let ahead = pair[1] - pair[0];
+            let at = |position| Pose { position, heading_rad: ahead.y.atan2(ahead.x) };
+            for index in self.grid.cells_under(self.tool, at(pair[0]), at(pair[1])) {
+                plan.due_m[index] = *end_m as f32;
+            }
+        }
+        self.before = Some(Box::new(std::mem::replace(&mut self.plan, plan)));
+    }
+
+    /// The plan that was made last does not fly: the one before still holds.
+    pub fn refuse_plan(&mut self) {
+        if let Some(before) = self.before.take() {
+            self.plan = *before;
+        }
+    }
+
+    /// The robot is this far along the plan, metres.
+    pub fn fly(&mut self, along_m: f64) {
+        self.before = None;
+        self.plan.along_m = self.plan.along_m.max(along_m);
+    }
+
+    /// So much of the way is flown, as a share of the way flown before this plan and the whole of this plan.
+    pub fn fly_share(&mut self, done: f64) {
+        let Planned { length_m, flown_m, .. } = self.plan;
+        self.fly(done * (flown_m + length_m) - flown_m);
+    }
+
+    /// What the plan was flown past stays so when another plan is made.
+    fn leave_behind(&mut self) {
+        for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {
+            *passed |= self.plan.is_past(*due_m);
+        }
+    }
+
+    /// The robot believed to be here, with this 95 % error, metres; whether what its tool passed since the last time counts.
+    pub fn visit(&mut self, here: Pose, error_m: f64, counts: bool) {
+        let before = std::mem::replace(&mut self.last, here);
+        self.error_m = error_m;
+        if counts {
+            self.shell.pass(self.tool, before, here);
+            self.area.pass(self.tool, before, here);
+        }
+    }
+
+    /// How the zone along the shell was scanned, stretch by stretch.
+    pub fn shell(&self) -> Vec<ShellStretch> {
+        let solid: Vec<&Solid> = self.solids().filter(|solid| self.shell.is_beside(&solid.shape)).collect();
+        self.shell.profile(|point| solid.iter().any(|solid| solid.shape.distance_m(point) < 0.0))
+    }
+
+    /// The scanned share of the reachable floor by the area that the tool passed, 0 to 1; `None` if there is no such floor.
+    pub fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
+        let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
+        self.area.share_of(floor, &self.boundary, &shapes)
+    }
+
+    /// The zones that the robot must not enter.
+    pub fn no_go(&self) -> impl Iterator<Item = &Solid> {
+        self.no_go.iter()
+    }
+
+    /// Everything solid on the floor as it is known.
+    fn solids(&self) -> impl Iterator<Item = &Solid> {
+        self.drawn.iter().chain(self.found.iter().map(|(_, solid)| solid))
+    }
+
+    /// The tool passed, but nothing counted.
+    pub fn leave_uncounted(&mut self, runs: &[CellRun]) {
+        let error_mm = (1000.0 * self.error_m).ceil().min(f64::from(NEVER - 1)) as u16;
+        for CellRun(first, count) in runs {
+            let first = (*first as usize).min(self.uncertain_mm.len());
+            let end = first.saturating_add(*count as usize).min(self.uncertain_mm.len());
+            self.uncertain_mm[first..end].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
+        }
+    }
+
+    /// An obstacle was found, or turned out to stand elsewhere.
+    pub fn find(&mut self, obstacle: &Obstacle) {
+        self.found.retain(|(id, _)| *id != obstacle.id);
+        self.found.push((obstacle.id, Solid::of(obstacle)));
+    }
+
+    /// A no-go zone was drawn; `words` say what it is.
+    pub fn forbid(&mut self, words: String, outline: &Shape) {
+        self.no_go.push(Solid { name: words, shape: outline.clone() });
+    }
+
+    /// The zone that was drawn last changed the kind of these cells.
+    pub fn shut(&mut self, changes: &[KindRun]) {
+        let zone = u16::try_from(self.no_go.len().saturating_sub(1)).unwrap_or(OF_NONE);
+        for KindRun(kind, first, count) in changes {
+            let first = (*first as usize).min(self.shut_by.len());
+            let end = first.saturating_add(*count as usize).min(self.shut_by.len());
+            if *kind != Cell::Reachable {
+                self.shut_by[first..end].fill(zone);
+            }
+        }
+    }
+
+    /// The zone that took a cell out of reach when it was drawn, if one did.
+    pub(super) fn shut_by(&self, index: usize) -> Option<&Solid> {
+        self.no_go.get(usize::from(self.shut_by[index]))
+    }
+
+    /// The no-go zone that is nearest to a place, and its distance, metres; `None` without any.
+    pub(super) fn nearest_no_go(&self, place: Point) -> Option<(&Solid, f64)> {
+        let all = self.no_go.iter().map(|zone| (zone, zone.shape.distance_m(place)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Takes in what another run on the same floor planned and did.
+    pub fn join(&mut self, other: &Self) {
+        let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
+        for (index, due_m) in self.plan.due_m.iter_mut().enumerate() {
+            self.passed[index] |= other.is_passed(index);
+            if let Some(ahead_m) = other.ahead_m(index).filter(|_| due_m.is_nan()) {
+                *due_m = (self.plan.along_m + ahead_m) as f32;
+            }
+        }
+        self.plan.is_whole &= other.plan.is_whole;
+        self.plan.cuts.extend(other.plan.cuts.iter().cloned());
+        for (own, other) in self.uncertain_mm.iter_mut().zip(&other.uncertain_mm) {
+            *own = (*own).min(*other);
+        }
+        self.asked = match (self.asked.take(), &other.asked) {
+            (Some(mut asked), Some(others)) => {
+                or(&mut asked, others);
+                Some(asked)
+            }
+            _ => None,
+        };
+        self.found.extend(other.found.iter().cloned());
+        self.join_zones(other);
+        self.shell.join(&other.shell);
+        self.area.join(&other.area);
+    }
+
+    /// The zones of another run; those of a scenario that both were flown with have the same names.
+    fn join_zones(&mut self, other: &Self) {
+        let mut index_of = Vec::new();
+        for zone in &other.no_go {
+            let known = self.no_go.iter().position(|own| own.shape == zone.shape);
+            index_of.push(known.unwrap_or(self.no_go.len()));
+            if known.is_none() {
+                self.no_go.push(zone.clone());
+            }
+        }
+        for (own, theirs) in self.shut_by.iter_mut().zip(&other.shut_by).filter(|(own, _)| **own == OF_NONE) {
+            let index = index_of.get(usize::from(*theirs)).and_then(|index| u16::try_from(*index).ok());
+            *own = index.unwrap_or(OF_NONE);
+        }
+    }
+
+    /// Gives what was found other names.
+    pub fn name_found(&mut self, name: impl Fn(&str) -> String) {
+        for (_, solid) in &mut self.found {
+            solid.name = name(&solid.name);
+        }
+    }
+
+    /// What was found on the way.
+    pub fn found(&self) -> impl Iterator<Item = (ObstacleId, &Solid)> {
+        self.found.iter().map(|(id, solid)| (*id, solid))
+    }
+
+    /// Whether all of the floor was to be scanned.
+    pub fn asks_for_everything(&self) -> bool {
+        self.asked.is_none()
+    }
+
+    /// Whether a cell was to be scanned at all.
+    pub fn is_asked(&self, index: usize) -> bool {
+        self.asked.as_ref().is_none_or(|asked| asked[index])
+    }
+
+    /// Why cells were missed in this run.
+    pub fn reasons(&self, run: &RunOpened) -> Reasons<'_> {
+        let cable = run.mission.cable_reach().filter(|_| !self.plan.is_whole);
+        let reach = cable.map(|(anchor, reach_m)| {
+            let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
+            Reach::new(anchor, &run.world.boundary, &shapes, reach_m)
+        });
+        let mission = &run.mission;
+        Reasons {
+            evidence: self,
+            reach,
+            has_tether: mission.tether.is_some(),
+            lane_m: mission.lane_m(),
+            room_m: mission.room_m(),
+            limit_m: mission.scan_limit_m(),
+        }
+    }
+
+    /// The smallest 95 % error with which the tool passed a cell without counting, metres; `None` if it did not.
+    pub(super) fn uncertain_m(&self, index: usize) -> Option<f64> {
+        Some(self.uncertain_mm[index]).filter(|mm| *mm != NEVER).map(|mm| f64::from(mm) / 1000.0)
+    }
+
+    /// Name and distance of the nearest solid thing, the shell included, metres.
+    pub fn nearest_solid(&self, place: Point) -> (&str, f64) {
+        let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
+        let shell = ("the shell", self.boundary.wall_distance_m(place));
+        obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
+    }
+
+    /// The same with the no-go zones, from which the robot keeps as far.
+    pub(super) fn nearest_kept_from(&self, place: Point) -> (&str, f64) {
+        let solid = self.nearest_solid(place);
+        let zone = self.nearest_no_go(place).map(|(zone, m)| (zone.name.as_str(), m));
+        zone.filter(|(_, m)| *m < solid.1).unwrap_or(solid)
+    }
+
+    /// Name and distance of the found obstacle that is nearest to a place, metres; `None` without any.
+    pub(super) fn nearest_found(&self, place: Point) -> Option<(&str, f64)> {
+        let all = self.found.iter().map(|(_, solid)| (solid.name.as_str(), solid.shape.distance_m(place)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Whether a found obstacle is to blame for what was missed at a place.
+    pub(super) fn is_beside_found(&self, place: Point) -> bool {
+        self.found.iter().any(|(_, solid)| solid.shape.distance_m(place) <= self.beside_m)
+    }
+
+    /// Lines of the plan that the tethered robot does not cross.
+    pub(super) fn cuts(&self) -> &[Vec<Point>] {
+        &self.plan.cuts
+    }
+
+    /// How far ahead along the plan a cell lies, metres; `None` if it is not ahead.
+    pub(super) fn ahead_m(&self, index: usize) -> Option<f64> {
+        self.is_ahead(index).then(|| f64::from(self.plan.due_m[index]) - self.plan.along_m)
+    }
+
+    /// Whether a plan led to a cell and was flown past there.
+    pub(super) fn is_passed(&self, index: usize) -> bool {
+        self.passed[index] || self.plan.is_past(self.plan.due_m[index])
+    }
+
+    /// Whether there ever was a plan.
+    pub(super) fn has_plan(&self) -> bool {
+        self.plan.length_m > 0.0 || self.plan.flown_m > 0.0 || self.passed.contains(&true)
+    }
+
+    /// Whether the plan leads to a cell further on than it was flown.
+    pub(super) fn is_ahead(&self, index: usize) -> bool {
+        !self.plan.due_m[index].is_nan() && !self.plan.is_past(self.plan.due_m[index])
+    }
+}
+
+/// Something solid on the floor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Its name, for people.
+    pub name: String,
+    /// Its outline, tank frame.
+    pub shape: Shape,
+}
+
+impl Solid {
+    fn of(obstacle: &Obstacle) -> Self {
+        Self { name: obstacle.name.clone(), shape: obstacle.shape.clone() }
+    }
+}
+
+/// A plan, and how far it was flown.
+#[derive(Debug, Clone)]
+struct Planned {
+    /// Way along the plan by which it has led over each cell for the last time, metres; NaN where it leads nowhere near.
+    due_m: Vec<f32>,
+    /// Its length, metres.
+    length_m: f64,
+    /// How far it was flown, metres.
+    along_m: f64,
+    /// Way flown along the plans before, metres.
+    flown_m: f64,
+    /// Whether it was for everything that was left.
+    is_whole: bool,
+    /// Lines that the tethered robot does not cross.
+    cuts: Vec<Vec<Point>>,
+}
+
+impl Planned {
+    fn none(cells: usize) -> Self {
+        let due_m = vec![f32::NAN; cells];
+        Self { due_m, length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true, cuts: Vec::new() }
+    }
+
+    /// Whether it was flown past there; never where it leads nowhere near.
+    fn is_past(&self, due_m: f32) -> bool {
+        f64::from(due_m) <= self.along_m + NEARLY_M
+    }
+}
+
+/// The no-go zones of a scenario.
+fn no_go_zones(run: &RunOpened) -> Vec<Solid> {
+    let zones = run.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+    zones.map(|zone| Solid { name: format!("no-go zone {}", zone.name), shape: zone.shape.clone() }).collect()
+}
+
+fn asked(run: &RunOpened) -> Option<Vec<bool>> {
+    match &run.mission.task {
+        TaskConfig::Cover { regions, .. } => world::coverage::regions::cells_within(&run.floor, regions),
+        TaskConfig::Goto { .. } | TaskConfig::Follow { .. } => None,
+    }
+}

@@ -1,0 +1,157 @@
+//! Why cells were missed or are out of reach, and the numbers behind it.
+
+use super::{
+    evidence::{Evidence, Solid},
+    measure::{Measure, depth_m},
+    reason::{MissReason, OutOfReach},
+};
+use std::collections::BTreeMap;
+use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
+
+/// The names of the zones of some cells, the zone of most cells first; `None` without any.
+fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
+    let mut cells: BTreeMap<&str, usize> = BTreeMap::new();
+    zones.for_each(|zone| *cells.entry(&zone.name).or_default() += 1);
+    let mut names: Vec<(&str, usize)> = cells.into_iter().collect();
+    names.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let names: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
+    (!names.is_empty()).then(|| names.join(" and "))
+}
+
+/// Why floor was missed.
+pub struct Reasons<'a> {
+    pub(super) evidence: &'a Evidence,
+    /// Where the cable leads; `None` if no plan left floor out because of it.
+    pub(super) reach: Option<Reach>,
+    /// Whether the robot drags a tether.
+    pub(super) has_tether: bool,
+    /// Width of lanes: the swath less the overlap, metres.
+    pub(super) lane_m: f64,
+    /// Hull and clearance, metres.
+    pub(super) room_m: f64,
+    /// The 95 % error above which nothing counts, metres.
+    pub(super) limit_m: f64,
+}
+
+impl Reasons<'_> {
+    /// Why a cell was missed.
+    pub fn why_missed(&self, center: Point, index: usize) -> MissReason {
+        let evidence = self.evidence;
+        if evidence.uncertain_m(index).is_some() {
+            MissReason::PositionUncertain
+        } else if self.is_left_beyond_reel(index, center) {
+            MissReason::BeyondReel
+        } else if evidence.is_beside_found(center) {
+            MissReason::FoundObstacle
+        } else if !evidence.is_asked(index) {
+            MissReason::NotAsked
+        } else if evidence.is_passed(index) {
+            MissReason::PassedBeside
+        } else if evidence.is_ahead(index) {
+            MissReason::NotReached
+        } else {
+            self.why_not_planned(center)
+        }
+    }
+
+    /// How far a place lies beyond any lane, which keeps hull and clearance from what is solid, metres; negative within reach of one.
+    pub fn beyond_lanes_m(&self, place: Point) -> f64 {
+        let (_, solid_m) = self.evidence.nearest_kept_from(place);
+        self.room_m - solid_m - self.lane_m / 2.0
+    }
+
+    /// Why no plan led to a place.
+    fn why_not_planned(&self, place: Point) -> MissReason {
+        let (_, solid_m) = self.evidence.nearest_kept_from(place);
+        if !self.evidence.has_plan() {
+            MissReason::NoPlan
+        } else if self.beyond_lanes_m(place) > 0.0 {
+            MissReason::Narrow
+        } else if solid_m < self.room_m {
+            MissReason::Clearance
+        } else if self.has_tether && self.cut_m(place).is_some_and(|cut_m| cut_m <= self.lane_m) {
+            MissReason::Wrap
+        } else {
+            MissReason::NotPlanned
+        }
+    }
+
+    /// The number behind the reason for some cells, of which there is at least one.
+    pub fn measure(&self, grid: &CoverageGrid, reason: MissReason, cells: &[usize]) -> Option<Measure> {
+        let (floor, evidence) = (grid.floor(), self.evidence);
+        let most =
+            |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::max);
+        let least =
+            |of: &dyn Fn(usize) -> Option<f64>| cells.iter().filter_map(|cell| of(*cell)).reduce(f64::min);
+        let solid = |cell: usize| evidence.nearest_kept_from(floor.center(cell));
+        let depth =
+            |is_other: &dyn Fn(usize) -> bool| Some(depth_m(floor, cells, is_other).unwrap_or(floor.cell_m));
+        match reason {
+            MissReason::PositionUncertain => {
+                most(&|cell| evidence.uncertain_m(cell)).map(|m| Measure::of(m).against(self.limit_m))
+            }
+            MissReason::FoundObstacle => {
+                Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
+            }
+            MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
+            // In a corner no lane leads to floor that is near enough to one by its distance from the nearest wall alone.
+            MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
+                .filter(|beyond_m| *beyond_m > 0.0)
+                .map(|m| Measure::of(m).against(self.lane_m)),
+            MissReason::Clearance => {
+                Measure::off(cells.iter().map(|cell| solid(*cell))).map(|m| m.against(self.room_m))
+            }
+            MissReason::Wrap => least(&|cell| self.cut_m(floor.center(cell))).map(Measure::of),
+            MissReason::NotPlanned => depth(&|cell| evidence.is_passed(cell) || evidence.is_ahead(cell))
+                .map(|m| Measure::of(m).against(self.lane_m)),
+            MissReason::NoPlan => None,
+            MissReason::BeyondReel => {
+                let reach = self.reach.as_ref()?;
+                most(&|cell| reach.beyond_m(floor.center(cell)))
+                    .map(|m| Measure::of(m).against(reach.within_m()))
+            }
+            MissReason::NotReached => most(&|cell| evidence.ahead_m(cell)).map(Measure::of),
+            MissReason::PassedBeside => depth(&|cell| grid.is_covered(cell)).map(Measure::of),
+        }
+    }
+
+    /// The number behind the reason why some cells are out of reach.
+    pub(crate) fn measure_out_of_reach(
+        &self,
+        grid: &CoverageGrid,
+        reason: OutOfReach,
+        cells: &[usize],
+    ) -> Option<Measure> {
+        let floor = grid.floor();
+        let solid = |cell: &usize| self.evidence.nearest_solid(floor.center(*cell));
+        match reason {
+            OutOfReach::ShellMargin | OutOfReach::BesideObstacle => {
+                Measure::off(cells.iter().map(solid)).map(|m| m.against(self.room_m))
+            }
+            OutOfReach::ClosedOff => {
+                let by = cells.iter().filter_map(|cell| self.evidence.shut_by(*cell));
+                Some(Measure { near: named(by), ..Measure::of(2.0 * self.room_m) })
+            }
+            OutOfReach::NoGo => {
+                let zone = |cell: &usize| Some(self.evidence.nearest_no_go(floor.center(*cell))?.0);
+                let depth_m = depth_m(floor, cells, |cell| floor.kind(cell) == Cell::Reachable)?;
+                Some(Measure { near: named(cells.iter().filter_map(zone)), ..Measure::of(depth_m) })
+            }
+        }
+    }
+
+    /// Distance from a line that the tethered robot does not cross, metres; `None` if there is none.
+    fn cut_m(&self, place: Point) -> Option<f64> {
+        let edges = self.evidence.cuts().iter().flat_map(|cut| cut.windows(2));
+        edges
+            .map(|edge| (place - polyline::nearest_on_segment(edge[0], edge[1], place)).norm())
+            .reduce(f64::min)
+    }
+
+    /// Whether a cell was to be scanned, and no plan led there, because the cable does not.
+    fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
+        let evidence = self.evidence;
+        let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);
+        is_left && self.reach.as_ref().is_some_and(|reach| reach.is_beyond(center))
+    }
+}

@@ -1,0 +1,427 @@
+//! Accounts of a small round tank: shares that sum up, gaps that have their reasons, plates and the zone at the shell.
+
+use super::*;
+use crate::samples::round_tank;
+use nalgebra::Matrix2;
+use proptest::prelude::*;
+use std::sync::LazyLock;
+use world::{CellRun, CoverageGrid, Point, Pose, Tool, coverage::runs_of};
+
+/// The account of a grid whose scanned cells are all guaranteed.
+fn account(run: &RunOpened, grid: &CoverageGrid, evidence: &Evidence) -> Account {
+    let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
+    scanned.believe(&runs_of((0..run.floor.len()).filter(|index| grid.is_covered(*index))));
+    super::account(run, &scanned, evidence)
+}
+
+/// Lanes from west to east and back, as a plan.
+fn lanes() -> Vec<Point> {
+    let lane = |k: usize| {
+        let y = -3.9 + 0.6 * k as f64;
+        let half_m = (4.5_f64.powi(2) - y * y).max(0.0).sqrt();
+        let east_m = if k.is_multiple_of(2) { half_m } else { -half_m };
+        [Point::new(-east_m, y), Point::new(east_m, y)]
+    };
+    (0..14).flat_map(lane).collect()
+}
+
+/// All lanes were planned and the first `lanes` of them flown.
+fn scanned(run: &RunOpened, flown: usize) -> (CoverageGrid, Evidence) {
+    let (mut grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(run));
+    let path = lanes();
+    evidence.plan(&path, &[], true);
+    for (k, lane) in path.chunks(2).take(flown).enumerate() {
+        let heading_rad = if k.is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
+        let [from, to] = [lane[0], lane[1]].map(|position| Pose { position, heading_rad });
+        grid.mark(Tool::Bar { swath_m: 0.6 }, from, to);
+        for k in 0..=100 {
+            let position = lane[0] + (lane[1] - lane[0]) * f64::from(k) / 100.0;
+            evidence.visit(Pose { position, heading_rad }, if k > 0 { 0.1 } else { 1.0 }, k > 0);
+        }
+        evidence.fly(world::polyline::length_m(&path[..2 * k + 2]));
+    }
+    (grid, evidence)
+}
+
+fn sum(shares: &Shares) -> f64 {
+    shares.scanned + shares.missed + shares.unreachable + shares.margin
+}
+
+#[test]
+fn both_bases_and_every_plate_sum_to_the_whole() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 9);
+    let account = account(&run, &grid, &evidence);
+    assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
+    assert!(account.reachable.unreachable + account.reachable.margin < 1e-12);
+    assert!(account.whole.margin > 0.02, "{:?}", account.whole);
+    let plates_m2: f64 = account.plates.iter().map(|plate| plate.shares.area_m2).sum();
+    assert!((plates_m2 - account.whole.area_m2).abs() < 1e-9);
+    assert!(account.plates.iter().all(|plate| (sum(&plate.shares) - 1.0).abs() < 1e-12));
+    assert!(account.plates.iter().any(|plate| plate.shares.scanned == 0.0), "also those with nothing");
+    let listed_m2: f64 = account.missed.iter().map(|area| area.area_m2).sum();
+    let missed_m2 = account.reachable.missed * account.reachable.area_m2;
+    assert!((listed_m2 + account.slivers.area_m2 - missed_m2).abs() < 1e-9);
+}
+
+#[test]
+fn lanes_that_were_not_flown_are_reported_with_place_plate_and_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 9);
+    let account = account(&run, &grid, &evidence);
+    let north = &account.missed[0];
+    assert_eq!(north.reason, MissReason::NotReached);
+    assert!(north.area_m2 > 2.0 && north.high.y > 4.0 && north.plate.is_some(), "{north:?}");
+    // What was not planned touches it: one area with a cause for each part.
+    let reasons: Vec<MissReason> = north.causes.iter().map(|cause| cause.reason).collect();
+    assert!(
+        reasons.contains(&MissReason::Clearance) && reasons.contains(&MissReason::NotPlanned),
+        "{north:?}"
+    );
+    let parts_m2: f64 = north.causes.iter().map(|cause| cause.area_m2).sum();
+    assert!((parts_m2 - north.area_m2).abs() < 1e-9);
+}
+
+fn why_missed(evidence: &Evidence, run: &RunOpened, x: f64, y: f64) -> MissReason {
+    let index = run.floor.cell_at(Point::new(x, y)).expect("a place on the floor");
+    evidence.reasons(run).why_missed(run.floor.center(index), index)
+}
+
+#[test]
+fn floor_ahead_of_a_run_that_was_cut_short_was_not_passed_however_near_the_robot_came() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 1);
+    let account = account(&run, &grid, &evidence);
+    assert!(
+        account.missed.iter().all(|area| area.reason != MissReason::PassedBeside),
+        "{:?}",
+        account.missed
+    );
+    // The lane beside the only one flown, half a swath away.
+    assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
+}
+
+#[test]
+fn a_lane_that_was_flown_beside_its_place_is_reported_as_passed_and_those_ahead_are_not() {
+    let run = round_tank(0.05);
+    let mut evidence = Evidence::new(&run);
+    evidence.plan(&lanes(), &[], true);
+    evidence.fly(world::polyline::length_m(&lanes()[..2]));
+    assert_eq!(why_missed(&evidence, &run, 0.0, -4.15), MissReason::PassedBeside);
+    assert_eq!(why_missed(&evidence, &run, 0.0, -3.45), MissReason::NotReached);
+}
+
+#[test]
+fn a_new_plan_takes_the_place_of_the_one_before_unless_it_is_refused() {
+    let run = round_tank(0.05);
+    let path = lanes();
+    let [first_m, second_m] = [&path[..2], &path[2..8]].map(world::polyline::length_m);
+    for (is_refused, north) in [(false, MissReason::NotPlanned), (true, MissReason::NotReached)] {
+        let mut evidence = Evidence::new(&run);
+        evidence.plan(&path, &[], true);
+        evidence.fly(first_m);
+        evidence.plan(&path[2..8], &[], true);
+        if is_refused {
+            evidence.refuse_plan();
+        }
+        let why = |evidence: &Evidence, x, y| why_missed(evidence, &run, x, y);
+        assert_eq!(why(&evidence, 0.0, -3.9), MissReason::PassedBeside);
+        assert_eq!(why(&evidence, 0.0, -2.7), MissReason::NotReached);
+        assert_eq!(why(&evidence, 2.0, 2.1), north, "refused: {is_refused}");
+        if !is_refused {
+            evidence.fly_share((first_m + 0.999 * second_m) / (first_m + second_m));
+            assert_eq!(why(&evidence, 0.0, -2.7), MissReason::PassedBeside);
+        }
+    }
+}
+
+/// A tether made fast in the south, of which 6.6 m are on the reel.
+fn tether() -> mission::TetherConfig {
+    mission::TetherConfig {
+        anchor: Point::new(0.0, -4.5),
+        limits: world::tether::Limits { reel_length_m: 6.6, wrap_max_rad: 9.0, wrap_total_max_rad: 9.0 },
+        friction: 0.3,
+        allow_uncertified: false,
+    }
+}
+
+#[test]
+fn floor_that_the_cable_does_not_lead_to_is_reported_as_beyond_the_reel_only_if_the_plan_left_it_out() {
+    let mut run = round_tank(0.05);
+    run.mission.tether = Some(tether());
+    for (is_whole, north) in [(true, MissReason::NotPlanned), (false, MissReason::BeyondReel)] {
+        let mut evidence = Evidence::new(&run);
+        evidence.plan(&lanes()[..16], &[], is_whole);
+        assert_eq!(why_missed(&evidence, &run, 0.0, 2.0), north);
+        assert_eq!(why_missed(&evidence, &run, 0.0, 1.0), MissReason::NotPlanned, "5.5 m from the anchor");
+        assert_eq!(why_missed(&evidence, &run, 0.0, -3.0), MissReason::NotReached);
+    }
+}
+
+/// Why the only area of some missed cells was missed.
+fn why(run: &RunOpened, evidence: &Evidence, is_missed: impl Fn(Point) -> bool) -> String {
+    let mut grid = CoverageGrid::new(run.floor.clone());
+    grid.apply(&runs_of((0..run.floor.len()).filter(|index| !is_missed(run.floor.center(*index)))));
+    let account = account(run, &grid, evidence);
+    let [area] = &account.missed[..] else { panic!("one area: {:?}", account.missed) };
+    area.why()
+}
+
+#[test]
+fn every_gap_has_a_cause_with_its_number() {
+    let mut run = round_tank(0.05);
+    run.mission.scan.overlap_m = 0.2;
+    run.mission.tether = Some(tether());
+    let mut evidence = Evidence::new(&run);
+    let cut = [Point::new(-1.0, 0.0), Point::new(1.0, 0.0)];
+    evidence.plan(&lanes()[..2], &[cut.to_vec()], true);
+    let square = |x: f64, y: f64| move |p: Point| (p.x - x).abs() < 0.1 && (p.y - y).abs() < 0.1;
+    let says = |text: String, expected: &str| assert!(text.contains(expected), "{text}, not {expected}");
+    says(
+        why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
+        "m outside the nearest lane (lanes are 0.40 m wide: the swath less the overlap)",
+    );
+    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance 0.45 m");
+    says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
+    let untethered =
+        RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };
+    says(why(&untethered, &evidence, square(0.0, 0.2)), "m beside lanes of 0.40 m");
+    says(why(&run, &Evidence::new(&run), square(0.0, 0.2)), "the run had no plan when it ended");
+    says(why(&run, &evidence, square(0.0, -1.0)), "m beside lanes of 0.40 m");
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended up to");
+    evidence.fly(1e3);
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the robot passed 0.10 m to one side");
+}
+
+#[test]
+fn guaranteed_is_what_the_tool_passed_wherever_the_robot_stood_within_its_error() {
+    let run = round_tank(0.05);
+    let mut scanned = Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start);
+    let mut believed = CoverageGrid::new(run.floor.clone());
+    // Sure across the way and unsure along it, then the other way round.
+    for (x_m, covariance_m2) in [(-2.0, [0.01, 0.0, 0.0, 0.0001]), (2.0, [0.0001, 0.0, 0.0, 0.01])] {
+        let at = |y_m: f64| Pose::new(y_m, x_m, 0.0);
+        let covariance = Matrix2::from_row_slice(&covariance_m2);
+        scanned.visit(at(-1.0), &covariance, None);
+        scanned.visit(at(1.0), &covariance, Some(0.25));
+        believed.mark(run.mission.tool(), at(-1.0), at(1.0));
+    }
+    scanned.believe(&runs_of((0..run.floor.len()).filter(|index| believed.is_covered(*index))));
+    let width_m = |y_m: f64| {
+        let cells = (0..run.floor.len()).filter(|index| scanned.passes().is_guaranteed(*index));
+        let beside = cells.filter(|index| (run.floor.center(*index).y - y_m).abs() < 1.0);
+        beside.count() as f64 * run.floor.cell_m2() / 2.0
+    };
+    // 0.6 m less twice 2.45 standard deviations across the way.
+    assert!((width_m(-2.0) - 0.55).abs() < 0.051, "{}", width_m(-2.0));
+    assert!((width_m(2.0) - 0.11).abs() < 0.051, "{}", width_m(2.0));
+    let whole = super::account(&run, &scanned, &Evidence::new(&run)).whole;
+    assert!(whole.guaranteed < Some(whole.scanned) && whole.percent.guaranteed.is_some(), "{whole:?}");
+}
+
+#[test]
+fn floor_passed_without_a_position_says_so() {
+    let run = round_tank(0.05);
+    let (grid, mut evidence) = scanned(&run, 0);
+    for error_m in [0.74, 0.64, 0.9] {
+        evidence.visit(run.mission.start, error_m, error_m <= 0.5);
+        evidence.leave_uncounted(&[CellRun(0, run.floor.len() as u32)]);
+    }
+    let account = account(&run, &grid, &evidence);
+    let [area] = &account.missed[..] else { panic!("one area over all plates: {:?}", account.missed) };
+    assert_eq!(area.why(), "passed with position error 0.64 m, limit 0.50 m");
+    assert!(area.plates.len() >= account.plates.len() - 2 && area.plate.as_ref() == area.plates.first());
+}
+
+#[test]
+fn the_critical_zone_is_named_as_not_done_with_the_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 14);
+    let zone = account(&run, &grid, &evidence).critical_zone;
+    assert!(!zone.done && zone.scanned.is_some_and(|share| share < 0.05), "{zone:?}");
+    assert_eq!(zone.why.as_deref(), Some("none of it scanned"));
+    let arcs_m: f64 = zone.arcs.iter().map(|arc| arc.not_done_m).sum();
+    let by_plate_m: f64 = zone.plates.iter().map(|plate| plate.length_m).sum();
+    assert!(
+        (arcs_m - (zone.length_m - zone.done_m)).abs() < 0.2 && (by_plate_m - zone.length_m).abs() < 1e-9
+    );
+    let names: Vec<&str> = zone.plates.iter().map(|plate| plate.plate.as_str()).collect();
+    assert!(names.len() >= 2 && names[0] == "A-01" && names[1] == "A-02", "{names:?}");
+}
+
+#[test]
+fn an_arc_over_the_beginning_of_the_shell_is_one_arc() {
+    let run = round_tank(0.2);
+    let mut evidence = Evidence::new(&run);
+    for k in 100..=1900 {
+        let angle = std::f64::consts::TAU * f64::from(k) / 2000.0;
+        let pose = Pose::new(4.7 * angle.cos(), 4.7 * angle.sin(), angle + std::f64::consts::FRAC_PI_2);
+        evidence.visit(pose, if k > 100 { 0.1 } else { 1.0 }, k > 100);
+    }
+    let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
+    let [arc] = &zone.arcs[..] else { panic!("one arc: {:?}", zone.arcs) };
+    assert!(
+        (arc.not_done_m - std::f64::consts::PI).abs() < 0.1 && arc.from.y < 0.0 && arc.to.y > 0.0,
+        "{arc:?}"
+    );
+    assert!((arc.to_m - arc.from_m - arc.not_done_m).abs() < 1e-6, "{arc:?}");
+}
+
+#[test]
+fn a_tool_that_goes_along_the_shell_does_the_critical_zone_however_coarse_the_cells() {
+    let run = round_tank(0.2);
+    for (off_m, is_done, gap_mm) in [(0.0, true, 0.0), (0.02, false, 20.0)] {
+        let mut evidence = Evidence::new(&run);
+        for k in 0..=2000 {
+            let angle = std::f64::consts::TAU * f64::from(k) / 2000.0;
+            let radius_m = 4.7 - off_m;
+            let heading_rad = angle + std::f64::consts::FRAC_PI_2;
+            let pose = Pose::new(radius_m * angle.cos(), radius_m * angle.sin(), heading_rad);
+            evidence.visit(pose, if k > 0 { 0.1 } else { 1.0 }, k > 0);
+        }
+        let zone = account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).critical_zone;
+        assert!(zone.done == is_done && (zone.gap_m - gap_mm / 1000.0).abs() < 1e-9, "{zone:?}");
+        assert!((zone.length_m - 31.4).abs() < 0.1 && zone.done_m <= zone.length_m);
+    }
+}
+
+#[test]
+fn out_of_reach_is_listed_with_the_reason() {
+    let run = round_tank(0.05);
+    let (grid, evidence) = scanned(&run, 0);
+    let account = account(&run, &grid, &evidence);
+    let reasons: Vec<OutOfReach> = account.unreachable.iter().map(|area| area.reason).collect();
+    assert!(reasons.contains(&OutOfReach::ShellMargin) && reasons.contains(&OutOfReach::BesideObstacle));
+    let all_m2 = (account.whole.unreachable + account.whole.margin) * account.whole.area_m2;
+    let listed_m2: f64 = account.unreachable.iter().map(|area| area.area_m2).sum();
+    let reported_m2 = listed_m2 + account.unreachable_slivers.area_m2;
+    assert!((reported_m2 - all_m2).abs() < 1e-9, "nothing is dropped: {reported_m2} of {all_m2}");
+}
+
+#[test]
+fn the_figures_converge_as_the_cells_get_smaller() {
+    let shares = [0.2, 0.1, 0.05, 0.025].map(|cell_m| {
+        let run = round_tank(cell_m);
+        let (grid, evidence) = scanned(&run, 9);
+        account(&run, &grid, &evidence).whole
+    });
+    let finest = shares[3];
+    for (coarse, allowed) in shares[..3].iter().zip([0.02, 0.01, 0.004]) {
+        let figures = |s: &Shares| [s.scanned, s.missed, s.margin];
+        let off =
+            figures(coarse).iter().zip(figures(&finest)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < allowed, "{off} off, {coarse:?} against {finest:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn whatever_was_scanned_the_shares_sum_to_one(runs in prop::collection::vec((0_u32..12_000, 1_u32..400), 0..30)) {
+        static TANK: LazyLock<RunOpened> = LazyLock::new(|| round_tank(0.1));
+        let run = &*TANK;
+        let mut grid = CoverageGrid::new(run.floor.clone());
+        grid.apply(&runs.iter().map(|(first, count)| CellRun(*first, *count)).collect::<Vec<_>>());
+        let account = account(run, &grid, &Evidence::new(run));
+        prop_assert!((sum(&account.whole) - 1.0).abs() < 1e-12 && (sum(&account.reachable) - 1.0).abs() < 1e-12);
+        let printed = |percent: Percent| {
+            let Percent { scanned, missed, unreachable, margin, .. } = percent;
+            [scanned, missed, unreachable, margin].map(|value| (10.0 * value).round() as u32).iter().sum::<u32>()
+        };
+        let floors = account.plates.iter().map(|plate| plate.shares).chain([account.whole, account.reachable]);
+        for shares in floors {
+            prop_assert_eq!(printed(shares.percent), 1000);
+        }
+    }
+}
+
+#[test]
+fn a_plan_without_a_path_or_with_one_that_cannot_be_leads_to_no_floor() {
+    let run = round_tank(0.2);
+    for path in [vec![], vec![Point::origin()], vec![Point::origin(), Point::new(1e12, 0.0)]] {
+        let (grid, mut evidence) = (CoverageGrid::new(run.floor.clone()), Evidence::new(&run));
+        evidence.plan(&path, &[], true);
+        evidence.fly_share(0.5);
+        let account = account(&run, &grid, &evidence);
+        assert!((account.reachable.missed - 1.0).abs() < 1e-12, "{path:?}");
+    }
+}
+
+#[test]
+fn what_another_run_did_not_get_to_keeps_its_number() {
+    let run = round_tank(0.1);
+    let (_, early) = scanned(&run, 3);
+    let ahead: Vec<(usize, f64)> =
+        (0..run.floor.len()).filter_map(|cell| Some((cell, early.ahead_m(cell)?))).collect();
+    assert!(!ahead.is_empty());
+    let mut all = Evidence::new(&run);
+    all.join(&early);
+    for (cell, ahead_m) in ahead {
+        assert!((all.ahead_m(cell).unwrap() - ahead_m).abs() < 1e-3, "cell {cell}");
+    }
+}
+
+#[test]
+fn floor_that_was_not_requested_or_lies_in_a_no_go_zone_is_listed_with_a_distance() {
+    let mut run = round_tank(0.05);
+    let regions = vec![world::coverage::regions::square(Point::new(0.0, -2.0), 2.0)];
+    run.mission.task = mission::TaskConfig::Cover { anchor: Point::origin(), regions, tolerance_m: 0.3 };
+    let is_zone = |place: Point| place.x.abs() < 1.0 && (0.4..1.4).contains(&place.y);
+    let zone = (0..run.floor.len()).filter(|cell| is_zone(run.floor.center(*cell)));
+    let kinds: Vec<_> = zone.map(|cell| world::KindRun(Cell::NoGo, cell as u32, 1)).collect();
+    run.floor.change(&kinds);
+    let account = account(&run, &CoverageGrid::new(run.floor.clone()), &Evidence::new(&run));
+    let all: Vec<String> = account.missed.iter().map(ToString::to_string).collect();
+    // From what the bar reaches in the north, 4.83 m, to the first cells of the square, 1.03 m south of the centre: 5.85 m, and a
+    // little more because the zone lies between them.
+    assert!(all[0].contains("not requested, up to 5.93 m outside"), "{all:?}");
+    let out = account.unreachable.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
+    assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from floor in reach");
+}
+
+/// What becomes of a floor on which a box is forbidden, as the words of the areas out of reach.
+fn out_of_reach_with(run: &RunOpened, zone: &world::Shape) -> Vec<Area<OutOfReach>> {
+    let mut evidence = Evidence::new(run);
+    let mut maker = world::FloorMaker::new(&run.world, 0.05, 0.45, 0.6, Point::origin());
+    let changes = maker.forbid(&run.world, zone);
+    evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), zone);
+    evidence.shut(&changes);
+    let mut run = run.clone();
+    run.floor.change(&changes);
+    account(&run, &CoverageGrid::new(run.floor.clone()), &evidence).unreachable
+}
+
+fn rectangle(low: (f64, f64), high: (f64, f64)) -> world::Shape {
+    let corners = [low, (high.0, low.1), high, (low.0, high.1)];
+    world::Shape::Polygon { vertices: corners.map(|(x, y)| Point::new(x, y)).to_vec() }
+}
+
+#[test]
+fn floor_in_a_drawn_zone_names_it_and_so_does_floor_that_it_closes_off() {
+    let run = round_tank(0.05);
+    let words = "no-go zone no-go 1, drawn by the operator at 12.0 s";
+    let within = out_of_reach_with(&run, &rectangle((1.0, -1.0), (2.5, 0.5)));
+    let named = within.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
+    assert!(named.why().starts_with(&format!("in {words}, up to ")), "{}", named.why());
+    // A bar across the tank: what lies east of it is closed off.
+    let across = out_of_reach_with(&run, &rectangle((2.0, -6.0), (2.2, 6.0)));
+    let closed: Vec<String> = across.iter().map(Area::why).collect();
+    assert!(
+        closed.iter().any(|why| why.contains(&format!("closed off by {words}: no passage"))),
+        "{closed:?}"
+    );
+}
+
+#[test]
+fn floor_that_is_missed_beside_a_drawn_zone_is_missed_for_its_clearance() {
+    let run = round_tank(0.05);
+    let mut evidence = Evidence::new(&run);
+    let zone = rectangle((1.0, -1.0), (2.5, 0.5));
+    evidence.plan(&lanes()[..2], &[], true);
+    evidence.forbid("no-go zone no-go 1, drawn by the operator at 12.0 s".into(), &zone);
+    assert_eq!(why_missed(&evidence, &run, 0.72, 0.0), MissReason::Clearance);
+    assert_eq!(why_missed(&evidence, &run, -2.0, 0.0), MissReason::NotPlanned);
+    let reasons = evidence.reasons(&run);
+    let cell = run.floor.cell_at(Point::new(0.72, 0.0)).expect("a place on the floor");
+    let measure = reasons.measure(&CoverageGrid::new(run.floor.clone()), MissReason::Clearance, &[cell]);
+    assert!(measure.expect("a number").near.expect("a name").contains("no-go 1"));
+}

@@ -1,0 +1,362 @@
+//! Events of a run, one after the other, into its summary.
+
+use crate::{
+    Account, Evidence, Solid,
+    accuracy::{Accuracy, Claimed},
+    drawn::DrawnZone,
+    floor::account,
+    scanned::Scanned,
+    summary::{REPORT_VERSION, Summary, Tether},
+    tethered::Tethered,
+    tracking::Tracker,
+    turning::Turning,
+};
+use mission::{
+    Cause, Event, EventKind, FoldedStanding, Order, ParamKind, ParamValue, Parameters, Passage,
+    PlannerChoice, PlannerInfo, TaskConfig,
+    event::{RunOpened, TetherAlarm, ToolTrack},
+};
+use nalgebra::Matrix2;
+use planner_api::PoseEstimate;
+use positioning::fix::{ellipse_95, position_covariance};
+use world::{Obstacle, Point, Pose, Zone};
+
+/// So many faults are named.
+const MOST_FAULTS: usize = 20;
+/// Most planners that are listed.
+const MOST_PLANNERS: usize = 1000;
+
+/// What is known of a run from the events so far.
+#[derive(Debug, Default)]
+pub struct Fold {
+    known: Summary,
+    truth: Option<Pose>,
+    scanned: Option<Scanned>,
+    tracker: Option<Tracker>,
+    accuracy: Accuracy,
+    claimed: Claimed,
+    standing: FoldedStanding,
+    turning: Turning,
+    tethered: Option<Tethered>,
+    /// The tool of readings that were located; none for a run that was flown.
+    tool: Option<ToolTrack>,
+    run: Option<Box<RunOpened>>,
+    evidence: Option<Evidence>,
+    /// Whether the event before drew a zone: the change of the floor that follows is its.
+    is_zone_new: bool,
+    /// Whether the account of the floor is left out.
+    leaves_out_floor: bool,
+}
+
+impl Fold {
+    /// Nothing is known yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same without the account of the floor, where only the figures are wanted: a third of the work.
+    pub fn of_figures() -> Self {
+        Self { leaves_out_floor: true, ..Self::default() }
+    }
+
+    /// Takes in one event; they must come in the order of the journal.
+    pub fn apply(&mut self, event: &Event) {
+        self.known.ticks = Some(event.tick);
+        self.known.mission_time_s = Some(event.t_s);
+        self.standing.apply(&event.kind);
+        match &event.kind {
+            EventKind::RunOpened(run) => self.open(run),
+            EventKind::Truth { pose, clearance_m, collided } => {
+                self.accuracy.truth(event.tick, pose.position);
+                self.see_truth(*pose, *clearance_m, *collided);
+            }
+            EventKind::TetherAlarmRaised { alarm: TetherAlarm::Snag { .. }, .. } => self.snag(true),
+            EventKind::TetherAlarmCleared { alarm: TetherAlarm::Snag { .. } } => self.snag(false),
+            EventKind::TetherTruth { length_m, wrap_max_rad, wrap_total_rad, detour_m } => {
+                if let Some(tethered) = &mut self.tethered {
+                    tethered.lie(*length_m, *wrap_max_rad, *wrap_total_rad, *detour_m);
+                }
+            }
+            EventKind::Estimated { pose } => self.estimate(event, pose),
+            EventKind::Ranged { .. } => self.claimed.end_cycle(),
+            EventKind::Fixed { fix } => self.claimed.fix(fix.used.len()),
+            EventKind::Ordered { order: Order::NoteChecks(checks) } => self.known.checks.clone_from(checks),
+            EventKind::PositionLost { .. } => self.accuracy.lost(event.t_s),
+            EventKind::PositionRegained { .. } => self.accuracy.regained(event.t_s),
+            EventKind::Covered { runs } => self.scanned.iter_mut().for_each(|scanned| scanned.believe(runs)),
+            EventKind::Planned { path, complete, cuts, .. } if !self.is_preset() => {
+                self.evidence.iter_mut().for_each(|evidence| evidence.plan(path, cuts, *complete));
+            }
+            EventKind::Certified { refused: true, .. } => {
+                self.evidence.iter_mut().for_each(Evidence::refuse_plan);
+            }
+            EventKind::Uncounted { runs } => {
+                self.evidence.iter_mut().for_each(|evidence| evidence.leave_uncounted(runs));
+            }
+            EventKind::ObstacleMoved { obstacle, .. } => self.find(obstacle),
+            EventKind::FloorChanged { changes } => {
+                self.scanned.iter_mut().for_each(|scanned| scanned.change(changes));
+                if let Some(evidence) = self.evidence.as_mut().filter(|_| self.is_zone_new) {
+                    evidence.shut(changes);
+                }
+            }
+            EventKind::Progressed { done, along_m, .. } => self.progress(*done, *along_m),
+            EventKind::PlannerChosen { choice, info, .. } => self.choose(choice, info),
+            EventKind::ParametersChanged { choice, .. } => self.set_parameters(choice),
+            EventKind::ZoneDrawn { zone } => self.draw_zone(zone, event.t_s),
+            EventKind::ObstacleFound { obstacle } => {
+                self.known.obstacles_found += 1;
+                self.find(obstacle);
+            }
+            EventKind::PlannerFailed { fault, .. } => {
+                // What the console refused to load or to let drive was not at work, so it has not failed.
+                let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
+                // Nor has a planner that says that no way exists.
+                if !fault.is_no_way() {
+                    self.known.planner_faults += u64::from(!refused);
+                    self.note_fault(event.t_s, "", &fault.message);
+                }
+            }
+            EventKind::Shadowed { of } => {
+                if let EventKind::PlannerFailed { fault, .. } = &**of
+                    && !fault.is_no_way()
+                {
+                    self.note_fault(event.t_s, "shadow: ", &fault.message);
+                }
+            }
+            EventKind::Held { .. } => self.known.holds += 1,
+            EventKind::Ended { outcome, reason } => {
+                self.known.outcome = Some(*outcome);
+                self.known.reason = Some(reason.clone());
+            }
+            _ => {}
+        }
+        self.is_zone_new = matches!(event.kind, EventKind::ZoneDrawn { .. });
+    }
+
+    fn draw_zone(&mut self, zone: &Zone, t_s: f64) {
+        self.run.iter_mut().for_each(|run| run.world.zones.push(zone.clone()));
+        let drawn = DrawnZone::new(zone, t_s, &self.standing.phase);
+        self.evidence.iter_mut().for_each(|evidence| evidence.forbid(drawn.words(), &zone.shape));
+        self.known.zones_drawn.push(drawn);
+    }
+
+    fn note_fault(&mut self, t_s: f64, whose: &str, message: &str) {
+        if self.known.faults.len() < MOST_FAULTS {
+            self.known.faults.push(format!("{whose}{message} (at {t_s:.1} s)"));
+        }
+    }
+
+    /// The robot believes to be somewhere; what its tool passed on the way there counts as the mission has it, and of readings that
+    /// were located between the two poses that are known well enough.
+    fn estimate(&mut self, event: &Event, estimate: &PoseEstimate) {
+        let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
+        let covariance = position_covariance(&estimate.covariance);
+        let (error_m, limit_m) = (ellipse_95(&covariance).0, self.scan_limit_m());
+        self.accuracy.estimate(event.tick, here.position, covariance);
+        self.claimed.estimate(here.position, error_m, limit_m);
+        let counts = match self.tool.as_mut().map(|tool| tool.visit(event.t_s, estimate)) {
+            None => Passage::of(&self.standing.phase, error_m, limit_m) == Passage::Counts,
+            Some(passed) => {
+                if passed.is_some_and(|(from, to)| from == to) {
+                    // One place: nothing counts on the way there.
+                    self.visit(here, &covariance, error_m, false);
+                }
+                passed.is_some()
+            }
+        };
+        self.visit(here, &covariance, error_m, counts);
+    }
+
+    /// The tool has come here; whether what it passed counts.
+    fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
+        let error_lately_m = counts.then(|| self.claimed.tip_m());
+        self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, covariance, error_lately_m));
+        self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
+    }
+
+    /// The 95 % error above which nothing counts as scanned, metres.
+    fn scan_limit_m(&self) -> f64 {
+        self.run.as_ref().map_or(f64::INFINITY, |run| run.mission.scan_limit_m())
+    }
+
+    fn snag(&mut self, snagged: bool) {
+        self.tethered.iter_mut().for_each(|tethered| tethered.snag(snagged));
+    }
+
+    /// The figures so far. Those that no event provides are absent; the app fills them in.
+    pub fn summary(&self) -> Summary {
+        Summary {
+            report_version: Some(REPORT_VERSION),
+            floor: self.account(),
+            coverage: self
+                .scanned
+                .as_ref()
+                .filter(|_| self.says_what_was_scanned())
+                .map(|scanned| scanned.coverage(self.is_to_scan())),
+            turns: self.has_heading().then(|| self.turning.turns()),
+            rotation_turns: self.has_heading().then(|| self.turning.rotation_turns()),
+            tether: self.tether(),
+            tracking: self.tracker.as_ref().and_then(Tracker::tracking),
+            accuracy: self.claimed.statement(self.scan_limit_m()),
+            positioning: self.accuracy.positioning(self.known.mission_time_s.unwrap_or(0.0)),
+            ..self.known.clone()
+        }
+    }
+
+    /// The account of the floor; none for missions that are not to scan it.
+    fn account(&self) -> Option<Account> {
+        let run = self.run.as_ref().filter(|_| self.is_to_scan())?;
+        Some(account(run, self.scanned.as_ref()?, self.evidence.as_ref()?))
+    }
+
+    /// Whether the mission is there to scan the floor.
+    fn is_to_scan(&self) -> bool {
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
+    }
+
+    /// The run as it was opened, with the zones that were drawn since; `None` before that.
+    pub fn run(&self) -> Option<&RunOpened> {
+        self.run.as_deref()
+    }
+
+    /// What was scanned; `None` before the run is opened.
+    pub fn scanned(&self) -> Option<&Scanned> {
+        self.scanned.as_ref()
+    }
+
+    /// Why floor was missed; `None` before the run is opened, and without the account of the floor.
+    pub fn evidence(&self) -> Option<&Evidence> {
+        self.evidence.as_ref()
+    }
+
+    /// Whether it is known what was scanned: of readings that were located, only if they say when the tool was on.
+    pub fn says_what_was_scanned(&self) -> bool {
+        self.tool.as_ref().is_none_or(ToolTrack::is_known)
+    }
+
+    /// Whether the true heading is known: readings may have true places without one.
+    fn has_heading(&self) -> bool {
+        self.known.path_length_m.is_some() && self.tool.is_none()
+    }
+
+    /// Whether the task is to scan the floor; what was located from readings has no task that speaks against it.
+    pub fn has_floor_to_scan(&self) -> bool {
+        let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
+        self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
+    }
+
+    /// What was found that is not on the drawing.
+    pub fn found(&self) -> impl Iterator<Item = &Solid> {
+        self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
+    }
+
+    /// Where the robot truly was at the end; `None` outside simulation.
+    pub fn true_place(&self) -> Option<Point> {
+        self.truth.map(|pose| pose.position)
+    }
+
+    fn tether(&self) -> Option<Tether> {
+        self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
+    }
+
+    /// Whether the way is preset: what planners plan then only leads along it.
+    fn is_preset(&self) -> bool {
+        self.tracker.is_some()
+    }
+
+    fn progress(&mut self, done: f64, along_m: Option<f64>) {
+        if let (Some(tracker), Some(along_m)) = (&mut self.tracker, along_m) {
+            tracker.progress(along_m);
+        }
+        match (&mut self.evidence, along_m) {
+            (Some(evidence), Some(along_m)) => evidence.fly(along_m),
+            (Some(evidence), None) => evidence.fly_share(done),
+            (None, _) => {}
+        }
+    }
+
+    fn find(&mut self, obstacle: &Obstacle) {
+        self.evidence.iter_mut().for_each(|evidence| evidence.find(obstacle));
+    }
+
+    fn open(&mut self, run: &RunOpened) {
+        self.run = Some(Box::new(run.clone()));
+        self.known.scenario = Some(run.scenario.clone());
+        self.known.seed = Some(run.seed);
+        self.known.planner = Some(run.mission.planner.id.clone());
+        self.known.parameters = Some(run.mission.planner.parameters.clone());
+        self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
+        self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
+        if let Some(measured) = &run.measured {
+            // Where something was, and of what it did there only where its tool was on.
+            self.known.located = Some(measured.file.clone());
+            self.tool = Some(ToolTrack::new(measured, &run.mission));
+            return;
+        }
+        self.tethered = run.mission.tether.as_ref().map(Tethered::new);
+        if let TaskConfig::Follow { path, .. } = &run.mission.task {
+            self.evidence.iter_mut().for_each(|evidence| evidence.plan(path, &[], true));
+            self.tracker = Some(Tracker::new(path));
+        }
+    }
+
+    fn see_truth(&mut self, pose: Pose, clearance_m: f64, collided: bool) {
+        let known = &mut self.known;
+        self.turning.pass(pose);
+        let before = self.truth.replace(pose).unwrap_or(pose);
+        let way_m = (pose.position - before.position).norm();
+        known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
+        // Whether what was located touched anything is not in its readings.
+        if self.run.as_ref().is_none_or(|run| run.measured.is_none()) {
+            known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
+        }
+        if clearance_m.is_finite() {
+            known.clearance_min_m =
+                Some(known.clearance_min_m.map_or(clearance_m, |least| least.min(clearance_m)));
+        }
+        if let Some(scanned) = self.scanned.as_mut().filter(|_| self.tool.is_none()) {
+            scanned.pass(before, pose);
+        }
+        self.tracker.iter_mut().for_each(|tracker| tracker.pass(before.position, pose.position));
+    }
+
+    fn choose(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
+        let known = &mut self.known;
+        known.sandbox = known.sandbox.take().max(info.sandbox.clone());
+        if known.planners.is_empty() {
+            known.planner = Some(choice.id.clone());
+            known.planner_version = Some(info.version.clone());
+        }
+        if known.planners.len() < MOST_PLANNERS && !known.planners.contains(&choice.id) {
+            known.planners.push(choice.id.clone());
+        }
+        if known.planner.as_ref() == Some(&choice.id) {
+            let mut parameters = defaults(info);
+            parameters.extend(choice.parameters.clone());
+            known.parameters = Some(parameters);
+        }
+    }
+
+    fn set_parameters(&mut self, choice: &PlannerChoice) {
+        if self.known.planner.as_ref() == Some(&choice.id) {
+            let parameters = self.known.parameters.get_or_insert_default();
+            parameters.extend(choice.parameters.clone());
+        }
+    }
+}
+
+/// The parameters of a planner when nothing is set.
+fn defaults(info: &PlannerInfo) -> Parameters {
+    let default = |kind: &ParamKind| match kind {
+        ParamKind::Float { default, .. } => ParamValue::Float(*default),
+        ParamKind::Int { default, .. } => ParamValue::Int(*default),
+        ParamKind::Flag { default } => ParamValue::Flag(*default),
+        ParamKind::Choice { default, .. } => ParamValue::Word(default.clone()),
+    };
+    info.parameters.iter().map(|parameter| (parameter.key.clone(), default(&parameter.kind))).collect()
+}
+
+#[cfg(test)]
+mod tests;

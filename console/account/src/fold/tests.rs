@@ -1,0 +1,187 @@
+//! The figures of tiny runs whose figures can be worked out by hand, and of one with everything in it.
+
+#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "tests with exact figures")]
+
+use super::*;
+use crate::samples::{chosen, estimated, fold, full_run, opened, truth, zone_drawn};
+use mission::{During, Fault};
+use serde_json::{Value, json};
+
+#[test]
+fn nothing_is_known_of_no_events() {
+    let nothing = Summary { report_version: Some(REPORT_VERSION), ..Summary::default() };
+    assert_eq!(Fold::new().summary(), nothing);
+}
+
+#[test]
+fn the_path_is_as_long_as_the_true_way() {
+    let run = fold(&[
+        (0, truth(0.0, 0.0, 0.5, false)),
+        (1, truth(3.0, 4.0, 0.2, true)),
+        (2, truth(3.0, 5.0, 0.3, false)),
+    ])
+    .summary();
+    assert_eq!(run.path_length_m, Some(6.0));
+    assert_eq!((run.clearance_min_m, run.collisions), (Some(0.2), Some(1)));
+    assert_eq!((run.ticks, run.mission_time_s, run.outcome), (Some(2), Some(1.0), None));
+}
+
+#[test]
+fn position_errors_are_paired_by_tick() {
+    let run = fold(&[
+        (0, truth(0.0, 0.0, 1.0, false)),
+        (0, estimated(0.1, 0.0, 0.1)),
+        (1, estimated(1.3, 0.0, 0.1)),
+        (1, truth(1.0, 0.0, 1.0, false)),
+        (2, truth(2.0, 0.0, 1.0, false)),
+        (3, estimated(9.0, 0.0, 0.1)),
+    ]);
+    let positioning = run.summary().positioning.unwrap();
+    assert!((positioning.mean_error_m - 0.2).abs() < 1e-12);
+    assert!((positioning.p50_m - 0.1).abs() < 1e-12);
+    assert!((positioning.p95_m - 0.3).abs() < 1e-12 && (positioning.max_m - 0.3).abs() < 1e-12);
+    // 0.1 m lies within 2.45 sigma of 0.1 m, 0.3 m does not.
+    assert!((positioning.in_95_ellipse - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn lost_time_counts_until_regained_or_the_end() {
+    let lost = json!({ "event": "position_lost", "error_m": 0.6, "limit_m": 0.5 });
+    let regained = json!({ "event": "position_regained", "error_m": 0.4 });
+    let run = fold(&[
+        (0, truth(0.0, 0.0, 1.0, false)),
+        (0, estimated(0.0, 0.0, 0.1)),
+        (2, lost.clone()),
+        (6, regained),
+        (10, lost),
+        (14, truth(0.0, 0.0, 1.0, false)),
+    ]);
+    assert_eq!(run.summary().positioning.unwrap().position_lost_s, 2.0 + 2.0);
+}
+
+#[test]
+fn coverage_counts_believed_and_true_cells() {
+    // The grid has 8 by 8 cells, all reachable; two rows of eight are believed scanned.
+    let run = fold(&[
+        (0, opened()),
+        (1, json!({ "event": "covered", "runs": [[24, 8]] })),
+        (2, json!({ "event": "covered", "runs": [[32, 8]] })),
+        (3, truth(-1.75, 0.0, 1.0, false)),
+        (4, truth(1.75, 0.0, 1.0, false)),
+    ]);
+    let coverage = run.summary().coverage.unwrap();
+    assert_eq!((coverage.reachable, coverage.whole), (0.25, 0.25));
+    assert_eq!(coverage.missed_area_m2, None, "the mission was not to scan");
+    assert_eq!(coverage.by_truth.unwrap().whole, 0.25);
+    assert_eq!(coverage.overlap, Some(0.0));
+    assert_eq!(coverage.by_truth.unwrap().scanned_truly, Some(1.0));
+}
+
+#[test]
+fn going_back_over_everything_is_an_overlap_of_nearly_one() {
+    let there = (0..=35).map(|k| -1.75 + f64::from(k) * 0.1);
+    let back = (0..=35).map(|k| 1.75 - f64::from(k) * 0.1);
+    let start = json!({ "event": "ordered", "order": "start" });
+    let mut events = vec![(0, opened()), (0, start), (0, json!({ "event": "covered", "runs": [[24, 16]] }))];
+    events.extend(there.chain(back).enumerate().map(|(i, x)| (i as u64, estimated(x, 0.0, 0.01))));
+    let overlap = fold(&events).summary().coverage.unwrap().overlap.unwrap();
+    // Where it turned it had not gone two swaths since: those cells do not count again.
+    assert!((0.5..0.9).contains(&overlap), "{overlap}");
+}
+
+#[test]
+fn floor_that_is_passed_while_a_held_robot_brakes_has_an_error_and_is_guaranteed() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let held = json!({ "event": "held", "by": "operator" });
+    // Held at 0.25 m; it stops 1 m further on.
+    let run = fold(&[
+        (0, opened()),
+        (0, start),
+        (1, estimated(0.25, 0.0, 0.01)),
+        (1, held),
+        (2, estimated(0.75, 0.0, 0.01)),
+        (3, estimated(1.25, 0.0, 0.01)),
+        (3, json!({ "event": "covered", "runs": [[24, 7], [32, 7]] })),
+    ]);
+    let scanned = run.scanned().unwrap();
+    let covered: Vec<usize> =
+        (0..scanned.believed().floor().len()).filter(|cell| scanned.believed().is_covered(*cell)).collect();
+    assert_eq!(covered.len(), 14);
+    for cell in covered {
+        let passes = scanned.passes();
+        assert!(passes.error_mm(cell).is_some() && passes.is_guaranteed(cell), "cell {cell}");
+    }
+}
+
+#[test]
+fn nothing_counts_before_the_start() {
+    let run = fold(&[(0, opened()), (0, estimated(-1.75, 0.0, 0.01)), (1, estimated(-1.25, 0.0, 0.01))]);
+    let passes = run.scanned().unwrap().passes();
+    assert!((0..64).all(|cell| passes.error_mm(cell).is_none()));
+}
+
+#[test]
+fn parameters_are_those_of_the_first_planner_with_defaults_and_changes() {
+    let changed =
+        json!({ "event": "parameters_changed", "choice": { "id": "rpf", "parameters": { "k_rep": 3.0 } } });
+    let run = fold(&[(0, opened()), (0, chosen("rpf")), (5, changed), (9, chosen("apf"))]).summary();
+    assert_eq!(run.planner.as_deref(), Some("rpf"));
+    assert_eq!(run.planners, ["rpf", "apf"]);
+    let expected =
+        [("k_att", 1.0), ("k_rep", 3.0)].map(|(key, value)| (key.to_owned(), ParamValue::Float(value)));
+    assert_eq!(run.parameters, Some(Parameters::from(expected)));
+}
+
+#[test]
+fn a_planner_that_the_console_refused_has_not_failed() {
+    let failed = |cause: &Cause| {
+        let (planner, message) = ("apf".to_owned(), "words".to_owned());
+        let (cause, during) = (*cause, During::Load);
+        let fault = Fault { planner, during, cause, message, partial: Vec::new(), plugin_sha256: None };
+        (1, json!({ "event": "planner_failed", "fault": fault }))
+    };
+    let faults =
+        |causes: &[Cause]| fold(&causes.iter().map(failed).collect::<Vec<_>>()).summary().planner_faults;
+    assert_eq!(faults(&[Cause::Refused, Cause::Quarantined]), 0);
+    assert_eq!(faults(&[Cause::Panic, Cause::Refused, Cause::Starved]), 2);
+}
+
+#[test]
+fn the_json_object_has_every_figure() {
+    insta::assert_json_snapshot!(rounded(serde_json::to_value(full_run()).unwrap()));
+}
+
+#[test]
+fn an_empty_run_has_every_key_and_null_for_what_is_absent() {
+    insta::assert_json_snapshot!(Summary::default());
+}
+
+#[test]
+fn a_summary_survives_its_own_json() {
+    let run = full_run();
+    let text = serde_json::to_string(&run).unwrap();
+    assert_eq!(serde_json::from_str::<Summary>(&text).unwrap(), run);
+}
+
+/// Numbers to nine digits, so that the snapshot does not depend on the last bit.
+fn rounded(value: Value) -> Value {
+    match value {
+        Value::Number(n) if n.is_f64() => json!((n.as_f64().unwrap() * 1e9).round() / 1e9),
+        Value::Array(list) => list.into_iter().map(rounded).collect(),
+        Value::Object(map) => {
+            Value::Object(map.into_iter().map(|(key, value)| (key, rounded(value))).collect())
+        }
+        other => other,
+    }
+}
+
+#[test]
+fn a_zone_drawn_under_way_is_reported_for_every_task_with_who_drew_it_and_when() {
+    let start = json!({ "event": "ordered", "order": "start" });
+    let run = fold(&[(0, opened()), (0, start), (4, zone_drawn(0.0, 0.5))]).summary();
+    let zone = serde_json::to_value(&run).unwrap()["zones_drawn"][0].clone();
+    assert_eq!(
+        (&zone["name"], &zone["by"], &zone["t_s"]),
+        (&json!("no-go 1"), &json!("operator"), &json!(2.0))
+    );
+}

@@ -1,0 +1,87 @@
+//! What the tool passed by the estimated position: how well the position was known, how often, and what is guaranteed.
+
+use crate::overlap::Overlap;
+use nalgebra::Matrix2;
+use positioning::fix::{across_95_m, ellipse_95};
+use world::{CoverageGrid, Floor, Pose, Tool};
+
+/// The error of a cell that was never passed.
+const NEVER: u16 = u16::MAX;
+
+/// The passes over a floor that counted.
+#[derive(Debug, Clone)]
+pub struct Passes {
+    tool: Tool,
+    guaranteed: Vec<bool>,
+    /// The smallest 95 % error with which each cell was passed, millimetres.
+    error_mm: Vec<u16>,
+    overlap: Overlap,
+}
+
+impl Passes {
+    /// Nothing was passed yet.
+    pub(crate) fn new(floor: &Floor, tool: Tool) -> Self {
+        Self {
+            tool,
+            guaranteed: vec![false; floor.len()],
+            error_mm: vec![NEVER; floor.len()],
+            overlap: Overlap::new(floor.width, floor.len()),
+        }
+    }
+
+    /// The tool passed from one estimated pose to the next, and that counts.
+    ///
+    /// What lies under it for every position within the 95 % ellipse is guaranteed: the tool is narrowed on each side by the
+    /// half width of the ellipse of the covariance, square metres, across the heading. `error_m`: the largest 95 % error since the fix before the last.
+    pub(crate) fn pass(
+        &mut self,
+        believed: &CoverageGrid,
+        (from, to): (Pose, Pose),
+        covariance: &Matrix2<f64>,
+        error_m: f64,
+    ) {
+        let floor = believed.floor();
+        let cells = floor.runs_under(self.tool, from, to);
+        let way_m = (to.position - from.position).norm();
+        if way_m.is_finite() {
+            self.overlap.pass(way_m, self.tool.swath_m(), &cells, |cell| {
+                believed.is_covered(cell) && believed.floor().is_floor(cell)
+            });
+        }
+        let error_mm = (1000.0 * error_m).ceil().min(f64::from(NEVER - 1)) as u16;
+        for run in cells {
+            self.error_mm[run.range()].iter_mut().for_each(|mm| *mm = (*mm).min(error_mm));
+        }
+        let across_m = match self.tool {
+            Tool::Bar { .. } => across_95_m(covariance, to.heading_rad),
+            Tool::Disc { .. } => ellipse_95(covariance).0,
+        };
+        if let Some(narrowed) = self.tool.narrowed(across_m) {
+            for run in floor.runs_under(narrowed, from, to) {
+                self.guaranteed[run.range()].fill(true);
+            }
+        }
+    }
+
+    /// Takes in the passes of another run over the same floor.
+    pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
+        self.guaranteed.iter_mut().zip(&other.guaranteed).for_each(|(own, other)| *own |= other);
+        self.error_mm.iter_mut().zip(&other.error_mm).for_each(|(own, other)| *own = (*own).min(*other));
+        self.overlap.join(&other.overlap, is_in_both);
+    }
+
+    /// Whether a cell was under the tool for every position within the 95 % error.
+    pub fn is_guaranteed(&self, cell: usize) -> bool {
+        self.guaranteed[cell]
+    }
+
+    /// The smallest 95 % error with which a cell was passed, millimetres; `None` if it never was.
+    pub fn error_mm(&self, cell: usize) -> Option<u16> {
+        Some(self.error_mm[cell]).filter(|mm| *mm != NEVER)
+    }
+
+    /// How often cells were scanned again.
+    pub fn overlap(&self) -> &Overlap {
+        &self.overlap
+    }
+}

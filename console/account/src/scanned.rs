@@ -1,0 +1,136 @@
+//! How much of the floor was scanned, as believed and by truth, and how much of it again.
+
+use crate::{
+    passes::Passes,
+    summary::{Coverage, CoverageByTruth},
+};
+use nalgebra::Matrix2;
+use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool};
+
+/// The floor with what was scanned so far.
+#[derive(Debug, Clone)]
+pub struct Scanned {
+    believed: CoverageGrid,
+    /// Cells that the tool truly passed.
+    truth: Vec<bool>,
+    passes: Passes,
+    tool: Tool,
+    last: Pose,
+    has_truth: bool,
+}
+
+impl Scanned {
+    /// Nothing is scanned yet.
+    pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
+        let passes = Passes::new(&floor, tool);
+        let truth = vec![false; floor.len()];
+        let believed = CoverageGrid::new(floor);
+        Self { believed, truth, passes, tool, last: start, has_truth: false }
+    }
+
+    /// The floor with what the mission believes to have scanned.
+    pub fn believed(&self) -> &CoverageGrid {
+        &self.believed
+    }
+
+    /// What the tool passed by the estimated position.
+    pub fn passes(&self) -> &Passes {
+        &self.passes
+    }
+
+    /// The mission says that it scanned these cells.
+    pub(crate) fn believe(&mut self, runs: &[CellRun]) {
+        self.believed.apply(runs);
+    }
+
+    /// An obstacle that was found changed the floor.
+    pub fn change(&mut self, changes: &[KindRun]) {
+        self.believed.change(changes);
+    }
+
+    /// Takes in what another run scanned of the same floor.
+    pub fn join(&mut self, other: &Self) {
+        let is_in_both = |cell| self.believed.is_covered(cell) && other.believed.is_covered(cell);
+        self.passes.join(&other.passes, is_in_both);
+        self.believed.join(&other.believed);
+        self.truth.iter_mut().zip(&other.truth).for_each(|(own, other)| *own |= other);
+        self.has_truth &= other.has_truth;
+    }
+
+    /// The robot believes to be here, with this covariance, square metres; `error_m`, if the passage counts: the largest 95 % error
+    /// lately, metres.
+    pub(crate) fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: Option<f64>) {
+        let before = std::mem::replace(&mut self.last, here);
+        if let Some(error_m) = error_m {
+            self.passes.pass(&self.believed, (before, here), covariance, error_m);
+        }
+    }
+
+    /// The robot truly went from `a` to `b`.
+    pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
+        self.has_truth = true;
+        for run in self.believed.floor().runs_under(self.tool, a, b) {
+            self.truth[run.range()].fill(true);
+        }
+    }
+
+    /// What a cell counts as while the mission lasts.
+    pub fn class(&self, cell: usize) -> FloorClass {
+        let again = u32::from(self.passes.overlap().again(cell));
+        let times = if self.believed.is_covered(cell) { 1 + again } else { 0 };
+        FloorClass::of(self.believed.floor().kind(cell), times)
+    }
+
+    /// The figures so far; what was missed only if the floor was `to_scan`.
+    pub fn coverage(&self, to_scan: bool) -> Coverage {
+        let counts = self.believed.counts();
+        let again =
+            (0..self.truth.len()).filter(|cell| self.class(*cell) == FloorClass::Again).count() as f64;
+        let missed = (counts.reachable - counts.covered_reachable) as f64 * self.believed.floor().cell_m2();
+        Coverage {
+            reachable: self.believed.fraction_reachable(),
+            whole: self.believed.fraction_whole(),
+            overlap: (counts.covered > 0).then(|| again / counts.covered as f64),
+            missed_area_m2: to_scan.then_some(missed),
+            by_truth: self.has_truth.then(|| self.by_truth()),
+        }
+    }
+
+    fn by_truth(&self) -> CoverageByTruth {
+        let (mut counts, mut scanned, mut sure) = (Counts::default(), Claim::default(), Claim::default());
+        for (cell, truly) in self.truth.iter().enumerate() {
+            counts.add(self.believed.floor().kind(cell), *truly);
+            if self.believed.floor().is_floor(cell) && self.believed.is_covered(cell) {
+                scanned.count(*truly);
+                if self.passes.is_guaranteed(cell) {
+                    sure.count(*truly);
+                }
+            }
+        }
+        let share = |part: usize, of: usize| if of == 0 { 0.0 } else { part as f64 / of as f64 };
+        CoverageByTruth {
+            reachable: share(counts.covered_reachable, counts.reachable),
+            whole: share(counts.covered, counts.floor),
+            scanned_truly: scanned.true_share(),
+            guaranteed_truly: sure.true_share(),
+        }
+    }
+}
+
+/// Cells that are claimed as scanned, and how many of them truly were.
+#[derive(Default)]
+struct Claim {
+    cells: usize,
+    truly: usize,
+}
+
+impl Claim {
+    fn count(&mut self, truly: bool) {
+        self.cells += 1;
+        self.truly += usize::from(truly);
+    }
+
+    fn true_share(&self) -> Option<f64> {
+        (self.cells > 0).then(|| self.truly as f64 / self.cells as f64)
+    }
+}

@@ -1,0 +1,33 @@
+//! What counts as scanned.
+
+use crate::phase::Phase;
+
+/// What becomes of floor that the tool passes between two estimates of its pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passage {
+    /// Nothing: the mission has not been started.
+    Idle,
+    /// It does not count: nobody knows well enough where it is.
+    Uncertain,
+    /// It counts as scanned.
+    Counts,
+}
+
+impl Passage {
+    /// The one rule for the mission and for everybody who finds out from its events where the tool passed: floor counts from the
+    /// start of the mission on, also while a held robot brakes, wherever the 95 % error of the position, metres, is within the
+    /// limit for scanning, metres.
+    ///
+    /// ```
+    /// use mission::{Passage, Phase};
+    /// assert_eq!(Passage::of(&Phase::Waiting, 0.1, 0.2), Passage::Idle);
+    /// assert_eq!(Passage::of(&Phase::Running(mission::Gait::Steady), 0.3, 0.2), Passage::Uncertain);
+    /// ```
+    pub fn of(phase: &Phase, error_m: f64, limit_m: f64) -> Self {
+        match phase {
+            Phase::Waiting => Self::Idle,
+            Phase::Running(_) | Phase::Held(_) | Phase::Ended(_) if error_m <= limit_m => Self::Counts,
+            Phase::Running(_) | Phase::Held(_) | Phase::Ended(_) => Self::Uncertain,
+        }
+    }
+}
