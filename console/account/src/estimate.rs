@@ -172,7 +172,8 @@ mod tests {
 
     pub(super) fn mission() -> MissionConfig {
         let limits = serde_json::json!({
-            "motion": "unicycle", "v_max_m_per_s": 0.5, "w_max_rad_per_s": 1.0, "radius_m": 0.3, "sensing_range_m": 2.0
+            "motion": "unicycle", "v_max_m_per_s": 0.5, "w_max_rad_per_s": 1.0, "radius_m": 0.3, "sensing_range_m": 2.0,
+            "acceleration_m_per_s2": 0.5, "tick_s": 0.1
         });
         let mission = serde_json::json!({
             "task": { "goto": { "goal": [2.5, 5.0], "tolerance_m": 0.2 } },

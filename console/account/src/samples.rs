@@ -32,7 +32,7 @@ pub(crate) fn truth(x: f64, y: f64, clearance_m: f64, collided: bool) -> Value {
 /// An estimate whose 95 % ellipse is a circle of `sigma_m` times 2.4477.
 pub(crate) fn estimated(x: f64, y: f64, sigma_m: f64) -> Value {
     let v = sigma_m * sigma_m;
-    let covariance = json!([v, 0.0, 0.0, 0.0, v, 0.0, 0.0, 0.0, 0.01]);
+    let covariance = json!([v, 0.0, 0.0, v, 0.0, 0.01]);
     json!({ "event": "estimated", "pose": { "position": [x, y], "heading_rad": 0.0, "covariance": covariance } })
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn opened() -> Value {
         zones: Vec::new(),
     };
     let floor = world::Floor::new(&world, 0.5, 0.0, 1.0, Point::new(-1.75, 0.25));
-    let limits = json!({ "motion": "point", "v_max_m_per_s": 1.0, "w_max_rad_per_s": 1.0, "radius_m": 0.0, "sensing_range_m": 2.0 });
+    let limits = json!({ "motion": "point", "v_max_m_per_s": 1.0, "w_max_rad_per_s": 1.0, "radius_m": 0.0, "sensing_range_m": 2.0, "acceleration_m_per_s2": 0.5, "tick_s": 0.1 });
     let mission = json!({
         "task": { "follow": { "path": [[-1.75, 0.0], [1.75, 0.0]], "tolerance_m": 0.2 } },
         "start": { "position": [-1.75, 0.0], "heading_rad": 0.0 },
