@@ -168,7 +168,7 @@ fn console_text_json_html_csv_and_recording_have_the_same_shares_of_every_cover_
 
 /// Flies a scan that is held several times until the robot stands, and ended early; gives its run.
 fn held_scan(bench: &Bench) -> PathBuf {
-    let holds: String = (1..=4)
+    let holds: Vec<String> = (1..=4)
         .map(|percent| {
             format!(
                 "speed 16\nwait until coverage >= {percent} within 2m\nhold\nwait until phase held within 1m\n\
@@ -176,6 +176,7 @@ fn held_scan(bench: &Bench) -> PathBuf {
             )
         })
         .collect();
+    let holds = holds.concat();
     let script = format!("start\nkey enter\n{holds}end\nkey enter\nwait until phase aborted within 1m\n");
     let (file, tank) = (bench.file("holds.txt", script), scenario("cover-circle.toml"));
     let ended = bench.tankops(&["console", tank.to_str().unwrap(), "--script", file.to_str().unwrap()]);

@@ -28,7 +28,7 @@ fn the_queries_of_the_document_run_on_a_recording() {
     for other in ["goto-single-obstacle.toml", "spiral-paper.toml"] {
         bench.fly(&scenario(other), &[]);
     }
-    begin_and_kill(&bench, &slow_scenario(&bench), 11, Duration::from_millis(200));
+    begin_and_kill(&bench, &slow_scenario(&bench), 11, Duration::from_secs(1));
     let document = std::fs::read_to_string(workspace().join("console/docs/rerun.md")).unwrap();
     let ended: Vec<Ended> =
         programs(&document).iter().filter_map(|program| python(&bench, program)).collect();

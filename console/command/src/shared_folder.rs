@@ -33,6 +33,9 @@ impl SharedFolder {
     }
 
     /// Makes the folder with these folders in it, and one for claims, where they are missing.
+    ///
+    /// # Errors
+    /// One of them cannot be made.
     pub fn make(&self, inner: &[&str]) -> anyhow::Result<()> {
         for folder in inner.iter().chain([&CLAIMS]).map(|inner| self.0.join(inner)) {
             fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
@@ -46,6 +49,9 @@ impl SharedFolder {
     }
 
     /// The bytes of a regular file, if it is there.
+    ///
+    /// # Errors
+    /// It cannot be read, or is not a regular file.
     pub fn read(&self, name: &Path) -> io::Result<Option<Vec<u8>>> {
         let mut bytes = Vec::new();
         match open_regular(&self.0.join(name)).and_then(|mut file| file.read_to_end(&mut bytes)) {
@@ -56,6 +62,9 @@ impl SharedFolder {
     }
 
     /// Writes a file whole or not at all: under another name, to the disk, then renamed.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let file = self.0.join(name);
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_nanos();

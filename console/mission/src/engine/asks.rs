@@ -1,6 +1,6 @@
 //! What is asked of the planners next.
 
-use super::{Mission, preparing::Preparing};
+use super::{Mission, preparing::Preparing, worker::Worker};
 use crate::ask::{Ask, Awaits};
 
 impl Mission {
@@ -36,6 +36,6 @@ impl Mission {
         let preparing = self.preparing.as_ref().map(|preparing| &preparing.worker);
         let shadow = self.shadow.as_ref().map(|shadow| &shadow.worker);
         let workers = std::iter::once(&self.driving.worker).chain(preparing).chain(shadow);
-        workers.into_iter().any(|worker| worker.is_being_prepared())
+        workers.into_iter().any(Worker::is_being_prepared)
     }
 }

@@ -28,7 +28,7 @@ impl Known {
         if corners.len() < 3 || ring_area_m2(corners).abs() < LEAST_M2 {
             return Err(format!("a no-go zone needs corners that enclose at least {LEAST_M2} m²"));
         }
-        let shape = Shape::Polygon { vertices: corners.to_vec() };
+        let shape = Shape::Polygon { vertices: corners.clone() };
         if is_outside(&shape, &self.chart.world().boundary) {
             return Err("the zone lies outside the tank: corners are in metres, tank frame".into());
         }

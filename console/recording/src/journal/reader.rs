@@ -272,7 +272,7 @@ impl JournalReader {
         }
         let plain = if self.is_verbatim { None } else { plain::line(&self.text) };
         let text = plain.as_deref().unwrap_or(&self.text);
-        let quick = if !limits::is_bearable(text) { None } else { fast::event(text) };
+        let quick = if limits::is_bearable(text) { fast::event(text) } else { None };
         let mut event = match quick {
             Some(event) => event,
             None if !limits::is_light(text) => {

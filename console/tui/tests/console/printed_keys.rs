@@ -87,7 +87,7 @@ fn notes(row: &str) -> Vec<String> {
     let parts =
         titles.map(|(title, _)| title.split('─').filter(|part| !part.trim().is_empty()).collect::<Vec<_>>());
     let notes = parts.filter(|parts| parts.len() > 1).filter_map(|parts| parts.last().copied());
-    notes.flat_map(|note| keys_of_note(note)).collect()
+    notes.flat_map(keys_of_note).collect()
 }
 
 fn keys_of_note(note: &str) -> Vec<String> {
@@ -99,8 +99,8 @@ fn keys_of_note(note: &str) -> Vec<String> {
 }
 
 fn on_every_screen() -> impl Iterator<Item = (Screen, Name)> {
-    let missions = [Screen::idle(), Screen::running(), Screen::held()];
-    missions.into_iter().flat_map(|mission| Name::ALL.map(|name| (mission.clone(), name)))
+    let missions: [fn() -> Screen; 3] = [Screen::idle, Screen::running, Screen::held];
+    missions.into_iter().flat_map(|mission| Name::ALL.iter().map(move |name| (mission(), *name)))
 }
 
 #[test]

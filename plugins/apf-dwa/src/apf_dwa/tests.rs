@@ -114,11 +114,12 @@ fn a_robot_turns_as_briskly_for_its_turn_rate_as_the_one_of_the_paper() {
             planner.settings.window.turn_acceleration_rad_per_s2
         })
     };
-    assert_eq!(turning(0.12, &[]), 0.4);
-    assert!((turning(1.2, &[]) - 4.0).abs() < 1e-12);
-    assert_eq!(turning(1.2, &[("turn_acceleration_rad_per_s2", 0.7)]), 0.7);
+    let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    is(turning(0.12, &[]), 0.4);
+    is(turning(1.2, &[]), 4.0);
+    is(turning(1.2, &[("turn_acceleration_rad_per_s2", 0.7)]), 0.7);
     let paper = with_planner(&[], 3, |planner, _, _| planner.settings.window.turn_acceleration_rad_per_s2);
-    assert_eq!(paper, 0.4);
+    is(paper, 0.4);
 }
 
 #[test]
