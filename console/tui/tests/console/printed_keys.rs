@@ -61,8 +61,11 @@ fn misprints(shown: &str, keys: &Keymap) -> Vec<String> {
     printed.filter(|word| !known(word)).collect()
 }
 
-/// Whether a word could be the name of a key.
+/// Whether a word could be the name of a key; a line of a frame cannot.
 fn is_key(word: &str) -> bool {
+    if ["│", "─"].contains(&word) {
+        return false;
+    }
     let named = ["Enter", "Esc", "Tab", "space"].contains(&word) || word.starts_with("Ctrl-");
     named || word.starts_with('<') && word.ends_with('>') || word.chars().count() == 1
 }
