@@ -147,7 +147,7 @@ impl Fold {
         }
     }
 
-    /// The robot believes to be somewhere; what its tool passed on the way there counts as the mission has it, and of readings that
+    /// The robot believes it is somewhere; what its tool passed on the way there counts as the mission has it, and of readings that
     /// were located between the two poses that are known well enough.
     fn estimate(&mut self, event: &Event, estimate: &PoseEstimate) {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };

@@ -57,7 +57,7 @@ impl Scanned {
         self.has_truth &= other.has_truth;
     }
 
-    /// The robot believes to be here, with this covariance, square metres; `error_m`, if the passage counts: the largest 95 % error
+    /// The robot believes it is here, with this covariance, square metres; `error_m`, if the passage counts: the largest 95 % error
     /// lately, metres.
     pub(crate) fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: Option<f64>) {
         let before = std::mem::replace(&mut self.last, here);

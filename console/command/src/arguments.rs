@@ -24,7 +24,7 @@ impl PluginArgs {
     /// One that was named does not exist.
     pub fn dirs(&self) -> anyhow::Result<PluginDirs> {
         if let Some(missing) = self.plugin_dir.iter().find(|dir| !dir.is_dir()) {
-            return Err(bad_input(format!("--plugin-dir {}: there is no such folder", missing.display())));
+            return Err(bad_input(format!("--plugin-dir {}: the folder does not exist", missing.display())));
         }
         Ok(PluginDirs { requires_sandbox: self.require_sandbox, ..PluginDirs::standard(&self.plugin_dir) })
     }

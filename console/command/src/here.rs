@@ -39,7 +39,7 @@ impl Here {
         Ok(Self { program, found: Found::from(&survey) })
     }
 
-    /// Makes sure that a campaign was frozen with what is here.
+    /// Checks that a campaign was frozen with this program and these plugins.
     ///
     /// # Errors
     /// It was not; the sentence names what differs.

@@ -159,7 +159,7 @@ pub enum EventKind {
         /// Which station.
         station: StationId,
     },
-    /// Where the robot believes to be.
+    /// Where the robot believes it is.
     Estimated {
         /// Pose and covariance.
         pose: PoseEstimate,

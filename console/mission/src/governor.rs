@@ -29,7 +29,7 @@ const HALVINGS: u32 = 6;
 pub(crate) struct Solid<'a> {
     /// What stands there.
     pub outline: Outline<'a>,
-    /// Whether it is seen now; else it stands where the chart has it, seen from where the robot believes to be.
+    /// Whether it is seen now; else it stands where the chart has it, seen from where the robot believes it is.
     pub is_seen: bool,
 }
 
@@ -54,7 +54,7 @@ impl Outline<'_> {
 /// What the rule has to know of a tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Here {
-    /// Where the robot believes to be.
+    /// Where the robot believes it is.
     pub pose: Pose,
     /// Half width of the 95 % position error, metres.
     pub error_m: f64,

@@ -1,4 +1,4 @@
-//! Where the robot believes to be, and whether that can be relied on.
+//! Where the robot believes it is, and whether that can be relied on.
 
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;

@@ -43,7 +43,7 @@ pub struct Host {
     config: HostConfig,
     catalog: Catalog,
     planners: Vec<Planner>,
-    /// Workers that are no longer asked and have not ended yet.
+    /// Retired workers that are still running.
     leaving: Vec<Leaving>,
     answers: VecDeque<Answer>,
     /// What the last look found, kept for its memory.
@@ -274,7 +274,7 @@ impl Host {
         false
     }
 
-    /// Handles what has happened.
+    /// Handles the replies and failures of workers.
     fn go_on(&mut self) {
         let (now, mut ready) = (Instant::now(), self.ready.iter().copied());
         let mut outcomes = Vec::new();

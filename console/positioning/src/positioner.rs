@@ -385,7 +385,7 @@ impl Positioner {
     /// Corrects the filter where the geometry is better known.
     ///
     /// Close to a station the error of a fix is bent like the range circle and no ellipse holds it; a filter that is
-    /// surer than the fix takes the ranges instead, as seen from where it believes to be.
+    /// surer than the fix takes the ranges instead, as seen from where it believes it is.
     fn filter_accepts(&mut self, fix: &Fix, rangings: &[Ranging]) -> bool {
         if self.are_distances() && self.filter.error_95_m() < fix.ellipse_95().0 {
             let used: Vec<Ranging> =

@@ -9,7 +9,7 @@ use planner_api::{PoseEstimate, Sensed};
 pub struct Tick<'a> {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// Where the robot believes to be.
+    /// Where the robot believes it is.
     pub pose: PoseEstimate,
     /// Where to go next.
     pub target: Point,

@@ -137,7 +137,7 @@ impl Driving {
         workers.close(self.leave_worker());
     }
 
-    /// Forgets the instance, which is to be closed, and what was wanted of it.
+    /// Forgets the instance, which the host closes, and its open requests.
     pub(super) fn leave_worker(&mut self) -> Option<WorkerId> {
         (self.snapshot_due, self.command, self.reconfigure) = (false, None, None);
         self.worker.leave()

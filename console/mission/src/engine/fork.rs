@@ -11,7 +11,7 @@ pub struct Fork {
     pub mission: Mission,
     /// The tank as the mission knows it: the drawing, and what was found. What nobody has seen yet is not in it.
     pub world: World,
-    /// Where the robot believes to be.
+    /// Where the robot believes it is.
     pub pose: Pose,
     /// The cable as it is believed to lie; `None` without a tether.
     pub cable: Option<Cable>,

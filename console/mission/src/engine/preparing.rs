@@ -130,7 +130,7 @@ impl Mission {
         self.take_plan(&plan);
     }
 
-    /// Closes what is being prepared without a word.
+    /// Closes the planner being prepared, without an event.
     pub(super) fn drop_preparing(&mut self) {
         if let Some(mut preparing) = self.preparing.take() {
             self.workers.close(preparing.worker.leave());

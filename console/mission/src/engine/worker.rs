@@ -1,4 +1,4 @@
-//! A planner in a worker process: who it is, and what is asked of it.
+//! A planner in a worker process: its identity and its open requests.
 
 use super::{known::Known, requests::AskedPlan, workers::Workers};
 use crate::{

@@ -26,7 +26,7 @@ pub(crate) const MOST_CUTS: usize = 10_000;
 pub(crate) const MOST_OPTIONS: usize = LONGEST_TEXT;
 /// Longest text, bytes; what a worker sends is shorter.
 const LONGEST_TEXT: usize = 16 << 10;
-/// For so many elements memory is reserved before they have been read.
+/// Elements to reserve memory for before reading them.
 const RESERVED: usize = 1024;
 
 struct AtMost<T, const MOST: usize>(PhantomData<T>);

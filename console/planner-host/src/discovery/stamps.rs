@@ -1,4 +1,4 @@
-//! Which plugin files there are and when they were written, cheap enough to look at again and again.
+//! The plugin files and their modification times, cheap enough to poll.
 
 use super::{PluginDirs, named_like_plugins};
 use std::{

@@ -1,4 +1,4 @@
-//! Workers that are no longer asked: how they are ended, and how that went.
+//! Retired workers: how the host ends them, and the outcome.
 
 use super::Host;
 use super::spare::Spare;

@@ -135,7 +135,7 @@ impl Driver {
 const LEGEND: &str = "
 ## How to read the map
 
-Green is where the robot truly is, pink where it believes to be, with the ellipse that should hold the truth in 95 of
+Green is where the robot truly is, pink where it believes it is, with the ellipse that should hold the truth in 95 of
 100 cases. The bar across the robot is what it scans; the key below the tank names the kinds of floor. Red outlines are on the drawing, dark red ones must be
 discovered, orange ones were discovered and stand as estimated. Yellow lines are acoustic-emission ranges, red ones
 were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of the force.

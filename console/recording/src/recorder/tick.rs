@@ -48,7 +48,7 @@ pub(crate) struct Truth {
     pub clearance_m: f64,
 }
 
-/// Where it believes to be.
+/// Where it believes it is.
 #[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub position: Point,

@@ -1,4 +1,4 @@
-//! Where the robot believes to be, and how well it knows.
+//! Where the robot believes it is, and how well it knows.
 
 use super::History;
 use planner_api::PoseEstimate;
@@ -12,7 +12,7 @@ const SPEED_SPAN_S: f64 = 2.0;
 /// Time between two ranging cycles as long as only one was heard, seconds.
 const FIRST_PERIOD_S: f64 = 1.0;
 
-/// Where the robot believes to be, and how well it knows.
+/// Where the robot believes it is, and how well it knows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Position {
     /// The pose as estimated last.

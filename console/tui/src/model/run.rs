@@ -17,7 +17,7 @@ pub struct Run {
     pub end_reason: String,
     /// Mission time.
     pub clock: Clock,
-    /// Where the robot believes to be, and how well it knows.
+    /// Where the robot believes it is, and how well it knows.
     pub position: Position,
     /// Where it has been.
     pub trail: Trail,
