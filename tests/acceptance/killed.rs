@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, journal, scenario};
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     process::Stdio,
     time::{Duration, Instant, SystemTime},
 };
@@ -14,7 +14,10 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
         let bench = Bench::new();
         // A long mission: nobody kills in time what ends in a second.
         let slow = slow_scenario(&bench);
-        let killed_at = begin_and_kill(&bench, &slow, seed, Duration::from_millis(wait_ms));
+        let killed_at = begin_and_kill(&bench, &slow, seed, |_| {
+            std::thread::sleep(Duration::from_millis(wait_ms));
+            true
+        });
 
         let run = bench.runs().remove(0);
         let listed = bench.tankops(&["runs", "--json"]).json();
@@ -46,9 +49,14 @@ fn a_killed_run_is_listed_as_crashed_and_its_journal_opens() {
     }
 }
 
-/// Begins a run and kills it; when that was.
-pub(crate) fn begin_and_kill(bench: &Bench, scenario: &Path, seed: u64, wait: Duration) -> SystemTime {
-    let n = bench.runs().len();
+/// Begins a run and kills it when its folder is as demanded; when that was.
+pub(crate) fn begin_and_kill(
+    bench: &Bench,
+    scenario: &Path,
+    seed: u64,
+    is_time: impl Fn(&Path) -> bool,
+) -> SystemTime {
+    let before = bench.runs();
     let mut child = bench
         .command()
         .arg("run")
@@ -58,8 +66,14 @@ pub(crate) fn begin_and_kill(bench: &Bench, scenario: &Path, seed: u64, wait: Du
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    wait_for_journal(bench, n);
-    std::thread::sleep(wait);
+    let until = Instant::now() + Duration::from_secs(60);
+    let has_begun = |run: &PathBuf| {
+        !before.contains(run) && run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100)
+    };
+    while !bench.runs().iter().any(|run| has_begun(run) && is_time(run)) {
+        assert!(Instant::now() < until, "the run was never ready to be killed");
+        std::thread::sleep(Duration::from_millis(10));
+    }
     assert!(child.try_wait().unwrap().is_none(), "the mission ended before it could be killed");
     let killed_at = SystemTime::now();
     child.kill().unwrap();
@@ -67,18 +81,8 @@ pub(crate) fn begin_and_kill(bench: &Bench, scenario: &Path, seed: u64, wait: Du
     killed_at
 }
 
-pub(crate) fn slow_scenario(bench: &Bench) -> std::path::PathBuf {
+pub(crate) fn slow_scenario(bench: &Bench) -> PathBuf {
     let text = std::fs::read_to_string(scenario("spiral-paper.toml")).unwrap();
     // Ten times the ticks, so that it takes seconds.
     bench.file("slow.toml", text.replace("tick_s = 0.1", "tick_s = 0.01"))
-}
-
-/// Waits until a run beside those that were there has begun.
-fn wait_for_journal(bench: &Bench, n_before: usize) {
-    let until = Instant::now() + Duration::from_secs(20);
-    let begun = |run: &Path| run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100);
-    while bench.runs().iter().filter(|run| begun(run)).count() <= n_before {
-        assert!(Instant::now() < until, "the run never began");
-        std::thread::sleep(Duration::from_millis(10));
-    }
 }
