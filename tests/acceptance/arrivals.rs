@@ -98,9 +98,7 @@ fn interfere(signal: Signal, after_ms: u64, fallback: bool) {
     bench.prove(&run);
     let verified = bench.verify(&run, &[]);
     assert!(
-        verified
-            .out
-            .contains("faults of planner faulty from outside or by the clock, taken from the journal: 1"),
+        verified.out.contains("external or timing faults of planner faulty, taken from the journal: 1"),
         "{verified:?}"
     );
 }

@@ -121,7 +121,7 @@ fn a_campaign_ends_when_enough_is_known_or_the_budget_is_spent() {
     assert!(table(&bench, "small") == table(&bench, "large"), "the end does not depend on the blocks");
     let dear = plan(&bench, "c.toml", "block = 4", 4);
     let ran = campaign(&bench, "run --out dear --budget 0.00001ch", &[&dear]);
-    assert!(ran.code == Some(1) && ran.err.contains("the budget is spent"), "{ran:?}");
+    assert!(ran.code == Some(1) && ran.err.contains("budget used up"), "{ran:?}");
     assert_eq!(campaign(&bench, "run --out dear", &[&dear]).code, Some(0));
 }
 
@@ -145,7 +145,7 @@ fn a_slip_in_a_plan_is_refused_with_its_place() {
     assert_eq!(campaign(&bench, "prepare --out out", &[&plan]).code, Some(0));
     let text = std::fs::read_to_string(&plan).unwrap().replace("0.25", "0.2");
     let other = campaign(&bench, "run --out out", &[&bench.file("plan.toml", text)]);
-    assert!(other.code == Some(2) && other.err.contains("holds another campaign"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("holds a different campaign"), "{other:?}");
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     std::fs::write(&own, text.replace("speed_max_m_per_s = ", "speed_max_m_per_s = 0.1 # ")).unwrap();
     works(&bench, "--block 1", "out");
     let other = campaign(&bench, "run --out out", &[&plan]);
-    assert!(other.code == Some(2) && other.err.contains("holds another campaign"), "{other:?}");
+    assert!(other.code == Some(2) && other.err.contains("holds a different campaign"), "{other:?}");
     works(&bench, "", "out");
     assert!(table(&bench, "out") == table(&bench, "quiet"), "the text of the scenario is frozen");
 
@@ -205,7 +205,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     for (changed, why) in [
         (json.replace(sha256, &"0".repeat(64)), "its SHA-256 does not match"),
         (json.replace("\"count\": 6", "\"count\": 0"), "was changed or damaged: there are no missions"),
-        (json.replace("radius_m", "radius_n"), "is not the text of its SHA-256"),
+        (json.replace("radius_m", "radius_n"), "does not match its SHA-256"),
         (json[..json.len() / 2].to_owned(), "is not a campaign"),
         (String::new(), "is not a campaign"),
     ] {
@@ -216,7 +216,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     std::fs::write(&frozen, &json).unwrap();
     let mut other_build = bench.command_of(&other_build(&bench));
     let refused = Ended::from(other_build.args(["campaign", "work", "out"]).output().unwrap());
-    let why = "tankops is not the one that the campaign was prepared with";
+    let why = "tankops differs from the one that the campaign was prepared with";
     assert!(refused.code == Some(2) && refused.err.contains(why), "{refused:?}");
     works(&bench, "", "out");
 
@@ -224,7 +224,7 @@ fn what_changes_between_prepare_and_work_changes_nothing_or_is_refused() {
     let whole = std::fs::read(&part).unwrap();
     std::fs::write(&part, &whole[..whole.len() - 9]).unwrap();
     let damaged = campaign(&bench, "merge", &[Path::new("out")]);
-    let says = damaged.err.contains("part-00001.parquet") && damaged.err.contains("fly block 1 again");
+    let says = damaged.err.contains("part-00001.parquet") && damaged.err.contains("run block 1 again");
     assert!(damaged.code == Some(2) && says, "{damaged:?}");
     std::fs::remove_file(&part).unwrap();
     for pipe in [&part, &frozen] {
@@ -313,5 +313,5 @@ fn a_campaign_of_which_a_value_was_changed_is_refused() {
     assert_ne!(changed, text);
     std::fs::write(&file, changed).unwrap();
     let refused = campaign(&bench, "status", &[Path::new("out")]);
-    assert!(refused.code == Some(2) && refused.err.contains("is not the text of its SHA-256"), "{refused:?}");
+    assert!(refused.code == Some(2) && refused.err.contains("does not match its SHA-256"), "{refused:?}");
 }

@@ -158,8 +158,12 @@ fn hidden_characters_in_a_scenario_are_refused_with_line_and_key() {
     let ended = bench.tankops(&["check", file.to_str().unwrap()]);
     assert_eq!(ended.code, Some(2), "{ended:?}");
     let shown = ended.out + &ended.err;
-    assert!(shown.contains("about") && shown.contains("text that can be read: U+202E cannot"), "{shown}");
-    assert!(shown.contains("zones.0.name") && shown.contains("U+00AD cannot"), "{shown}");
+    assert!(
+        shown.contains("about")
+            && shown.contains("text without control or invisible characters; contains U+202E"),
+        "{shown}"
+    );
+    assert!(shown.contains("zones.0.name") && shown.contains("contains U+00AD"), "{shown}");
     assert_plain("the message", shown.as_bytes());
 }
 
@@ -177,7 +181,7 @@ fn nothing_is_written_over_without_being_asked_to_also_not_behind_a_link() {
         let refused = bench.tankops(&[command, tank, option, link.to_str().unwrap()]);
         assert!(
             refused.code == Some(2)
-                && refused.err.contains("already exists; choose another name, or --force"),
+                && refused.err.contains("already exists; choose another name, or use --force"),
             "{refused:?}"
         );
         assert_eq!(fs::read(&precious).unwrap(), b"precious", "{command} {option}");

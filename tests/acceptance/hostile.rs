@@ -42,8 +42,7 @@ fn a_fault_of_a_thread_that_outlives_its_step_is_taken_from_the_journal() {
             let run = bench.runs().pop().unwrap();
             let verified = bench.verify(&run, &["--plugin-dir", plugins.to_str().unwrap()]);
             assert_eq!(verified.code, Some(0), "{attack}: {verified:?}");
-            let note =
-                "note: faults of planner hostile from outside or by the clock, taken from the journal: 1";
+            let note = "note: external or timing faults of planner hostile, taken from the journal: 1";
             assert!(verified.out.contains(note), "{attack}: {verified:?}");
         }
     }
@@ -54,12 +53,12 @@ fn a_plugin_that_is_refused_is_named_with_the_reason_to_who_wants_its_planner() 
     let bench = Bench::new();
     let plugins = hostile(&bench, "IN_CONSTRUCTOR", "socket(AF_INET, SOCK_STREAM, 0)");
     let refused = fly(&bench, &plugins);
-    let sentence = "planner `hostile` cannot be chosen: plugin libplanner_hostile.so is refused: tried socket while it was loaded";
+    let sentence = "planner `hostile` cannot be chosen: plugin libplanner_hostile.so is refused: tried socket while being loaded";
     assert!(refused.code == Some(2) && refused.err.contains(sentence), "{refused:?}");
     std::fs::rename(plugins.join("libplanner_hostile.so"), plugins.join("libplanner_x.so")).unwrap();
     let refused = fly(&bench, &plugins);
     let sentence = "there is no planner `hostile`; found: ";
-    let reason = "; plugin libplanner_x.so is refused: tried socket while it was loaded";
+    let reason = "; plugin libplanner_x.so is refused: tried socket while being loaded";
     assert!(refused.err.contains(sentence) && refused.err.contains(reason), "{refused:?}");
 }
 
@@ -82,7 +81,7 @@ fn a_planner_that_does_not_end_well_when_it_is_destroyed_is_named() {
             let (before, after) =
                 text.split_once(how).unwrap_or_else(|| panic!("{attack}: {flown:?}, {log}"));
             assert!(
-                before.ends_with("planner hostile ") && after.contains("while it was destroyed"),
+                before.ends_with("planner hostile ") && after.contains("while being destroyed"),
                 "{text}"
             );
         }
@@ -110,7 +109,7 @@ fn a_check_finds_what_crashes_when_it_is_destroyed_and_threads_that_stay() {
                  return p; }";
     let start = "static int n; pthread_t t; if (n++ == 2) pthread_create(&t, 0, stay, 0);\n  const direct *self = instance;";
     let threads = checked(("const direct *self = instance;", start), stays);
-    let line = "warn  leaves no thread behind: 1 thread is still there between its calls";
+    let line = "warn  leaves no thread behind: 1 thread is still running between its calls";
     assert!(threads.code == Some(0) && threads.out.contains(line), "{threads:?}");
 }
 
@@ -123,7 +122,7 @@ fn a_line_without_an_end_is_kept_by_its_beginning() {
     let more = ["--planner", "hostile", "--set", "mission.time_limit_s=3", "--plugin-dir"];
     bench.fly(&scenario("goto-single-obstacle.toml"), &[&more[..], &[plugins.to_str().unwrap()]].concat());
     let log = std::fs::read_to_string(bench.runs().pop().unwrap().join("planner.log")).unwrap();
-    assert!(log.contains("hostile: xxx") && log.contains("x (the rest of this line is not kept)\n"), "{log}");
+    assert!(log.contains("hostile: xxx") && log.contains("x (rest of the line dropped)\n"), "{log}");
     assert!(log.len() < 2000, "{}", log.len());
 }
 
@@ -133,7 +132,7 @@ fn a_replay_says_which_step_did_not_answer_and_after_how_long() {
     fly(&bench, &hostile(&bench, "IN_STEP", "for (;;) rest(1000)"));
     let bundle = bench.runs()[0].join("crash-1");
     let replayed = bench.tankops(&["replay-worker", bundle.to_str().unwrap()]);
-    let sentence = "(step 3): planner hostile did not answer step 3 in time and ignored the request to stop; its process was killed (it has 2.0 s for it)";
+    let sentence = "(step 3): planner hostile did not answer step 3 in time and ignored the request to stop; its process was killed (its budget is 2.0 s)";
     assert!(replayed.code == Some(1) && replayed.out.contains(sentence), "{replayed:?}");
 }
 
@@ -232,7 +231,7 @@ fn a_check_blames_no_planner_for_the_crash_of_its_neighbour() {
     std::fs::rename(folder.join("libplanner_hostile.so"), folder.join("libplanner_a.so")).unwrap();
     let checked = bench.tankops(&["check", own.to_str().unwrap(), "--fly", "1"]);
     assert!(
-        !checked.out.contains("FAIL") && checked.out.contains("ok    takes over under way"),
+        !checked.out.contains("FAIL") && checked.out.contains("ok    takes over during a mission"),
         "{checked:?}"
     );
 }
@@ -258,7 +257,7 @@ fn a_planner_that_shadows_another_one_is_named() {
         .args(more)
         .env("XDG_CACHE_HOME", bench.path());
     let flown = Ended::from(first.output().unwrap());
-    let sentence = format!("planner apf is the one of {folder}/libplanner_mine.so; it shadows that of ");
+    let sentence = format!("planner apf is taken from {folder}/libplanner_mine.so; it shadows the one in ");
     assert!(flown.err.contains(&sentence), "{flown:?}");
 }
 
@@ -413,7 +412,7 @@ fn a_planner_that_fails_only_while_it_is_verified_makes_a_run_neither_equal_nor_
     verify.env("RUST_BACKTRACE", "full").arg("verify").arg(&run).args(["--plugin-dir", plugins]);
     let verified = Ended::from(verify.output().unwrap());
     assert_eq!(verified.code, Some(1), "{verified:?}");
-    let sentence = "not proven: a planner fails from outside or by the clock at ask ";
+    let sentence = "not proven: a planner had an external or timing fault at ask ";
     assert!(verified.out.contains(sentence) && !verified.out.contains("different"), "{verified:?}");
     assert!(verified.out.contains("SIGABRT") && !verified.out.contains("equal:"), "{verified:?}");
 }

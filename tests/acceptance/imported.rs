@@ -36,7 +36,7 @@ fn a_drawing_with_layers_of_other_names_becomes_a_mission_that_is_flown() {
     assert_eq!((&flown.json()["outcome"], flown.code), (&"complete".into(), Some(0)), "{flown:?}");
 
     let wrong = bench.tankops(&["import", "floor.dxf", "-o", "other.toml", "--layer", "POSTS=Stuetzen"]);
-    assert!(wrong.code == Some(2) && wrong.err.contains("as in COLUMNS=Posts"), "{wrong:?}");
+    assert!(wrong.code == Some(2) && wrong.err.contains("for example COLUMNS=Posts"), "{wrong:?}");
 }
 
 /// A round tank whose plates are drawn by their seams: a ring with four joints, and a cross within.
@@ -170,10 +170,13 @@ fn a_scenario_in_another_encoding_is_named_with_line_and_remedy() {
     for (file, told) in [
         (
             "latin.toml",
-            "not UTF-8 but ISO-8859-1, by line 2\nhelp: save it as UTF-8: `iconv -f ISO-8859-1 -t UTF-8 FILE > NEW`",
+            "ISO-8859-1 instead of UTF-8, judging by line 2\nhelp: save it as UTF-8: `iconv -f ISO-8859-1 -t UTF-8 FILE > NEW`",
         ),
-        ("wide.toml", "not UTF-8 but UTF-16, by its first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t"),
-        ("bare.toml", "not UTF-8 but UTF-16LE, by its first line\nhelp:"),
+        (
+            "wide.toml",
+            "UTF-16 instead of UTF-8, judging by its first line\nhelp: save it as UTF-8: `iconv -f UTF-16 -t",
+        ),
+        ("bare.toml", "UTF-16LE instead of UTF-8, judging by its first line\nhelp:"),
     ] {
         let checked = bench.tankops(&["check", file]);
         assert!(checked.code == Some(2) && checked.err.contains(told), "{checked:?}");

@@ -66,7 +66,7 @@ pub(crate) fn begin_and_kill(
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let until = Instant::now() + Duration::from_secs(60);
+    let until = Instant::now() + Duration::from_mins(1);
     let has_begun = |run: &PathBuf| {
         !before.contains(run) && run.join("events.jsonl.zst").metadata().is_ok_and(|file| file.len() > 100)
     };

@@ -68,7 +68,7 @@ fn an_onlooker_sees_a_run_under_way_and_its_end_and_cannot_stop_it() {
     let mut onlooker = view(&bench, &run);
     onlooker.hear("Mission running");
     onlooker.order("hold\nend\n");
-    onlooker.hear("VIEW: this console only looks on");
+    onlooker.hear("VIEW: this console is view-only");
     pilot.order("inject A dead 5s\n");
     onlooker.hear("fault injected: station A dead for 5 s");
     pilot.order("end\nyes\n");
@@ -92,7 +92,7 @@ fn an_onlooker_is_informed_that_the_console_of_the_run_was_killed() {
     let onlooker = view(&bench, &bench.runs().remove(0));
     onlooker.hear("Mission running");
     pilot.child.kill().unwrap();
-    onlooker.hear("the run was not closed: its console is gone");
+    onlooker.hear("the run was not closed: its console has exited");
     onlooker.leave();
 }
 

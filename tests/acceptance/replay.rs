@@ -84,7 +84,10 @@ fn events_says_when_the_journal_has_no_end_or_nothing_at_all() {
     let part = bench.tankops(&["events", name, "--from", "1", "--to", "1.5", "--kind", "truth"]);
     assert_eq!((part.code, part.out.lines().count(), part.err.as_str()), (Some(0), 6, ""), "{part:?}");
     let refused = bench.tankops(&["events", name, "--from", "-5"]);
-    assert!(refused.code == Some(2) && refused.err.contains("seconds, as 0 or 125.5"), "{refused:?}");
+    assert!(
+        refused.code == Some(2) && refused.err.contains("seconds, for example 0 or 125.5"),
+        "{refused:?}"
+    );
 
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, &whole[..whole.len() - 30]).unwrap();

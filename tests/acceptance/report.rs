@@ -55,7 +55,7 @@ fn a_report_is_one_file_without_network_and_script_in_every_format_and_never_wri
         assert!(!html.contains(outside), "{outside}");
     }
     for wanted in
-        ["[inspection.tank_id]", "Not to be signed", "SIMULATION", "Coverage map", "Sheet \" counter(page)"]
+        ["[inspection.tank_id]", "Do not sign", "SIMULATION", "Coverage map", "Sheet \" counter(page)"]
     {
         assert!(html.contains(wanted), "{wanted}");
     }
@@ -112,11 +112,11 @@ fn a_report_is_signed_when_every_item_is_answered_and_the_next_one_is_another_re
         html.contains("Signed by L. Kern") && html.contains("Port of &#60;Rotterdam&#62;"),
         "escaped facts"
     );
-    assert!(!html.contains("Not to be signed") && !html.contains("[inspection."), "nothing is missing");
+    assert!(!html.contains("Do not sign") && !html.contains("[inspection."), "nothing is missing");
     for more in [&["--force"][..], &[]] {
         let over = bench.tankops(&[&["report", path, "-o", "a.html"], more].concat());
         assert!(
-            over.code == Some(2) && over.err.contains("signed revision A, which is never changed"),
+            over.code == Some(2) && over.err.contains("signed revision A, which must not be changed"),
             "{over:?}"
         );
     }
@@ -161,7 +161,7 @@ fn a_figure_that_was_changed_is_named_by_report_runs_and_verify_and_blocks_the_s
     let file = run.join("report.json");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replace("\"collisions\": 0", "\"collisions\": 1")).unwrap();
-    let doubt = "report.json was changed: collisions is 1, the journal gives 0";
+    let doubt = "report.json was changed: collisions is 1; the journal gives 0";
     assert_doubted(&bench, &run, &path, [doubt, "report.json was changed after the run ended"]);
     // Nor does it help to take the digest out that shows the change.
     let unsealed = text.lines().filter(|line| !line.contains("\"report_sha256\""));

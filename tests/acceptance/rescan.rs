@@ -91,7 +91,7 @@ fn runs_that_do_not_fit_together_are_refused_with_the_reason() {
     let nothing =
         bench.tankops(&["rescan", first.to_str().unwrap(), "-o", "none.toml", "--min-area-m2", "1000"]);
     assert!(
-        nothing.code == Some(1) && nothing.out.contains("none.toml is not written: nothing"),
+        nothing.code == Some(1) && nothing.out.contains("none.toml not written: no missed area"),
         "{nothing:?}"
     );
     assert!(!bench.path().join("none.toml").exists());
@@ -107,12 +107,12 @@ fn a_journal_that_was_changed_is_reported_wherever_it_is_read() {
     let run = half_a_scan(&bench);
     let name = run.to_str().unwrap();
     let text = journal_text(&run);
-    assert!(!bench.tankops(&["report", name]).out.contains("not the one that the report was made from"));
+    assert!(!bench.tankops(&["report", name]).out.contains("the report was made from a different journal"));
     change_journal(&run, &(text.replacen("\"collided\":false", "\"collided\":true", 1)));
     for command in [vec!["runs"], vec!["report", name], vec!["export", name, "--rrd", "regenerated.rrd"]] {
         let read = bench.tankops(&command);
         assert!(
-            read.code == Some(0) && read.out.contains("not the one that the report was made from"),
+            read.code == Some(0) && read.out.contains("the report was made from a different journal"),
             "{read:?}"
         );
     }
@@ -150,8 +150,8 @@ fn a_swath_or_a_box_that_cannot_be_is_refused_when_the_scenario_is_read() {
         let answer = bench.tankops(&["plan", file.to_str().unwrap()]);
         assert!(answer.code == Some(2) && answer.err.contains(why), "{answer:?}");
     };
-    refused("thin.toml", "overlap_m = 0.1", "overlap_m = 0.597", "lanes side by side");
+    refused("thin.toml", "overlap_m = 0.1", "overlap_m = 0.597", "parallel lanes");
     let (cells, outside) =
         ("cell_m = 0.05", "boxes_m = [[0.0, 0.0, 1.0, 1.0], [7.0, 0.0, 8.0, 1.0]]\ncell_m = 0.05");
-    refused("outside.toml", cells, outside, "box 2 lies outside the tank");
+    refused("outside.toml", cells, outside, "box 2 is outside the tank");
 }

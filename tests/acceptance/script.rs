@@ -28,15 +28,19 @@ fn the_first_line_that_fails_is_named() {
         (
             "theme dark\nassert phase running\n",
             1,
-            "mission.txt:2: not so: phase running; the phase is waiting",
+            "mission.txt:2: assertion failed: phase running; the phase is waiting",
         ),
         ("theme dark\nspeed 900\n", 2, "mission.txt:2: must be 0.25 to 64, or max"),
-        ("theme dark\nbogus command\n", 2, "mission.txt:2: no command `bogus`"),
+        ("theme dark\nbogus command\n", 2, "mission.txt:2: unknown command `bogus`"),
         ("exclude S9\n", 1, "mission.txt:1: no station `S9`"),
         ("resume\n", 1, "mission.txt:1: "),
         ("start\nresume\n", 1, "mission.txt:2: a question is open; answer it first"),
-        ("wait until text nonsense within 0.1s\n", 1, "mission.txt:1: not within 0.1 s: text \"nonsense\""),
-        ("leave\ntheme dark\n", 1, "mission.txt:2: the console was left before"),
+        (
+            "wait until text nonsense within 0.1s\n",
+            1,
+            "mission.txt:1: timed out after 0.1 s waiting for: text \"nonsense\"",
+        ),
+        ("leave\ntheme dark\n", 1, "mission.txt:2: an earlier line left the console"),
         ("theme dark\nwait a bit\n", 2, "mission.txt:2: write wait until CONDITION"),
     ];
     for (script, code, line) in cases {
@@ -51,7 +55,7 @@ fn nothing_is_run_of_a_script_with_a_line_that_cannot_be_read() {
     let ended =
         scripted(&bench, "speed max\nstart\nkey enter\nwait until phase ended\nbogus command\nspeed\n");
     assert_eq!(ended.code, Some(2), "{ended:?}");
-    for line in ["mission.txt:5: no command `bogus`", "mission.txt:6: usage: speed"] {
+    for line in ["mission.txt:5: unknown command `bogus`", "mission.txt:6: usage: speed"] {
         assert!(ended.err.contains(line), "{line}: {ended:?}");
     }
     assert!(bench.runs().is_empty());
@@ -148,7 +152,7 @@ fn plain_sentences_tell_the_mission_and_commands_come_from_stdin() {
     // The end of stdin leaves; the commands before it are carried out.
     console.order("speeed 2\ngoto home\ngoto plan\nstart\nno\n");
     console.close();
-    for line in ["Refused: no command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."] {
+    for line in ["Refused: unknown command `speeed`.", "Screen 1: Home.", "Enter: start, Esc: cancel."] {
         console.hear(line);
     }
     assert_eq!(console.leave(), Some(0));

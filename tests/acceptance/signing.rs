@@ -74,7 +74,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     let other = bench.runs().into_iter().find(|other| *other != run).unwrap();
     let over = bench.tankops(&["report", other.to_str().unwrap(), "-o", "a.html", "--force"]);
     assert!(
-        over.code == Some(2) && over.err.contains("is the signed revision A, which is never changed"),
+        over.code == Some(2) && over.err.contains("is the signed revision A, which must not be changed"),
         "{over:?}"
     );
 
@@ -88,7 +88,7 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
 
     let renamed = run.with_file_name("20300101T000000Z-cover-circle-tether-safe-1");
     std::fs::rename(&run, &renamed).unwrap();
-    assert_refused(&sign(&bench, &renamed, "b.html"), "give it that name again");
+    assert_refused(&sign(&bench, &renamed, "b.html"), "rename it back to that name");
     let verified = bench.verify(&renamed, &["--from-journal"]);
     assert!(
         verified.code == Some(1) && verified.out.contains("NOT AS SIGNED: the folder is called 20300101"),
@@ -102,10 +102,10 @@ fn a_signature_is_missed_where_its_list_was_deleted_and_a_run_where_another_took
     }
     let verified = bench.verify(&run, &["--from-journal"]);
     assert!(
-        verified.code == Some(1) && verified.out.contains("signed revision A is about another journal"),
+        verified.code == Some(1) && verified.out.contains("signed revision A covers a different journal"),
         "{verified:?}"
     );
-    assert_refused(&sign(&bench, &run, "b.html"), "signed revision A is about another journal");
+    assert_refused(&sign(&bench, &run, "b.html"), "signed revision A covers a different journal");
 }
 
 /// A scenario file of the round tank with what makes it another one.
@@ -207,7 +207,7 @@ fn verify_and_runs_name_every_signed_report_that_is_not_as_it_was() {
     std::fs::remove_file(&list).unwrap();
     wrong("signed.json is missing");
     std::fs::write(&list, "[]").unwrap();
-    wrong("signed.json does not list that");
+    wrong("signed.json does not list it");
     std::fs::write(&list, "[{]").unwrap();
     wrong("signed.json is damaged");
     std::fs::write(&list, &list_text).unwrap();
@@ -237,7 +237,7 @@ fn empty_words_an_expired_certificate_and_sound_of_unknown_origin_are_not_signed
     );
     assert!(
         open("UT-2 1234", "UT-2 1234, expired 2019")
-            .contains("inspector_certificate says that it is expired")
+            .contains("inspector_certificate states that it is expired")
     );
     assert!(open("sound_speed = \"1180 m/s, gas oil, 14 deg\"\n", "").contains("inspection.sound_speed"));
     assert!(open("1180 m/s, gas oil, 14 deg", "1180 m/s").contains("how it was determined"));
@@ -262,5 +262,5 @@ fn tables_are_no_formulas_and_none_of_them_is_written_over() {
     assert!(found.contains(",'=1+1,"), "{found}");
     let own = run.join("report.json");
     let over = bench.tankops(&["report", run.to_str().unwrap(), "-o", own.to_str().unwrap(), "--force"]);
-    assert!(over.code == Some(2) && over.err.contains("is a file of the run"), "{over:?}");
+    assert!(over.code == Some(2) && over.err.contains("is part of a run"), "{over:?}");
 }

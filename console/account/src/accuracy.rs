@@ -1,19 +1,19 @@
-//! How good the estimated position was: by its own covariance, and by the truth where there is one.
+//! Accuracy of the estimated position: by its own covariance and, where the true position is known, by the truth.
 
 use crate::summary::{Accuracy as Statement, Positioning};
 use nalgebra::Matrix2;
 use positioning::fix::ELLIPSE_95;
 use world::Point;
 
-/// The 95 % error by the covariance, tick by tick.
+/// Accumulates the 95 % error by the covariance, tick by tick.
 #[derive(Debug, Default)]
 pub(crate) struct Claimed {
     errors_m: Vec<f32>,
     way_m: f64,
     way_over_m: f64,
     last: Option<Point>,
-    /// Largest error since the last ranging cycle, and in the cycle before it: between two fixes the error grows and falls
-    /// like a saw, and the tip is what counts.
+    /// Largest error since the last ranging cycle, and in the cycle before it. The error grows between two fixes and
+    /// drops at each fix, and only its peaks matter.
     tips_m: [f64; 2],
     fixes: u64,
     stations: u64,
@@ -21,7 +21,7 @@ pub(crate) struct Claimed {
 }
 
 impl Claimed {
-    /// Takes in the estimate of a tick and its 95 % error, metres.
+    /// Adds the estimate of a tick and its 95 % error, metres.
     pub(crate) fn estimate(&mut self, position: Point, error_m: f64, limit_m: f64) {
         self.errors_m.push(error_m as f32);
         self.tips_m[0] = self.tips_m[0].max(error_m);
@@ -31,12 +31,12 @@ impl Claimed {
         self.way_over_m += if error_m > limit_m { step_m } else { 0.0 };
     }
 
-    /// A ranging cycle ended.
+    /// Marks the end of a ranging cycle.
     pub(crate) fn end_cycle(&mut self) {
         self.tips_m = [0.0, self.tips_m[0]];
     }
 
-    /// The ranges of so many stations gave a position.
+    /// Adds a position from the ranges of this many stations.
     pub(crate) fn fix(&mut self, stations: usize) {
         let stations = stations as u64;
         self.fixes += 1;
@@ -49,7 +49,7 @@ impl Claimed {
         self.tips_m[0].max(self.tips_m[1])
     }
 
-    /// The figures; none without an estimate.
+    /// The figures; `None` without an estimate.
     pub(crate) fn statement(&self, limit_m: f64) -> Option<Statement> {
         let mut sorted = self.errors_m.clone();
         sorted.sort_by(f32::total_cmp);
@@ -66,12 +66,12 @@ impl Claimed {
     }
 }
 
-/// The value that a share of sorted values does not exceed.
+/// Returns the value that is not exceeded by the given share of sorted values.
 pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
     sorted.get(((share * sorted.len() as f64).ceil() as usize).max(1) - 1).copied()
 }
 
-/// Errors so far; truth and estimate of a tick are paired in whichever order they come.
+/// Accumulates position errors; truth and estimate of a tick are paired whichever comes first.
 #[derive(Debug, Default)]
 pub(crate) struct Accuracy {
     truth: Option<(u64, Point)>,
@@ -83,24 +83,24 @@ pub(crate) struct Accuracy {
 }
 
 impl Accuracy {
-    /// Where the robot truly was in a tick.
+    /// Adds the true position of a tick.
     pub(crate) fn truth(&mut self, tick: u64, position: Point) {
         self.truth = Some((tick, position));
         self.pair();
     }
 
-    /// Where it believed to be, with the covariance of that, square metres.
+    /// Adds the estimated position of a tick with its covariance, square metres.
     pub(crate) fn estimate(&mut self, tick: u64, position: Point, covariance: Matrix2<f64>) {
         self.estimate = Some((tick, position, covariance));
         self.pair();
     }
 
-    /// The position counts as lost from now on.
+    /// Marks the position as lost from now on.
     pub(crate) fn lost(&mut self, t_s: f64) {
         self.lost_since_s.get_or_insert(t_s);
     }
 
-    /// The position is good again.
+    /// Marks the position as recovered.
     pub(crate) fn regained(&mut self, t_s: f64) {
         self.position_lost_s += self.lost_since_s.take().map_or(0.0, |since_s| t_s - since_s);
     }
@@ -118,12 +118,12 @@ impl Accuracy {
         self.errors_m.push(error.norm());
         let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
         let determinant = a * c - b * b;
-        // Squared Mahalanobis distance, multiplied by the determinant so that nothing is divided by zero.
+        // Squared Mahalanobis distance, multiplied by the determinant to avoid a division by zero.
         let scaled = c * error.x * error.x - 2.0 * b * error.x * error.y + a * error.y * error.y;
         self.in_ellipse += usize::from(scaled <= ELLIPSE_95 * determinant);
     }
 
-    /// The figures of a run that has come to `now_s`; none if truth and estimate never came together.
+    /// The figures of a run up to `now_s`; `None` if no tick had both truth and estimate.
     pub(crate) fn positioning(&self, now_s: f64) -> Option<Positioning> {
         let mut sorted = self.errors_m.clone();
         sorted.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
-//! Mission time as people read it.
+//! Mission time in the format for people.
 
-/// A span of time as hours, minutes and whole seconds; what is left of a second is cut off.
+/// Formats a time span as hours, minutes and whole seconds; fractions of a second are cut off.
 ///
 /// ```
 /// assert_eq!(account::clock(2480.9), "00:41:20");

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use world::{Point, Shape, Zone, shape::ring_area_m2};
 
-/// Who draws zones; there is no other way to draw one.
+/// The source of drawn zones; only the operator can draw one.
 const OPERATOR: &str = "operator";
 
 /// A no-go zone that was drawn after the scenario was opened.
@@ -13,9 +13,9 @@ const OPERATOR: &str = "operator";
 pub struct DrawnZone {
     /// Its name.
     pub name: String,
-    /// Who drew it.
+    /// The source of the zone.
     pub by: String,
-    /// When, seconds of mission time; absent if that was before the start.
+    /// Mission time at which it was drawn, seconds; absent if that was before the start.
     pub t_s: Option<f64>,
     /// Its area, square metres.
     pub area_m2: f64,
@@ -24,7 +24,7 @@ pub struct DrawnZone {
 }
 
 impl DrawnZone {
-    /// A zone that is drawn now, in a mission of this phase.
+    /// Creates the record of a zone that is drawn now, in a mission of this phase.
     pub(crate) fn new(zone: &Zone, t_s: f64, phase: &Phase) -> Self {
         let corners = match &zone.shape {
             Shape::Polygon { vertices } => vertices.clone(),
@@ -39,7 +39,7 @@ impl DrawnZone {
         }
     }
 
-    /// What it is, who drew it and when.
+    /// A text with the name of the zone, who drew it, and when.
     pub(crate) fn words(&self) -> String {
         let when = self.t_s.map_or_else(|| "before the start".to_owned(), |t_s| format!("at {t_s:.1} s"));
         format!("no-go zone {}, drawn by the {} {when}", self.name, self.by)

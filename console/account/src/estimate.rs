@@ -1,4 +1,5 @@
-//! What a plan promises before anything moves: time, coverage, clearance, tether, accuracy, and where each is worst.
+//! The estimated results of a plan before the robot moves: time, coverage, clearance, tether, accuracy, and the
+//! position of each extreme.
 
 mod time;
 
@@ -12,60 +13,61 @@ use world::{
     tether::{Bearing, Cable},
 };
 
-/// Distance between the points of a path that are looked at, metres.
+/// Distance between the points at which a path is evaluated, metres.
 const SAMPLE_M: f64 = 0.1;
-/// Cells of a forecast along the longer side of the floor.
+/// Number of cells of a forecast along the longer side of the floor.
 const CELLS: f64 = 80.0;
 
-/// A figure and where on the path it is.
+/// A figure and its position on the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// The figure; metres or radians.
     pub value: f64,
-    /// Where, metres, tank frame.
+    /// The position, metres, tank frame.
     pub at: Point,
 }
 
-/// What a plan does to the tether.
+/// The tether along a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TetherEstimate {
-    /// Most cable out, metres.
+    /// Greatest length out, metres.
     pub length_max: Worst,
-    /// Largest angle about one obstacle, radians.
+    /// Largest wrap on one obstacle, radians.
     pub wrap_max: Worst,
     /// Name of that obstacle; empty if the cable touches none.
     pub wrapped: String,
-    /// Largest sum of all angles, radians.
+    /// Largest total wrap, radians.
     pub wrap_total_max_rad: f64,
-    /// Cable out at the end of the path, metres.
+    /// Length out at the end of the path, metres.
     pub end_length_m: f64,
 }
 
-/// What a plan promises on the drawing.
+/// The estimated results of a plan on the drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Length of the path, metres.
     pub length_m: f64,
-    /// Time to drive it, as fast as the robot can stop in time, with stops to turn at corners, seconds.
+    /// Time to drive the path at the highest speed from which the robot can stop safely, with stops to turn at
+    /// corners, seconds.
     pub time_s: f64,
-    /// Whether it achieves the whole task.
+    /// Whether the plan achieves the whole task.
     pub complete: bool,
-    /// Share of the reachable floor that it scans, 0 to 1; absent for missions that are not to scan.
+    /// Share of the reachable floor that the plan scans, 0 to 1; absent for missions without a scan.
     pub reachable: Option<f64>,
-    /// Least distance from the hull to anything solid, metres.
+    /// Minimum distance from the hull to any solid object, metres.
     pub clearance_min: Option<Worst>,
-    /// What it does to the tether; absent without one.
+    /// The tether along the path; absent without a tether.
     pub tether: Option<TetherEstimate>,
-    /// Largest 95 % error that the stations are forecast to give, metres; absent without stations.
+    /// Largest 95 % error that is forecast for the stations, metres; absent without stations.
     pub accuracy_worst: Option<Worst>,
-    /// Way on which the stations are forecast to give no fix, metres.
+    /// Length of the path for which no fix is forecast, metres.
     pub without_fix_m: f64,
 }
 
 impl Estimate {
-    /// What a path promises.
+    /// Estimates the results of a path.
     ///
-    /// Costs one look at every tenth of a metre of the path; with a tether the cable is dragged along it once.
+    /// Evaluates the path every tenth of a metre; with a tether, the cable is dragged along it once.
     pub fn new(mission: &MissionConfig, drawing: &World, path: &[Point], complete: bool) -> Self {
         let sampled = polyline::resampled(path, SAMPLE_M);
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
@@ -128,7 +130,7 @@ fn tether(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Option<Te
     Some(estimate)
 }
 
-/// Name of the obstacle about which a cable turns most.
+/// Name of the obstacle with the largest wrap of a cable.
 fn most_wrapped(cable: &Cable, drawing: &World) -> String {
     let contacts = cable.contacts();
     let most = contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()));
@@ -139,7 +141,7 @@ fn most_wrapped(cable: &Cable, drawing: &World) -> String {
     }
 }
 
-/// The largest forecast error on a path, and the way without any fix, metres.
+/// The largest forecast error on a path, and the length of path without any fix, metres.
 fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option<Worst>, f64) {
     if drawing.stations.is_empty() {
         return (None, 0.0);
@@ -158,7 +160,7 @@ fn accuracy(mission: &MissionConfig, drawing: &World, path: &[Point]) -> (Option
     (worst, without_fix_m)
 }
 
-/// What the mission's own estimator may expect of its stations.
+/// The accuracy that the mission's estimator can expect from its stations.
 pub fn forecast(mission: &MissionConfig, drawing: &World) -> Forecast {
     let (low, high) = drawing.boundary.bounds();
     mission.forecast((high - low).amax() / CELLS)
@@ -210,7 +212,7 @@ mod tests {
         let limits = &mission.limits;
         let drive_s = 12.5 / limits.v_max_m_per_s;
         let turn_s = std::f64::consts::FRAC_PI_2 / limits.w_max_rad_per_s + limits.tick_s;
-        // It stops twice.
+        // The robot stops twice.
         let stops_s = 2.0 * limits.v_max_m_per_s / limits.acceleration_m_per_s2;
         assert!((estimate.time_s - drive_s - turn_s - stops_s).abs() < 0.1, "{}", estimate.time_s);
         assert_eq!((estimate.tether, estimate.accuracy_worst, estimate.reachable), (None, None, None));

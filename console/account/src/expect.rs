@@ -1,4 +1,4 @@
-//! Bounds that a scenario sets to its own run.
+//! Bounds that a scenario sets for its own run.
 
 use crate::summary::Summary;
 use mission::Outcome;
@@ -6,60 +6,60 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use world::coverage::percent_text;
 
-/// The bounds; those that are absent bind nothing.
+/// The bounds; an absent bound is not checked.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Expect {
-    /// How the run ends.
+    /// The outcome of the run.
     pub outcome: Option<Outcome>,
-    /// Most collisions.
+    /// Maximum number of collisions.
     pub collisions_max: Option<u64>,
-    /// Least distance from the hull to anything solid, metres.
+    /// Minimum distance from the hull to any solid object, metres.
     pub clearance_min_m: Option<f64>,
     /// Longest mission time, seconds.
     pub mission_time_max_s: Option<f64>,
-    /// Longest true way, metres.
+    /// Longest true path, metres.
     pub path_length_max_m: Option<f64>,
-    /// Least share of the reachable floor scanned.
+    /// Minimum share of the reachable floor scanned.
     pub coverage_reachable_min: Option<f64>,
-    /// Least share of the reachable floor scanned, by where the robot truly was.
+    /// Minimum share of the reachable floor scanned, by the true position.
     pub coverage_truth_min: Option<f64>,
-    /// Least share of the whole floor scanned.
+    /// Minimum share of the whole floor scanned.
     pub coverage_whole_min: Option<f64>,
-    /// Most floor scanned again, as a share of the floor scanned.
+    /// Largest share of the scanned floor that was scanned more than once.
     pub overlap_max: Option<f64>,
-    /// Least tracking precision.
+    /// Minimum tracking precision.
     pub precision_min: Option<f64>,
-    /// Least tracking recall.
+    /// Minimum tracking recall.
     pub recall_min: Option<f64>,
     /// Largest root mean square distance of the preset points from the path, metres.
     pub rmse_max_m: Option<f64>,
-    /// Largest root mean square distance across the track, metres.
+    /// Largest root mean square cross-track distance, metres.
     pub cross_track_rmse_max_m: Option<f64>,
     /// Largest mean position error, metres.
     pub mean_error_max_m: Option<f64>,
-    /// Largest position error exceeded in no more than 5 % of the ticks, metres.
+    /// Largest 95th percentile of the position error, metres.
     pub p95_error_max_m: Option<f64>,
-    /// Least share of the ticks with the truth in the 95 % ellipse.
+    /// Minimum share of the ticks with the true position in the 95 % ellipse.
     pub in_95_ellipse_min: Option<f64>,
     /// Longest time without a position, seconds.
     pub position_lost_max_s: Option<f64>,
-    /// Most cable out at any time, metres.
+    /// Greatest length of cable out at any time, metres.
     pub tether_length_max_m: Option<f64>,
     /// Largest wrap of the cable on one obstacle, radians.
     pub wrap_max_rad: Option<f64>,
-    /// Most cable out at the end, metres.
+    /// Greatest length of cable out at the end, metres.
     pub tether_end_length_max_m: Option<f64>,
 }
 
-/// A bound that a run did not keep.
+/// A bound that a run did not meet.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Miss {
     /// The key in `[expect]`.
     pub key: &'static str,
     /// The bound.
     pub bound: String,
-    /// What came out; absent if the run has no such figure.
+    /// The figure of the run; absent if the run has no such figure.
     pub found: Option<String>,
 }
 
@@ -70,7 +70,7 @@ impl fmt::Display for Miss {
     }
 }
 
-/// Which side of a bound is the right one.
+/// The side of a bound on which a figure must be.
 #[derive(Clone, Copy)]
 enum Side {
     AtLeast,
@@ -78,8 +78,8 @@ enum Side {
 }
 
 impl Expect {
-    /// The same figures with the sentences about the bounds that were not kept. The figures of a run that was cut off
-    /// are not compared: nobody knows what it would have come to.
+    /// Returns the figures with sentences about the bounds that were not met. The figures of a run that was cut off
+    /// are not compared, because its result is unknown.
     #[must_use]
     pub fn evaluated(&self, run: Summary) -> Summary {
         if run.outcome.is_none() {
@@ -88,7 +88,7 @@ impl Expect {
         Summary { violations: Some(self.check(&run).iter().map(ToString::to_string).collect()), ..run }
     }
 
-    /// How the run is expected to end, in a few words for people; empty if the bounds say nothing of it.
+    /// The expected end of the run in a few words for people; empty if no bound concerns it.
     pub fn words(&self) -> String {
         let outcome = self.outcome.map(|outcome| outcome.word().to_owned());
         let coverage = self
@@ -99,7 +99,7 @@ impl Expect {
         [outcome, coverage, time, collisions].into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// The bounds that a run did not keep. A figure that is absent keeps no bound.
+    /// Returns the bounds that a run did not meet. An absent figure meets no bound.
     pub fn check(&self, run: &Summary) -> Vec<Miss> {
         use Side::{AtLeast, AtMost};
         let coverage = run.coverage;

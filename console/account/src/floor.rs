@@ -1,4 +1,4 @@
-//! The floor as an inspector accounts for it: what was scanned, what was missed and why, what nobody could reach.
+//! The account of the floor for an inspector: scanned floor, missed floor with reasons, and unreachable floor.
 
 mod areas;
 mod evidence;
@@ -25,26 +25,26 @@ use world::{
     coverage::{percent, percents},
 };
 
-/// The account of a floor, by the estimated position: a cell counts as scanned where the position error was within
-/// the mission's limit.
+/// The account of a floor by the estimated position: a cell counts as scanned where the position error was within the
+/// mission's limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Edge of a cell of the grid, metres.
     pub cell_m: f64,
     /// Width of floor scanned in one pass, metres.
     pub swath_m: f64,
-    /// Half width of the 95 % position error above which nothing counted, metres.
+    /// Limit of the 95 % position error above which nothing counted as scanned, metres.
     pub position_limit_m: f64,
-    /// All floor.
+    /// The whole floor.
     pub whole: Shares,
-    /// The floor that the tool can reach: scanned and missed alone.
+    /// The floor that the tool can reach, which is either scanned or missed.
     pub reachable: Shares,
-    /// Scanned share of the reachable floor by the area that the tool swept instead of by cells, 0 to 1.
+    /// Scanned share of the reachable floor by the exact area that the tool swept instead of by cells, 0 to 1.
     #[serde(default)]
     pub exact: Option<f64>,
-    /// The zone along the shell.
+    /// The critical zone along the shell.
     pub critical_zone: CriticalZone,
-    /// Every plate, also those of which nothing was scanned; empty if the layout of the plates is not known.
+    /// All plates, including those of which nothing was scanned; empty if the plate layout is not known.
     pub plates: Vec<PlateAccount>,
     /// Reachable floor that was not scanned, the largest area first.
     pub missed: Vec<Area<MissReason>>,
@@ -52,13 +52,13 @@ pub struct Account {
     pub slivers: Slivers<MissReason>,
     /// Floor that the tool cannot reach, the largest area first.
     pub unreachable: Vec<Area<OutOfReach>>,
-    /// Areas out of reach that are too small to be listed.
+    /// Unreachable areas that are too small to be listed.
     #[serde(default)]
     pub unreachable_slivers: Slivers<OutOfReach>,
 }
 
 impl Account {
-    /// The account of a floor that nobody was to scan: nothing of it is missed, nor asked for along the shell.
+    /// The account of a floor that no mission had to scan: it has no missed floor and no requirement along the shell.
     #[must_use]
     pub fn of_no_scan(self) -> Self {
         Self {
@@ -75,67 +75,68 @@ impl Account {
         }
     }
 
-    /// Whether it is that of a floor that nobody was to scan.
+    /// Whether this account is of a floor that no mission had to scan.
     pub fn is_of_no_scan(&self) -> bool {
         self.whole.area_m2 <= 0.0
     }
 }
 
-/// How a floor divides. The shares are of its area and sum to 1.
+/// The division of a floor. The shares refer to its area and add up to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Shares {
     /// Area, square metres.
     pub area_m2: f64,
     /// Scanned.
     pub scanned: f64,
-    /// In reach of the tool, but not scanned.
+    /// Reachable by the tool, but not scanned.
     pub missed: f64,
-    /// Out of reach: closed off, beside obstacles, in zones that the robot must not enter.
+    /// Unreachable: closed off, beside obstacles, or in no-go zones.
     pub unreachable: f64,
-    /// Out of reach because the robot keeps its distance from the shell.
+    /// Unreachable because the robot keeps its distance from the shell.
     pub margin: f64,
-    /// Scanned for every position within the 95 % error: a part of what was scanned. Absent while a mission lasts.
+    /// Scanned for every position of the robot within the 95 % error; part of the scanned share. Absent during a
+    /// mission.
     #[serde(default)]
     pub guaranteed: Option<f64>,
-    /// The same shares as they are printed.
+    /// The same shares as printed.
     #[serde(default)]
     pub percent: Percent,
 }
 
-/// Shares in per cent, rounded to one decimal so that they sum to 100.0; all 0 of an empty floor.
+/// Shares in per cent, rounded to one decimal so that they add up to 100.0; all 0 for an empty floor.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Percent {
     /// Scanned.
     pub scanned: f64,
-    /// In reach of the tool, but not scanned.
+    /// Reachable by the tool, but not scanned.
     pub missed: f64,
-    /// Out of reach.
+    /// Unreachable.
     pub unreachable: f64,
-    /// Out of reach along the shell.
+    /// Unreachable along the shell.
     pub margin: f64,
-    /// Scanned for every position within the 95 % error: a part of what was scanned.
+    /// Scanned for every position of the robot within the 95 % error; part of the scanned share.
     #[serde(default)]
     pub guaranteed: Option<f64>,
 }
 
-/// One plate.
+/// The account of one plate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlateAccount {
     /// Its name.
     pub name: String,
-    /// What kind of plate.
+    /// Its kind.
     pub kind: PlateKind,
-    /// The 95 % error with which its floor was scanned: not exceeded by 95 % of its scanned cells, each with the best pass over
-    /// it, metres; absent if nothing of it was scanned.
+    /// The 95 % error of the position on its scanned floor: not exceeded in 95 % of its scanned cells, each with the
+    /// best pass over it, metres; absent if nothing of it was scanned.
     #[serde(default)]
     pub error_p95_m: Option<f64>,
-    /// How it divides.
+    /// The division of its floor.
     #[serde(flatten)]
     pub shares: Shares,
 }
 
 impl Shares {
-    /// How some floor divides whose cells are counted, each of so many square metres.
+    /// The division of a floor from its counted cells, each of the given area in square metres.
     pub fn of(counts: Counts, cell_m2: f64) -> Self {
         let Counts { floor, reachable, covered, covered_reachable, margin } = counts;
         let missed = reachable - covered_reachable;
@@ -149,7 +150,7 @@ impl Shares {
         Shares { area_m2, scanned, missed, unreachable, margin, guaranteed: None, percent }
     }
 
-    /// The same with so many guaranteed cells.
+    /// The same with the number of guaranteed cells.
     fn with_guaranteed(mut self, cells: usize, cell_m2: f64) -> Self {
         let share = if self.area_m2 > 0.0 { cells as f64 * cell_m2 / self.area_m2 } else { 0.0 };
         self.guaranteed = Some(share);
@@ -158,7 +159,7 @@ impl Shares {
     }
 }
 
-/// Cells of some part of the floor.
+/// Cell counts of a part of the floor.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     counts: Counts,
@@ -176,7 +177,7 @@ impl Tally {
     }
 }
 
-/// Accounts for a floor. Costs one look at every cell.
+/// Computes the account of a floor. Visits every cell once.
 pub fn account(run: &RunOpened, scanned: &Scanned, evidence: &Evidence) -> Account {
     let grid = scanned.believed();
     let floor = grid.floor();
@@ -229,7 +230,7 @@ pub fn plate_map(run: &RunOpened, floor: &Floor) -> Option<PlateMap> {
     run.plates.as_ref().map(|layout| layout.map(&run.world.boundary, floor))
 }
 
-/// The plate of the floor beside a place on the wall.
+/// The plate of the floor next to a point on the wall.
 fn plate_beside(floor: &Floor, map: &PlateMap, place: Point) -> Option<String> {
     let near = floor.cells_near(place, place, 2.0 * floor.cell_m).into_iter();
     let off_m = |cell: &usize| (floor.center(*cell) - place).norm();

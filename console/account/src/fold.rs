@@ -1,4 +1,4 @@
-//! Events of a run, one after the other, into its summary.
+//! Folds the events of a run into its summary, one by one.
 
 use crate::{
     Account, Evidence, Solid,
@@ -21,12 +21,12 @@ use planner_api::PoseEstimate;
 use positioning::fix::{ellipse_95, position_covariance};
 use world::{Obstacle, Point, Pose, Zone};
 
-/// So many faults are named.
+/// Maximum number of faults listed.
 const MOST_FAULTS: usize = 20;
-/// Most planners that are listed.
+/// Maximum number of planners listed.
 const MOST_PLANNERS: usize = 1000;
 
-/// What is known of a run from the events so far.
+/// The state of a run from the events so far.
 #[derive(Debug, Default)]
 pub struct Fold {
     known: Summary,
@@ -38,28 +38,29 @@ pub struct Fold {
     standing: FoldedStanding,
     turning: Turning,
     tethered: Option<Tethered>,
-    /// The tool of readings that were located; none for a run that was flown.
+    /// The tool of located readings; `None` for a mission.
     tool: Option<ToolTrack>,
     run: Option<Box<RunOpened>>,
     evidence: Option<Evidence>,
-    /// Whether the event before drew a zone: the change of the floor that follows is its.
+    /// Whether the previous event drew a zone: the change of the floor that follows belongs to it.
     is_zone_new: bool,
-    /// Whether the account of the floor is left out.
+    /// Whether the account of the floor is omitted.
     leaves_out_floor: bool,
 }
 
 impl Fold {
-    /// Nothing is known yet.
+    /// The state before any event.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The same without the account of the floor, where only the figures are wanted: a third of the work.
+    /// The same without the account of the floor, for callers that need only the figures: it takes a third of the
+    /// time.
     pub fn of_figures() -> Self {
         Self { leaves_out_floor: true, ..Self::default() }
     }
 
-    /// Takes in one event; they must come in the order of the journal.
+    /// Adds an event; events must come in the order of the journal.
     pub fn apply(&mut self, event: &Event) {
         self.known.ticks = Some(event.tick);
         self.known.mission_time_s = Some(event.t_s);
@@ -109,9 +110,9 @@ impl Fold {
                 self.find(obstacle);
             }
             EventKind::PlannerFailed { fault, .. } => {
-                // What the console refused to load or to let drive was not at work, so it has not failed.
+                // A planner that the console refused to load or to let drive was not running, so it has not failed.
                 let refused = matches!(fault.cause, Cause::Refused | Cause::Quarantined);
-                // Nor has a planner that says that no way exists.
+                // A planner that reports that no path exists has not failed either.
                 if !fault.is_no_way() {
                     self.known.planner_faults += u64::from(!refused);
                     self.note_fault(event.t_s, "", &fault.message);
@@ -147,8 +148,8 @@ impl Fold {
         }
     }
 
-    /// The robot believes it is somewhere; what its tool passed on the way there counts as the mission has it, and of readings that
-    /// were located between the two poses that are known well enough.
+    /// Adds the estimated position. The mission determines whether floor passed on the way counts; for located
+    /// readings, it counts between two poses that are known well enough.
     fn estimate(&mut self, event: &Event, estimate: &PoseEstimate) {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         let covariance = position_covariance(&estimate.covariance);
@@ -159,7 +160,7 @@ impl Fold {
             None => Passage::of(&self.standing.phase, error_m, limit_m) == Passage::Counts,
             Some(passed) => {
                 if passed.is_some_and(|(from, to)| from == to) {
-                    // One place: nothing counts on the way there.
+                    // A single position: no floor was passed on the way.
                     self.visit(here, &covariance, error_m, false);
                 }
                 passed.is_some()
@@ -168,14 +169,14 @@ impl Fold {
         self.visit(here, &covariance, error_m, counts);
     }
 
-    /// The tool has come here; whether what it passed counts.
+    /// Moves the tool to a pose, and adds whether the floor that it passed counts.
     fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: f64, counts: bool) {
         let error_lately_m = counts.then(|| self.claimed.tip_m());
         self.scanned.iter_mut().for_each(|scanned| scanned.visit(here, covariance, error_lately_m));
         self.evidence.iter_mut().for_each(|evidence| evidence.visit(here, error_m, counts));
     }
 
-    /// The 95 % error above which nothing counts as scanned, metres.
+    /// Limit of the 95 % error above which nothing counts as scanned, metres.
     fn scan_limit_m(&self) -> f64 {
         self.run.as_ref().map_or(f64::INFINITY, |run| run.mission.scan_limit_m())
     }
@@ -184,7 +185,7 @@ impl Fold {
         self.tethered.iter_mut().for_each(|tethered| tethered.snag(snagged));
     }
 
-    /// The figures so far. Those that no event provides are absent; the app fills them in.
+    /// The figures so far. Figures that no event provides are absent; the app fills them in.
     pub fn summary(&self) -> Summary {
         Summary {
             report_version: Some(REPORT_VERSION),
@@ -204,55 +205,55 @@ impl Fold {
         }
     }
 
-    /// The account of the floor; none for missions that are not to scan it.
+    /// The account of the floor; `None` for missions without a scan.
     fn account(&self) -> Option<Account> {
         let run = self.run.as_ref().filter(|_| self.is_to_scan())?;
         Some(account(run, self.scanned.as_ref()?, self.evidence.as_ref()?))
     }
 
-    /// Whether the mission is there to scan the floor.
+    /// Whether the task of the mission is to scan the floor.
     fn is_to_scan(&self) -> bool {
         let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
         self.run.as_ref().is_some_and(|run| scans(run) && run.measured.is_none())
     }
 
-    /// The run as it was opened, with the zones that were drawn since; `None` before that.
+    /// The run as it was opened, with the zones that were drawn since; `None` before the opening.
     pub fn run(&self) -> Option<&RunOpened> {
         self.run.as_deref()
     }
 
-    /// What was scanned; `None` before the run is opened.
+    /// The scanned floor; `None` before the run is opened.
     pub fn scanned(&self) -> Option<&Scanned> {
         self.scanned.as_ref()
     }
 
-    /// Why floor was missed; `None` before the run is opened, and without the account of the floor.
+    /// The evidence for missed floor; `None` before the run is opened, and without the account of the floor.
     pub fn evidence(&self) -> Option<&Evidence> {
         self.evidence.as_ref()
     }
 
-    /// Whether it is known what was scanned: of readings that were located, only if they say when the tool was on.
+    /// Whether the scanned floor is known: for located readings, only if they state when the tool was on.
     pub fn says_what_was_scanned(&self) -> bool {
         self.tool.as_ref().is_none_or(ToolTrack::is_known)
     }
 
-    /// Whether the true heading is known: readings may have true places without one.
+    /// Whether the true heading is known: readings may contain true positions without one.
     fn has_heading(&self) -> bool {
         self.known.path_length_m.is_some() && self.tool.is_none()
     }
 
-    /// Whether the task is to scan the floor; what was located from readings has no task that speaks against it.
+    /// Whether the task is to scan the floor; also true for located readings, which have no task.
     pub fn has_floor_to_scan(&self) -> bool {
         let scans = |run: &RunOpened| matches!(run.mission.task, TaskConfig::Cover { .. });
         self.run.as_ref().is_some_and(|run| scans(run) || run.measured.is_some())
     }
 
-    /// What was found that is not on the drawing.
+    /// The found obstacles, which are not on the drawing.
     pub fn found(&self) -> impl Iterator<Item = &Solid> {
         self.evidence.iter().flat_map(|evidence| evidence.found().map(|(_, solid)| solid))
     }
 
-    /// Where the robot truly was at the end; `None` outside simulation.
+    /// The true position at the end; `None` outside simulation.
     pub fn true_place(&self) -> Option<Point> {
         self.truth.map(|pose| pose.position)
     }
@@ -261,7 +262,7 @@ impl Fold {
         self.tethered.as_ref()?.tether(self.truth.map(|pose| pose.position), self.known.outcome)
     }
 
-    /// Whether the way is preset: what planners plan then only leads along it.
+    /// Whether the path is preset: then a planner only plans how to follow it.
     fn is_preset(&self) -> bool {
         self.tracker.is_some()
     }
@@ -290,7 +291,7 @@ impl Fold {
         self.evidence = (!self.leaves_out_floor).then(|| Evidence::new(run));
         self.scanned = Some(Scanned::new(run.floor.clone(), run.mission.tool(), run.mission.start));
         if let Some(measured) = &run.measured {
-            // Where something was, and of what it did there only where its tool was on.
+            // Adds a located pose; the floor passed there counts only while the tool was on.
             self.known.located = Some(measured.file.clone());
             self.tool = Some(ToolTrack::new(measured, &run.mission));
             return;
@@ -308,7 +309,7 @@ impl Fold {
         let before = self.truth.replace(pose).unwrap_or(pose);
         let way_m = (pose.position - before.position).norm();
         known.path_length_m = Some(known.path_length_m.unwrap_or(0.0) + way_m);
-        // Whether what was located touched anything is not in its readings.
+        // The readings do not contain collisions.
         if self.run.as_ref().is_none_or(|run| run.measured.is_none()) {
             known.collisions = Some(known.collisions.unwrap_or(0) + u64::from(collided));
         }
@@ -347,7 +348,7 @@ impl Fold {
     }
 }
 
-/// The parameters of a planner when nothing is set.
+/// The parameters of a planner if none are set.
 fn defaults(info: &PlannerInfo) -> Parameters {
     let default = |kind: &ParamKind| match kind {
         ParamKind::Float { default, .. } => ParamValue::Float(*default),

@@ -1,4 +1,5 @@
-//! What only people know of an inspection: `[inspection]` of the scenario, or of a file that is written after the run.
+//! Facts of an inspection that only people know: `[inspection]` of the scenario, or of a file that is written after
+//! the run.
 
 mod dates;
 mod words;
@@ -8,13 +9,13 @@ pub use words::{is_placeholder, says_nothing};
 
 use serde::{Deserialize, Serialize};
 
-/// What only people know. What is absent is printed as missing.
+/// The facts that only people know. Absent facts are printed as missing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Inspection {
-    /// Who ordered the inspection.
+    /// The client of the inspection.
     pub client: Option<String>,
-    /// Where the tank stands.
+    /// Site of the tank.
     pub site: Option<String>,
     /// Number of the tank.
     pub tank_id: Option<String>,
@@ -24,62 +25,63 @@ pub struct Inspection {
     pub nominal_thickness_mm: Option<f64>,
     /// Number of the order.
     pub order: Option<String>,
-    /// Procedure by which the inspection is done.
+    /// Inspection procedure.
     pub procedure: Option<String>,
-    /// Code and edition that apply.
+    /// Applicable code and edition.
     pub code: Option<String>,
-    /// Who inspects and signs.
+    /// The inspector who signs.
     pub inspector: Option<String>,
     /// Number and validity of the inspector's certificate.
     pub inspector_certificate: Option<String>,
     /// Last day on which that certificate is valid, as `2027-03-31` or `2027-03`.
     pub inspector_certificate_expires: Option<String>,
-    /// Who operated the robot.
+    /// The person who operated the robot.
     pub operator: Option<String>,
-    /// Who approves the report.
+    /// The person who approves the report.
     pub approver: Option<String>,
     /// Make and serial number of the robot.
     pub robot: Option<String>,
     /// Method, make and serial number of the scanning instrument.
     pub instrument: Option<String>,
-    /// Calibration of the instrument before the run: when, on what, with what result, by whom.
+    /// Calibration of the instrument before the run: time, reference, result, and person.
     pub calibration_before: Option<String>,
-    /// The same after the run.
+    /// Calibration of the instrument after the run, with the same details.
     pub calibration_after: Option<String>,
-    /// Survey and pulse test of the stations: when, result, by whom.
+    /// Survey and pulse test of the stations: time, result, and person.
     pub station_check: Option<String>,
-    /// Speed of sound in metres per second, and how it was determined: product and temperature, or measured.
+    /// Speed of sound in metres per second, and its source: product and temperature, or a measurement.
     pub sound_speed: Option<String>,
-    /// A statement that there are no indications, or where they are reported.
+    /// A statement that there are no indications, or a reference to where they are reported.
     pub indications: Option<String>,
-    /// Who has reviewed alarms, holds and faults.
+    /// The person who reviewed alarms, holds and faults.
     pub events_reviewed_by: Option<String>,
-    /// Day of the inspection, as `2026-11-24`, for readings that were located: the names of their runs say when that was done.
+    /// Day of the inspection, as `2026-11-24`, for located readings: the names of their runs contain only the time at
+    /// which they were located.
     pub inspected_on: Option<String>,
-    /// Why no coverage is stated, for readings that do not say when the tool was on.
+    /// The reason why no coverage is stated, for readings that do not state when the tool was on.
     pub coverage_waiver: Option<String>,
-    /// Why the facts say something else about the floor than the scenario that was flown.
+    /// The reason why the facts contradict the scenario of the run about the floor.
     pub identity_corrected: Option<String>,
-    /// Why coverage is not stated plate by plate, if the layout of the plates is not known.
+    /// The reason why coverage is not stated plate by plate, if the plate layout is not known.
     pub plates_waiver: Option<String>,
-    /// Why the record of a mission that did not end complete is accepted.
+    /// The reason why the record of an incomplete mission is accepted.
     pub partial_scope_accepted: Option<String>,
-    /// Why a critical zone that is not wholly scanned is accepted.
+    /// The reason why a critical zone that is not fully scanned is accepted.
     pub critical_zone_accepted: Option<String>,
-    /// Why missed areas are accepted: left, scanned again, or inspected by hand.
+    /// The reason why missed areas are accepted: left unscanned, re-scanned, or inspected by hand.
     pub missed_accepted: Option<String>,
     /// Remarks of the inspector.
     pub remarks: Option<String>,
     /// Name of the coordinate system of [`Inspection::datum_m`], such as `EPSG:25832`.
     pub datum_crs: Option<String>,
-    /// Where the origin of the tank frame lies in it, east and north, metres.
+    /// Origin of the tank frame in that system, east and north, metres.
     pub datum_m: Option<[f64; 2]>,
-    /// By how much north of the tank frame is turned clockwise from north of the system, degrees.
+    /// Clockwise angle from north of the system to north of the tank frame, degrees.
     pub datum_north_deg: Option<f64>,
 }
 
 impl Inspection {
-    /// The facts with those of a later file in place of the same ones before.
+    /// Merges facts from a later file; each replaces the earlier fact of the same key.
     #[must_use]
     pub fn updated(self, later: Self) -> Self {
         Self {

@@ -1,11 +1,12 @@
-//! What a run comes to: its figures, the account of its floor, and what people add to it.
+//! The results of a run: its figures, the account of its floor, and the facts that people add.
 //!
-//! [`Fold`] reads every event of a run once and gives a [`Summary`]: the object that `run --json` prints, and what [`Expect`]
-//! compares with the bounds of a scenario. Whoever shows, records, compares or reports a run gets its figures here, so that no
-//! two of them differ. Events contain neither wall-clock figures nor files; the app fills them in.
+//! [`Fold`] reads every event of a run once and returns a [`Summary`]: the object that `run --json` prints, and that
+//! [`Expect`] compares with the bounds of a scenario. Every program part that shows, records, compares or reports a
+//! run gets its figures here, so that they always agree. Events contain neither wall-clock figures nor files; the app
+//! fills them in.
 //!
-//! An [`Estimate`] is the same of a plan that nobody has flown. What only people know are [`Notes`] about a run and the facts
-//! of an [`Inspection`]. Nothing here knows a file, a clock, a page or a picture.
+//! An [`Estimate`] gives the same figures for a plan that has not been run. Facts that only people know are the
+//! [`Notes`] on a run and the [`Inspection`]. This crate uses no files, clocks, pages or pictures.
 
 mod accuracy;
 mod clock;

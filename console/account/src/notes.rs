@@ -1,26 +1,26 @@
-//! What people note about a run: a remark, and bookmarks at moments of it.
+//! Notes of people on a run: a remark, and bookmarks at moments.
 
 use serde::{Deserialize, Serialize};
 
-/// Bookmarks this close together are one, seconds.
+/// Bookmarks closer together than this count as one, seconds.
 const SAME_S: f64 = 0.005;
 /// Longest text of a note, characters.
 pub const MOST_LETTERS: usize = 500;
-/// Most bookmarks of a run.
+/// Maximum number of bookmarks of a run.
 pub const MOST_BOOKMARKS: usize = 1000;
 
-/// A moment of a run that somebody wants to find again.
+/// A moment of a run that a person wants to find again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bookmark {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// What is there; may be empty.
+    /// A label; may be empty.
     #[serde(default)]
     pub text: String,
 }
 
-/// What people note about a run.
+/// The notes on a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Notes {
@@ -33,10 +33,10 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Sets a bookmark; one that is there already takes the new text.
+    /// Sets a bookmark; an existing bookmark at that moment gets the new text.
     ///
     /// # Errors
-    /// There are too many, or the text is too long.
+    /// There are too many bookmarks, or the text is too long.
     pub fn mark(&mut self, t_s: f64, text: &str) -> Result<(), String> {
         let text = checked(text)?;
         match self.at(t_s) {
@@ -52,12 +52,12 @@ impl Notes {
         Ok(())
     }
 
-    /// Removes the bookmark of a moment; whether there was one.
+    /// Removes the bookmark at a moment; returns whether there was one.
     pub fn unmark(&mut self, t_s: f64) -> bool {
         self.at(t_s).map(|index| self.bookmarks.remove(index)).is_some()
     }
 
-    /// The bookmark of a moment.
+    /// The bookmark at a moment.
     pub fn bookmark(&self, t_s: f64) -> Option<&Bookmark> {
         self.at(t_s).map(|index| &self.bookmarks[index])
     }
@@ -65,16 +65,16 @@ impl Notes {
     /// Sets the remark about the whole run.
     ///
     /// # Errors
-    /// It is too long.
+    /// The text is too long.
     pub fn remark(&mut self, text: &str) -> Result<(), String> {
         self.remark = checked(text)?;
         Ok(())
     }
 
-    /// The notes of a file as they are kept: in order, and without anything that a terminal takes for a command.
+    /// Normalizes the notes of a file: sorted by time, and without terminal control characters.
     ///
     /// # Errors
-    /// There is more than can be noted, as a sentence.
+    /// The notes exceed a limit; the error is a sentence.
     pub fn tidied(mut self) -> Result<Self, String> {
         if self.bookmarks.len() > MOST_BOOKMARKS {
             return Err(format!("there are {} bookmarks; at most {MOST_BOOKMARKS}", self.bookmarks.len()));

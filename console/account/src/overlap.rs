@@ -1,35 +1,36 @@
-//! Floor that the tool came back to, worked out from the estimated track: the events name a cell only the first time.
+//! Floor that the tool scanned again, computed from the estimated track: the events name a cell only the first time.
 
 use serde::{Deserialize, Serialize};
 use world::{CellRun, Tiles};
 
-/// The way is kept in steps of half a swath: 65 535 of them are 19 km for a swath of 0.6 m.
+/// Distance is counted in steps of half a swath: 65 535 steps are 19 km for a swath of 0.6 m.
 const STEPS_PER_SWATH: f64 = 2.0;
-/// Coming back to a cell counts as scanning it again after more than this many steps of way, two swaths.
+/// A return to a cell counts as a second scan after more than this many steps, two swaths.
 const AGAIN_STEPS: u16 = 4;
 
-/// How often each cell was scanned again.
+/// Counts how often each cell was scanned again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Overlap {
-    /// Way gone so far, metres.
+    /// Distance driven so far, metres.
     way_m: f64,
-    /// Way gone when each cell was last under the tool, in steps, from 1; 0 before the first time.
+    /// Distance driven when each cell was last under the tool, in steps, from 1; 0 before the first pass.
     last: Tiles<u16>,
     again: Tiles<u8>,
 }
 
 impl Overlap {
-    /// Nothing of so many cells, so many in a row, was scanned yet.
+    /// An empty count for a floor with the given numbers of cells, per row and in total.
     pub fn new(width: usize, cells: usize) -> Self {
         Self { last: Tiles::new(width, cells, 0), again: Tiles::new(width, cells, 0), ..Self::default() }
     }
 
-    /// How often a cell was scanned again.
+    /// The number of times that a cell was scanned again.
     pub fn again(&self, index: usize) -> u8 {
         self.again.at(index)
     }
 
-    /// The tool has moved on by some way over some cells; which of them it came back to, with whether for the first time.
+    /// Adds a movement of the tool over some cells; returns the cells that it came back to and, for each, whether
+    /// this was the first return.
     pub fn pass(
         &mut self,
         way_m: f64,
@@ -58,7 +59,7 @@ impl Overlap {
         returned
     }
 
-    /// Takes in another run over the same floor: what both scanned, one of them scanned again.
+    /// Adds another run on the same floor: a cell that both runs scanned counts as scanned again.
     pub fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
         for (cell, others) in other.again.iter().enumerate() {
             let twice = u8::from(is_in_both(cell));

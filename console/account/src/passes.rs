@@ -1,4 +1,4 @@
-//! What the tool passed by the estimated position: how well the position was known, how often, and what is guaranteed.
+//! The passes of the tool by the estimated position: accuracy, number of passes, and guaranteed floor.
 
 use crate::overlap::Overlap;
 use nalgebra::Matrix2;
@@ -8,7 +8,7 @@ use world::{CoverageGrid, Floor, Pose, Tool};
 /// The error of a cell that was never passed.
 const NEVER: u16 = u16::MAX;
 
-/// The passes over a floor that counted.
+/// The counted passes over a floor.
 #[derive(Debug, Clone)]
 pub struct Passes {
     tool: Tool,
@@ -19,7 +19,7 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// Nothing was passed yet.
+    /// An empty record.
     pub(crate) fn new(floor: &Floor, tool: Tool) -> Self {
         Self {
             tool,
@@ -29,10 +29,11 @@ impl Passes {
         }
     }
 
-    /// The tool passed from one estimated pose to the next, and that counts.
+    /// Adds a pass of the tool from one estimated pose to the next; it counts as scanned.
     ///
-    /// What lies under it for every position within the 95 % ellipse is guaranteed: the tool is narrowed on each side by the
-    /// half width of the ellipse of the covariance, square metres, across the heading. `error_m`: the largest 95 % error since the fix before the last.
+    /// Floor that is under the tool for every position within the 95 % ellipse is guaranteed. To find it, the tool is
+    /// narrowed on each side by the half width of the ellipse of the covariance, square metres, across the heading.
+    /// `error_m`: the largest 95 % error since the fix before the last.
     pub(crate) fn pass(
         &mut self,
         believed: &CoverageGrid,
@@ -63,7 +64,7 @@ impl Passes {
         }
     }
 
-    /// Takes in the passes of another run over the same floor.
+    /// Adds the passes of another run on the same floor.
     pub(crate) fn join(&mut self, other: &Self, is_in_both: impl Fn(usize) -> bool) {
         self.guaranteed.iter_mut().zip(&other.guaranteed).for_each(|(own, other)| *own |= other);
         self.error_mm.iter_mut().zip(&other.error_mm).for_each(|(own, other)| *own = (*own).min(*other));
@@ -75,12 +76,12 @@ impl Passes {
         self.guaranteed[cell]
     }
 
-    /// The smallest 95 % error with which a cell was passed, millimetres; `None` if it never was.
+    /// The smallest 95 % error of a pass over a cell, millimetres; `None` if it was never passed.
     pub fn error_mm(&self, cell: usize) -> Option<u16> {
         Some(self.error_mm[cell]).filter(|mm| *mm != NEVER)
     }
 
-    /// How often cells were scanned again.
+    /// The number of times that cells were scanned again.
     pub fn overlap(&self) -> &Overlap {
         &self.overlap
     }

@@ -1,4 +1,5 @@
-//! Tiny runs whose figures can be worked out by hand, and one with everything in it; for the tests of this crate and of `report`.
+//! Small runs whose figures can be computed by hand, and one with every kind of event; for the tests of this crate
+//! and of `report`.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -7,14 +8,14 @@ use mission::{Event, EventKind, RunOpened};
 use serde_json::{Value, json};
 use world::{Obstacle, Point, Zone};
 
-/// An event of the kind that some JSON says, half a second after the one of the tick before.
+/// Builds an event from its JSON, half a second after that of the tick before.
 pub(crate) fn event(tick: u64, kind: &Value) -> Event {
     let mut event = json!({ "tick": tick, "t_s": tick as f64 * 0.5 });
     event.as_object_mut().unwrap().extend(kind.as_object().unwrap().clone());
     serde_json::from_value(event).unwrap()
 }
 
-/// What is known of a run with these events.
+/// Folds these events.
 pub(crate) fn fold(events: &[(u64, Value)]) -> Fold {
     let mut fold = Fold::new();
     for (tick, kind) in events {
@@ -23,7 +24,7 @@ pub(crate) fn fold(events: &[(u64, Value)]) -> Fold {
     fold
 }
 
-/// Where the robot truly was, and how near to anything solid.
+/// The true position, and the distance to the nearest solid object.
 pub(crate) fn truth(x: f64, y: f64, clearance_m: f64, collided: bool) -> Value {
     let pose = json!({ "position": [x, y], "heading_rad": 0.0 });
     json!({ "event": "truth", "pose": pose, "clearance_m": clearance_m, "collided": collided })
@@ -36,7 +37,7 @@ pub(crate) fn estimated(x: f64, y: f64, sigma_m: f64) -> Value {
     json!({ "event": "estimated", "pose": { "position": [x, y], "heading_rad": 0.0, "covariance": covariance } })
 }
 
-/// A square tank of 4 m with the robot at its west end, bound for its east end; cells of 0.5 m, a swath of 1 m.
+/// A square tank of 4 m with the robot at its west end and its goal at the east end; cells of 0.5 m, a swath of 1 m.
 pub(crate) fn opened() -> Value {
     let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)].map(|(x, y)| Point::new(x, y));
     let world = world::World {
@@ -62,7 +63,7 @@ pub(crate) fn opened() -> Value {
     })
 }
 
-/// A round tank of 5 m with a column, a robot that keeps 0.45 m from anything and a bar of 0.6 m.
+/// A round tank of 5 m with a column, a robot that keeps 0.45 m from solid objects, and a tool of 0.6 m.
 pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
     let mut run: Value = opened();
     let column = Obstacle {
@@ -89,7 +90,7 @@ pub(crate) fn round_tank(cell_m: f64) -> RunOpened {
     *run
 }
 
-/// A planner was chosen.
+/// A planner was selected.
 pub(crate) fn chosen(id: &str) -> Value {
     let parameter = |key: &str, default: f64| {
         json!({ "key": key, "label": key, "unit": "", "help": "", "group": "", "kind": "float",
@@ -102,7 +103,7 @@ pub(crate) fn chosen(id: &str) -> Value {
     json!({ "event": "planner_chosen", "choice": { "id": id, "parameters": { "k_rep": 2.0 } }, "info": info, "from": null })
 }
 
-/// A run with something of everything.
+/// A run with every kind of event.
 pub(crate) fn full_run() -> Summary {
     let mut events = vec![(0, opened()), (0, chosen("rpf"))];
     for k in 0..=35_u64 {
@@ -141,7 +142,7 @@ pub(crate) fn full_run() -> Summary {
     }
 }
 
-/// A zone that was drawn under way: a box of 1 m by 2 m.
+/// A zone that was drawn during the run: a box of 1 m by 2 m.
 pub(crate) fn zone_drawn(x: f64, y: f64) -> Value {
     let vertices = [(x, y), (x + 1.0, y), (x + 1.0, y + 2.0), (x, y + 2.0)].map(|(x, y)| Point::new(x, y));
     let shape = world::Shape::Polygon { vertices: vertices.to_vec() };

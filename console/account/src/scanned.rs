@@ -1,4 +1,4 @@
-//! How much of the floor was scanned, as believed and by truth, and how much of it again.
+//! The scanned share of the floor by the estimated and the true position, and the share scanned more than once.
 
 use crate::{
     passes::Passes,
@@ -7,7 +7,7 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{CellRun, Counts, CoverageGrid, Floor, FloorClass, KindRun, Pose, Tool};
 
-/// The floor with what was scanned so far.
+/// A floor with the cells that were scanned so far.
 #[derive(Debug, Clone)]
 pub struct Scanned {
     believed: CoverageGrid,
@@ -20,7 +20,7 @@ pub struct Scanned {
 }
 
 impl Scanned {
-    /// Nothing is scanned yet.
+    /// A floor of which nothing is scanned yet.
     pub fn new(floor: Floor, tool: Tool, start: Pose) -> Self {
         let passes = Passes::new(&floor, tool);
         let truth = vec![false; floor.len()];
@@ -28,27 +28,27 @@ impl Scanned {
         Self { believed, truth, passes, tool, last: start, has_truth: false }
     }
 
-    /// The floor with what the mission believes to have scanned.
+    /// The floor with the cells scanned by the mission's estimate.
     pub fn believed(&self) -> &CoverageGrid {
         &self.believed
     }
 
-    /// What the tool passed by the estimated position.
+    /// The passes of the tool by the estimated position.
     pub fn passes(&self) -> &Passes {
         &self.passes
     }
 
-    /// The mission says that it scanned these cells.
+    /// Adds cells that the mission reports as scanned.
     pub(crate) fn believe(&mut self, runs: &[CellRun]) {
         self.believed.apply(runs);
     }
 
-    /// An obstacle that was found changed the floor.
+    /// Updates the floor after an obstacle was found.
     pub fn change(&mut self, changes: &[KindRun]) {
         self.believed.change(changes);
     }
 
-    /// Takes in what another run scanned of the same floor.
+    /// Adds the cells that another run on the same floor scanned.
     pub fn join(&mut self, other: &Self) {
         let is_in_both = |cell| self.believed.is_covered(cell) && other.believed.is_covered(cell);
         self.passes.join(&other.passes, is_in_both);
@@ -57,8 +57,8 @@ impl Scanned {
         self.has_truth &= other.has_truth;
     }
 
-    /// The robot believes it is here, with this covariance, square metres; `error_m`, if the passage counts: the largest 95 % error
-    /// lately, metres.
+    /// Adds the estimated pose with its covariance, square metres. `error_m` is the largest recent 95 % error,
+    /// metres, if the pass counts.
     pub(crate) fn visit(&mut self, here: Pose, covariance: &Matrix2<f64>, error_m: Option<f64>) {
         let before = std::mem::replace(&mut self.last, here);
         if let Some(error_m) = error_m {
@@ -66,7 +66,7 @@ impl Scanned {
         }
     }
 
-    /// The robot truly went from `a` to `b`.
+    /// Adds the robot's true movement from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Pose, b: Pose) {
         self.has_truth = true;
         for run in self.believed.floor().runs_under(self.tool, a, b) {
@@ -74,14 +74,14 @@ impl Scanned {
         }
     }
 
-    /// What a cell counts as while the mission lasts.
+    /// The class of a cell during the mission.
     pub fn class(&self, cell: usize) -> FloorClass {
         let again = u32::from(self.passes.overlap().again(cell));
         let times = if self.believed.is_covered(cell) { 1 + again } else { 0 };
         FloorClass::of(self.believed.floor().kind(cell), times)
     }
 
-    /// The figures so far; what was missed only if the floor was `to_scan`.
+    /// The figures so far; missed floor only if the floor was `to_scan`.
     pub fn coverage(&self, to_scan: bool) -> Coverage {
         let counts = self.believed.counts();
         let again =
@@ -117,7 +117,7 @@ impl Scanned {
     }
 }
 
-/// Cells that are claimed as scanned, and how many of them truly were.
+/// Number of cells claimed as scanned, and number of those that truly were.
 #[derive(Default)]
 struct Claim {
     cells: usize,

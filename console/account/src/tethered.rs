@@ -1,13 +1,13 @@
-//! How the tether truly lay.
+//! The true state of the tether.
 
 use crate::summary::Tether;
 use mission::{Outcome, TetherConfig};
 use std::f64::consts::TAU;
 use world::Point;
 
-/// Distance from the anchor at which the robot is back, metres.
+/// Within this distance from the anchor the robot counts as back, metres.
 const BACK_M: f64 = 0.5;
-/// Cable beyond the straight line to the robot that counts as left out, metres.
+/// Length of cable, beyond the straight line to the robot, that counts as left out, metres.
 const LEFT_M: f64 = 0.3;
 
 /// The cable of a run so far.
@@ -21,12 +21,12 @@ pub(crate) struct Tethered {
 }
 
 impl Tethered {
-    /// A run with this tether.
+    /// Creates the record of a run with this tether.
     pub(crate) fn new(config: &TetherConfig) -> Self {
         Self { anchor: config.anchor, known: None, detour_m: 0.0, snags: 0, snagged: false }
     }
 
-    /// Takes in how the cable lies in one tick.
+    /// Adds the state of the cable in one tick.
     pub(crate) fn lie(&mut self, length_m: f64, wrap_max_rad: f64, wrap_total_rad: f64, detour_m: f64) {
         let before = self
             .known
@@ -44,13 +44,13 @@ impl Tethered {
         });
     }
 
-    /// Takes in that the mission found the cable snagged on something unseen, or free of it again.
+    /// Adds that the mission found the cable snagged on an unmapped object, or free again.
     pub(crate) fn snag(&mut self, snagged: bool) {
         self.snags += u64::from(snagged);
         self.snagged = snagged;
     }
 
-    /// The figures: entangled is a cable that holds the mission up, or stays out though the robot is back.
+    /// The figures. The cable is entangled if it holds up the mission, or stays out although the robot is back.
     pub(crate) fn tether(&self, robot: Option<Point>, outcome: Option<Outcome>) -> Option<Tether> {
         let is_back = robot.is_some_and(|robot| (robot - self.anchor).norm() <= BACK_M);
         let entangled = outcome == Some(Outcome::Entangled) || (is_back && self.detour_m > LEFT_M);

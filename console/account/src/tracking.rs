@@ -1,4 +1,4 @@
-//! How closely the true path keeps to a preset path.
+//! How closely the true path follows a preset path.
 
 use crate::{sampled::sampled, summary::Tracking};
 use std::collections::BTreeMap;
@@ -7,35 +7,35 @@ use world::{
     polyline::{nearest_on_segment, stations_m},
 };
 
-/// Way between two samples of the true path, metres.
+/// Distance between two samples of the true path, metres.
 const SAMPLE_M: f64 = 0.05;
 
-/// How far ahead along the preset path a pair is looked for, metres.
+/// Search distance ahead along the preset path for a pair, metres.
 const AHEAD_M: f64 = 1.0;
 
-/// Preset points further apart than this get others between them, metres.
+/// Between preset points further apart than this, more points are inserted, metres.
 const SPACING_M: f64 = 0.25;
 
-/// A preset path and how the true path kept to it so far.
+/// A preset path, and how closely the true path has followed it so far.
 #[derive(Debug)]
 pub(crate) struct Tracker {
     path: Vec<Point>,
     stations_m: Vec<f64>,
-    /// Preset points that nobody came near to yet, by the square of the floor they lie in.
+    /// Preset points that the robot has not come near yet, by grid square.
     unvisited: BTreeMap<(i64, i64), Vec<usize>>,
     visited: usize,
-    /// How far the mission says it is along the path, metres.
+    /// Progress along the path as reported by the mission, metres.
     claimed_m: f64,
     last: Option<Sample>,
     samples: usize,
     near: usize,
     cross_track_m2: f64,
-    /// How many preset points the pairing has passed.
+    /// Number of preset points that the pairing has passed.
     passed: usize,
     off_point_m2: f64,
 }
 
-/// A point of the true path and how far along the preset path its pair lies.
+/// A point of the true path, and the position of its pair along the preset path.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     at: Point,
@@ -43,7 +43,7 @@ struct Sample {
 }
 
 impl Tracker {
-    /// Nobody has moved yet.
+    /// State before the robot moves.
     pub(crate) fn new(path: &[Point]) -> Self {
         let path = sampled(path, SPACING_M);
         let mut unvisited: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
@@ -65,12 +65,12 @@ impl Tracker {
         }
     }
 
-    /// How far along the path the mission says it is, metres.
+    /// Sets the progress along the path as reported by the mission, metres.
     pub(crate) fn progress(&mut self, along_m: f64) {
         self.claimed_m = self.claimed_m.max(along_m);
     }
 
-    /// The robot truly went from `a` to `b`.
+    /// Adds the robot's true movement from `a` to `b`.
     pub(crate) fn pass(&mut self, a: Point, b: Point) {
         self.visit(a, b);
         if self.last.is_none() {
@@ -81,7 +81,7 @@ impl Tracker {
         }
     }
 
-    /// The figures so far; none before the robot was seen or for an empty path.
+    /// The figures so far; `None` before the first true position, and for an empty path.
     pub(crate) fn tracking(&self) -> Option<Tracking> {
         (self.samples > 0 && !self.path.is_empty()).then(|| Tracking {
             precision: self.near as f64 / self.samples as f64,
@@ -117,7 +117,8 @@ impl Tracker {
         }
     }
 
-    /// The nearest point of the preset path from `from_m` on, within reach: how far along, and how far off.
+    /// The nearest point of the preset path from `from_m` on within the search distance: position along the path, and
+    /// distance from it.
     fn pair(&self, at: Point, from_m: f64) -> Option<(f64, f64)> {
         let until_m = from_m.max(self.claimed_m) + AHEAD_M;
         let first = self.stations_m.partition_point(|station_m| *station_m <= from_m).saturating_sub(1);
@@ -134,7 +135,7 @@ impl Tracker {
         best
     }
 
-    /// The point of the preset path at `along_m`, which lies on the piece that begins with point `first`.
+    /// The point of the preset path at `along_m`, on the piece that starts at point `first`.
     fn point_at(&self, first: usize, along_m: f64) -> Option<Point> {
         let (start, start_m) = (*self.path.get(first)?, *self.stations_m.get(first)?);
         let Some(end) = self.path.get(first + 1) else { return Some(start) };
@@ -143,7 +144,7 @@ impl Tracker {
     }
 }
 
-/// The square of the floor that a point lies in.
+/// The grid square of a point.
 fn square(point: Point) -> (i64, i64) {
     ((point.x / Tracking::NEAR_M).floor() as i64, (point.y / Tracking::NEAR_M).floor() as i64)
 }

@@ -1,19 +1,19 @@
-//! How much the robot turned.
+//! The amount of turning of the robot.
 
 use std::{collections::VecDeque, f64::consts::TAU};
 use world::{Pose, geometry::wrap_angle_rad};
 
-/// A change of heading above this within [`WITHIN_M`] of way is a turn, radians (30 degrees).
+/// A change of heading above this within [`WITHIN_M`] of path is a turn, radians (30 degrees).
 const TURN_RAD: f64 = std::f64::consts::FRAC_PI_6;
-/// The way within which a change of heading is looked for, metres.
+/// Length of path over which a change of heading is measured, metres.
 const WITHIN_M: f64 = 0.5;
-/// A turn is over when the heading changes by less than this within [`WITHIN_M`] of way, radians.
+/// A turn is over when the heading changes by less than this within [`WITHIN_M`] of path, radians.
 const STRAIGHT_RAD: f64 = TURN_RAD / 2.0;
 
-/// Heading changes of a robot on its true way.
+/// The heading changes along the true path.
 #[derive(Debug, Default)]
 pub(crate) struct Turning {
-    /// Way and heading, unwrapped, over the last half metre.
+    /// Distance and unwrapped heading over the last half metre.
     lately: VecDeque<(f64, f64)>,
     last: Option<Pose>,
     way_m: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Turning {
 }
 
 impl Turning {
-    /// The robot was here.
+    /// Adds a pose of the robot.
     pub(crate) fn pass(&mut self, pose: Pose) {
         let before = self.last.replace(pose).unwrap_or(pose);
         let turned_rad = wrap_angle_rad(pose.heading_rad - before.heading_rad);
@@ -46,13 +46,13 @@ impl Turning {
         }
     }
 
-    /// Changes of heading above 30 degrees within half a metre of way; several in a row without a straight piece
-    /// between them are one.
+    /// Number of changes of heading above 30 degrees within half a metre of path; several in a row without a straight
+    /// piece between them count as one.
     pub(crate) fn turns(&self) -> u64 {
         self.turns
     }
 
-    /// Sum of all heading changes as whole turns, either way round.
+    /// Sum of all heading changes in full turns, in either direction.
     pub(crate) fn rotation_turns(&self) -> f64 {
         self.turned_rad / TAU
     }

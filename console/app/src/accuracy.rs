@@ -1,4 +1,4 @@
-//! `tankops accuracy`: how well the stations will locate the robot, place by place, and where they should stand.
+//! `tankops accuracy`: how accurately the stations will locate the robot across the floor, and where to place them.
 
 use crate::{
     cli::AccuracyArgs,
@@ -18,7 +18,7 @@ use report::{
 use scenario::Scenario;
 use std::process::ExitCode;
 
-/// `tankops accuracy`.
+/// Runs `tankops accuracy`.
 pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &[&args.scenario]))?;
@@ -39,7 +39,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// Warns of a scan with so little clearance that the position error may use it up, and of stations on a line.
+/// Warns if the scan clearance is so small that the position error may use it up, and if all stations are on a line.
 pub(crate) fn warn_of_positions(scenario: &Scenario) {
     let (mission, drawing) = (&scenario.mission, scenario.sim.world.as_drawn());
     for warning in

@@ -22,7 +22,7 @@ use report::print::{say, say_line, warn_line};
 use std::{path::Path, process::ExitCode, thread::available_parallelism};
 use work::Work;
 
-/// `tankops campaign`.
+/// Runs `tankops campaign`.
 pub(crate) fn campaign(command: &CampaignCommand, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     match command {
         CampaignCommand::Run(args) => run(args, plugins),
@@ -74,7 +74,7 @@ fn run(args: &RunCampaignArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
         return Ok(incomplete(&left, "stopped"));
     }
     let code = merge(&folder, !left.is_empty())?;
-    Ok(if left.is_empty() { code } else { incomplete(&left, "the budget is spent") })
+    Ok(if left.is_empty() { code } else { incomplete(&left, "budget used up") })
 }
 
 fn submit(
@@ -90,7 +90,7 @@ fn submit(
     } else {
         let job = slurm::submit(&script)?;
         say_line(&format!(
-            "submitted as job {job}; `tankops campaign status {}` says how far it is",
+            "submitted as job {job}; `tankops campaign status {}` shows the progress",
             folder.path().display()
         ))?;
     }
@@ -102,7 +102,7 @@ fn incomplete(missing: &[u64], why: &str) -> ExitCode {
     ExitCode::from(ENDED_OTHERWISE)
 }
 
-/// What of a campaign one process flies.
+/// The share of a campaign that one process runs.
 struct Share {
     blocks: Vec<u64>,
     threads: usize,
@@ -151,7 +151,7 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let last = campaign.blocks() - 1;
     let blocks: Vec<u64> = match (args.block, args.shard) {
         (Some(block), _) if block > last => {
-            return Err(bad_input(format!("--block {block}: there are blocks 0 to {last}")));
+            return Err(bad_input(format!("--block {block}: out of range; the blocks are 0 to {last}")));
         }
         (Some(block), _) => vec![block],
         (None, Some((at, of))) => (at..=last).step_by(of as usize).collect(),
@@ -175,7 +175,7 @@ fn work(args: &WorkArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
         (true, _) => Ok(ExitCode::from(COMPLETE)),
         (false, true) => Ok(incomplete(&left, "stopped")),
         (false, false) if results::missing(&folder, &campaign)?.is_empty() => Ok(ExitCode::from(COMPLETE)),
-        (false, false) => Ok(incomplete(&left, "other workers have them")),
+        (false, false) => Ok(incomplete(&left, "other workers are running them")),
     }
 }
 
@@ -185,11 +185,11 @@ fn status(folder: &Folder) -> anyhow::Result<ExitCode> {
     let (blocks, there) = (campaign.blocks(), campaign.blocks() - folder.missing(&campaign).0.len() as u64);
     let hours = folder.core_seconds() / 3600.0;
     say_line(&format!(
-        "{there} of {blocks} blocks, {} missions in all; {hours:.3} core hours so far",
+        "{there} of {blocks} blocks complete, {} missions in total; {hours:.3} core hours so far",
         campaign.cases()
     ))?;
     if missing.is_empty() {
-        say_line("complete; `tankops campaign merge` puts them together")?;
+        say_line("complete; run `tankops campaign merge` to combine the blocks")?;
         return Ok(ExitCode::from(COMPLETE));
     }
     say_line(&format!("missing: {}", results::list(&missing)))?;

@@ -42,15 +42,15 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Plan a mission on the drawing without running it.
     Plan(PlanArgs),
-    /// Forecast the position accuracy that the stations give, and advise where to place them.
+    /// Forecast the position accuracy that the stations provide, and advise where to place them.
     Accuracy(AccuracyArgs),
-    /// Show how an occupancy map is read: the floor, its outlines and convex pieces.
+    /// Show how an occupancy map is interpreted: the floor, its outlines and convex pieces.
     Map(MapArgs),
     /// Create a scenario from a floor drawing (DXF) or a list of columns (CSV).
     Import(ImportArgs),
-    /// Create a folder with a planner of your own that builds and flies.
+    /// Create a folder with a planner of your own that is ready to build and run.
     NewPlanner(NewPlannerArgs),
-    /// List available planners, and refused plugins with the reason.
+    /// List the available planners, and the refused plugins with the reasons.
     Planners {
         /// Print JSON.
         #[arg(long)]
@@ -61,27 +61,28 @@ pub(crate) enum Command {
         /// Scenario files (.toml), plugins (.so, .dylib, .dll), and files named config.toml or keys.toml.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
-        /// For plugins: check what every planner must do, and fly each of their planners in N random tanks beside those that
-        /// are installed.
+        /// For plugins: check the planner contract, and run each planner in N random tanks beside the installed
+        /// planners.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
         fly: Option<u64>,
-        /// Seed of the first random tank; the others follow.
+        /// Seed of the first random tank; later tanks use the following seeds.
         #[arg(long, value_name = "SEED", default_value_t = 0, requires = "fly")]
         seed: u64,
-        /// Print what came of the flights as JSON, and nothing else on stdout.
+        /// Print the results of the trial runs as JSON, and nothing else on stdout.
         #[arg(long, requires = "fly")]
         json: bool,
-        /// Write the tanks in which a planner did not complete its mission into this folder, as scenarios to be flown again.
+        /// Write each tank in which a planner did not complete its mission into this folder, as a scenario that can be
+        /// run again.
         #[arg(long, value_name = "DIR", requires = "fly")]
         keep: Option<PathBuf>,
     },
     /// Reproduce a table or figure of a paper, with the printed values beside ours.
     Reproduce(ReproduceArgs),
-    /// Optimize planner parameters on one set of layouts, and evaluate them on another.
+    /// Optimize planner parameters on one set of layouts and evaluate them on another.
     Tune(TuneArgs),
-    /// Play a past run back in the console; read-only.
+    /// Play back a past run in the console; read-only.
     Replay(ReplayArgs),
-    /// Fly many missions, here or on a cluster, and compare the results.
+    /// Run many missions, on this machine or a cluster, and compare the results.
     #[command(subcommand)]
     Campaign(CampaignCommand),
     /// List past runs.
@@ -107,7 +108,7 @@ pub(crate) enum Command {
     Recover {
         /// Run folder, or its name in the logs folder.
         run: PathBuf,
-        /// Who closes it; the report says so.
+        /// Person who closes the run; named in the report.
         #[arg(long, value_name = "NAME", value_parser = person)]
         by: String,
         #[command(flatten)]
@@ -115,30 +116,30 @@ pub(crate) enum Command {
     },
     /// Print the events of a past run as JSON lines.
     Events(EventsArgs),
-    /// Write a past run as another file: its recording, regenerated, or the readings of its sensors.
+    /// Export a past run: its recording, regenerated, its messages for ROS 2 tools, or its sensor readings.
     Export(ExportArgs),
-    /// Locate a robot by readings that a real system measured: fixes, track, recording and report.
+    /// Locate a robot from readings of a real system; writes fixes, track, recording and report.
     Locate(LocateArgs),
     /// Show the result of a past run, or of a scan and its re-scans together.
     Report(ReportArgs),
-    /// Create a scenario that scans what one or more past runs missed.
+    /// Create a scenario that scans the areas missed by one or more past runs.
     Rescan(RescanArgs),
-    /// Print the completions of this command line for a shell.
+    /// Print shell completions for this command line.
     Completions {
-        /// The shell.
+        /// Shell to print completions for.
         shell: clap_complete::Shell,
     },
-    /// Print the manual page of tankops or of one of its commands, as roff.
+    /// Print the manual page of tankops or of one of its commands, in roff format.
     Man {
-        /// A command of tankops.
+        /// Command of tankops.
         command: Option<String>,
     },
-    /// Ask a plugin once more what it was asked before it failed, and show each answer.
+    /// Repeat the requests to a plugin from before its failure, and show each answer.
     ReplayWorker(ReplayWorkerArgs),
-    /// A planner's own process; started by the console.
+    /// Run a planner in this process; started by the console.
     #[command(hide = true)]
     Worker,
-    /// Gives the terminal to this process's group; started by a console that has lost it.
+    /// Give the terminal to this process's group; started by a console that has lost the terminal.
     #[command(hide = true)]
     TakeTerminal,
 }
@@ -146,7 +147,7 @@ pub(crate) enum Command {
 fn person(text: &str) -> Result<String, String> {
     let is_name = !account::says_nothing(text) && foreign::unplain(text).is_none();
     let name = is_name.then(|| text.trim().to_owned());
-    name.ok_or_else(|| "name the person who answers for it".into())
+    name.ok_or_else(|| "write the name of the person who takes responsibility".into())
 }
 
 #[cfg(test)]

@@ -13,20 +13,20 @@ use std::{
     process::ExitCode,
 };
 
-/// What of a line is looked at.
+/// The only part of a line that is parsed.
 #[derive(Deserialize)]
 struct Name<'a> {
     event: &'a str,
 }
 
-/// Prints the events of a run as they stand in its journal, one JSON object a line.
+/// Prints the events of a run exactly as stored in its journal, one JSON object per line.
 pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
     let from_s = args.from.unwrap_or(0.0);
     let mut reader = JournalReader::open_near(&journal_of(&folder), from_s)?;
     let mut out = BufWriter::new(io::stdout().lock());
     let mut is_opened = false;
-    // A journal can also stop between two events.
+    // A journal can also be cut off between two events.
     let mut stops_in = None;
     while let Some(line) = reader.next_line()? {
         is_opened = true;
@@ -40,7 +40,7 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
         if t_s < from_s || !is_wanted(&line, &args.kind) {
             continue;
         }
-        // The same values, whatever characters they have.
+        // The values stay the same; control characters are escaped.
         let text = String::from_utf8_lossy(line.raw);
         if let Err(error) = out.write_all(plain_json(&text).as_bytes()).and_then(|()| out.write_all(b"\n")) {
             return ended(&error);
@@ -52,7 +52,7 @@ pub(crate) fn events(args: &EventsArgs) -> anyhow::Result<ExitCode> {
     if !is_opened {
         return Err(reader.not_opened().into());
     }
-    let stop = || stops_in.map(|tick| format!("it stops in tick {tick}"));
+    let stop = || stops_in.map(|tick| format!("it ends in tick {tick}"));
     if let Some(why) = reader.truncated().map(str::to_owned).or_else(stop) {
         warn_line(&format!("note: the journal is incomplete: {why}"));
     }
@@ -64,7 +64,7 @@ fn is_wanted(JournalLine { raw, .. }: &JournalLine, kinds: &[String]) -> bool {
     kinds.is_empty() || serde_json::from_slice(raw).is_ok_and(is_one)
 }
 
-/// A reader that has gone away, as `head` does, is not a fault.
+/// A closed pipe (as with `head`) is not a fault.
 fn ended(error: &io::Error) -> anyhow::Result<ExitCode> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(ExitCode::from(COMPLETE)),

@@ -1,4 +1,4 @@
-//! `tankops export`: a past run as another file.
+//! `tankops export`: exports a past run to a file of another format.
 
 use crate::{cli::ExportArgs, output::check_free};
 use ::locate::MeasuredWriter;
@@ -14,7 +14,7 @@ use std::{
     process::ExitCode,
 };
 
-/// `tankops export RUN`.
+/// Runs `tankops export RUN`.
 pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let folder = find(&args.run, &args.logs.folder())?;
     let to = &args.to;
@@ -24,7 +24,7 @@ pub(crate) fn export(args: &ExportArgs) -> anyhow::Result<ExitCode> {
     let whole = |file: &PathBuf, write: fn(&Path, &Path) -> anyhow::Result<()>| {
         let written = write(&folder, file);
         if written.is_err() {
-            // What was begun must not stand in the way of the next try.
+            // A partial file must not block the next attempt.
             let _ = std::fs::remove_file(file);
         }
         written
@@ -43,7 +43,7 @@ fn messages(folder: &Path, mcap: &Path) -> anyhow::Result<()> {
     of_journal(folder, mcap, recording::export_mcap, "written")
 }
 
-/// A file that is made of the journal alone; says what it lacks.
+/// Writes a file that depends on the journal alone; reports what it lacks.
 fn of_journal(
     folder: &Path,
     file: &Path,
@@ -54,14 +54,16 @@ fn of_journal(
     Ticks::open(&path)?.opened()?;
     let truncated = match make(&path, file) {
         Err(RecordingError::Journal(error)) => return Err(error.into()),
-        made => made.with_context(|| format!("making {}", file.display()))?,
+        made => made.with_context(|| format!("writing {}", file.display()))?,
     };
     let sha256 = events_sha256(&path).ok();
     if let Some(doubt) = journal_doubt(folder, sha256.as_deref()) {
-        say_line(&format!("note: {doubt}; the recording holds what it holds"))?;
+        say_line(&format!("note: {doubt}; the file contains what the journal holds"))?;
     }
     if let Some(damage) = truncated {
-        say_line(&format!("note: the journal stops early ({damage}); the recording holds what it holds"))?;
+        say_line(&format!(
+            "note: the journal ends early ({damage}); the file contains what the journal holds"
+        ))?;
     }
     Ok(say_line(&format!("{} {done} from {}", file.display(), path.display()))?)
 }
@@ -69,9 +71,8 @@ fn of_journal(
 fn ranges(folder: &Path, csv: &Path) -> anyhow::Result<()> {
     let path = journal_of(folder);
     let stations = Ticks::open(&path)?.opened()?.world.stations.clone();
-    let refused = |error: &std::io::Error| {
-        bad_input(format!("the readings cannot be written: {error}: {}", csv.display()))
-    };
+    let refused =
+        |error: &std::io::Error| bad_input(format!("cannot write the readings: {error}: {}", csv.display()));
     let file = BufWriter::new(File::create_new(csv).map_err(|error| refused(&error))?);
     let mut writer = MeasuredWriter::new(file, &stations).map_err(|error| refused(&error))?;
     review::readings(folder, |t_s, readings, truth| writer.write(t_s, readings, truth))?;

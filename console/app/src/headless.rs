@@ -1,4 +1,4 @@
-//! Flying a mission without a terminal: `tankops run`, and `tankops` where there is no terminal.
+//! Runs a mission without a terminal: `tankops run`, and `tankops` without a terminal.
 
 use crate::{
     accuracy::warn_of_positions,
@@ -27,18 +27,18 @@ use scenario::Scenario;
 use std::{io::IsTerminal, process::ExitCode};
 use world::{Station, coverage::percent_text};
 
-/// Options of a headless run.
+/// The options of a headless run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RunOptions {
-    /// Print the report as JSON on stdout, and nothing else there.
+    /// Print the report as JSON on stdout, and nothing else.
     pub json: bool,
     /// Write a journal and a recording.
     pub record: bool,
-    /// Apply the console's answer windows: an answer that comes later counts as late.
+    /// Apply the console's answer windows: a later answer counts as late.
     pub live_deadlines: bool,
 }
 
-/// `tankops run`.
+/// Runs `tankops run`.
 pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let (json, record, live_deadlines) = (args.json, !args.no_record, args.live_deadlines);
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &RunArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCo
     fly_beside(&scenario, plugins, &args.logs, options, shadowing)
 }
 
-/// Flies a scenario to its end and prints the result.
+/// Runs a scenario to its end and prints the result.
 pub(crate) fn fly(
     scenario: &Scenario,
     plugins: &PluginDirs,
@@ -57,7 +57,7 @@ pub(crate) fn fly(
     fly_beside(scenario, plugins, logs, options, None)
 }
 
-/// The same, perhaps with a planner in shadow.
+/// Runs a scenario to its end, optionally with a planner in shadow, and prints the result.
 fn fly_beside(
     scenario: &Scenario,
     plugins: &PluginDirs,
@@ -111,14 +111,14 @@ fn fly_beside(
 /// Reports on stderr, once each, that recording fails and that it has resumed.
 fn report_trouble(reported: &mut Option<String>, trouble: Option<String>) {
     match (&reported, &trouble) {
-        (None, Some(error)) => warn_line(&format!("warning: recording fails: {error}")),
-        (Some(_), None) => warn_line("recording resumed, nothing was lost"),
+        (None, Some(error)) => warn_line(&format!("warning: recording failed: {error}")),
+        (Some(_), None) => warn_line("recording resumed; nothing was lost"),
         _ => {}
     }
     *reported = trouble;
 }
 
-/// Flies to the end; every ask is answered before time moves on, or within the console's windows.
+/// Runs to the end. Every ask is answered before time advances, or within the console's windows.
 fn fly_to_end(
     (mut flight, mut shadowing): (Flight, Option<Shadowing>),
     host: Host,
@@ -138,7 +138,7 @@ fn fly_to_end(
             orders.push(Order::Terminate);
         }
         let events = if live_deadlines {
-            // Nothing paces the ticks: the planner in shadow is given the time that it has in the console.
+            // No clock paces the ticks here, so the planner in shadow gets the time that it would have in the console.
             let tick = flight.tick_length();
             let window = Window { shadow: tick, ..Window::real_time(tick) };
             let mut windowed = Windowed::new(answers.host(), window);

@@ -1,4 +1,4 @@
-//! `tankops import`: a scenario from a drawing or a list of columns.
+//! `tankops import`: creates a scenario from a drawing or a list of columns.
 
 use crate::{
     cli::ImportArgs,
@@ -15,10 +15,10 @@ use scenario::{Scenario, ScenarioErrors, is_stdin};
 use std::process::ExitCode;
 use world::Boundary;
 
-/// Bad rows that an error lists.
+/// The number of bad rows that an error message lists.
 const LISTED: usize = 10;
 
-/// `tankops import FILE -o SCENARIO`.
+/// Runs `tankops import FILE -o SCENARIO`.
 pub(crate) fn import(args: &ImportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let output = &args.output;
     for file in [Some(output), args.svg.as_ref()].into_iter().flatten() {
@@ -29,11 +29,11 @@ pub(crate) fn import(args: &ImportArgs, plugins: &PluginDirs) -> anyhow::Result<
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     let name = stem.replace(|c: char| !c.is_alphanumeric() && c != '_', "-");
     let source = args.file.file_name().unwrap_or_default().to_string_lossy();
-    let source = if is_stdin(&args.file) { "the standard input".into() } else { source };
+    let source = if is_stdin(&args.file) { "standard input".into() } else { source };
     let found = planners::found(plugins);
     let planner = planners::suited_to_coverage(&found).map_or(COVERAGE_PLANNER, |info| &info.id);
     let text = plan.scenario(&name, &source, planner);
-    // A scenario that its reader refuses helps nobody.
+    // Do not write a scenario that its own reader would refuse.
     Scenario::parse(&text, &input.name).map_err(|errors| bad_input(no_scenario(&errors)))?;
     write_file("the scenario", output, &text)?;
     if let Some(file) = &args.svg {
@@ -50,7 +50,10 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
     match input.kind() {
         InputKind::List => {
             let radius_m = args.tank_radius.ok_or_else(|| {
-                bad_input("a list of columns does not state the tank: add --tank-radius with its inner radius in metres")
+                bad_input(
+                    "a list of columns does not state the tank's size: add --tank-radius with its inner \
+                     radius in metres",
+                )
             })?;
             columns::read(input, radius_m).map_err(|errors| bad_input(listed(&errors)))
         }
@@ -63,19 +66,17 @@ fn read(args: &ImportArgs, input: &Input) -> anyhow::Result<FloorPlan> {
     }
 }
 
-/// Why no scenario can be made of a floor: without lines, for the text that has them was not written.
+/// Explains why a floor does not make a valid scenario. Line numbers are left out, because the text that they refer to
+/// is not written.
 fn no_scenario(errors: &ScenarioErrors) -> String {
     let told = errors.problems.iter().take(LISTED).map(|problem| {
         let help = problem.what.help().map(|help| format!("; {help}")).unwrap_or_default();
-        format!(
-            "{}: no scenario can be made of it, and nothing was written: {problem}{help}",
-            errors.shown_name
-        )
+        format!("{}: cannot be made into a scenario; nothing was written: {problem}{help}", errors.shown_name)
     });
     told.collect::<Vec<_>>().join("\n")
 }
 
-/// What is wrong with a file, line by line.
+/// The problems of a file, line by line.
 fn listed(errors: &[ImportError]) -> String {
     let mut lines: Vec<String> = errors.iter().take(LISTED).map(ImportError::to_string).collect();
     let more = errors.len() - lines.len();

@@ -1,4 +1,4 @@
-//! Input files, among them `-` for what is piped in.
+//! Input files; `-` reads standard input.
 
 use flight::failure::bad_input;
 use std::{
@@ -7,14 +7,14 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// No more is read from a pipe, bytes.
+/// The most bytes that are read from a pipe.
 const MOST_PIPED: u64 = 2_000_000_000;
 
-/// A file that can be read several times.
+/// An input file that can be read several times.
 pub(crate) struct Input {
     path: PathBuf,
     shown: String,
-    /// What was piped in, until this is dropped.
+    /// The copy of the piped input, deleted when this is dropped.
     _piped: Option<NamedTempFile>,
 }
 
@@ -23,24 +23,24 @@ impl Input {
         &self.path
     }
 
-    /// What people know it by.
+    /// The name of the file for messages.
     pub(crate) fn shown(&self) -> &str {
         &self.shown
     }
 }
 
-/// The file of this name; `-` is standard input.
+/// Opens the file of this name; `-` is standard input.
 pub(crate) fn file(path: &Path) -> anyhow::Result<Input> {
     if path != Path::new("-") {
         return Ok(Input { path: path.to_owned(), shown: path.display().to_string(), _piped: None });
     }
     if io::stdin().is_terminal() {
-        return Err(bad_input("-: standard input is a terminal; pipe a file in, or name it"));
+        return Err(bad_input("-: standard input is a terminal; pipe a file in, or name a file"));
     }
     let mut piped = NamedTempFile::new()?;
     let bytes = io::copy(&mut io::stdin().lock().take(MOST_PIPED + 1), &mut piped)?;
     if bytes > MOST_PIPED {
-        return Err(bad_input("standard input: more than 2 GB; name the file instead"));
+        return Err(bad_input("standard input: more than 2 GB; save it to a file and name the file"));
     }
     Ok(Input { path: piped.path().to_owned(), shown: "standard input".into(), _piped: Some(piped) })
 }

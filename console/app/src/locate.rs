@@ -1,4 +1,4 @@
-//! `tankops locate`: readings of a real system to fixes, track, recording and report.
+//! `tankops locate`: turns readings of a real system into fixes, a track, a recording and a report.
 
 mod words;
 
@@ -29,29 +29,30 @@ use std::{
 };
 use world::StationId;
 
-/// The figures as JSON.
+/// The results for `--json`.
 #[derive(Serialize)]
 struct Figures<'a> {
     rows: u64,
     bad_rows: u64,
     ignored_columns: &'a [String],
     kind: &'a str,
-    /// Metres per second and its standard deviation.
+    /// The speed of sound in metres per second, and its standard deviation.
     sound_speed_m_per_s: Option<[f64; 2]>,
-    /// By how much ranges were too long as a share, and its standard deviation.
+    /// The relative error by which ranges were too long, and its standard deviation.
     range_scale: Option<[f64; 2]>,
-    /// By how much ranges were too long because clocks differ, metres, and its standard deviation.
+    /// The length in metres by which ranges were too long because of the clock offset, and its standard deviation.
     clock_offset_m: Option<[f64; 2]>,
-    /// What the residuals of the whole session say, with what was found out taken out.
+    /// The systematic errors that the residuals of the whole session reveal, after the estimated ones are removed.
     session: Session<'a>,
-    /// Stations with several readings in one emission.
+    /// Emissions with several readings of the same station.
     repeated_readings: Option<RepeatedReadings<'a>>,
     sides: Sides,
-    /// Fixes that contradict the measured motion, and all that can be tested, if the motion is therefore not used.
+    /// If the measured motion is not used because fixes contradict it: the number of contradicting fixes, and of all
+    /// fixes tested.
     motion_contradicted: Option<[u64; 2]>,
-    /// Readings that no place in the tank explains.
+    /// Readings that fit no position in the tank.
     impossible: Vec<Impossible<'a>>,
-    /// The first time of the file, in UTC, where times have dates.
+    /// The first time in the file, in UTC, if its times have dates.
     first_time: Option<&'a str>,
     #[serde(flatten)]
     tally: &'a Tally,
@@ -59,11 +60,11 @@ struct Figures<'a> {
 
 #[derive(Serialize)]
 struct Session<'a> {
-    /// By which share all ranges are too long.
+    /// The relative error by which all ranges are too long.
     scale: Option<TooLong>,
-    /// By how many metres all ranges are too long; absent without the time of emission.
+    /// The length in metres by which all ranges are too long; absent without emission times.
     offset_m: Option<TooLong>,
-    /// By how many metres those of each station are too long.
+    /// The length in metres by which the ranges of each station are too long.
     stations_m: BTreeMap<&'a str, TooLong>,
 }
 
@@ -71,7 +72,7 @@ struct Session<'a> {
 struct TooLong {
     value: f64,
     sigma: f64,
-    /// More than chance, and more than the stated errors allow for.
+    /// Whether the error exceeds both chance and the stated uncertainties.
     proven: bool,
 }
 
@@ -82,11 +83,11 @@ struct RepeatedReadings<'a> {
     suspect: bool,
     widest_station: &'a str,
     widest_m: f64,
-    /// Mission time, seconds.
+    /// The mission time in seconds.
     widest_t_s: f64,
 }
 
-/// Fixes with a mirror image, by what decides between the two.
+/// The numbers of fixes with a mirror image, by how the side was decided.
 #[derive(Serialize)]
 struct Sides {
     by_walls: u64,
@@ -98,19 +99,19 @@ struct Sides {
 struct Impossible<'a> {
     station: &'a str,
     count: u64,
-    /// Metres; absent if it is not a number.
+    /// The first such range in metres; absent if it is not a number.
     first_m: Option<f64>,
     most_m: f64,
-    /// Mission time, seconds.
+    /// The mission time in seconds.
     first_t_s: f64,
 }
 
-/// `tankops locate READINGS --scenario FILE`.
+/// Runs `tankops locate READINGS --scenario FILE`.
 pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     if scenario.sim.world.stations.is_empty() {
         return Err(bad_input(format!(
-            "{}: ae.stations: missing, there is nothing to locate by",
+            "{}: ae.stations: missing; locating needs stations",
             scenario.shown_name
         )));
     }
@@ -131,7 +132,7 @@ pub(crate) fn locate(args: &LocateArgs) -> anyhow::Result<ExitCode> {
     let survey = task.survey()?;
     let (tally, doubts, kept) = located(args, &task, &survey)?;
     if args.json {
-        say_json("the figures", &figures(args, &scenario, &survey, (&tally, &doubts)))?;
+        say_json("the results", &figures(args, &scenario, &survey, (&tally, &doubts)))?;
     } else {
         say(&words::human(args, &scenario, &survey, (&tally, &doubts), readings.shown()))?;
     }
@@ -178,7 +179,7 @@ fn table(file: &Path, scenario: &Scenario) -> anyhow::Result<Fixes<BufWriter<Fil
 }
 
 fn not_written(file: &Path, error: &io::Error) -> anyhow::Error {
-    bad_input(format!("the fixes cannot be written: {error}: {}", file.display()))
+    bad_input(format!("cannot write the fixes: {error}: {}", file.display()))
 }
 
 fn figures<'a>(
@@ -195,7 +196,8 @@ fn figures<'a>(
         bad_rows: survey.bad,
         ignored_columns: &survey.ignored,
         kind: survey.kind.word(),
-        // Ranges too long by a share were computed with a sound that is too fast by it.
+        // Ranges that are too long by a fraction were computed with a speed of sound that is too high by the same
+        // fraction.
         sound_speed_m_per_s: scale
             .zip(args.sound_speed)
             .map(|([scale, sigma], speed)| [speed / (1.0 + scale), speed * sigma]),

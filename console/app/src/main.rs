@@ -55,16 +55,17 @@ fn main() -> ExitCode {
     dispatch(cli).unwrap_or_else(|error| fail(&error))
 }
 
-/// Has the allocator give large blocks back to the system at once, and all threads share one heap: with a heap for each
-/// thread and blocks kept for later, a console holds twice what it uses. Headless runs do without: at full speed their threads would wait for each other.
+/// Makes the allocator return large blocks to the system immediately, and all threads share one heap. With a heap per
+/// thread and cached blocks, a console would hold twice the memory that it uses. Headless runs do not use this: at full
+/// speed their threads would wait for each other.
 fn keep_memory_small() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    #[expect(unsafe_code, reason = "the C library has no other way to set this from within")]
+    #[expect(unsafe_code, reason = "the C library offers no other way for a process to set this")]
     // SAFETY: `mallopt` changes parameters of the allocator under its own lock; no other thread runs yet.
     unsafe {
-        /// Blocks from this size on are mapped for themselves and unmapped when they are freed, bytes.
+        /// Blocks of at least this size, in bytes, get their own mapping and are unmapped when freed.
         const MAPPED_FROM: libc::c_int = 128 << 10;
-        // A parameter that is refused keeps its default.
+        // If a parameter is refused, its default stays in effect.
         libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);
         libc::mallopt(libc::M_ARENA_MAX, 1);
     }
@@ -110,7 +111,7 @@ fn dispatch(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// The console on the demo, or, without a terminal, the demo flown headless.
+/// Opens the console on the demo or, without a terminal, runs the demo headless.
 fn by_default(plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return interactive::open(&ConsoleArgs::default().into(), plugins);

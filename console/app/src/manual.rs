@@ -1,4 +1,4 @@
-//! The command line as shells complete it and as `man` shows it.
+//! Shell completions and manual pages of the command line.
 
 use crate::cli::Cli;
 use anyhow::Context;
@@ -8,17 +8,17 @@ use flight::failure::{COMPLETE, bad_input};
 use report::print::say;
 use std::process::ExitCode;
 
-/// `tankops completions`.
+/// Runs `tankops completions`.
 pub(crate) fn completions(shell: Shell) -> anyhow::Result<ExitCode> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "tankops", &mut text);
     print(text)
 }
 
-/// `tankops man`.
+/// Runs `tankops man`.
 pub(crate) fn man(command: Option<&str>) -> anyhow::Result<ExitCode> {
     let mut whole = Cli::command();
-    // Gives each command the options that all have.
+    // Adds the global options to each command.
     whole.build();
     let page = match command {
         None => whole,
@@ -34,6 +34,6 @@ pub(crate) fn man(command: Option<&str>) -> anyhow::Result<ExitCode> {
 }
 
 fn print(text: Vec<u8>) -> anyhow::Result<ExitCode> {
-    say(&String::from_utf8(text).context("reading what was generated")?)?;
+    say(&String::from_utf8(text).context("reading the generated page")?)?;
     Ok(ExitCode::from(COMPLETE))
 }

@@ -1,4 +1,4 @@
-//! `tankops map`: what becomes of an occupancy map.
+//! `tankops map`: shows how an occupancy map is interpreted.
 
 use crate::{
     cli::MapArgs,
@@ -10,14 +10,14 @@ use report::{drawing, print::say};
 use std::{fmt::Write, process::ExitCode};
 use world::{Obstacle, ObstacleId, Point, Shape, World};
 
-/// `tankops map`.
+/// Runs `tankops map`.
 pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
     args.svg.as_ref().map_or(Ok(()), |file| check_free(file, Some(args.force), &[&args.map]))?;
     let map = OccupancyMap::read(&args.map).map_err(|error| bad_input(error.to_string()))?;
     let start = args.start.map(|[x, y]| Point::new(x, y));
     if let Some(solid) = start.filter(|start| !map.is_free_at(*start)) {
         return Err(bad_input(format!(
-            "--start {},{}: no free floor there in {}; without --start the largest free floor is taken",
+            "--start {},{}: no free floor at this point in {}; without --start, the largest free area is used",
             solid.x,
             solid.y,
             args.map.display()
@@ -25,7 +25,7 @@ pub(crate) fn map(args: &MapArgs) -> anyhow::Result<ExitCode> {
     }
     let floor = MapFloor::new(&map, start, args.simplify).ok_or_else(|| {
         let why = map.unseen.map(|unseen| format!("; {unseen}")).unwrap_or_default();
-        bad_input(format!("{}: shows no free floor{why}", args.map.display()))
+        bad_input(format!("{}: has no free floor{why}", args.map.display()))
     })?;
     if let Some(file) = &args.svg {
         write_file("the drawing", file, &drawing::floor(&world_of(&floor), &[]))?;
@@ -62,7 +62,7 @@ fn human(args: &MapArgs, map: &OccupancyMap, floor: &MapFloor) -> String {
     // Writing to a String cannot fail.
     let _ = write!(
         text,
-        "free floor           {:.1} m² in {} cells; {elsewhere} free cells elsewhere count as solid\n\
+        "free floor           {:.1} m² in {} cells; {elsewhere} other free cells count as solid\n\
          outlines             {}, with {before} corners, {after} after simplification\n\
          convex pieces        {}\n\
          largest shape error  {:.4} m ({:.2} cells), towards the safe side\n",

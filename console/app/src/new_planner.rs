@@ -1,4 +1,5 @@
-//! `tankops new-planner`: a folder with a planner that builds and flies. The files are those of `plugins/examples`.
+//! `tankops new-planner`: creates a folder with a planner that is ready to build and run, from the files of
+//! `plugins/examples`.
 
 use crate::cli::{Lang, NewPlannerArgs};
 use anyhow::Context;
@@ -20,12 +21,15 @@ const CPP_MAKE: &str = include_str!("../../../plugins/examples/direct-cpp/Makefi
 const HEADER: &str = include_str!("../../../plugins/planner-api/include/tankops_planner.h");
 const SCENARIO: &str = include_str!("../../../plugins/examples/scenario.toml");
 
-/// `tankops new-planner`.
+/// Runs `tankops new-planner`.
 pub(crate) fn create(args: &NewPlannerArgs) -> anyhow::Result<ExitCode> {
     check_name(&args.name).map_err(bad_input)?;
     let folder = args.out.join(&args.name);
     if folder.exists() {
-        return Err(bad_input(format!("{} already exists; nothing is written over", folder.display())));
+        return Err(bad_input(format!(
+            "{} already exists and is not overwritten; choose another name",
+            folder.display()
+        )));
     }
     for (name, text) in files(&args.name, args.lang, &api(args.api.as_deref())?) {
         let file = folder.join(name);
@@ -46,11 +50,11 @@ fn check_name(name: &str) -> Result<(), String> {
     Err(format!("`{name}` is not a valid planner name: write a letter, then up to 31 of a-z, 0-9, _ and -"))
 }
 
-/// How `Cargo.toml` names the crate that a planner in Rust needs.
+/// The dependency entry in `Cargo.toml` for the crate that a Rust planner needs.
 fn api(given: Option<&Path>) -> anyhow::Result<String> {
     let is_there = |folder: &PathBuf| folder.join("Cargo.toml").is_file();
     if let Some(missing) = given.map(Path::to_owned).filter(|folder| !is_there(folder)) {
-        return Err(bad_input(format!("--api {}: there is no Cargo.toml in it", missing.display())));
+        return Err(bad_input(format!("--api {}: has no Cargo.toml", missing.display())));
     }
     let program = env::current_exe().ok();
     let installed =
@@ -63,7 +67,7 @@ fn api(given: Option<&Path>) -> anyhow::Result<String> {
     })
 }
 
-/// The files of a new planner, with their names.
+/// The files of a new planner with their names.
 fn files(id: &str, lang: Lang, api: &str) -> Vec<(String, String)> {
     let library = library_name(id);
     let scenario = SCENARIO.replace("\"straight\"", &format!("\"{id}\""));
@@ -74,7 +78,8 @@ fn files(id: &str, lang: Lang, api: &str) -> Vec<(String, String)> {
                 .replace("\"straight\"", &format!("\"{id}\""))
                 .replace("planner_straight", &format!("planner_{library}"))
                 .replace("{ path = \"../../planner-api\" }", api);
-            // A workspace of its own, wherever it lies, whose crashes show their lines in a debugger.
+            // The new folder is a workspace of its own, wherever it is, and its crashes show source lines in a
+            // debugger.
             let profile = "[profile.release]\n# `tankops replay-worker --gdb` shows the lines of a crash.\ndebug = \"line-tables-only\"\n";
             let cargo = format!("{cargo}\n{profile}\n[workspace]\n");
             vec![
@@ -110,7 +115,7 @@ fn next_steps(folder: &Path, id: &str, lang: Lang) -> String {
         Lang::C | Lang::Cpp => ("make", "."),
     };
     format!(
-        "created {folder}; build it, fly it, and try it in random tanks beside the other planners:\n\
+        "created {folder}; build the planner, run it, and try it in random tanks beside the other planners:\n\
          \n    cd {folder}\n    {build}\n    tankops run scenario.toml --plugin-dir {built}\n    \
          tankops check {built}/libplanner_{library}.so --fly 10\n",
         folder = folder.display(),

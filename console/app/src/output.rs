@@ -1,4 +1,4 @@
-//! Results as files.
+//! Writes results to files.
 
 use flight::failure::bad_input;
 use foreign::{plain_json, plain_lines};
@@ -7,12 +7,12 @@ use review::register;
 use runs::is_run;
 use std::{borrow::Cow, fs, io, os::unix::fs::MetadataExt, path::Path};
 
-/// Makes sure that a file that the user asked for may be written: what is there is never written over, also behind a link, unless
-/// that is asked for; `force` is `None` where a command has no `--force`. What the command itself reads (`inputs`), a signed report and
-/// a file of a run are never written over. Pipes and devices are written to as they are.
+/// Checks that an output file named by the user may be written. An existing file, or the target of a link, is
+/// overwritten only if `force` is `Some(true)`; `force` is `None` for a command without `--force`. The command's own
+/// `inputs`, a signed report and a file of a run are never overwritten. Pipes and devices are written to directly.
 ///
 /// # Errors
-/// There is a file, or a link that leads nowhere yet.
+/// The file, or a link of this name, exists and may not be overwritten.
 pub(crate) fn check_free(file: &Path, force: Option<bool>, inputs: &[&Path]) -> anyhow::Result<()> {
     let is_free = match fs::symlink_metadata(file) {
         Err(_) => true,
@@ -24,38 +24,40 @@ pub(crate) fn check_free(file: &Path, force: Option<bool>, inputs: &[&Path]) -> 
     if is_free || force == Some(true) {
         return Ok(());
     }
-    let instead = if force.is_some() { "choose another name, or --force" } else { "choose another name" };
+    let instead = if force.is_some() { "choose another name, or use --force" } else { "choose another name" };
     Err(bad_input(format!("{} already exists; {instead}", file.display())))
 }
 
-/// Why a file that is there is not written over even by force.
+/// The reason why an existing file must not be overwritten, even with `--force`.
 fn never_replaced(file: &Path, inputs: &[&Path]) -> Option<String> {
     let path = fs::canonicalize(file).ok()?;
     if inputs.iter().any(|input| is_same(&path, input)) {
-        return Some("is what this command reads".into());
+        return Some("is an input of this command".into());
     }
     if let Some(Revision { revision, .. }) = register().signed_as(&path) {
-        return Some(format!("is the signed revision {revision}, which is never changed"));
+        return Some(format!("is the signed revision {revision}, which must not be changed"));
     }
     let is_page = path.extension().is_some_and(|suffix| suffix == "html");
-    (!is_page && path.parent().is_some_and(is_run)).then(|| "is a file of the run".into())
+    (!is_page && path.parent().is_some_and(is_run)).then(|| "is part of a run".into())
 }
 
-/// Whether two paths lead to one file, by whatever links.
+/// Whether two paths refer to the same file, following links.
 fn is_same(one: &Path, other: &Path) -> bool {
     let id = |path: &Path| fs::metadata(path).map(|file| (file.dev(), file.ino())).ok();
     id(one).is_some_and(|one| id(other) == Some(one))
 }
 
-/// Writes a file that the user asked for ([`check_free`]), whole or not at all; `name` is what an error calls it.
+/// Writes an output file named by the user (see [`check_free`]), completely or not at all; `name` is its name in error
+/// messages.
 pub(crate) fn write_file(name: &str, file: &Path, text: &str) -> anyhow::Result<()> {
     runs::write_whole(file, in_plain(file, text).as_bytes()).map_err(|error| {
-        let why = format!("{name} cannot be written: {error}: {}", file.display());
+        let why = format!("cannot write {name}: {error}: {}", file.display());
         if is_of_machine(&error) { anyhow::anyhow!(why) } else { bad_input(why) }
     })
 }
 
-/// The text of a file in plain characters; a page is made so where it is set, and signed as it is.
+/// The text with unsafe characters replaced. An HTML page is left as it is: its characters were replaced when it was
+/// generated, and it may be signed.
 fn in_plain<'a>(file: &Path, text: &'a str) -> Cow<'a, str> {
     match file.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
         "json" | "geojson" => plain_json(text),
@@ -64,10 +66,10 @@ fn in_plain<'a>(file: &Path, text: &'a str) -> Cow<'a, str> {
     }
 }
 
-/// Whether an error is one of the machine: another file name would not help.
+/// Whether the error comes from the machine, so that a different file name would not help.
 fn is_of_machine(error: &io::Error) -> bool {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
-    // EIO has no kind of its own.
+    // EIO has no `ErrorKind`.
     matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge) || error.raw_os_error() == Some(5)
 }
 
@@ -87,7 +89,7 @@ mod tests {
         symlink(folder.path().join("none"), &nowhere).unwrap();
         for there in [file.as_path(), &link, &nowhere, folder.path()] {
             let refused = check_free(there, Some(false), &[]).unwrap_err().to_string();
-            assert!(refused.ends_with("already exists; choose another name, or --force"), "{refused}");
+            assert!(refused.ends_with("already exists; choose another name, or use --force"), "{refused}");
             assert!(check_free(there, None, &[]).unwrap_err().to_string().ends_with("choose another name"));
             assert!(check_free(there, Some(true), &[]).is_ok());
         }
@@ -105,12 +107,12 @@ mod tests {
         fs::hard_link(&file, &linked).unwrap();
         for there in [&file, &linked] {
             let refused = check_free(there, Some(true), &[&file]).unwrap_err().to_string();
-            assert!(refused.ends_with("is what this command reads; choose another name"), "{refused}");
+            assert!(refused.ends_with("is an input of this command; choose another name"), "{refused}");
         }
         assert!(check_free(&file, Some(true), &[&page]).is_ok());
         fs::write(&journal, "").unwrap();
         let refused = check_free(&journal, Some(true), &[]).unwrap_err().to_string();
-        assert!(refused.ends_with("is a file of the run; choose another name"), "{refused}");
+        assert!(refused.ends_with("is part of a run; choose another name"), "{refused}");
         // A page is none of them.
         fs::write(&page, "").unwrap();
         assert!(check_free(&page, Some(true), &[]).is_ok());

@@ -1,4 +1,4 @@
-//! `tankops runs`, `report` and `verify`: what past runs hold.
+//! `tankops runs`, `report`, `recover` and `verify`: commands for past runs.
 
 use crate::{
     cli::{LogsArg, ReportArgs},
@@ -15,7 +15,7 @@ use report::{
 use runs::{Past, find};
 use std::{path::Path, process::ExitCode};
 
-/// `tankops runs`.
+/// Runs `tankops runs`.
 pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
     let listed = runs::list(&logs.folder(), &review::register())?;
     say(&if json {
@@ -28,7 +28,7 @@ pub(crate) fn list(logs: &LogsArg, json: bool) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// `tankops report RUN...`.
+/// Runs `tankops report RUN...`.
 pub(crate) fn report(args: &ReportArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     if let Some(output) = &args.output {
         return report_file::write(args, output, plugins);
@@ -49,7 +49,7 @@ fn one(past: &Past, json: bool) -> anyhow::Result<String> {
     if json { pretty_json("the report", &review::summary(past)?) } else { review::text_of(past) }
 }
 
-/// `tankops recover`.
+/// Runs `tankops recover`.
 pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<ExitCode> {
     let folder = find(run, &logs.folder())?;
     let recovered = runs::recover(&folder, by)?;
@@ -63,12 +63,12 @@ pub(crate) fn recover(run: &Path, by: &str, logs: &LogsArg) -> anyhow::Result<Ex
         say_line(&format!("  {missing}"))?;
     }
     say_line(
-        "the SHA-256 of journal and recording are now in report.json; the run can be part of a signed report",
+        "report.json now contains the SHA-256 of journal and recording; the run can be part of a signed report",
     )?;
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// `tankops verify`.
+/// Runs `tankops verify`.
 pub(crate) fn verify(
     run: &Path,
     logs: &LogsArg,
@@ -84,19 +84,19 @@ pub(crate) fn verify(
     Ok(ExitCode::from(if verified.is_equal && is_again { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// Locates readings again and says what comes of them; whether nothing else does.
+/// Locates the readings of a run again and reports the result; returns whether it is the same.
 fn is_located_again(folder: &Path) -> anyhow::Result<bool> {
     let again = ::locate::again(folder)?;
     say_line(&match &again {
         Again::Equal(events) => {
-            format!("equal: {events} events computed again from the readings, byte for byte")
+            format!("equal: {events} events recomputed from the readings, byte for byte")
         }
         Again::Different { line, recorded, computed } => {
             format!("different from line {line} on\n  recorded: {recorded}\n  computed: {computed}")
         }
         Again::NoReadings(why) => {
             format!(
-                "not proven: the positions cannot be computed again; put the readings back where they were: {why}"
+                "not proven: the positions cannot be recomputed; restore the readings to their original place: {why}"
             )
         }
     })?;

@@ -1,4 +1,4 @@
-//! `tankops plan`: a plan on the known map, without flying.
+//! `tankops plan`: plans on the known map without running the mission.
 
 use crate::{
     cli::PlanArgs,
@@ -21,7 +21,7 @@ use scenario::Scenario;
 use serde::Serialize;
 use std::{path::Path, process::ExitCode, sync::Arc, time::Instant};
 
-/// `tankops plan`.
+/// Runs `tankops plan`.
 pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let scenario = scenarios::read(&args.scenario, &(&args.changes).into())?;
     let format = args.output.as_deref().map(format_of).transpose()?;
@@ -53,7 +53,7 @@ pub(crate) fn plan(args: &PlanArgs, plugins: &PluginDirs) -> anyhow::Result<Exit
     Ok(ExitCode::from(if planned.flies(mission) { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// A plan, and a far better one by another planner.
+/// A plan, with a far better plan by another planner if there is one.
 #[derive(Serialize)]
 struct WithAdvice<'a> {
     #[serde(flatten)]
@@ -61,14 +61,14 @@ struct WithAdvice<'a> {
     better: Option<&'a Better>,
 }
 
-/// What another planner would take for the same task.
+/// A far better plan for the same task by another planner.
 #[derive(Serialize)]
 struct Better {
-    /// Its id.
+    /// The planner's id.
     planner: String,
-    /// Mission time of its plan, seconds.
+    /// The mission time of its plan, in seconds.
     mission_time_s: f64,
-    /// Way of its plan, metres.
+    /// The path length of its plan, in metres.
     path_length_m: f64,
 }
 
@@ -77,15 +77,16 @@ impl Better {
         let Self { planner, mission_time_s, path_length_m } = self;
         let (own_m, own_s) = planned.effort();
         format!(
-            "advice    {planner} is far better: {mission_time_s:.0} s instead of {own_s:.0} s, {path_length_m:.0} m instead of \
-             {own_m:.0} m; choose it with --planner {planner}\n"
+            "advice    {planner} is far better: {mission_time_s:.0} s instead of {own_s:.0} s, \
+             {path_length_m:.0} m instead of {own_m:.0} m; use it with --planner {planner}\n"
         )
     }
 }
 
-/// The planner that suits coverage best, where its plan takes far less time or this one is not complete.
+/// The plan of the planner best suited to coverage, if it takes far less time or the given plan cannot be run
+/// completely.
 fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Option<Better> {
-    /// Far less: at most this share of the time.
+    /// The largest share of the time that counts as far less.
     const FAR: f64 = 0.7;
     if !matches!(scenario.mission.task, TaskConfig::Cover { .. }) {
         return None;
@@ -102,7 +103,7 @@ fn better(scenario: &Scenario, planned: &Planned, plugins: &PluginDirs) -> Optio
     (is_far && plan.flies(&other.mission)).then_some(Better { planner, mission_time_s, path_length_m })
 }
 
-/// How a plan is written.
+/// The file format of a plan.
 #[derive(Clone, Copy)]
 enum Format {
     Csv,
@@ -115,7 +116,7 @@ fn format_of(file: &Path) -> anyhow::Result<Format> {
         "csv" => Ok(Format::Csv),
         "geojson" => Ok(Format::GeoJson),
         "dxf" => Ok(Format::Dxf),
-        _ => Err(bad_input(format!("{}: plans are written as .csv, .geojson or .dxf", file.display()))),
+        _ => Err(bad_input(format!("{}: unknown plan format; use .csv, .geojson or .dxf", file.display()))),
     }
 }
 
@@ -146,7 +147,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> 
                 .cloned()
                 .or_else(|| reply.logs.into_iter().map(|(_, message)| message).next_back());
             let reason =
-                (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner did not say why".into()));
+                (!reply.value.complete).then(|| said.unwrap_or_else(|| "the planner gave no reason".into()));
             (reply.value, reason)
         }
         Err(fault) => (partial_plan(&fault)?, Some(fault.message)),
@@ -154,7 +155,7 @@ fn make_plan(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<Made> 
     Ok(Made { plan, plan_time_ms, reason, warnings })
 }
 
-/// Asks the mission's planner for a plan of the whole task, from the start, on the drawing.
+/// Requests a plan of the whole task from the mission's planner, from the start, on the drawing.
 fn ask_for_plan(scenario: &Scenario, host: &mut BlockingHost) -> Result<Reply<Plan>, Fault> {
     let ask = preview(&scenario.mission, &scenario.sim.world.as_drawn(), scenario.seed);
     let planner = &scenario.mission.planner;
@@ -162,7 +163,7 @@ fn ask_for_plan(scenario: &Scenario, host: &mut BlockingHost) -> Result<Reply<Pl
     ask.lend(|request| host.plan(request))
 }
 
-/// A planner that refuses returns its partial path; any other fault is for the user to fix.
+/// The partial path of a planner that refuses; any other fault is returned as an error for the user to fix.
 fn partial_plan(fault: &Fault) -> anyhow::Result<Plan> {
     match fault.cause {
         Cause::Planner(code) if code != Code::Config => {

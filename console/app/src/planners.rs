@@ -1,4 +1,4 @@
-//! `tankops planners` and `tankops check`: what was found, and what is wrong with it.
+//! `tankops planners` and `tankops check`: lists the plugins found, and the problems of files.
 
 use crate::accuracy::warn_of_positions;
 use command::json::pretty_json;
@@ -16,7 +16,7 @@ use std::{
     process::ExitCode,
 };
 
-/// `tankops planners`.
+/// Runs `tankops planners`.
 pub(crate) fn list(plugins: &PluginDirs, json: bool) -> anyhow::Result<ExitCode> {
     let survey = survey(plugins, &WorkerCommand::default());
     say(&if json { pretty_json("the list", &survey)? } else { listing(&survey, plugins) })?;
@@ -39,8 +39,7 @@ fn plugin_listing(plugin: &SurveyedPlugin) -> String {
     let head = format!("{}{abi}  sha256 {hash}\n", plugin.path.display());
     let refused = plugin.refused.iter().map(|reason| format!("  REFUSED: {reason}\n"));
     let planners = plugin.planners.iter().map(planner_listing);
-    let shadowed =
-        plugin.shadowed.iter().map(|id| format!("  {id}  shadowed by a plugin that is found earlier\n"));
+    let shadowed = plugin.shadowed.iter().map(|id| format!("  {id}  shadowed by a plugin found earlier\n"));
     std::iter::once(head).chain(refused).chain(planners).chain(shadowed).collect()
 }
 
@@ -63,14 +62,14 @@ fn parameter_listing(info: &ParamInfo) -> String {
     format!("      {:<18} {values}{unit}{live}\n", info.key)
 }
 
-/// Warns of planners of a scenario that more than one plugin has.
+/// Warns if a planner of the scenario is in more than one plugin.
 pub(crate) fn warn_of_shadowed(scenario: &Scenario, plugins: &PluginDirs) {
     for sentence in &planners::shadowed(scenario, plugins) {
         warn_line(sentence);
     }
 }
 
-/// `tankops check`.
+/// Runs `tankops check`.
 pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let mut sound = true;
     for file in files {
@@ -85,10 +84,10 @@ pub(crate) fn check(files: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<E
     Ok(ExitCode::from(if sound { COMPLETE } else { BAD_INPUT }))
 }
 
-/// What a file is, or what is wrong with it.
+/// A description of the file, or of its problems.
 ///
 /// # Errors
-/// The machine lets no planner run.
+/// The machine cannot run any planner.
 fn check_file(file: &Path, plugins: &PluginDirs) -> anyhow::Result<Result<String, String>> {
     if let Some(checked) = config::check(file) {
         return Ok(checked);

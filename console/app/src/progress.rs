@@ -1,4 +1,4 @@
-//! What a terminal on stderr shows while something takes its time.
+//! Progress indicators on stderr during slow work.
 
 use flight::plan_watch::{OnWork, Work};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -9,10 +9,10 @@ use std::{
     time::Duration,
 };
 
-/// How often the time that has passed is drawn again.
+/// The interval at which the elapsed time is redrawn.
 const EVERY: Duration = Duration::from_millis(250);
 
-/// Shows what is going on, for how long already and its limit; nothing where stderr is not a terminal.
+/// Shows the work in progress with its elapsed time and limit; hidden if stderr is not a terminal.
 pub(crate) fn spinner(work: &str, limit: Duration) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -24,14 +24,14 @@ pub(crate) fn spinner(work: &str, limit: Duration) -> ProgressBar {
     spinner
 }
 
-/// Shows how far a plan is.
+/// Shows the progress of a plan.
 pub(crate) fn show_share(bar: &ProgressBar, work: &str, progress: &Progress) {
     if !bar.is_hidden() {
         bar.set_message(format!("{work}: {}", share(progress)));
     }
 }
 
-/// What planners do that takes its time, shown in the bar of something larger: the work, and how far it is.
+/// Callbacks that show slow work of planners, and its progress, in an existing bar.
 pub(crate) fn shown_in(bar: &ProgressBar) -> (OnWork, OnProgress) {
     let current: Arc<Mutex<Option<Work>>> = Arc::default();
     let (shown, work) = (bar.clone(), Arc::clone(&current));
@@ -64,7 +64,7 @@ fn words(work: &str, limit: Option<Duration>) -> String {
     work.to_owned() + &limit.unwrap_or_default()
 }
 
-/// Only the end of a plan makes it whole.
+/// Shows 100 % only once the plan has arrived.
 fn share(progress: &Progress) -> String {
     let percent = (100.0 * progress.share).floor().min(99.0);
     if progress.what.is_empty() { format!("{percent} %") } else { format!("{percent} %, {}", progress.what) }

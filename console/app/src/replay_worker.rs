@@ -1,4 +1,4 @@
-//! `tankops replay-worker`: a plugin alone, asked once more what it was asked before it failed.
+//! `tankops replay-worker`: repeats to a plugin alone the requests that it received before it failed.
 
 use crate::cli::ReplayWorkerArgs;
 use anyhow::anyhow;
@@ -12,19 +12,19 @@ use std::{
     process::{self, ExitCode},
 };
 
-/// The worker's own bytes of the plugin are at this descriptor, and gdb knows the plugin by its number.
+/// The worker holds a copy of the plugin at this descriptor; gdb knows the plugin by this number.
 const KNOWN_TO_GDB_AS: &str = "201";
-/// The files of a bundle in which gdb leaves what it found.
+/// The files that gdb writes into a bundle.
 const CORE: &str = "core";
 const TRACE: &str = "backtrace.txt";
 
-/// `tankops replay-worker BUNDLE`.
+/// Runs `tankops replay-worker BUNDLE`.
 pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
     let bundle = &args.bundle;
     let kept = |name: &str| {
         let file = bundle.join(name);
         let read = fs::read(&file).map_err(|error| {
-            bad_input(format!("{}: {error}; name a whole folder crash-N of a run", file.display()))
+            bad_input(format!("{}: {error}; name a complete folder crash-N of a run", file.display()))
         });
         read.map(|bytes| (file, bytes))
     };
@@ -47,10 +47,9 @@ pub(crate) fn replay(args: &ReplayWorkerArgs) -> anyhow::Result<ExitCode> {
         NotReplayed::Machine(why) => anyhow!(why),
     });
     let (code, end) = match replayed? {
-        Replayed::ToTheEnd { requests } => (
-            COMPLETE,
-            format!("the console accepts the answers to all {requests} requests: it does not fail again"),
-        ),
+        Replayed::ToTheEnd { requests } => {
+            (COMPLETE, format!("all {requests} answers are accepted: the plugin does not fail again"))
+        }
         Replayed::Failed(how) => (ENDED_OTHERWISE, format!("failed again at {how}")),
     };
     say_line(&end)?;
@@ -68,16 +67,16 @@ fn left_in(bundle: &Path) -> String {
         .map(|name| bundle.join(name).display().to_string())
         .collect();
     if left.is_empty() {
-        "gdb left neither core nor backtrace: is it installed?".to_owned()
+        "gdb wrote neither a core dump nor a backtrace; is gdb installed?".to_owned()
     } else {
         left.join("\n")
     }
 }
 
-/// gdb around a worker, whose socket is kept at descriptor 3 for it. The worker loads the plugin from memory; where gdb
-/// looks for it, there is a link to the file.
+/// Runs gdb around a worker, keeping the worker's socket at descriptor 3. The worker loads the plugin from memory; a
+/// link to the plugin's file is placed where gdb looks for it.
 struct Gdb {
-    /// The folder with that link; removed in the end.
+    /// The folder with the link; removed on drop.
     libraries: PathBuf,
 }
 
@@ -92,13 +91,13 @@ impl Gdb {
         Ok(gdb)
     }
 
-    /// With the terminal for its author.
+    /// A command that runs gdb interactively in the terminal.
     fn at_terminal(&self) -> io::Result<WorkerCommand> {
         let then = r"-ex 'echo Set breakpoints in your planner if you like, then type: run\n'";
         self.command("</dev/tty >/dev/tty 2>&1", then, Path::new(""))
     }
 
-    /// Without anybody: leaves core and backtrace in a folder.
+    /// A command that runs gdb unattended and writes a core dump and a backtrace into a folder.
     fn leaving_core(&self, folder: &Path) -> io::Result<WorkerCommand> {
         let then = format!(
             "-batch -ex run -ex \"generate-core-file $2/{CORE}\" -ex 'thread apply all backtrace full'"

@@ -1,4 +1,4 @@
-//! `tankops report RUN... -o FILE`: the inspection report as a file, signed or not.
+//! `tankops report RUN... -o FILE`: writes the inspection report to a file, signed or unsigned.
 
 use crate::{
     cli::ReportArgs,
@@ -28,14 +28,14 @@ use std::{
     process::ExitCode,
 };
 
-/// The formats, by the ends of file names.
+/// The file extensions of the supported formats.
 const FORMATS: [&str; 5] = ["html", "json", "csv", "geojson", "dxf"];
 
 /// Writes the report.
 pub(crate) fn write(args: &ReportArgs, output: &Path, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let format = format_of(output)?;
     if args.sign.is_some() && format != "html" {
-        return Err(bad_input(format!("--sign signs an .html file, not {}", output.display())));
+        return Err(bad_input(format!("--sign needs an .html file as output, not {}", output.display())));
     }
     let folders: Vec<PathBuf> =
         args.runs.iter().map(|run| find(run, &args.logs.folder())).collect::<Result<_, _>>()?;
@@ -90,11 +90,14 @@ fn format_of(output: &Path) -> anyhow::Result<&'static str> {
     let extension = output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     FORMATS.into_iter().find(|format| *format == extension).ok_or_else(|| {
         let formats = FORMATS.map(|format| format!(".{format}")).join(", ");
-        bad_input(format!("{}: a report is one of {formats}; without -o it is printed", output.display()))
+        bad_input(format!(
+            "{}: unknown report format; use {formats}, or leave out -o to print the report",
+            output.display()
+        ))
     })
 }
 
-/// The files that a report in a format is written to.
+/// The files of a report in a format.
 fn names(output: &Path, format: &str) -> Vec<PathBuf> {
     if format != "csv" {
         return vec![output.to_owned()];
@@ -103,13 +106,14 @@ fn names(output: &Path, format: &str) -> Vec<PathBuf> {
     csv::SUFFIXES.iter().map(|suffix| output.with_file_name(format!("{stem}{suffix}.csv"))).collect()
 }
 
-/// Refuses to write over what is there, and ever over a signed report of these runs ([`check_free`] knows those of the register).
+/// Refuses to overwrite an existing file without `--force`, and always refuses to overwrite a signed report of these
+/// runs. [`check_free`] refuses the signed reports in the register.
 fn may_write(output: &Path, args: &ReportArgs, revisions: &[Revision]) -> anyhow::Result<()> {
     let path = fs::canonicalize(output).unwrap_or_else(|_| output.to_owned()).display().to_string();
     if let Some(revision) = revisions.iter().find(|revision| revision.file == path) {
         let letter = &revision.revision;
         return Err(bad_input(format!(
-            "{path} is the signed revision {letter}, which is never changed; choose another name"
+            "{path} is the signed revision {letter}, which must not be changed; choose another name"
         )));
     }
     let inputs: Vec<&Path> =
@@ -117,7 +121,7 @@ fn may_write(output: &Path, args: &ReportArgs, revisions: &[Revision]) -> anyhow
     check_free(output, Some(args.force), &inputs)
 }
 
-/// The facts of the scenario, and those of the file in their place.
+/// The facts of the scenario, overridden by those of the `--inspection` file.
 fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspection> {
     let known = last.map(review::inspection).transpose()?.unwrap_or_default();
     let Some(file) = &args.inspection else { return Ok(known) };
@@ -125,7 +129,7 @@ fn inspection(args: &ReportArgs, last: Option<&Past>) -> anyhow::Result<Inspecti
     Ok(known.updated(later.map_err(|errors| bad_input(errors.render()))?))
 }
 
-/// The files of a format with their texts.
+/// The files of a format with their contents.
 fn files(
     output: &Path,
     format: &str,

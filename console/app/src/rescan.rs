@@ -1,4 +1,4 @@
-//! `tankops rescan`: a mission for what past runs have missed.
+//! `tankops rescan`: creates a mission for the areas that past runs missed.
 
 use crate::{
     cli::RescanArgs,
@@ -14,12 +14,12 @@ use review::{MissedScan, NextScan, doubt, missed_scan};
 use scenario::{Scenario, Settings};
 use std::{path::Path, process::ExitCode};
 
-/// `tankops rescan RUN... -o SCENARIO`.
+/// Runs `tankops rescan RUN... -o SCENARIO`.
 pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let (output, min_area_m2) = (&args.output, args.min_area_m2);
     check_free(output, Some(args.force), &[])?;
     if !(min_area_m2.is_finite() && min_area_m2 >= 0.0) {
-        return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be an area of 0 m² or more")));
+        return Err(bad_input(format!("--min-area-m2 {min_area_m2}: must be 0 m² or more")));
     }
     let past = review::read_all(&args.runs, &args.logs.folder())?;
     for note in past.iter().map(doubt).collect::<anyhow::Result<Vec<_>>>()?.into_iter().flatten() {
@@ -29,7 +29,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     let scan = match missed_scan(past, min_area_m2, &output.display().to_string())? {
         NextScan::Worth(scan) => *scan,
         NextScan::Nothing(why) => {
-            say_line(&format!("{} is not written: {why}", output.display()))?;
+            say_line(&format!("{} not written: {why}", output.display()))?;
             return Ok(ExitCode::from(ENDED_OTHERWISE));
         }
     };
@@ -44,7 +44,7 @@ pub(crate) fn rescan(args: &RescanArgs, plugins: &PluginDirs) -> anyhow::Result<
     Ok(ExitCode::from(COMPLETE))
 }
 
-/// The text with planners that can fly it, and what was changed for that, as a note.
+/// The scenario text, changed to planners that can run it if necessary, and a note on the change.
 fn flyable(
     text: String,
     scenario: &Scenario,
@@ -64,17 +64,17 @@ fn flyable(
     let shown = output.display().to_string();
     let text = settings.put_into(&text).map_err(|what| bad_input(format!("{shown}: {what}")))?;
     Scenario::parse(&text, &shown).map_err(|errors| bad_input(errors.render()))?;
-    let note = format!("planner {}: that of the run, {}, {why}", suited.id, mission.planner.id);
+    let note = format!("planner {} replaces {} of the run, which {why}", suited.id, mission.planner.id);
     Ok((text, Some(note)))
 }
 
-/// How the re-scan is flown.
+/// Prints how to run the re-scan.
 fn print_advice(args: &RescanArgs, names: &[String]) -> anyhow::Result<()> {
     let (logs, output) = (args.logs.folder(), args.output.display());
     let logs = logs.display();
     Ok(say_line(&format!(
-        "run it with `tankops run --logs {logs} {output}`; then `tankops report --logs {logs} {} RUN` shows them \
-         together",
+        "run it with `tankops run --logs {logs} {output}`; then combine the reports with `tankops report --logs \
+         {logs} {} RUN`",
         names.join(" "),
     ))?)
 }

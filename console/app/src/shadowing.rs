@@ -1,4 +1,4 @@
-//! A planner in shadow of a headless run, and the two that take over from each other.
+//! A planner in shadow in a headless run, and its swaps with the driving planner.
 
 use crate::cli::ShadowArgs;
 use flight::{planners, scenarios};
@@ -7,21 +7,21 @@ use planner_host::PluginDirs;
 use scenario::{Scenario, Settings};
 use std::path::Path;
 
-/// Gives the orders about a planner in shadow.
+/// Issues the orders for a planner in shadow.
 pub(crate) struct Shadowing {
-    /// The planner in shadow, and the one that drives.
+    /// The planner in shadow, then the one that drives.
     choices: [PlannerChoice; 2],
     every_s: Option<f64>,
     tally: ShadowTally,
-    /// Mission time of the next promotion, seconds.
+    /// The mission time of the next promotion, in seconds.
     due_s: f64,
 }
 
 impl Shadowing {
-    /// What the command line asks for, of a scenario that was read from a file.
+    /// Reads the shadow options of the command line for a scenario that was read from `file`.
     ///
     /// # Errors
-    /// There is no such planner, or it does not take its parameters.
+    /// The planner is not available, or it does not accept its parameters.
     pub(crate) fn read(
         args: &ShadowArgs,
         file: &Path,
@@ -40,12 +40,12 @@ impl Shadowing {
         Self { choices, every_s, tally: ShadowTally::default(), due_s: every_s.unwrap_or_default() }
     }
 
-    /// The order with which the mission begins.
+    /// The order that starts the planner in shadow.
     pub(crate) fn begin(&self) -> Order {
         Order::Shadow(self.choices[0].clone())
     }
 
-    /// The order for the next tick, after the events of a tick.
+    /// Returns the order for the next tick; `events` are those of the current tick.
     pub(crate) fn next(&mut self, events: &[Event]) -> Option<Order> {
         let every_s = self.every_s?;
         for event in events {

@@ -1,4 +1,4 @@
-//! Signing a report: what was signed before on its runs, what keeps it from being signed, and what is done when it is.
+//! Signing of reports: the earlier signed reports on the same runs, the conditions for a signature, and sealing.
 
 use ::locate::Again;
 use flight::failure::bad_input;
@@ -19,17 +19,17 @@ use std::{
     time::SystemTime,
 };
 
-/// The signed reports on some runs.
+/// The signed reports on a set of runs.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Chain {
-    /// Each once, the earliest first.
+    /// The revisions without duplicates, earliest first.
     pub revisions: Vec<Revision>,
-    /// What speaks against them: one was changed, moved or lost, or is about another run of the same name.
+    /// Doubts about them: a report was changed, moved or lost, or is about a different run of the same name.
     pub doubts: Vec<String>,
 }
 
 impl Chain {
-    /// The chain of the runs in some folders.
+    /// The chain of the runs in these folders.
     pub(crate) fn of(folders: &[PathBuf], register: &Register) -> Self {
         let mut chain = Self::default();
         for folder in folders {
@@ -45,7 +45,7 @@ impl Chain {
         chain
     }
 
-    /// Adds what speaks against runs that are not those that were signed, or were signed under another name.
+    /// Adds doubts about runs that differ from the signed ones or were signed under another name.
     pub(crate) fn compare(&mut self, folders: &[PathBuf], past: &[PastRun], register: &Register) {
         let now: Vec<SignedRun> = past.iter().flat_map(SignedRun::names_of).collect();
         let doubts =
@@ -64,33 +64,35 @@ impl Chain {
     }
 }
 
-/// The signature of somebody at this minute.
+/// A signature by this person, dated to the current minute.
 pub(crate) fn signature(by: &str) -> Signature {
     Signature { by: by.to_owned(), at: utc_minute(SystemTime::now()) }
 }
 
-/// Refuses a signature that continues a chain with a doubt.
+/// Refuses to extend a chain that has a doubt.
 pub(crate) fn refuse_doubts(chain: &Chain) -> anyhow::Result<()> {
     match chain.doubts.first() {
-        Some(doubt) => {
-            Err(bad_input(format!("not signed: {doubt}; put the files back as they were when it was signed")))
-        }
+        Some(doubt) => Err(bad_input(format!(
+            "not signed: {doubt}; restore the files to their state when it was signed"
+        ))),
         None => Ok(()),
     }
 }
 
-/// Refuses a signature under the certificate of somebody else. That no inspector is named is an open item.
+/// Refuses a signer who is not the inspector whose certificate is stated. A missing inspector is an open item of the
+/// gate, not an error here.
 pub(crate) fn refuse_other_signer(by: &str, inspector: Option<&str>) -> anyhow::Result<()> {
     match inspector {
         Some(inspector) if inspector.trim() != by.trim() => Err(bad_input(format!(
-            "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the report states; let \
-             {inspector} sign, or give inspector and inspector_certificate of {by} in a file for --inspection"
+            "not signed: --sign names {by}, but inspection.inspector is {inspector}, whose certificate the \
+             report states; let {inspector} sign, or state inspector and inspector_certificate of {by} in a \
+             file for --inspection"
         ))),
         _ => Ok(()),
     }
 }
 
-/// Refuses what keeps a report from being signed.
+/// Refuses a report with open items.
 pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     let open: Vec<String> = document
         .open_items()
@@ -101,14 +103,15 @@ pub(crate) fn refuse_open_items(document: &Document) -> anyhow::Result<()> {
     }
     let (count, are) = (open.len(), if open.len() == 1 { "is" } else { "are" });
     Err(bad_input(format!(
-        "not signed: {count} of {} items {are} open (keys of [inspection] go into a file for --inspection):\n{}",
+        "not signed: {count} of {} items {are} open (state keys of [inspection] in a file for --inspection):\n{}",
         document.gate.len(),
         open.join("\n")
     )))
 }
 
-/// Refuses runs whose journal does not come out again when it is recomputed: its digests prove nothing to whoever can write
-/// `report.json` again. `folders`: of the runs that were flown; readings that were located are not the simulator's.
+/// Refuses runs whose journal is not reproduced when it is recomputed: the digests alone prove nothing, because
+/// `report.json` can be rewritten. `folders` holds the flown runs only, since located readings do not come from the
+/// simulator.
 pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -> anyhow::Result<()> {
     for folder in folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
@@ -121,7 +124,7 @@ pub(crate) fn refuse_not_recomputed(folders: &[PathBuf], plugins: &PluginDirs) -
     Ok(())
 }
 
-/// Refuses located runs that do not come out of their readings again. `folders`: of the runs that were located.
+/// Refuses located runs that their readings do not reproduce. `folders` holds the located runs only.
 pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()> {
     for folder in folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
@@ -129,17 +132,17 @@ pub(crate) fn refuse_not_located_again(folders: &[PathBuf]) -> anyhow::Result<()
         let why = match ::locate::again(folder)? {
             Again::Equal(_) => continue,
             Again::Different { line, .. } => {
-                format!("they give other positions from line {line} of its journal on")
+                format!("they give different positions from line {line} of its journal on")
             }
-            Again::NoReadings(why) => format!("put them back where they were: {why}"),
+            Again::NoReadings(why) => format!("restore them to their original place: {why}"),
         };
         return Err(bad_input(format!("not signed: the readings of run {name}: {why}")));
     }
     Ok(())
 }
 
-/// Lists a signed report in the folders of its runs and in the register, and makes it read-only. One that cannot be listed is
-/// removed: it could be changed without anybody noticing.
+/// Lists a signed report in the folders of its runs and in the register, and makes it read-only. If the report cannot
+/// be listed, it is removed, because later changes could not be detected.
 pub(crate) fn seal(
     (file, text): (&Path, &str),
     document: &Document,
@@ -165,7 +168,7 @@ fn make_read_only(file: &Path) -> anyhow::Result<()> {
     let mut permissions = fs::metadata(file)?.permissions();
     permissions.set_readonly(true);
     fs::set_permissions(file, permissions).map_err(|error| {
-        bad_input(format!("{} cannot be made read-only: {error}; see {SIGNED_FILE}", file.display()))
+        bad_input(format!("cannot make {} read-only: {error}; see {SIGNED_FILE}", file.display()))
     })
 }
 

@@ -1,33 +1,35 @@
-//! How many threads and processes a command needs.
+//! The number of threads and processes that each command needs.
 
 use crate::cli::{CampaignCommand, Command};
 use command::threads::{cores, missions};
 
-/// Threads and processes at once, besides the first thread, counted with `prlimit --nproc`. What planners start beyond their
-/// process is counted only where something else needs it: ours do without where they get none.
+/// Numbers of simultaneous threads and processes besides the first thread, as counted by `prlimit --nproc`. Further
+/// threads of a planner are counted only if they could take what something else needs; the planners of tankops work
+/// without them.
 mod each {
     pub(super) use command::threads::{PLANNER, SIGNAL};
 
-    /// A past run that is read: its events, and the digests of its files.
+    /// Reading a past run: its events, and the digests of its files.
     pub(super) const PAST_RUN: usize = 2;
-    /// A recording: the recorder and the threads of the recording SDK.
+    /// Writing a recording: the recorder and the threads of the recording SDK.
     pub(super) const RECORDING: usize = 8;
-    /// A journal, whether it is written or only hashed.
+    /// Writing a journal, or only hashing it.
     pub(super) const JOURNAL: usize = 1;
-    /// A run that is written.
+    /// Writing a run.
     pub(super) const RUN: usize = RECORDING + JOURNAL;
-    /// A run that is recomputed: its journal, its planners, and its files meanwhile.
+    /// Recomputing a run: its journal and its planners, and its files at the same time.
     pub(super) const VERIFY: usize = 3 + PAST_RUN + PLANNER;
-    /// A console: signals, keys, plugins, and the work beside the screen.
+    /// The console: signals, keys, plugins, and background work.
     pub(super) const CONSOLE: usize = 5;
 }
 
-/// How many threads and processes a command has at once at most, besides the first thread.
+/// The largest number of simultaneous threads and processes of a command, besides the first thread.
 pub(crate) fn needed(command: Option<&Command>) -> usize {
     match command {
         None | Some(Command::Console(_) | Command::Replay(_)) => each::CONSOLE + each::PLANNER + each::RUN,
         Some(Command::Run(args)) if args.no_record => each::PLANNER + each::JOURNAL + each::SIGNAL,
-        // What a planner of floor plans with, one a core, must not take what the recording needs.
+        // A coverage planner plans with one thread per core; these must not use up the threads that the recording
+        // needs.
         Some(Command::Run(_)) => each::PLANNER + cores() - 1 + each::RUN + each::SIGNAL,
         Some(
             Command::Plan(_)
@@ -50,7 +52,7 @@ pub(crate) fn needed(command: Option<&Command>) -> usize {
             | Command::Map(_)
             | Command::Import(_)
             | Command::NewPlanner(_)
-            // Another program, which asks for itself.
+            // A different program, which checks for itself.
             | Command::Reproduce(_)
             | Command::Tune(_)
             | Command::Events(_)

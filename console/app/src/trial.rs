@@ -1,4 +1,4 @@
-//! `tankops check PLUGIN --fly N`: what a planner must do, and how it flies beside the others.
+//! `tankops check PLUGIN --fly N`: checks the planner contract, and compares a planner with the installed ones.
 
 use crate::output::write_file;
 use command::json::pretty_json;
@@ -16,7 +16,8 @@ use std::{
     process::ExitCode,
 };
 
-/// Tries every planner of some plugins in `n` random tanks from a seed on; `keep` is a folder for the tanks that were lost.
+/// Tries every planner of some plugins in `n` random tanks, beginning with a seed; `keep` is a folder for the failed
+/// tanks.
 pub(crate) fn fly(
     files: &[PathBuf],
     plugins: &PluginDirs,
@@ -26,7 +27,7 @@ pub(crate) fn fly(
 ) -> anyhow::Result<ExitCode> {
     if let Some(file) = files.iter().find(|file| file.extension().is_some_and(|end| end == "toml")) {
         return Err(bad_input(format!(
-            "{}: --fly tries plugins; to fly a scenario, use `tankops run {0}`",
+            "{}: --fly tests plugins; to run a scenario, use `tankops run {0}`",
             file.display()
         )));
     }
@@ -42,7 +43,7 @@ pub(crate) fn fly(
         }
     }
     let texts: Vec<String> = trials.iter().map(Trial::human).collect();
-    say(&if json { pretty_json("what came of the flights", &trials)? } else { texts.join("\n") })?;
+    say(&if json { pretty_json("the results of the trial runs", &trials)? } else { texts.join("\n") })?;
     if let Some(folder) = keep {
         let lost: Vec<Lost> = trials.iter().flat_map(Trial::lost).collect();
         keep_lost(folder, &lost)?;
@@ -51,16 +52,16 @@ pub(crate) fn fly(
     Ok(ExitCode::from(if is_passed { COMPLETE } else { ENDED_OTHERWISE }))
 }
 
-/// Writes the tanks that were lost as scenarios, and says how one is flown.
+/// Writes the failed tanks as scenarios, and reports their files.
 fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
     let failed = |error: io::Error| bad_input(format!("--keep {}: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
     for Lost { name, scenario } in lost {
         let file = folder.join(format!("{name}.toml"));
-        // The same tank is the same text; one that was changed is somebody's work.
+        // The same tank always has the same text; a different text was edited by a person.
         if fs::read_to_string(&file).is_ok_and(|there| there != *scenario) {
             return Err(bad_input(format!(
-                "--keep {}: already exists and was changed; choose another folder",
+                "--keep {}: already exists and was edited; choose another folder",
                 file.display()
             )));
         }
@@ -68,12 +69,12 @@ fn keep_lost(folder: &Path, lost: &[Lost]) -> anyhow::Result<()> {
         warn_line(&format!("kept {}", file.display()));
     }
     if lost.is_empty() {
-        warn_line("no tank was lost: nothing is kept");
+        warn_line("no tank failed: nothing was written");
     }
     Ok(())
 }
 
-/// The folders of plugins, that of this file first.
+/// The plugin folders, beginning with the folder of this file.
 fn with_folder_of(file: &Path, plugins: &PluginDirs) -> PluginDirs {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut plugins = plugins.clone();
@@ -81,7 +82,7 @@ fn with_folder_of(file: &Path, plugins: &PluginDirs) -> PluginDirs {
     plugins
 }
 
-/// The planners of a plugin, each of which must be the one that is chosen by its id.
+/// The planners of a plugin. Each must be the one that its id selects.
 fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyhow::Result<Vec<PlannerInfo>> {
     let refused = |why: String| bad_input(format!("{}: {why}", file.display()));
     let SurveyedPlugin { sha256, planners, refused: reason, .. } =
@@ -94,8 +95,9 @@ fn planners_of(file: &Path, plugins: &PluginDirs, found: &[PlannerInfo]) -> anyh
         |info: &&PlannerInfo| !found.iter().any(|found| found.id == info.id && found.sha256 == sha256);
     if let Some(hidden) = planners.iter().find(is_hidden) {
         return Err(refused(format!(
-            "cannot be flown: its planner `{}` is not found in this folder; the file must be called libplanner_*.so (.dylib, \
-             planner_*.dll), and no file before it may have a planner of this id",
+            "cannot be run: its planner `{}` is not found in this folder; the file must be named \
+             libplanner_*.so (.dylib, planner_*.dll), and no plugin found earlier may have a planner with this \
+             id",
             hidden.id
         )));
     }

@@ -1,4 +1,4 @@
-//! A scenario that comes through a pipe: whoever writes it may take their time, and the user is told what is waited for.
+//! Waiting for a scenario from a pipe: its writer may be slow, so the user is told what the program waits for.
 
 use crate::cli::Command;
 use interactive::config;
@@ -13,11 +13,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// After this a note says what is waited for.
+/// The wait after which a note is printed.
 const SOON: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
 
-/// Waits until those of the files that a command reads first and that are pipes have something in them; they must be kept open
-/// until they are read, so that who writes does not lose their reader.
+/// Waits until each pipe among a command's first input files has data. The returned files keep the pipes open until
+/// they are read; otherwise the writer would lose its reader.
 pub(crate) fn for_pipes(command: Option<&Command>) -> Vec<File> {
     files(command).iter().filter_map(|file| wait(file)).collect()
 }
@@ -29,7 +29,7 @@ fn files(command: Option<&Command>) -> Vec<PathBuf> {
         Some(Command::Accuracy(args)) => vec![args.scenario.clone()],
         Some(Command::Locate(args)) => vec![args.scenario.clone()],
         Some(Command::Console(args)) => args.scenario.iter().cloned().collect(),
-        // A configuration is a regular file, or refused.
+        // A configuration must be a regular file, so no wait is needed.
         Some(Command::Check { files, .. }) => {
             files.iter().filter(|file| !config::is_one(file)).cloned().collect()
         }

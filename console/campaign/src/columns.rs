@@ -1,84 +1,84 @@
-//! What the columns of a table mean, and in which unit: beside each column in the file.
+//! The meaning and unit of the columns of a table; stored with each column in the file.
 
 use arrow::datatypes::Field;
 use std::collections::HashMap;
 
-/// Meanings of the columns, by their names; units follow from the names.
+/// Meaning of each column, by name; the unit follows from the name.
 const MEANINGS: [(&str, &str); 56] = [
     ("case", "number of the mission; seeds are outermost"),
     ("scenario", "name of the scenario"),
     ("planner", "id of the planner that drove first"),
-    ("seed", "start of every random choice"),
+    ("seed", "seed of all random choices"),
     ("status", "flown, refused or failed"),
     ("error", "why the mission was not flown"),
     ("success", "complete, and every bound kept"),
-    ("outcome", "how the mission ended"),
-    ("reason", "why it ended, as a sentence"),
+    ("outcome", "outcome of the mission"),
+    ("reason", "reason for the outcome, as a sentence"),
     ("violations", "bounds that were not kept, as sentences"),
     ("planner_version", "version of the planner's plugin"),
     ("parameters", "parameters of the planner, defaults included, as JSON"),
-    ("ticks", "ticks that passed"),
-    ("mission_time_s", "mission time until the end, whatever the outcome"),
-    ("path_length_m", "distance that the robot truly travelled"),
+    ("ticks", "number of ticks"),
+    ("mission_time_s", "mission time until the end, for every outcome"),
+    ("path_length_m", "true distance driven by the robot"),
     ("turns", "changes of heading above 30 degrees within half a metre"),
     ("rotation_turns", "sum of the true heading changes, in whole turns"),
     ("clearance_min_m", "smallest true distance from the hull to anything solid; negative after a collision"),
-    ("collisions", "how often the hull began to touch something"),
-    ("obstacles_found", "obstacles found that are not on the drawing"),
-    ("holds", "how often the robot was held"),
-    ("planner_faults", "how often a planner failed"),
+    ("collisions", "number of contacts of the hull that began"),
+    ("obstacles_found", "number of obstacles found that are not on the drawing"),
+    ("holds", "number of times the robot was held"),
+    ("planner_faults", "number of times a planner failed"),
     ("coverage.reachable", "scanned share of the reachable floor, by the estimate"),
     ("coverage.whole", "scanned share of the whole floor, by the estimate"),
     ("coverage.overlap", "share of the scanned floor that was scanned more than once"),
     ("coverage.missed_area_m2", "reachable floor that was not scanned"),
     ("coverage.by_truth.reachable", "scanned share of the reachable floor, by the true path"),
     ("coverage.by_truth.whole", "scanned share of the whole floor, by the true path"),
-    ("coverage.by_truth.scanned_truly", "share of the floor claimed as scanned that truly was"),
-    ("coverage.by_truth.guaranteed_truly", "share of the floor claimed as guaranteed that truly was scanned"),
+    ("coverage.by_truth.scanned_truly", "share of the floor claimed as scanned that was truly scanned"),
+    ("coverage.by_truth.guaranteed_truly", "share of the floor claimed as guaranteed that was truly scanned"),
     ("tracking.precision", "share of the true path within 0.2 m of the preset path"),
     ("tracking.recall", "share of the preset points that the true path passes within 0.2 m"),
     ("tracking.rmse_m", "root mean square distance of the preset points from the true path"),
     ("tracking.cross_track_rmse_m", "root mean square distance of the true path from the preset path"),
     ("accuracy.mean_m", "95 % error of the position by its covariance, mean"),
     ("accuracy.p95_m", "95 % error of the position by its covariance, not exceeded in 95 % of the ticks"),
-    ("accuracy.max_m", "95 % error of the position by its covariance, largest"),
-    ("accuracy.over_limit", "share of the way with a 95 % error above the limit"),
-    ("accuracy.fixes", "positions from ranges"),
-    ("accuracy.stations_mean", "stations used for one fix, mean"),
-    ("accuracy.stations_min", "stations used for one fix, smallest number"),
+    ("accuracy.max_m", "95 % error of the position by its covariance, maximum"),
+    ("accuracy.over_limit", "share of the distance driven with a 95 % error above the limit"),
+    ("accuracy.fixes", "number of positions from ranges"),
+    ("accuracy.stations_mean", "number of stations used for one fix, mean"),
+    ("accuracy.stations_min", "number of stations used for one fix, minimum"),
     ("positioning.mean_error_m", "distance from the estimated to the true position, mean"),
     ("positioning.p50_m", "distance from the estimated to the true position, median"),
     (
         "positioning.p95_m",
         "distance from the estimated to the true position, not exceeded in 95 % of the ticks",
     ),
-    ("positioning.max_m", "distance from the estimated to the true position, largest"),
-    ("positioning.in_95_ellipse", "share of the ticks in which the truth lay in the 95 % ellipse"),
+    ("positioning.max_m", "distance from the estimated to the true position, maximum"),
+    ("positioning.in_95_ellipse", "share of the ticks in which the true position was in the 95 % ellipse"),
     ("positioning.position_lost_s", "time for which the position was lost"),
-    ("tether.tether_length_max_m", "greatest length of the tether out"),
-    ("tether.wrap_max_rad", "greatest angle by which the cable bends round one obstacle"),
-    ("tether.wrap_total_max_rad", "greatest sum of the angles over all obstacles"),
-    ("tether.loops", "loops of the tether at the end"),
+    ("tether.tether_length_max_m", "maximum length of the tether out"),
+    ("tether.wrap_max_rad", "maximum angle by which the cable bends round one obstacle"),
+    ("tether.wrap_total_max_rad", "maximum sum of these angles over all obstacles"),
+    ("tether.loops", "number of loops of the tether at the end"),
     ("tether.end_length_m", "length of the tether out at the end"),
     ("tether.entangled", "whether the tether could not be pulled in"),
-    ("tether.snags", "how often the mission found that the tether had snagged"),
-    ("tether.snagged", "whether it had snagged when the run ended"),
+    ("tether.snags", "number of times the mission detected a snagged tether"),
+    ("tether.snagged", "whether the tether was snagged when the run ended"),
     ("scenario_sha256", "SHA-256 of the scenario's text"),
 ];
 
-/// Units by the ends of names.
+/// Units by the endings of names.
 const UNITS: [(&str, &str); 6] =
     [("_m_per_s", "m/s"), ("_m2", "m²"), ("_m", "m"), ("_s", "s"), ("_rad", "rad"), ("_deg", "deg")];
 
 /// Columns that are shares from 0 to 1.
 const SHARES: [&str; 6] = ["reachable", "whole", "overlap", "precision", "recall", "over_limit"];
 
-/// The meaning of a column; none of one that is not known.
+/// The meaning of a column; `None` if the column is unknown.
 pub(crate) fn meaning(name: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }
 
-/// The unit of a column: `1` for shares and counts, empty for what is not a number.
+/// The unit of a column: `1` for shares and counts, empty if the column is not numeric.
 pub(crate) fn unit(name: &str, is_number: bool) -> &'static str {
     if !is_number {
         return "";
@@ -88,13 +88,13 @@ pub(crate) fn unit(name: &str, is_number: bool) -> &'static str {
     of_name.or_else(|| SHARES.iter().find(is_share).map(|_| "share from 0 to 1")).unwrap_or("1")
 }
 
-/// A column with its unit and meaning beside it.
+/// A column with its unit and meaning.
 pub(crate) fn explained(field: Field) -> Field {
     let name = field.name().clone();
     let of_grid = name.strip_prefix("set.").map(|key| format!("value of {key} in this mission"));
     let meaning = of_grid.or_else(|| meaning(&name).map(str::to_owned)).unwrap_or_default();
     let unit = unit(&name, field.data_type().is_numeric()).to_owned();
-    // The order of a map's entries in the file is that of their names.
+    // The entries of a map are stored in the order of their names.
     field.with_metadata(HashMap::from([("meaning".to_owned(), meaning), ("unit".to_owned(), unit)]))
 }
 

@@ -1,4 +1,4 @@
-//! Two tables side by side, mission by mission; or the planners of one.
+//! Compares two tables mission by mission, or the planners of one table.
 
 use crate::{
     findings::COMPLETE,
@@ -9,43 +9,43 @@ use crate::{
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 
-/// A metric of two tables, paired by mission.
+/// A comparison of one metric in two tables, paired by mission.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// The column, or `success`.
     pub metric: String,
-    /// One for each group.
+    /// One entry for each group.
     pub groups: Vec<Group>,
-    /// Missions that are flown, and unless it is about success complete, in one of the tables only.
+    /// Number of missions that count in only one of the tables: flown ones for success, complete ones for other metrics.
     pub unpaired: u64,
 }
 
 /// Paired missions of one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
-    /// What they have in common; `all` without groups.
+    /// The common value of the group; `all` without groups.
     pub name: String,
     /// Mean of the first table.
     pub first: Mean,
     /// Mean of the second.
     pub second: Mean,
-    /// Second less first.
+    /// Second table minus first.
     pub difference: Mean,
-    /// What that means.
+    /// The verdict on the difference.
     pub verdict: Verdict,
 }
 
-/// What a difference means.
+/// The verdict on a difference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The interval of the difference lies on the good side of zero.
+    /// The whole interval of the difference is on the good side of zero.
     Better,
-    /// It lies on the bad side.
+    /// The whole interval is on the bad side of zero.
     Worse,
     /// All differences are zero.
     Equal,
-    /// It contains zero, or there are too few missions.
+    /// The interval contains zero, or there are too few missions.
     Undecided,
 }
 
@@ -74,15 +74,18 @@ impl Verdict {
     }
 }
 
-/// Compares a metric of two tables over the missions that both have completed, success over those that both have flown; `by` is a column that makes groups.
+/// Compares a metric of two tables: success over the missions that were flown in both, other metrics over those that were
+/// completed in both. `by` is the column that defines the groups.
 ///
 /// # Errors
-/// There is no such column.
+/// A table has no such column.
 pub fn compare(first: &Table, second: &Table, metric: &str, by: Option<&str>) -> Result<Comparison, String> {
     let is_missing = |name: &&str| !(first.has(name) && second.has(name));
     if let Some(name) = [Some(metric), by].into_iter().flatten().find(is_missing) {
         let known = crate::table::metrics().collect::<Vec<_>>().join(", ");
-        return Err(format!("not both tables have a column `{name}`; known metrics: success, {known}"));
+        return Err(format!(
+            "at least one of the tables has no column `{name}`; known metrics: success, {known}"
+        ));
     }
     let of = |table: &Table| missions(table, metric, by);
     let (one, mut other) = (of(first), of(second));
@@ -105,7 +108,7 @@ pub fn compare(first: &Table, second: &Table, metric: &str, by: Option<&str>) ->
     Ok(Comparison { metric: metric.to_owned(), groups, unpaired: unpaired + other.len() as u64 })
 }
 
-/// What is equal of two missions that are compared, with their group and value.
+/// The missions that count, by the columns in which two compared missions agree, each with its group and value.
 fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<String>, (String, f64)> {
     let names = ["scenario", "planner", "seed"].map(str::to_owned).into_iter().chain(table.keys());
     let keys: Vec<_> = names.map(|name| table.words(&name)).collect();
@@ -117,7 +120,7 @@ fn missions(table: &Table, metric: &str, by: Option<&str>) -> BTreeMap<Vec<Strin
         table.numbers(metric)
     };
     let outcome = table.words("outcome");
-    // The cost of a mission that gave up does not measure the task.
+    // The cost of an incomplete mission does not measure the task.
     let counts = |row: &usize| match metric {
         "success" => status[*row].as_deref() == Some("flown"),
         _ => outcome.get(*row).is_some_and(|word| word.as_deref() == Some(COMPLETE)),
@@ -151,7 +154,7 @@ impl fmt::Display for Comparison {
         ))?;
         if self.unpaired > 0 {
             let what = if self.metric == "success" { "flown" } else { "complete" };
-            writeln!(f, "  {} missions are {what} in one of them only", self.unpaired)?;
+            writeln!(f, "  {} missions are {what} in only one of the tables", self.unpaired)?;
         }
         Ok(())
     }

@@ -1,4 +1,5 @@
-//! What varies from mission to mission of a campaign, and what is measured: the same in a plan and in the campaign frozen from it.
+//! What varies between the missions of a campaign, and what is measured. A plan and the campaign frozen from it share
+//! this type.
 
 use crate::{until::Until, value::Value};
 use serde::{Deserialize, Serialize};
@@ -6,29 +7,29 @@ use serde::{Deserialize, Serialize};
 /// Consecutive seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub first: u64,
-    /// How many.
+    /// Number of seeds.
     pub count: u64,
 }
 
-/// What varies from mission to mission besides the scenario, and what is measured.
+/// What varies between missions besides the scenario, and what is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Design {
     /// Name of the campaign.
     pub name: String,
-    /// Ids of planners; empty for those of the scenarios.
+    /// Ids of planners; empty to use those of the scenarios.
     pub planners: Vec<String>,
-    /// Keys of scenarios and parameters of planners that change from mission to mission.
+    /// Keys of scenarios and parameters of planners that change between missions.
     pub keys: Vec<String>,
-    /// Values of these keys; at least one point.
+    /// Values of these keys at each point; there is at least one point.
     pub points: Vec<Vec<Value>>,
-    /// Bounds that every run is held to, beside those of its scenario: key of `[expect]` and value.
+    /// Bounds for every run, in addition to those of its scenario: key of `[expect]` and value.
     pub expect: Vec<(String, Value)>,
-    /// Seeds.
+    /// The seeds.
     pub seeds: Seeds,
-    /// Columns of the table that the summary is about.
+    /// Columns of the table that the summary covers.
     pub metrics: Vec<String>,
-    /// When the campaign may end early.
+    /// The condition under which the campaign may end early.
     pub until: Option<Until>,
 }

@@ -1,7 +1,6 @@
-//! The digest that every table carries: of all its bytes, where those of the digest itself count as zeros. It stands in the
-//! metadata at the end of the file, so that other programs read the table as any other.
+//! The digest in every table. It covers all bytes of the table, with the digits of the digest itself counted as zeros. It
+//! is stored in the metadata at the end of the file, so other programs can read the table like any other.
 
-use crate::table::hex;
 use parquet::{
     errors::ParquetError,
     file::{metadata::KeyValue, reader::ChunkReader},
@@ -9,42 +8,43 @@ use parquet::{
 use sha2::{Digest, Sha256};
 
 const KEY: &str = "tankops.sha256";
-/// Hexadecimal digits of a digest.
+/// Number of hexadecimal digits in a digest.
 const DIGITS: usize = 64;
-/// What says in another place that there is one, so that a file whose digest cannot be found is not taken for one without.
+/// States in a second place that the file has a digest, so that a file whose digest cannot be found is not mistaken for
+/// one without.
 pub(crate) const CREATED_BY: &str = "tankops campaign, with digest";
-/// The end of a Parquet file: length of the metadata, and a word.
+/// The end of a Parquet file: the length of the metadata, and a magic word.
 const TAIL: u64 = 8;
-/// Metadata that is searched at most, bytes.
+/// Maximum size of the metadata that is searched, bytes.
 const MOST_METADATA: u64 = 16 << 20;
-/// Bytes that are read at once.
+/// Number of bytes read at a time.
 const PIECE: u64 = 1 << 20;
 
-/// What a file says of its own bytes.
+/// The result of checking a file against its digest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Seal {
-    /// They are as they were written.
+    /// The bytes are unchanged.
     Whole,
-    /// They are not.
+    /// The bytes were changed.
     Damaged,
-    /// Nothing: it was written by an earlier version, or by another program.
+    /// The file has no digest: it was written by an earlier version, or by a different program.
     None,
 }
 
-/// The place for the digest of a table that is being written.
+/// The placeholder for the digest of a table that is being written.
 pub(crate) fn place_holder() -> KeyValue {
     KeyValue::new(KEY.to_owned(), "0".repeat(DIGITS))
 }
 
-/// Puts the digest of a table in its place.
+/// Writes the digest of a table over its placeholder.
 pub(crate) fn seal(bytes: &mut [u8]) {
-    let digest = hex(&Sha256::digest(&*bytes));
+    let digest = hex::encode(Sha256::digest(&*bytes));
     if let Some(at) = place_in(bytes) {
         bytes[at..at + DIGITS].copy_from_slice(digest.as_bytes());
     }
 }
 
-/// Compares the bytes of a table with its digest.
+/// Checks the bytes of a table against its digest.
 pub(crate) fn check(file: &impl ChunkReader) -> Result<Seal, ParquetError> {
     let length = file.len();
     let Some(metadata) = metadata(file)? else { return Ok(Seal::None) };
@@ -63,11 +63,11 @@ pub(crate) fn check(file: &impl ChunkReader) -> Result<Seal, ParquetError> {
     hash.update(&metadata[..at]);
     hash.update([b'0'; DIGITS]);
     hash.update(&metadata[at + DIGITS..]);
-    let is_whole = hex(&hash.finalize()).as_bytes() == &metadata[at..at + DIGITS];
+    let is_whole = hex::encode(hash.finalize()).as_bytes() == &metadata[at..at + DIGITS];
     Ok(if is_whole { Seal::Whole } else { Seal::Damaged })
 }
 
-/// The metadata at the end of a file with all that follows; nothing if it is not a Parquet file.
+/// The metadata at the end of a file and everything after it; `None` if it is not a Parquet file.
 fn metadata(file: &impl ChunkReader) -> Result<Option<Vec<u8>>, ParquetError> {
     let Some(tail_at) = file.len().checked_sub(TAIL) else { return Ok(None) };
     let tail = file.get_bytes(tail_at, TAIL as usize)?;
@@ -79,7 +79,7 @@ fn metadata(file: &impl ChunkReader) -> Result<Option<Vec<u8>>, ParquetError> {
     }
 }
 
-/// Where the digest stands: after its key, as a text in Thrift's compact form, behind the last such key.
+/// Position of the digest: after the last occurrence of its key, as a text in Thrift's compact form.
 fn place_in(bytes: &[u8]) -> Option<usize> {
     let text = 0x18; // the next field, and it is a text
     let before = [&[text, KEY.len() as u8], KEY.as_bytes(), &[text, DIGITS as u8]].concat();

@@ -1,4 +1,4 @@
-//! What a table says: how often the missions succeed, what they cost, and how the planners compare.
+//! The findings from a table: how often the missions succeed, what they cost, and how the planners compare.
 
 use crate::{
     frozen::Campaign,
@@ -8,33 +8,33 @@ use crate::{
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Missions named as the worst.
+/// Maximum number of missions listed as the worst.
 const WORST: usize = 10;
-/// The outcome of a mission that is complete, as the table has it.
+/// The outcome of a complete mission, as in the table.
 pub(crate) const COMPLETE: &str = "complete";
 
-/// What a table says.
+/// The findings from a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Findings {
-    /// What the campaign is called.
+    /// Name of the campaign.
     pub name: String,
-    /// Missions of the plan.
+    /// Number of missions in the plan.
     pub planned: u64,
-    /// Missions in the table.
+    /// Number of missions in the table.
     pub rows: u64,
-    /// Of these, refused by their scenario or planner.
+    /// Number of these that were refused by their scenario or planner.
     pub refused: u64,
-    /// Of these, not flown because the program failed.
+    /// Number of these that were not flown because the program failed.
     pub failed: u64,
-    /// Of these, flown with faults of planners.
+    /// Number of these that were flown with planner faults.
     pub with_faults: u64,
-    /// Whose faults those are.
+    /// The planners with faults.
     pub faults: Vec<Faults>,
-    /// Columns that the findings are about.
+    /// Columns that the findings cover.
     pub metrics: Vec<String>,
-    /// What is compared, in the order of the plan.
+    /// The arms of the comparison, in the order of the plan.
     pub arms: Vec<Arm>,
-    /// The missions to look at first.
+    /// The missions to inspect first.
     pub worst: Vec<Worst>,
 }
 
@@ -43,26 +43,26 @@ pub struct Findings {
 pub struct Arm {
     /// Planner and values.
     pub name: String,
-    /// How often a mission is complete and keeps every bound.
+    /// Share of the missions that are complete and keep every bound.
     pub success: Share,
-    /// How often a mission that was flown is complete, whatever bounds it kept.
+    /// Share of the flown missions that are complete, whatever bounds they kept.
     pub complete: Share,
-    /// The metrics over the complete missions; absent where none has the figure. What a mission costs that gave up says nothing
-    /// about what the task costs.
+    /// The metrics over the complete missions; absent if none of them has the figure. The cost of an incomplete mission
+    /// says nothing about the cost of the task.
     pub means: Vec<Option<Mean>>,
-    /// The metrics over the missions that were flown and are not complete.
+    /// The metrics over the missions that were flown but are incomplete.
     pub means_of_incomplete: Vec<Option<Mean>>,
-    /// Success less that of the first arm, over missions of equal scenario and seed that both flew; then the metrics, over those
-    /// that both completed. Absent for the first.
+    /// Differences from the first arm over missions of the same scenario and seed: success over those that both arms
+    /// flew, then the metrics over those that both completed. Absent for the first arm.
     pub differences: Vec<Option<Mean>>,
-    /// Success for each scenario, where there are several.
+    /// Success for each scenario, if there are several.
     pub scenarios: Vec<(String, Share)>,
     /// Quantiles of the first metric over the complete missions: at 0, 1/40, ... 1.
     pub quantiles: Vec<f64>,
 }
 
 impl Arm {
-    /// Whether it completes clearly fewer missions than another: its interval ends below that one.
+    /// Whether it completes clearly fewer missions than another arm: its interval ends below the other's.
     fn is_clearly_below(&self, other: &Self) -> bool {
         other.complete.share().is_some_and(|share| self.complete.high < share)
     }
@@ -73,24 +73,24 @@ impl Arm {
 pub struct Faults {
     /// Planner and values.
     pub arm: String,
-    /// Missions with faults.
+    /// Number of missions with faults.
     pub missions: u64,
-    /// Faults in them.
+    /// Number of faults in these missions.
     pub count: u64,
-    /// The command that flies the first of these missions again.
+    /// The command that repeats the first of these missions.
     pub command: String,
 }
 
-/// A mission to look at.
+/// A mission to inspect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worst {
-    /// What came of it.
+    /// What happened in it.
     pub what: String,
-    /// The command that flies it again.
+    /// The command that repeats it.
     pub command: String,
 }
 
-/// The columns that findings need.
+/// The columns needed for the findings.
 struct Columns {
     cases: Vec<u64>,
     status: Vec<Option<String>>,
@@ -101,8 +101,8 @@ struct Columns {
 }
 
 impl Findings {
-    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another. A planner that
-    /// gives up at once is quick in what it does complete.
+    /// Which arms may be ranked by their metrics: those that do not complete clearly fewer missions than another arm.
+    /// Otherwise a planner that gives up early would look fast in the few missions that it completes.
     pub fn ranked(&self) -> Vec<bool> {
         let is_ranked =
             |arm: &Arm| arm.complete.hits > 0 && !self.arms.iter().any(|other| arm.is_clearly_below(other));
@@ -134,7 +134,7 @@ impl Columns {
         self.status[row].as_deref() == Some("flown")
     }
 
-    /// A metric of a mission that was flown; the one before the first is success.
+    /// A figure of a flown mission; index 0 is success, the metrics follow.
     fn value(&self, metric: usize, row: usize) -> Option<f64> {
         match metric.checked_sub(1) {
             None => Some(f64::from(u8::from(self.success[row]))),
@@ -143,7 +143,7 @@ impl Columns {
     }
 }
 
-/// What the table of a campaign says.
+/// Computes the findings from the table of a campaign.
 pub fn findings(campaign: &Campaign, table: &Table) -> Findings {
     let columns = Columns::of(table, &campaign.design.metrics);
     let mut of_arm: Vec<Vec<usize>> = vec![Vec::new(); campaign.arms()];
@@ -166,7 +166,7 @@ pub fn findings(campaign: &Campaign, table: &Table) -> Findings {
     }
 }
 
-/// The arms whose planners had faults, those with the most missions first.
+/// The arms whose planners had faults, those with the most affected missions first.
 fn faults(campaign: &Campaign, columns: &Columns, of_arm: &[Vec<usize>]) -> Vec<Faults> {
     let of = |(at, rows): (usize, &Vec<usize>)| {
         let faulty: Vec<usize> = rows.iter().copied().filter(|row| columns.faults(*row) > 0).collect();
@@ -246,8 +246,9 @@ fn by_scenario(campaign: &Campaign, columns: &Columns, rows: &[usize]) -> Vec<(S
     campaign.scenarios.iter().map(|s| (s.name.clone(), share(columns, &of(&s.name)))).collect()
 }
 
-/// What is wrong: missions that failed, then those that did not succeed, those that were refused, and those that succeeded with
-/// faults of planners, each by the first metric. Of missions of one arm that ended alike one is named.
+/// The worst missions: first those that failed, then those without success, then refused ones, then those that succeeded
+/// with planner faults. Each group is sorted by the first metric. If missions of one arm ended in the same way, only one
+/// of them is listed.
 fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     let Some(metric) = campaign.design.metrics.first() else { return Vec::new() };
     let sign = if more_is_better(metric) { 1.0 } else { -1.0 };
@@ -283,12 +284,12 @@ fn worst(campaign: &Campaign, table: &Table, columns: &Columns) -> Vec<Worst> {
     alike.into_iter().take(WORST).map(named).collect()
 }
 
-/// A reason without its numbers, in which missions that ended alike differ.
+/// A reason without its numbers, which differ even between missions that ended in the same way.
 fn kind(why: &str) -> String {
     why.chars().filter(|letter| !letter.is_ascii_digit() && *letter != '.' && *letter != '-').collect()
 }
 
-/// The columns that say how missions ended.
+/// The columns that tell how missions ended.
 struct Texts {
     error: Vec<Option<String>>,
     reason: Vec<Option<String>>,
@@ -311,8 +312,8 @@ impl Texts {
         let faults = columns.faults(row);
         let faulty = || {
             (columns.success[row] && faults > 0).then(|| match faults {
-                1 => "1 fault of a planner".to_owned(),
-                _ => format!("{faults} faults of planners"),
+                1 => "1 planner fault".to_owned(),
+                _ => format!("{faults} planner faults"),
             })
         };
         let why = text(&self.error).or_else(|| text(&self.violations)).or_else(faulty);
@@ -414,7 +415,7 @@ pub(crate) mod tests {
         assert!(worst[0].starts_with("aborted, mission_time_s 0.10: no plan after"), "{worst:?}");
         assert!(worst[0].ends_with(" (18 more like it)"), "{worst:?}");
         assert!(
-            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 fault of a planner"),
+            worst[1].starts_with("complete, mission_time_s") && worst[1].contains("1 planner fault"),
             "{worst:?}"
         );
     }

@@ -1,9 +1,8 @@
-//! A campaign as it is frozen before the first mission: what every block is flown from, and nothing else.
+//! A campaign frozen before its first mission: every block is flown from it and from nothing else.
 
 use crate::{
     design::Design,
     plan::{MOST_CASES, Plan, SEEDS},
-    table::hex,
     value::Value,
 };
 use scenario::Settings;
@@ -11,11 +10,11 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, ops::Range};
 
-/// Version of the frozen form; another one is refused.
+/// Version of the frozen format; any other version is refused.
 const FORMAT: u32 = 2;
-/// Missions of a block where the plan sets none ...
+/// Number of missions per block if the plan sets none ...
 const BLOCK: u64 = 64;
-/// ... unless that were more blocks than this.
+/// ... unless that would give more blocks than this.
 const MOST_BLOCKS: u64 = 1000;
 
 /// The program and the plugins that fly the missions.
@@ -32,11 +31,11 @@ pub struct Program {
 /// A scenario as it was when the campaign was frozen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ScenarioText {
-    /// Its name in the table, unlike that of every other.
+    /// Its unique name in the table.
     pub name: String,
-    /// The file, for the command that flies a mission again.
+    /// Path of its file, for the command that repeats a mission.
     pub path: String,
-    /// The text, with maps written out.
+    /// Its text, with the maps included.
     pub text: String,
     /// SHA-256 of the text, hexadecimal.
     pub sha256: String,
@@ -46,14 +45,14 @@ pub struct ScenarioText {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Campaign {
     format: u32,
-    /// What flies it.
+    /// The program and the plugins.
     pub program: Program,
-    /// Scenarios.
+    /// The scenarios.
     pub scenarios: Vec<ScenarioText>,
     /// What varies and what is measured.
     #[serde(flatten)]
     pub design: Design,
-    /// Missions of a block; has no part in the table.
+    /// Number of missions per block; not part of the table.
     block: u64,
 }
 
@@ -64,7 +63,7 @@ pub struct Case<'a> {
     pub n: u64,
     /// Its scenario.
     pub scenario: &'a ScenarioText,
-    /// Its planner; none for that of the scenario.
+    /// Its planner; `None` for that of the scenario.
     pub planner: Option<&'a str>,
     /// The values of the campaign's keys.
     pub point: &'a [Value],
@@ -81,17 +80,17 @@ impl Campaign {
         campaign
     }
 
-    /// Reads a frozen campaign.
+    /// Reads a frozen campaign and checks it.
     ///
     /// # Errors
-    /// It is not a campaign, has another format, or was changed after it was frozen.
+    /// It is not a campaign, has a different format, or was changed after it was frozen.
     pub fn thaw(json: &[u8]) -> Result<Self, String> {
         let no_campaign = |error| format!("is not a campaign: {error}");
         let value: serde_json::Value = serde_json::from_slice(json).map_err(no_campaign)?;
-        // First, because a later format may have other keys.
+        // Checked first, because a later format may have other keys.
         if let Some(format) = value["format"].as_u64().filter(|format| *format != u64::from(FORMAT)) {
-            let remedy = "prepare the campaign again, in another folder";
-            return Err(format!("has format {format}; this tankops knows format {FORMAT}: {remedy}"));
+            let remedy = "prepare the campaign again, in a different folder";
+            return Err(format!("has format {format}; this tankops reads format {FORMAT}: {remedy}"));
         }
         let digest = value["sha256"].as_str().unwrap_or_default().to_owned();
         let campaign: Self = serde_json::from_value(value).map_err(no_campaign)?;
@@ -104,45 +103,45 @@ impl Campaign {
         }
     }
 
-    /// The frozen form, with the digest by which [`Self::thaw`] knows that nothing was changed.
+    /// The frozen form, with the digest by which [`Self::thaw`] detects changes.
     ///
     /// # Errors
-    /// None that a plan can cause.
+    /// Never, for a campaign frozen from a plan.
     pub fn to_json(&self) -> serde_json::Result<Vec<u8>> {
         let mut value = serde_json::to_value(self)?;
         value["sha256"] = self.digest().into();
         serde_json::to_vec_pretty(&value)
     }
 
-    /// SHA-256 of what is frozen, hexadecimal.
+    /// SHA-256 of the frozen content, hexadecimal.
     fn digest(&self) -> String {
-        hex(&Sha256::digest(serde_json::to_vec(self).unwrap_or_default()))
+        hex::encode(Sha256::digest(serde_json::to_vec(self).unwrap_or_default()))
     }
 
-    /// Why it cannot have been frozen by this program.
+    /// Why this program cannot have frozen it; `None` if it can.
     fn damage(&self) -> Option<String> {
         let Design { points, keys, seeds, .. } = &self.design;
-        let changed = self.scenarios.iter().find(|s| hex(&Sha256::digest(&s.text)) != s.sha256);
+        let changed = self.scenarios.iter().find(|s| hex::encode(Sha256::digest(&s.text)) != s.sha256);
         if let Some(scenario) = changed {
-            return Some(format!("scenario {} is not the text of its SHA-256", scenario.name));
+            return Some(format!("the text of scenario {} does not match its SHA-256", scenario.name));
         }
         if points.iter().any(|point| point.len() != keys.len()) {
-            return Some(format!("a point has not {} values, one for each key", keys.len()));
+            return Some(format!("a point does not have {} values, one for each key", keys.len()));
         }
         let counts = [points.len() as u64, self.scenarios.len() as u64, seeds.count, self.block];
         let planners = self.design.planners.len().max(1) as u64;
         let cases = counts[..3].iter().fold(planners, |product, count| product.saturating_mul(*count));
         let is_possible =
             counts.iter().all(|count| *count > 0) && cases <= MOST_CASES && SEEDS.contains(&seeds.first);
-        (!is_possible).then(|| "there are no missions, or more than any plan can have".to_owned())
+        (!is_possible).then(|| "there are no missions, or more than a plan allows".to_owned())
     }
 
-    /// Whether another campaign flies the same missions by the same program, in whatever blocks.
+    /// Whether a different campaign flies the same missions with the same program, regardless of blocks.
     pub fn is_same(&self, other: &Self) -> bool {
         self == &Self { block: self.block, ..other.clone() }
     }
 
-    /// Missions of one seed.
+    /// Number of missions per seed.
     pub fn per_seed(&self) -> u64 {
         (self.scenarios.len() * self.design.planners.len().max(1) * self.design.points.len()) as u64
     }
@@ -163,7 +162,8 @@ impl Campaign {
         block * self.block..end.min(self.cases())
     }
 
-    /// A mission by its number. Seeds are outermost, so that blocks cost alike and a part of a campaign is still paired.
+    /// Returns the mission with this number. Seeds are outermost, so that blocks cost about the same and a part of a
+    /// campaign is still paired.
     pub fn case(&self, n: u64) -> Case<'_> {
         let mut rest = (n % self.per_seed()) as usize;
         let mut take = |count: usize| {
@@ -182,17 +182,17 @@ impl Campaign {
         }
     }
 
-    /// What is compared: every planner at every point, counted from 0.
+    /// Number of arms in the comparison: every planner at every point.
     pub(crate) fn arms(&self) -> usize {
         self.design.planners.len().max(1) * self.design.points.len()
     }
 
-    /// Which of them a mission is of.
+    /// Number of the arm to which a mission belongs, from 0.
     pub(crate) fn arm(&self, n: u64) -> usize {
         (n % self.arms() as u64) as usize
     }
 
-    /// What one of them is called.
+    /// Name of an arm.
     pub(crate) fn arm_name(&self, arm: usize) -> String {
         let planner = self
             .design
@@ -205,7 +205,7 @@ impl Campaign {
         format!("{planner}{set}")
     }
 
-    /// What a mission changes about its scenario.
+    /// The settings by which a mission differs from its scenario.
     pub fn settings(&self, case: &Case<'_>) -> Settings {
         let expect = self.design.expect.iter().map(|(key, bound)| format!("expect.{key}={}", quoted(bound)));
         let set = expect.chain(self.set(case)).collect();
@@ -216,14 +216,14 @@ impl Campaign {
         self.design.keys.iter().zip(case.point).map(|(key, value)| format!("{key}={}", quoted(value)))
     }
 
-    /// The command that flies a mission again.
+    /// The command that repeats a mission.
     pub fn command(&self, case: &Case<'_>) -> String {
         let planner = case.planner.map(|id| format!(" --planner {id}")).unwrap_or_default();
         let set = self.set(case).map(|set| format!(" --set {}", shell(&set))).collect::<Vec<_>>().concat();
         format!("tankops run {}{planner}{set} --seed {}", shell(&case.scenario.path), case.seed)
     }
 
-    /// What the table says of where it comes from: everything but the blocks, the texts and the places of files.
+    /// The origin of a table, as stored in it: everything except the blocks, the texts and the paths of files.
     pub(crate) fn provenance(&self) -> String {
         let without_text =
             |s: &ScenarioText| ScenarioText { path: String::new(), text: String::new(), ..s.clone() };
@@ -233,7 +233,7 @@ impl Campaign {
     }
 }
 
-/// A word that could be read as a number or flag keeps its quotes.
+/// Keeps the quotes of a word that could be read as a number or flag.
 fn quoted(value: &Value) -> String {
     match value {
         Value::Word(word) if word.is_empty() || !word.starts_with(|c: char| c.is_ascii_alphabetic()) => {
@@ -244,7 +244,7 @@ fn quoted(value: &Value) -> String {
     }
 }
 
-/// A word of a command line.
+/// Quotes a word for a command line.
 fn shell(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -264,7 +264,7 @@ pub(crate) mod tests {
             name: path.trim_end_matches(".toml").to_owned(),
             path: path.clone(),
             text: String::new(),
-            sha256: hex(&Sha256::digest("")),
+            sha256: hex::encode(Sha256::digest("")),
         };
         let scenarios = plan.scenarios.iter().map(text).collect();
         let program = Program {
@@ -315,7 +315,7 @@ pub(crate) mod tests {
         assert!(refused("\"block\":7", "\"block\":0").contains("no missions, or more"));
         assert!(refused("\"first\":10", "\"first\":18446744073709551615").contains("no missions, or more"));
         assert!(refused("[\"x\",0.5],", "[\"x\"],").contains("has not 2 values"));
-        assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("scenario a is not the text"));
+        assert!(refused("\"text\":\"\"", "\"text\":\" \"").contains("the text of scenario a does not match"));
         assert!(refused("[\"x\",0.5]", "[\"x\",0.7]").contains("its SHA-256 does not match"));
         assert!(refused("\"first\":10", "\"first\":11").contains("its SHA-256 does not match"));
     }

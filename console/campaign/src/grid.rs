@@ -1,20 +1,20 @@
-//! The points of a grid: every combination of its values, or a Latin hypercube over their ranges.
+//! The points of a grid: all combinations of its values, or a Latin hypercube over their ranges.
 
 use crate::value::Value;
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_pcg::Pcg64Mcg;
 
-/// What a key takes.
+/// The values of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Axis {
     /// These values.
     List(Vec<Value>),
-    /// Numbers between two ends; without `steps` only as samples.
+    /// Numbers between two ends; a range without `steps` is only for samples.
     Range { from: f64, to: f64, steps: Option<usize>, log: bool },
 }
 
 impl Axis {
-    /// The value at a share of the axis, 0 to 1 (not included for lists).
+    /// The value at a share of the axis, 0 to 1 (excluding 1 for lists).
     fn at(&self, share: f64) -> Value {
         match self {
             Self::List(values) => {
@@ -25,7 +25,7 @@ impl Axis {
         }
     }
 
-    /// Every value of it.
+    /// All values of the axis.
     pub(crate) fn values(&self) -> Vec<Value> {
         match self {
             Self::List(values) => values.clone(),
@@ -38,12 +38,12 @@ impl Axis {
     }
 }
 
-/// Six digits say as much as anyone reads, and a command line that repeats a mission stays short.
+/// Rounds to six digits: nobody reads more, and the command line that repeats a mission stays short.
 fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
 
-/// Every combination of values, the last axis fastest.
+/// All combinations of values; the last axis varies fastest.
 pub(crate) fn product(axes: &[(String, Axis)]) -> Vec<Vec<Value>> {
     axes.iter().fold(vec![Vec::new()], |points, (_, axis)| {
         let values = axis.values();
@@ -52,8 +52,8 @@ pub(crate) fn product(axes: &[(String, Axis)]) -> Vec<Vec<Value>> {
     })
 }
 
-/// So many points, each axis cut into as many equal parts of which each is used once: a Latin hypercube. The middle of a
-/// part is taken, and which parts meet depends on the seed alone.
+/// A Latin hypercube of `count` points: each axis is cut into that many equal parts, and each part is used once. The
+/// middle of a part is taken; the combination of parts depends only on the seed.
 pub(crate) fn latin_hypercube(axes: &[(String, Axis)], samples: usize, seed: u64) -> Vec<Vec<Value>> {
     let mut chance = Pcg64Mcg::seed_from_u64(seed);
     let columns: Vec<Vec<Value>> = axes

@@ -1,8 +1,9 @@
-//! Many missions of one plan: which there are, in which blocks they are flown, the table of their results, and what it says.
+//! Many missions from one plan: the list of missions, their blocks, the table of their results, and the findings.
 //!
-//! A [`Plan`] is a file; [`Campaign`] is the plan frozen, with the texts of its scenarios: [`Campaign::case`] gives every mission
-//! of it, in blocks. What came of a mission is a [`Row`]; rows become a [`table`], and a table becomes a [`Findings`], as text
-//! and as a page. Nothing here knows files, threads, clocks or processes: the table's bytes depend on nothing but the plan.
+//! A [`Plan`] is a file. [`Campaign`] is the plan frozen, with the texts of its scenarios: [`Campaign::case`] returns
+//! each mission, by number. The result of a mission is a [`Row`]; rows become a [`table`], and a table becomes
+//! [`Findings`], as text and as a page. This crate uses no files, threads, clocks or processes: the bytes of the table
+//! depend only on the plan.
 
 mod columns;
 mod compare;

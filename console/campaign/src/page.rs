@@ -1,4 +1,4 @@
-//! Findings as one HTML page.
+//! Writes findings as one HTML page.
 
 use crate::{findings::Findings, frozen::Campaign, plots, statistics::Mean, text};
 use askama::Template;
@@ -17,10 +17,10 @@ struct Page<'a> {
     scenarios: Vec<(&'a str, Vec<String>)>,
 }
 
-/// The page of a campaign; it names no time and no machine.
+/// The page of a campaign; it contains no time and no machine name.
 ///
 /// # Errors
-/// None that a reader can do anything about.
+/// The template cannot be rendered, which should not happen.
 pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> {
     let arms = findings.arms.iter();
     let means =
@@ -51,7 +51,7 @@ pub fn page(campaign: &Campaign, findings: &Findings) -> Result<String, String> 
     page.render().map_err(|error| error.to_string())
 }
 
-/// A share of the missions, and the means over it.
+/// A share of the missions and the means over these missions.
 fn cells(hits: u64, n: u64, means: &[Option<Mean>]) -> Vec<String> {
     let means = means.iter().map(|mean| text::interval(mean.as_ref()));
     std::iter::once(format!("{hits} of {n}")).chain(means).collect()
@@ -65,7 +65,7 @@ mod tests {
     fn a_page_has_every_section_and_refers_to_nothing_outside() {
         let page = super::page(&campaign(&PLAN.replace("\"p\"", "\"<p>\"")), &example()).expect("a page");
         for part in
-            ["Success", "Paired differences", "Distribution", "Pareto", "Look at these first", "tankops run"]
+            ["Success", "Paired differences", "Distribution", "Pareto", "Inspect these first", "tankops run"]
         {
             assert!(page.contains(part), "{part}");
         }

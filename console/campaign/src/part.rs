@@ -1,35 +1,35 @@
-//! The part of a block: the rows of its missions as a file, which is believed only as it was written.
+//! The part of a block: a file with the rows of its missions, which is accepted only if it is unchanged.
 
 use crate::{
     digest::{self, Seal},
     frozen::Campaign,
     row::Row,
-    table::{Table, TableError, batch, finished, hex, opened, source, writer},
+    table::{Table, TableError, batch, finished, opened, source, writer},
 };
 use parquet::{arrow::arrow_reader::ParquetRecordBatchReaderBuilder, file::reader::ChunkReader};
 use sha2::{Digest, Sha256};
 
-/// What a part says of where it comes from.
+/// The origin of a part, as stored in it.
 fn part_source(campaign: &Campaign, block: u64) -> String {
     let cases = campaign.block(block);
-    let hash = hex(&Sha256::digest(campaign.provenance()));
+    let hash = hex::encode(Sha256::digest(campaign.provenance()));
     format!("{hash} missions {} to {}", cases.start, cases.end - 1)
 }
 
-/// The rows of a block, in the order of their missions, as a file.
+/// Writes the rows of a block, in the order of their missions, as a file.
 ///
 /// # Errors
-/// They do not fit the columns.
+/// The rows do not fit the columns.
 pub fn write(campaign: &Campaign, block: u64, rows: &[Row]) -> Result<Vec<u8>, TableError> {
     let mut writer = writer(campaign, part_source(campaign, block))?;
     writer.write(&batch(campaign, rows)?)?;
     finished(writer)
 }
 
-/// Makes sure that a file is the part of this block, byte for byte as it was written.
+/// Checks that a file is the part of this block, byte for byte as it was written.
 ///
 /// # Errors
-/// It is damaged, or the part of something else.
+/// The file is damaged, or is not the part of this block.
 pub fn check(campaign: &Campaign, block: u64, file: impl ChunkReader + 'static) -> Result<(), TableError> {
     checked(campaign, block, file).map(|_| ())
 }
@@ -37,7 +37,7 @@ pub fn check(campaign: &Campaign, block: u64, file: impl ChunkReader + 'static) 
 /// Reads the part of a block.
 ///
 /// # Errors
-/// As [`check`].
+/// As for [`check`].
 pub fn read(campaign: &Campaign, block: u64, file: impl ChunkReader + 'static) -> Result<Table, TableError> {
     Table::from_reader(checked(campaign, block, file)?)
 }

@@ -26,45 +26,45 @@ const KEYS: [&str; 11] = [
     "block",
     "about",
 ];
-/// Metrics where the plan names none.
+/// Default metrics, if the plan names none.
 const METRICS: [&str; 4] = ["mission_time_s", "path_length_m", "clearance_min_m", "coverage.reachable"];
-/// More points than this are a mistake.
+/// Maximum number of points; a larger number is probably a mistake.
 const MOST_POINTS: usize = 100_000;
-/// More missions than this are a mistake.
+/// Maximum number of missions; a larger number is probably a mistake.
 pub(crate) const MOST_CASES: u64 = 100_000_000;
-/// Seeds of scenarios are TOML numbers.
+/// The range of seeds: in scenarios they are TOML numbers.
 pub(crate) const SEEDS: Range<u64> = 0..(1 << 62);
 
-/// A plan, checked as far as it can be without its scenarios and planners.
+/// A plan, checked as far as possible without its scenarios and planners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// What varies and what is measured.
     pub design: Design,
-    /// Scenario files as written, beside the plan.
+    /// Paths of the scenario files as written, relative to the plan.
     pub scenarios: Vec<String>,
-    /// Missions of a block, if the plan sets it.
+    /// Number of missions per block, if the plan sets it.
     pub block: Option<u64>,
     shown_name: String,
     text: String,
     places: Vec<(PlanKey, Range<usize>)>,
 }
 
-/// A value of a plan that only the scenarios and planners can judge.
+/// A value of a plan that only the scenarios and planners can check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlanKey {
-    /// A scenario, by its number.
+    /// A scenario, by its index.
     Scenario(usize),
-    /// A planner, by its number.
+    /// A planner, by its index.
     Planner(usize),
-    /// A key of the grid, by its number.
+    /// A key of the grid, by its index.
     Grid(usize),
     /// The bounds.
     Expect,
 }
 
 impl Plan {
-    /// Reads a plan from its text; `shown_name` is what messages call the file, `name` what the campaign is called unless it
-    /// says so itself.
+    /// Reads a plan from its text. `shown_name` is the name of the file in messages; `name` is the name of the campaign
+    /// unless the plan sets one.
     ///
     /// # Errors
     /// Everything that is wrong with it, with line, key and remedy.
@@ -82,7 +82,7 @@ impl Plan {
         if problems.is_empty() { Ok(plan) } else { Err(errors(problems)) }
     }
 
-    /// What a scenario or a planner has against a value of the plan.
+    /// The objections of a scenario or a planner to a value of the plan.
     pub fn refused(&self, key: PlanKey, why: &str) -> ScenarioErrors {
         let at = self.places.iter().find(|(placed, _)| *placed == key).map(|(_, at)| at.clone());
         let name = match key {
@@ -102,7 +102,10 @@ impl Plan {
 }
 
 fn read(root: &Reader<'_>, shown_name: &str, text: &str, name: &str) -> Plan {
-    root.require("scenarios", "write scenarios = [\"demo.toml\"]; paths count from the folder of the plan");
+    root.require(
+        "scenarios",
+        "write scenarios = [\"demo.toml\"]; paths are relative to the folder of the plan",
+    );
     root.require("seeds", "write seeds = { first = 0, count = 100 }");
     let (scenarios, planners) = (root.words("scenarios"), root.words("planners"));
     let grid = axes(root);
@@ -110,7 +113,7 @@ fn read(root: &Reader<'_>, shown_name: &str, text: &str, name: &str) -> Plan {
     let seeds = seeds(root);
     let cases = scenarios.len().max(1) * planners.len().max(1) * points.len();
     if (cases as u64).saturating_mul(seeds.count) > MOST_CASES {
-        let what = Complaint::OutOfRange(format!("smaller: at most {MOST_CASES} missions in all"));
+        let what = Complaint::OutOfRange(format!("smaller: at most {MOST_CASES} missions in total"));
         root.complain("seeds", root.place("seeds"), what);
     }
     let placed = |of: &[(String, Range<usize>)], key: fn(usize) -> PlanKey| -> Vec<(PlanKey, Range<usize>)> {
@@ -160,7 +163,7 @@ fn metrics(root: &Reader<'_>) -> Vec<String> {
     named.into_iter().map(|(name, _)| name).collect()
 }
 
-/// What is said of a metric that no table has.
+/// The message about an unknown metric.
 fn unknown_metric(name: &str) -> Complaint {
     let known = crate::table::metrics().collect::<Vec<_>>();
     let remedy = match nearest(name, known.iter().copied()) {
@@ -175,7 +178,7 @@ fn until(root: &Reader<'_>) -> Option<Until> {
     until.require("ci95", "write ci95 = { metric = \"success\", below = 0.02 }");
     let ci95 = until.table("ci95", &["metric", "below"])?;
     ci95.require("metric", "name the figure whose 95 % interval decides");
-    ci95.require("below", "give the half width that is enough");
+    ci95.require("below", "give the half width that is sufficient");
     let metric = ci95.word("metric")?;
     if metric != "success" && !is_metric(&metric) {
         ci95.complain("metric", ci95.place("metric"), unknown_metric(&metric));
@@ -184,7 +187,7 @@ fn until(root: &Reader<'_>) -> Option<Until> {
     Some(Until { metric, below: ci95.number("below")?, seeds_min })
 }
 
-/// Bounds of `[expect]`; the scenarios know their keys.
+/// Reads the bounds of `[expect]`; their keys are checked by the scenarios.
 fn expect(root: &Reader<'_>) -> Vec<(String, Value)> {
     let Some(table) = root.table("expect", &[]) else { return Vec::new() };
     let bound = |(name, value): (String, &Placed<'_>)| {
@@ -226,7 +229,7 @@ fn axis(grid: &Reader<'_>, name: &str, value: &Placed<'_>) -> Option<Axis> {
         DeValue::Table(_) => {
             let range = grid.table(name, &["from", "to", "steps", "log"])?;
             for end in ["from", "to"] {
-                range.require(end, "a range has two ends: { from = 0.1, to = 0.9, steps = 5 }");
+                range.require(end, "a range needs both ends: { from = 0.1, to = 0.9, steps = 5 }");
             }
             let steps = range.whole("steps", 2..100_001).map(|steps| steps as usize);
             let (from, to, log) = (range.number("from")?, range.number("to")?, range.flag("log"));
@@ -242,7 +245,8 @@ fn axis(grid: &Reader<'_>, name: &str, value: &Placed<'_>) -> Option<Axis> {
         }
         _ => {
             let remedy =
-                "write a list, or { from = 0.1, to = 0.9, steps = 5 }; one value is a list of one".to_owned();
+                "write a list, or { from = 0.1, to = 0.9, steps = 5 }; for a single value, write [value]"
+                    .to_owned();
             grid.complain(
                 name,
                 value.span(),
@@ -276,7 +280,7 @@ fn points(root: &Reader<'_>, axes: &Axes) -> Vec<Vec<Value>> {
     let count: f64 = named.iter().map(|(_, axis)| axis.values().len() as f64).product();
     if count > MOST_POINTS as f64 {
         let what = Complaint::OutOfRange(format!(
-            "smaller: {count} combinations, at most {MOST_POINTS}; `samples` takes some of them"
+            "smaller: {count} combinations, at most {MOST_POINTS}; set `samples` to use only some of them"
         ));
         root.complain("grid", root.place("grid"), what);
         return vec![Vec::new()];

@@ -3,29 +3,20 @@
 use crate::{findings::Findings, table::more_is_better};
 use std::fmt::Write;
 
-/// Width of a plot, and of the names at its left, in units of the drawing.
+/// Width of a plot and of the names on its left, in units of the drawing.
 const WIDTH: f64 = 720.0;
 const NAMES: f64 = 240.0;
 /// Height of a line of text.
 const LINE: f64 = 20.0;
 /// Height of a plot with two axes.
 const HEIGHT: f64 = 300.0;
-/// Colours of arms, in turn; distinguishable without red and green.
+/// Colours of arms, used in turn; they do not rely on telling red from green.
 const COLOURS: [&str; 6] = ["#2C5F7C", "#B26A00", "#7A3E8C", "#39444E", "#C23B1E", "#5A8DA6"];
-/// Curves that can be distinguished.
+/// Maximum number of curves that can be told apart.
 const MOST_CURVES: usize = 6;
 
 fn colour(arm: usize) -> &'static str {
     COLOURS[arm % COLOURS.len()]
-}
-
-/// A text that may stand in SVG and HTML.
-fn escaped(text: &str) -> String {
-    foreign::plain(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }
 
 struct Plot {
@@ -39,7 +30,7 @@ impl Plot {
     }
 
     fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
-        let text = escaped(text);
+        let text = foreign::markup(text);
         self.draw(format_args!(r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{text}</text>"#));
     }
 
@@ -66,13 +57,13 @@ impl Plot {
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {}" role="img" aria-label="{}" font-size="12">{}</svg>"#,
             self.height,
-            escaped(name),
+            foreign::markup(name),
             self.body
         )
     }
 }
 
-/// An axis: values from low to high between two places of the drawing.
+/// An axis that maps values from low to high to a range of positions in the drawing.
 struct Axis {
     values: (f64, f64),
     places: (f64, f64),
@@ -103,7 +94,7 @@ impl Axis {
     }
 }
 
-/// A number without digits that say nothing.
+/// Formats a number without insignificant digits.
 fn number(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }
@@ -123,7 +114,7 @@ fn axes(plot: &mut Plot, across: (&Axis, &str), up: (&Axis, &str)) {
     plot.text(across.0.places.0, up.0.places.1 - 8.0, "start", up.1);
 }
 
-/// Success of every arm with its interval.
+/// The success of every arm with its interval.
 pub(crate) fn success(findings: &Findings) -> String {
     let axis = Axis { values: (0.0, 1.0), places: (NAMES, WIDTH - 20.0) };
     let foot = findings.arms.len() as f64 * LINE + 8.0;
@@ -143,8 +134,8 @@ pub(crate) fn success(findings: &Findings) -> String {
     plot.svg("Success with 95 % intervals")
 }
 
-/// Share of the missions flown that are complete with at most a value of the first metric, for the first arms: a curve ends at
-/// the share of complete ones.
+/// Share of the flown missions that are complete with at most a given value of the first metric, for the first arms; a
+/// curve ends at the share of complete missions.
 pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     let metric = findings.metrics.first()?;
     let curves =
@@ -171,8 +162,8 @@ pub(crate) fn distribution(findings: &Findings) -> Option<String> {
     Some(plot.svg("Distribution of the first metric"))
 }
 
-/// The means of the first two metrics over complete missions; what no other arm surpasses in both is joined and named. Arms that
-/// complete clearly fewer missions than another are hollow and not ranked.
+/// The means of the first two metrics over complete missions. Arms that no other arm beats in both metrics are joined by
+/// a line and named. Arms that complete clearly fewer missions than another arm are hollow and not ranked.
 pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     let [one, two, ..] = &findings.metrics[..] else { return None };
     let value = |mean: &Option<crate::statistics::Mean>| mean.as_ref().map(|mean| mean.mean);
@@ -213,7 +204,7 @@ pub(crate) fn pareto(findings: &Findings) -> Option<String> {
     Some(plot.svg("Pareto front of two metrics"))
 }
 
-/// Points that no other one surpasses in both figures, from left to right.
+/// The points that no other point beats in both figures, from left to right.
 fn front(points: &[(usize, f64, f64)], more: [bool; 2]) -> Vec<(usize, f64, f64)> {
     let cost = |point: &(usize, f64, f64)| {
         let sign = |more: bool| if more { -1.0 } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Reading a table of a plan: values by key, and what is wrong, with line, key and remedy.
+//! Reads a table of a plan: values by key, and everything that is wrong, with line, key and remedy.
 
 use mission::spelling::nearest;
 use scenario::{Complaint, Problem};
@@ -8,7 +8,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// A value with its place.
+/// A value with its position in the text.
 pub(crate) type Placed<'a> = Spanned<DeValue<'a>>;
 
 /// A table of a plan.
@@ -20,7 +20,7 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A table with these keys; every other key is a problem, unless none are named.
+    /// Creates a reader of a table with these keys. Every other key is a problem, unless the list is empty.
     pub(crate) fn new(
         text: &'a str,
         table: &'a DeTable<'a>,
@@ -45,7 +45,7 @@ impl<'a> Reader<'a> {
         self.problems.borrow_mut().push(Problem { key, value, at: Some(at), what });
     }
 
-    /// Notes what is wrong with the value of a key.
+    /// Records a problem with the value of a key.
     pub(crate) fn complain(&self, name: &str, at: Range<usize>, what: Complaint) {
         let written = self.text.get(at.clone()).unwrap_or_default();
         let shown: String =
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         self.complain(name, value.span(), what);
     }
 
-    /// Where a key's value stands; the start of the file if it is not given.
+    /// The position of a key's value; the start of the file if the key is missing.
     pub(crate) fn place(&self, name: &str) -> Range<usize> {
         self.get(name).map_or(0..0, Spanned::span)
     }
@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
         self.table.get(name)
     }
 
-    /// Every key with its value, in the order of the text.
+    /// All keys with their values, in the order of the text.
     pub(crate) fn entries(&self) -> Vec<(String, &'a Placed<'a>)> {
         let mut entries: Vec<_> =
             self.table.iter().map(|(name, value)| (name.get_ref().to_string(), value)).collect();
@@ -76,16 +76,11 @@ impl<'a> Reader<'a> {
         entries
     }
 
-    /// A table inside, with these keys.
+    /// A nested table with these keys.
     pub(crate) fn table(&self, name: &str, keys: &[&str]) -> Option<Self> {
         let value = self.get(name)?;
         let Some(table) = value.get_ref().as_table() else {
-            self.wrong(
-                name,
-                value,
-                "a table",
-                "write { key = value, ... } or the keys under a head in brackets",
-            );
+            self.wrong(name, value, "a table", "write { key = value, ... }, or the keys below a [header]");
             return None;
         };
         let path = if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) };
@@ -102,7 +97,7 @@ impl<'a> Reader<'a> {
         word.map(str::to_owned)
     }
 
-    /// A list of words, each with its place; empty if it is not given.
+    /// A list of words, each with its position; empty if the key is missing.
     pub(crate) fn words(&self, name: &str) -> Vec<(String, Range<usize>)> {
         let Some(value) = self.get(name) else { return Vec::new() };
         let entries = value.get_ref().as_array().map(|list| list.iter().collect::<Vec<_>>());
@@ -116,7 +111,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// A flag; false if it is not given.
+    /// A flag; false if the key is missing.
     pub(crate) fn flag(&self, name: &str) -> bool {
         let Some(value) = self.get(name) else { return false };
         value.get_ref().as_bool().unwrap_or_else(|| {
@@ -135,7 +130,7 @@ impl<'a> Reader<'a> {
         number
     }
 
-    /// A whole number of a range.
+    /// A whole number within a range.
     pub(crate) fn whole(&self, name: &str, range: Range<u64>) -> Option<u64> {
         let value = self.get(name)?;
         let whole = match crate::Value::read(value.get_ref()) {
@@ -149,7 +144,7 @@ impl<'a> Reader<'a> {
         whole
     }
 
-    /// Notes that a key is missing.
+    /// Records that a key is missing.
     pub(crate) fn require(&self, name: &str, remedy: &str) {
         if self.get(name).is_none() {
             self.note(name, 0..0, None, Complaint::Missing { remedy: remedy.to_owned() });

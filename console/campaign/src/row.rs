@@ -1,4 +1,4 @@
-//! What came of a mission.
+//! The result of a mission.
 
 use account::Summary;
 use mission::Outcome;
@@ -7,16 +7,16 @@ use serde_json::Value;
 /// Whether a mission was flown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// To its end.
+    /// Flown to its end.
     Flown,
-    /// Its scenario or its planner does not take what the plan sets; flying it again changes nothing.
+    /// The scenario or the planner refuses a value of the plan; flying the mission again would change nothing.
     Refused,
-    /// The program failed, again and again.
+    /// The program failed repeatedly.
     Failed,
 }
 
 impl Status {
-    /// As the table has it.
+    /// The word used in the table.
     pub fn word(self) -> &'static str {
         match self {
             Self::Flown => "flown",
@@ -26,14 +26,14 @@ impl Status {
     }
 }
 
-/// What came of a mission: equal for equal missions, whoever flew them and when.
+/// The result of a mission. Equal missions have equal results, regardless of who flew them and when.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Number of the mission.
     pub case: u64,
     /// Whether it was flown.
     pub status: Status,
-    /// Why not, as a sentence.
+    /// Why it was not flown, as a sentence.
     pub error: Option<String>,
     /// Whether it is complete and kept every bound.
     pub success: bool,
@@ -42,7 +42,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A mission that came to its end; figures by the wall clock and the account of the floor are left out.
+    /// The row of a mission that was flown to its end, without wall-clock figures and the account of the floor.
     pub fn flown(case: u64, summary: Summary) -> Self {
         let success = summary.outcome == Some(Outcome::Complete)
             && summary.violations.as_ref().is_none_or(Vec::is_empty);
@@ -51,7 +51,7 @@ impl Row {
         Self { case, status: Status::Flown, error: None, success, report }
     }
 
-    /// A mission that was not flown, and why.
+    /// The row of a mission that was not flown, with the reason.
     pub fn not_flown(case: u64, status: Status, error: String) -> Self {
         Self { case, status, error: Some(error), success: false, report: Value::Null }
     }
@@ -61,7 +61,7 @@ impl Row {
         self.report["planner_faults"].as_u64().is_some_and(|faults| faults > 0)
     }
 
-    /// How it ended, in a word.
+    /// The outcome in one word.
     pub fn word(&self) -> &str {
         self.report["outcome"].as_str().unwrap_or(self.status.word())
     }

@@ -11,7 +11,7 @@ const Z: f64 = 1.959_963_984_540_054;
 pub struct Share {
     /// Successes.
     pub hits: u64,
-    /// Of so many.
+    /// Number of cases.
     pub n: u64,
     /// Lower end of the interval, 0 to 1.
     pub low: f64,
@@ -20,7 +20,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// So many of so many; of none, anything is possible.
+    /// The share of `hits` in `n` cases; for no cases the interval is 0 to 1.
     pub fn of(hits: u64, n: u64) -> Self {
         if n == 0 {
             return Self { hits, n, low: 0.0, high: 1.0 };
@@ -29,11 +29,11 @@ impl Share {
         let p = hits as f64 / count;
         let middle = (p + z2 / (2.0 * count)) / (1.0 + z2 / count);
         let half = Z / (1.0 + z2 / count) * (p * (1.0 - p) / count + z2 / (4.0 * count * count)).sqrt();
-        // At the ends rounding must not exclude what was seen.
+        // At the ends rounding must not exclude the observed share.
         Self { hits, n, low: (middle - half).clamp(0.0, p), high: (middle + half).clamp(p, 1.0) }
     }
 
-    /// The share itself; absent without any.
+    /// The share itself; `None` without any cases.
     pub fn share(&self) -> Option<f64> {
         (self.n > 0).then(|| self.hits as f64 / self.n as f64)
     }
@@ -55,7 +55,7 @@ pub struct Mean {
     pub half: Option<f64>,
 }
 
-/// Sums of values, one after the other (Welford).
+/// Running sums of values (Welford's method).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sums {
     n: u64,
@@ -64,7 +64,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Takes a value.
+    /// Adds a value.
     pub fn take(&mut self, value: f64) {
         self.n += 1;
         let off = value - self.mean;
@@ -72,7 +72,7 @@ impl Sums {
         self.squares += off * (value - self.mean);
     }
 
-    /// Their mean; absent without any.
+    /// Mean of the values so far; `None` without any.
     pub fn mean(&self) -> Option<Mean> {
         let half = (self.n > 1).then(|| {
             let freedom = (self.n - 1) as f64;
@@ -83,14 +83,14 @@ impl Sums {
     }
 }
 
-/// The mean of some values.
+/// Computes the mean of some values.
 pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<Mean> {
     let mut sums = Sums::default();
     values.into_iter().for_each(|value| sums.take(value));
     sums.mean()
 }
 
-/// The value below which a share of sorted values lies, interpolated.
+/// The quantile of sorted values at a share, interpolated.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let at = share.clamp(0.0, 1.0) * sorted.len().checked_sub(1)? as f64;
     let (low, high) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);

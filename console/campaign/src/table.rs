@@ -27,10 +27,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Rows that are written at once, whatever blocks they come from: pages end where rows end, and nowhere else.
+/// Number of rows written at a time, regardless of blocks. Pages end only at these boundaries.
 const ROWS_AT_ONCE: usize = 8192;
-/// What a file says of where it comes from: in a part its hash and the missions of the block, in the table of results all
-/// of it.
+/// The origin of a file, as stored in it: in a part its hash and the missions of the block, in the table of results
+/// everything.
 const SOURCE: &str = "tankops.campaign";
 
 /// Type of a figure.
@@ -44,7 +44,7 @@ enum Kind {
 
 use Kind::{Count, Flag, Number, Text};
 
-/// Columns that are figures of the report, by their place in it.
+/// Columns that are figures of the report, by their path in it.
 const FIGURES: [(&str, Kind); 48] = [
     ("outcome", Text),
     ("reason", Text),
@@ -96,7 +96,7 @@ const FIGURES: [(&str, Kind); 48] = [
     ("tether.snagged", Flag),
 ];
 
-/// Figures of which more is better; of the others, less is.
+/// Figures of which a larger value is better; for all others a smaller one is.
 const MORE_IS_BETTER: [&str; 12] = [
     "clearance_min_m",
     "coverage.reachable",
@@ -112,7 +112,7 @@ const MORE_IS_BETTER: [&str; 12] = [
     "positioning.in_95_ellipse",
 ];
 
-/// Names of the columns that are numbers of the report.
+/// Names of the columns that are figures of the report.
 pub(crate) fn metrics() -> impl Iterator<Item = &'static str> {
     FIGURES.iter().filter(|(_, kind)| matches!(kind, Count | Number)).map(|(name, _)| *name)
 }
@@ -122,7 +122,7 @@ pub(crate) fn is_metric(name: &str) -> bool {
     metrics().any(|metric| metric == name)
 }
 
-/// Whether more of a figure is better.
+/// Whether a larger value of a figure is better.
 pub(crate) fn more_is_better(metric: &str) -> bool {
     MORE_IS_BETTER.contains(&metric)
 }
@@ -133,22 +133,22 @@ pub enum TableError {
     /// The columns do not fit.
     #[error("its columns do not match: {0}")]
     Arrow(#[from] ArrowError),
-    /// No Parquet, or damaged.
+    /// Not a Parquet file, or damaged.
     #[error("is not a complete Parquet file: {0}")]
     Parquet(#[from] ParquetError),
-    /// Its digest is another one.
-    #[error("is damaged: its bytes are not those that were written")]
+    /// The digest of the file does not match.
+    #[error("is damaged: its SHA-256 does not match")]
     Damaged,
     /// A part without a digest.
     #[error("is not a complete part: it has no digest")]
     NoDigest,
-    /// What is read makes no sense to the reader.
+    /// The content makes no sense to the reader.
     #[error("is damaged, or not a Parquet file that tankops can read")]
     Unreadable,
-    /// A part of something else.
-    #[error("comes from another campaign or block, or from another version of this campaign")]
+    /// Part of a different campaign or block.
+    #[error("comes from a different campaign or block, or from a different version of this campaign")]
     Foreign,
-    /// A table of something else.
+    /// A table with a different content.
     #[error("was not written by `tankops campaign`: it has no column `{0}`")]
     NoColumn(&'static str),
 }
@@ -187,7 +187,7 @@ fn set_name(campaign: &Campaign, key: usize) -> String {
     format!("set.{}", campaign.design.keys[key])
 }
 
-/// The narrowest type that all values of a key have.
+/// The narrowest type that fits all values of a key.
 fn set_type(campaign: &Campaign, key: usize) -> DataType {
     let all = |is: fn(&Value) -> bool| campaign.design.points.iter().all(|point| is(&point[key]));
     if all(|value| matches!(value, Value::Whole(_))) {
@@ -267,19 +267,14 @@ pub(crate) fn writer(campaign: &Campaign, source: String) -> Result<ArrowWriter<
     Ok(ArrowWriter::try_new(Vec::new(), schema(campaign), Some(properties))?)
 }
 
-/// Bytes as hexadecimal digits.
-pub fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
-}
-
-/// The bytes of a table that is written, with their digest.
+/// The bytes of a finished table, with their digest.
 pub(crate) fn finished(writer: ArrowWriter<Vec<u8>>) -> Result<Vec<u8>, TableError> {
     let mut bytes = writer.into_inner()?;
     digest::seal(&mut bytes);
     Ok(bytes)
 }
 
-/// A reader that believes the columns, and not what is said about them in the words of Arrow, of which damage may make
+/// Creates a reader that uses the columns but ignores the Arrow schema in the metadata, which damage could turn into
 /// anything.
 pub(crate) fn opened<T: ChunkReader + 'static>(
     file: T,
@@ -288,10 +283,10 @@ pub(crate) fn opened<T: ChunkReader + 'static>(
     Ok(ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)?)
 }
 
-/// Puts parts together, in order: the bytes of the table of results.
+/// Combines parts, in order, to the bytes of the table of results.
 ///
 /// # Errors
-/// They do not fit together.
+/// The parts do not fit together.
 pub fn merged(campaign: &Campaign, parts: &[Table]) -> Result<Vec<u8>, TableError> {
     let mut writer = writer(campaign, campaign.provenance())?;
     let mut rows = BatchCoalescer::new(schema(campaign), ROWS_AT_ONCE);
@@ -313,7 +308,7 @@ pub(crate) fn source<T>(builder: &parquet::arrow::arrow_reader::ArrowReaderBuild
     entries.iter().find(|entry| entry.key == SOURCE)?.value.as_deref()
 }
 
-/// What comes of a reader of strangers' bytes that may give up in the middle of a sentence.
+/// Catches panics of a third-party reader of foreign bytes.
 fn unharmed<T>(read: impl FnOnce() -> Result<T, TableError>) -> Result<T, TableError> {
     catch_unwind(AssertUnwindSafe(read)).unwrap_or(Err(TableError::Unreadable))
 }
@@ -325,11 +320,11 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a table of results, and whether its bytes are known to be those that were written: a table of an earlier
-    /// version, or one that another program wrote, carries no digest.
+    /// Reads a table of results, and whether its bytes are verified. A table written by an earlier version or a different
+    /// program has no digest.
     ///
     /// # Errors
-    /// It is damaged or something else.
+    /// The file is damaged or is not a table of results.
     pub fn read(file: impl ChunkReader + 'static) -> Result<(Self, bool), TableError> {
         let seal = digest::check(&file)?;
         if seal == Seal::Damaged {
@@ -353,7 +348,7 @@ impl Table {
         Ok(Self { rows: concat_batches(&schema, &batches)? })
     }
 
-    /// Tables one after the other.
+    /// Concatenates tables.
     ///
     /// # Errors
     /// Their columns differ.
@@ -378,7 +373,7 @@ impl Table {
         self.len() == 0
     }
 
-    /// Whether there is such a column.
+    /// Whether the column exists.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.rows.column_by_name(name).is_some()
     }
@@ -394,13 +389,13 @@ impl Table {
             .collect()
     }
 
-    /// A column as numbers; empty if there is none.
+    /// A column as numbers; empty if it does not exist.
     pub(crate) fn numbers(&self, name: &str) -> Vec<Option<f64>> {
         let column = self.rows.column_by_name(name).and_then(|column| cast(column, &DataType::Float64).ok());
         column.map_or_else(Vec::new, |column| column.as_primitive::<Float64Type>().iter().collect())
     }
 
-    /// A column as texts; empty if there is none.
+    /// A column as texts; empty if it does not exist.
     pub(crate) fn words(&self, name: &str) -> Vec<Option<String>> {
         let column = self.rows.column_by_name(name).and_then(|column| cast(column, &DataType::Utf8).ok());
         let owned =
@@ -408,7 +403,7 @@ impl Table {
         column.map_or_else(Vec::new, owned)
     }
 
-    /// A column of flags; false where there is none.
+    /// A column of flags; all false if it does not exist.
     pub(crate) fn flags(&self, name: &str) -> Vec<bool> {
         let column = self.rows.column_by_name(name).and_then(|column| column.as_boolean_opt());
         column.map_or_else(
@@ -417,7 +412,7 @@ impl Table {
         )
     }
 
-    /// How many rows have this status.
+    /// Number of rows with this status.
     pub fn count(&self, status: Status) -> u64 {
         self.words("status").iter().filter(|word| word.as_deref() == Some(status.word())).count() as u64
     }

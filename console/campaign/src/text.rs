@@ -4,17 +4,21 @@ use crate::{
     findings::{Arm, Findings},
     statistics::{Mean, Share},
 };
+use comfy_table::{
+    CellAlignment::{Left, Right},
+    Table, presets,
+};
 use std::fmt;
 use world::coverage::percent_text;
 
-/// Arms that are shown; a page has all of them.
+/// Maximum number of arms shown; the page has all of them.
 const MOST_ARMS: usize = 20;
-/// Names of arms are cut to this,
+/// Maximum length of an arm's name; longer names are shortened in the middle.
 const NAME: usize = 40;
-/// with so much of their beginning: values of the grid are at the end.
+/// Number of characters kept from the beginning of a shortened name; its end holds the values of the grid.
 const BEGINNING: usize = 10;
 
-/// A share as per cent with its interval.
+/// A share in per cent, with its interval.
 pub(crate) fn share(share: &Share) -> String {
     match share.share() {
         Some(p) => {
@@ -25,7 +29,7 @@ pub(crate) fn share(share: &Share) -> String {
     }
 }
 
-/// A mean with its interval; four digits say enough.
+/// A mean with its interval, to four digits.
 pub(crate) fn interval(mean: Option<&Mean>) -> String {
     let digits = |mean: &Mean| {
         let size = mean.mean.abs().max(mean.half.unwrap_or(0.0)).max(1e-9).log10().floor() as i32;
@@ -38,7 +42,7 @@ pub(crate) fn interval(mean: Option<&Mean>) -> String {
     }
 }
 
-/// A difference of shares, in points of per cent.
+/// A difference of shares, in percentage points.
 pub(crate) fn points(mean: Option<&Mean>) -> String {
     mean.map_or_else(
         || "-".into(),
@@ -49,18 +53,15 @@ pub(crate) fn points(mean: Option<&Mean>) -> String {
     )
 }
 
-/// Rows of cells in columns, the first left, the others right.
+/// Aligns rows of cells in columns, the first one left, the others right.
 pub(crate) fn columns(rows: &[Vec<String>]) -> String {
-    let wide = |at: usize| rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.chars().count()).max();
-    let cell = |at: usize, cell: &String| {
-        let width = wide(at).unwrap_or(0);
-        if at == 0 { format!("{cell:<width$}") } else { format!("  {cell:>width$}") }
-    };
-    let line = |row: &Vec<String>| {
-        let cells: String = row.iter().enumerate().map(|(at, text)| cell(at, text)).collect();
-        format!("  {}\n", cells.trim_end())
-    };
-    rows.iter().map(line).collect()
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).add_rows(rows);
+    for column in table.column_iter_mut() {
+        let is_first = column.index == 0;
+        column.set_padding((2, 0)).set_cell_alignment(if is_first { Left } else { Right });
+    }
+    table.trim_fmt() + "\n"
 }
 
 fn short(name: &str) -> String {
@@ -82,11 +83,9 @@ impl fmt::Display for Findings {
             columns(&head.into_iter().chain(arms.iter().map(row)).collect::<Vec<_>>())
         };
         writeln!(f, "{}: {} of {} missions", self.name, self.rows, self.planned)?;
-        for (n, what) in [
-            (self.refused, "refused"),
-            (self.failed, "failed"),
-            (self.with_faults, "with faults of planners"),
-        ] {
+        for (n, what) in
+            [(self.refused, "refused"), (self.failed, "failed"), (self.with_faults, "with planner faults")]
+        {
             if n > 0 {
                 writeln!(f, "  {n} {what}")?;
             }
@@ -104,7 +103,7 @@ impl fmt::Display for Findings {
         let cells =
             |arm: &Arm| vec![share(&arm.success), format!("{} of {}", arm.success.hits, arm.success.n)];
         f.write_str(&table(&[], &cells, shown))?;
-        writeln!(f, "\nMeans over the complete missions (± 95 %)")?;
+        writeln!(f, "\nMeans over complete missions (± 95 %)")?;
         let intervals =
             |means: &[Option<Mean>]| means.iter().map(|mean| interval(mean.as_ref())).collect::<Vec<_>>();
         let cells = |of: Share, means: &[Option<Mean>]| {
@@ -119,18 +118,18 @@ impl fmt::Display for Findings {
         let gave_up: Vec<Arm> =
             shown.iter().filter(|arm| arm.complete.hits < arm.complete.n).cloned().collect();
         if !gave_up.is_empty() {
-            writeln!(f, "\nMeans over missions that are not complete (not comparable)")?;
+            writeln!(f, "\nMeans over incomplete missions (not comparable)")?;
             let means = |arm: &Arm| {
                 let Share { hits, n, .. } = arm.complete;
                 cells(Share::of(n - hits, n), &arm.means_of_incomplete)
             };
-            f.write_str(&table(&head("not complete"), &means, &gave_up))?;
+            f.write_str(&table(&head("incomplete"), &means, &gave_up))?;
         }
         if self.arms.len() > 1 {
             writeln!(
                 f,
-                "\nDifferences to {}, same scenario and seed; of success over what both flew, of the others over what both \
-                 completed (± 95 %)",
+                "\nDifferences from {}, same scenario and seed; success over missions flown by both, \
+                 other metrics over missions completed by both (± 95 %)",
                 short(&self.arms[0].name)
             )?;
             let differences = |arm: &Arm| {
@@ -144,9 +143,9 @@ impl fmt::Display for Findings {
         if self.arms.len() > MOST_ARMS {
             writeln!(f, "  ({} more in summary.html and summary.json)", self.arms.len() - MOST_ARMS)?;
         }
-        writeln!(f, "\nLook at these first")?;
+        writeln!(f, "\nInspect these first")?;
         if self.worst.is_empty() {
-            writeln!(f, "  nothing: every mission succeeded, without a fault of a planner")?;
+            writeln!(f, "  nothing: every mission succeeded, without planner faults")?;
         }
         for worst in self.worst.iter().take(5) {
             writeln!(f, "  {}\n    {}", worst.what, worst.command)?;

@@ -1,4 +1,4 @@
-//! When a campaign may end before its last seed.
+//! The condition under which a campaign may end before its last seed.
 
 use crate::{
     findings::COMPLETE,
@@ -8,43 +8,44 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Enough is known when the 95 % interval of a figure is narrow for every planner and point.
+/// A campaign may end when the 95 % interval of a figure is narrow enough for every planner and point.
 ///
-/// It is looked at after every whole seed, in order, so that the end does not depend on who flew what when, nor on the blocks.
+/// The condition is checked after every complete seed, in order, so that the end depends neither on blocks nor on which
+/// worker flew what when.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Until {
     /// A column of the table, or `success`.
     pub metric: String,
-    /// Half width that is enough.
+    /// Half width that is sufficient.
     pub below: f64,
-    /// Seeds that are flown in any case.
+    /// Minimum number of seeds.
     pub seeds_min: u64,
 }
 
 impl Until {
-    /// Seeds that are flown in any case, unless the plan says otherwise: a few equal values would seem certain.
+    /// Default minimum number of seeds: a few equal values would give a false certainty.
     pub(crate) const SEEDS_MIN: u64 = 10;
 }
 
-/// Looks at missions in their order until enough is known.
+/// Checks missions in their order until the condition is met.
 pub struct Watch<'a> {
     campaign: &'a Campaign,
     until: &'a Until,
     arms: Vec<(u64, u64, Sums)>,
     taken: u64,
-    /// Seeds that are enough.
+    /// The number of seeds that is sufficient.
     enough: Option<u64>,
 }
 
 impl<'a> Watch<'a> {
-    /// Nothing seen yet; `None` for a campaign that flies every seed.
+    /// Creates a check without any missions yet; `None` for a campaign that flies all its seeds.
     pub fn new(campaign: &'a Campaign) -> Option<Self> {
         let until = campaign.design.until.as_ref()?;
         let arms = vec![(0, 0, Sums::default()); campaign.arms()];
         Some(Self { campaign, until, arms, taken: 0, enough: None })
     }
 
-    /// Takes the next rows, and says how many seeds are enough once that is known.
+    /// Adds the next rows; returns the sufficient number of seeds once it is known.
     pub fn take(&mut self, rows: &Table) -> Option<u64> {
         let success = rows.flags("success");
         let values = rows.numbers(&self.until.metric);

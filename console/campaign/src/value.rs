@@ -1,10 +1,10 @@
-//! Values of a grid.
+//! Values in a grid.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use toml::de::DeValue;
 
-/// A value that a key of a scenario or a parameter of a planner takes.
+/// The value of a scenario key or a planner parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -37,7 +37,7 @@ impl Value {
         }
     }
 
-    /// As a number, if it is one.
+    /// The value as a number, if it is one.
     pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Whole(n) => Some(*n as f64),
@@ -47,7 +47,7 @@ impl Value {
     }
 }
 
-/// As `--set` takes it.
+/// The value in the form used with `--set`.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

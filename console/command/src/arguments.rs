@@ -1,12 +1,11 @@
-//! Options that both programs read: where planners are, and what a study or a search takes.
+//! Options that both programs share: plugin folders, and the arguments of studies and searches.
 
 use clap::Args;
 use flight::failure::bad_input;
 use planner_host::PluginDirs;
 use std::path::PathBuf;
 
-/// Where planners are searched for, in addition to the program's folder and `$TANKOPS_PLUGIN_PATH`, and when they are
-/// refused.
+/// Additional plugin folders, besides the program's folder and `$TANKOPS_PLUGIN_PATH`, and the sandbox requirement.
 #[derive(Debug, Clone, Default, Args)]
 pub struct PluginArgs {
     /// Additional folder of planner plugins, searched first; repeatable.
@@ -18,10 +17,10 @@ pub struct PluginArgs {
 }
 
 impl PluginArgs {
-    /// The folders of plugins.
+    /// The plugin folders to search.
     ///
     /// # Errors
-    /// One that was named does not exist.
+    /// A named folder does not exist.
     pub fn dirs(&self) -> anyhow::Result<PluginDirs> {
         if let Some(missing) = self.plugin_dir.iter().find(|dir| !dir.is_dir()) {
             return Err(bad_input(format!("--plugin-dir {}: the folder does not exist", missing.display())));
@@ -30,32 +29,32 @@ impl PluginArgs {
     }
 }
 
-/// What `reproduce` takes.
+/// The arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// What to reproduce; default: list everything.
+    /// Study to reproduce; default: list all.
     pub name: Option<String>,
     /// Number of layouts or draws per case; the default depends on the study.
     #[arg(long, value_name = "N")]
     pub layouts: Option<usize>,
-    /// Seed of the first layout; the others follow.
+    /// Seed of the first layout; later layouts use the following seeds.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub first_seed: u64,
-    /// Only cases whose ids start with this (`d1/disk`); repeatable.
+    /// Only cases whose ids start with this prefix (`d1/disk`); repeatable.
     #[arg(long, value_name = "CASE")]
     pub case: Vec<String>,
-    /// Only methods whose ids start with this (`rpf/gated`); repeatable.
+    /// Only methods whose ids start with this prefix (`rpf/gated`); repeatable.
     #[arg(long, value_name = "METHOD")]
     pub method: Vec<String>,
     /// Number of threads; 0: one per core. Affects times, not results.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder for drawings of every plan or of its curves, one file per layout and method; created if missing. Studies of
-    /// positions have nothing to draw; with --out, only plans that this process makes.
+    /// Folder for drawings of the plans or of their curves, one file per layout and method; created if missing. Studies
+    /// of positions have no drawings. With --out, only plans made by this process are drawn.
     #[arg(long, value_name = "DIR")]
     pub svg: Option<PathBuf>,
-    /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and
-    /// several that run at once, on any machines, share the work.
+    /// Folder for the answers; created if missing. Repeating the command with the same folder resumes the work, and
+    /// several processes, on any machines, can share it.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print the rows as a JSON array on stdout.
@@ -64,25 +63,25 @@ pub struct ReproduceArgs {
     /// Print the rows as CSV on stdout.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// List every study, and the account of the papers: each equation, table, figure and claim, what became of it, and the
+    /// List every study, and the status of the papers: each equation, table, figure and claim, its outcome, and the
     /// command that shows it.
     #[arg(long, conflicts_with = "name")]
     pub list: bool,
 }
 
-/// What `tune` takes.
+/// The arguments of `tune`.
 #[derive(Debug, Args)]
 pub struct TuneArgs {
     /// Planner to tune.
     #[arg(long, value_name = "ID")]
     pub planner: String,
-    /// Layouts: wang-d1, wang-d2 or wang-d3 (in the disk), wang-d1-square and so on (in the square).
+    /// Layouts: wang-d1, wang-d2 or wang-d3 (disk), or wang-d1-square and so on (square).
     #[arg(long, value_name = "LAYOUTS")]
     pub on: String,
     /// Parameter to tune; repeatable. Default: every real-valued parameter of the group "Field".
     #[arg(long, value_name = "KEY")]
     pub tune: Vec<String>,
-    /// Initial value, or value of a parameter that is not tuned (`reading=gated`).
+    /// Initial value of a tuned parameter, or fixed value of another parameter (`reading=gated`).
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Number of layouts to tune on.
@@ -97,17 +96,17 @@ pub struct TuneArgs {
     /// Seed of the first layout to evaluate on.
     #[arg(long, value_name = "SEED", default_value_t = 1_000_000)]
     pub test_first_seed: u64,
-    /// Generations of the search.
+    /// Number of generations of the search.
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub generations: usize,
-    /// Seed of the search.
+    /// Random seed of the search.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
     /// Number of threads; 0: one per core. Does not affect the result.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Folder for the answers, created if missing: the same command with the same folder resumes where it was ended, and
-    /// several that run at once, on any machines, share the work.
+    /// Folder for the answers; created if missing. Repeating the command with the same folder resumes the work, and
+    /// several processes, on any machines, can share it.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print values, losses and rows as JSON on stdout.

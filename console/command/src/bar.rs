@@ -1,9 +1,9 @@
-//! What a terminal on stderr shows while much is computed.
+//! A progress bar on stderr for long computations.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Shows work on stderr, if that is a terminal: rows on stdout, for people or as JSON, do not suffer from it.
+/// Shows a progress bar if stderr is a terminal. Rows on stdout, as text or as JSON, are not affected.
 pub fn shown(bar: ProgressBar, name: &'static str, template: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

@@ -1,25 +1,25 @@
-//! The program and the plugins that are here, by their digests: what they compute can be put together with what others compute.
+//! The installed program and plugins, identified by their digests. Results with equal digests can be combined.
 
 use anyhow::{Context, anyhow};
-use campaign::{Campaign, Program, table::hex};
+use campaign::{Campaign, Program};
 use flight::{failure::bad_input, planners::Found};
 use planner_host::{PluginDirs, Surveyor, WorkerCommand, check_limits};
 use sha2::{Digest, Sha256};
 use std::{fs, path::Path};
 
-/// What flies here, found once for a process.
+/// The installed program and planners, surveyed once per process.
 pub struct Here {
-    /// Digests of the program and the plugins.
+    /// The digests of the program and the plugins.
     pub program: Program,
-    /// The planners.
+    /// The available planners.
     pub found: Found,
 }
 
 impl Here {
-    /// Looks at the program and at every plugin.
+    /// Surveys the program and every plugin.
     ///
     /// # Errors
-    /// The program cannot be read, or no planner's process can be started.
+    /// The program cannot be read, or planner processes cannot be started.
     pub fn survey(plugins: &PluginDirs) -> anyhow::Result<Self> {
         check_limits(plugins).map_err(anyhow::Error::msg)?;
         let worker = WorkerCommand::default();
@@ -33,7 +33,7 @@ impl Here {
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let program = Program {
             tankops_version: env!("CARGO_PKG_VERSION").to_owned(),
-            tankops_sha256: hex(&Sha256::digest(&program)),
+            tankops_sha256: hex::encode(Sha256::digest(&program)),
             plugins_sha256: sound.map(|plugin| (name(&plugin.path), plugin.sha256.clone())).collect(),
         };
         Ok(Self { program, found: Found::from(&survey) })
@@ -42,7 +42,7 @@ impl Here {
     /// Checks that a campaign was frozen with this program and these plugins.
     ///
     /// # Errors
-    /// It was not; the sentence names what differs.
+    /// The campaign was frozen with a different program or plugins; the message names the difference.
     pub fn check(&self, campaign: &Campaign) -> anyhow::Result<()> {
         if campaign.program == self.program {
             return Ok(());
@@ -51,14 +51,14 @@ impl Here {
         let differs = |(name, sha256): &(&String, &String)| plugins.get(*name) != Some(*sha256);
         let other = campaign.program.plugins_sha256.iter().find(differs).map(|(name, _)| name.as_str());
         let what = match other {
-            Some(plugin) => format!("plugin {plugin} is not the one"),
+            Some(plugin) => format!("plugin {plugin} differs from the one"),
             None if campaign.program.tankops_sha256 != self.program.tankops_sha256 => {
-                "tankops is not the one".to_owned()
+                "tankops differs from the one".to_owned()
             }
-            None => "there are other plugins than those".to_owned(),
+            None => "the set of plugins differs from the one".to_owned(),
         };
         Err(bad_input(format!(
-            "{what} that the campaign was prepared with; prepare it again, with another --out"
+            "{what} that the campaign was prepared with; prepare it again with a different --out"
         )))
     }
 }

@@ -1,5 +1,5 @@
-//! What the programs `tankops` and `tankops-research` share at their command line: options, how they begin and fail, what the
-//! machine must grant, folders that several processes work in.
+//! Code that the command lines of `tankops` and `tankops-research` share: options, start-up and failure, system limits,
+//! and folders that several processes work in.
 
 pub mod arguments;
 pub mod bar;

@@ -1,25 +1,26 @@
-//! What a machine must grant before anything begins; what it does not is named, instead of a process that ends by itself.
+//! Checks of system limits before any work begins, so that a command reports a limit that is too low instead of
+//! crashing.
 
 use anyhow::anyhow;
 use rustix::process::{Resource, getrlimit};
 
-/// Address space that a console with its threads asks for, bytes; most of it is never used.
+/// The address space in bytes that a console with its threads reserves; most of it is never used.
 const ADDRESS_SPACE: u64 = 1 << 30;
-/// Stack of the first thread, bytes.
+/// The stack of the first thread in bytes.
 const STACK: u64 = 1 << 20;
 
-/// Makes sure that the machine leaves room for the stack; to be asked before the command line is read, which takes stack, too.
+/// Checks that the stack limit is large enough. Call this before parsing the command line, which needs stack, too.
 ///
 /// # Errors
-/// It does not; the sentence names the limit.
+/// The limit is too low; the message names it.
 pub fn check_stack() -> anyhow::Result<()> {
     enough(getrlimit(Resource::Stack).current, STACK, "stack", 's').map_err(|why| anyhow!(why))
 }
 
-/// Makes sure that the machine leaves address space for a command.
+/// Checks that the address-space limit is large enough for a command.
 ///
 /// # Errors
-/// It does not; the sentence names the limit.
+/// The limit is too low; the message names it.
 pub fn check() -> anyhow::Result<()> {
     enough(getrlimit(Resource::As).current, ADDRESS_SPACE, "address space", 'v').map_err(|why| anyhow!(why))
 }
@@ -27,7 +28,7 @@ pub fn check() -> anyhow::Result<()> {
 fn enough(limit: Option<u64>, needed: u64, of_what: &str, option: char) -> Result<(), String> {
     match limit {
         Some(limit) if limit < needed => Err(format!(
-            "tankops needs {} kB of {of_what}, and the system grants {} kB: `ulimit -{option} {}`",
+            "tankops needs {} kB of {of_what}, but the system grants only {} kB: `ulimit -{option} {}`",
             needed >> 10,
             limit >> 10,
             needed >> 10
@@ -46,7 +47,7 @@ mod tests {
             (enough(None, 1 << 20, "stack", 's'), enough(Some(1 << 20), 1 << 20, "stack", 's')),
             (Ok(()), Ok(()))
         );
-        let why = "tankops needs 1024 kB of stack, and the system grants 64 kB: `ulimit -s 1024`";
+        let why = "tankops needs 1024 kB of stack, but the system grants only 64 kB: `ulimit -s 1024`";
         assert_eq!(enough(Some(64 << 10), 1 << 20, "stack", 's'), Err(why.to_owned()));
     }
 }

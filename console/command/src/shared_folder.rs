@@ -1,5 +1,5 @@
-//! A folder in which several processes work at once, on several machines: files that are there whole or not at all, and
-//! claims that say who works on what.
+//! A folder in which several processes on several machines work at the same time. Files are complete or absent, and
+//! claims record which process works on what.
 
 use anyhow::Context;
 use foreign::{open_regular, read_regular};
@@ -12,30 +12,30 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// A claim whose holder has not said anything for so long is void, and a draft of that age was left by somebody.
+/// A claim that has not been refreshed for this long is void, and a draft of this age is abandoned.
 const SILENT_FOR: Duration = Duration::from_mins(10);
-/// Folder of the claims.
+/// The subfolder of the claims.
 const CLAIMS: &str = "claims";
 
-/// A folder that processes share.
+/// A folder that several processes share.
 #[derive(Debug, Clone)]
 pub struct SharedFolder(PathBuf);
 
 impl SharedFolder {
-    /// The folder at a path.
+    /// Creates a handle to the folder at a path.
     pub fn new(path: &Path) -> Self {
         Self(path.to_owned())
     }
 
-    /// Its path.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Makes the folder with these folders in it, and one for claims, where they are missing.
+    /// Creates the folder, these subfolders and the subfolder for claims, as far as they are missing.
     ///
     /// # Errors
-    /// One of them cannot be made.
+    /// A folder cannot be created.
     pub fn make(&self, inner: &[&str]) -> anyhow::Result<()> {
         for folder in inner.iter().chain([&CLAIMS]).map(|inner| self.0.join(inner)) {
             fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
@@ -43,15 +43,15 @@ impl SharedFolder {
         Ok(())
     }
 
-    /// Whether it holds a file or a folder of this name.
+    /// Whether the folder contains a file or a subfolder of this name.
     pub fn has(&self, name: &Path) -> bool {
         self.0.join(name).exists()
     }
 
-    /// The bytes of a regular file, if it is there.
+    /// Reads a regular file; returns `None` if it does not exist.
     ///
     /// # Errors
-    /// It cannot be read, or is not a regular file.
+    /// The file cannot be read, or is not a regular file.
     pub fn read(&self, name: &Path) -> io::Result<Option<Vec<u8>>> {
         let mut bytes = Vec::new();
         match open_regular(&self.0.join(name)).and_then(|mut file| file.read_to_end(&mut bytes)) {
@@ -61,10 +61,10 @@ impl SharedFolder {
         }
     }
 
-    /// Writes a file whole or not at all: under another name, to the disk, then renamed.
+    /// Writes a file completely or not at all: writes a draft, syncs it to disk, then renames it.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         let file = self.0.join(name);
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_nanos();
@@ -72,7 +72,7 @@ impl SharedFolder {
         write_by_draft(&file, &draft, bytes).with_context(|| format!("writing {}", file.display()))
     }
 
-    /// Removes what killed processes have left in these folders; what others are writing now stays.
+    /// Removes the drafts of killed processes from these subfolders; drafts that are being written stay.
     pub fn tidy(&self, inner: &[&str]) {
         let now = self.now();
         for folder in inner.iter().map(|inner| self.0.join(inner)) {
@@ -80,14 +80,14 @@ impl SharedFolder {
             let is_draft = |file: &PathBuf| {
                 file.extension().is_some_and(|extension| extension.to_string_lossy().starts_with("draft-"))
             };
-            // A draft that stays behind harms nobody.
+            // A draft that cannot be removed does no harm.
             let left = files.map(|file| file.path()).filter(|file| is_draft(file) && is_silent(file, now));
             left.for_each(|file| drop(fs::remove_file(file)));
         }
     }
 
-    /// The time by the clock that dates the files here: that of a server where the folder is on one, so that a machine whose clock
-    /// is wrong judges claims as all others do.
+    /// The time by the clock that dates the files here. If the folder is on a server, this is the server's clock, so
+    /// that all machines judge claims alike even if their own clocks are wrong.
     fn now(&self) -> SystemTime {
         let probe = self.0.join(CLAIMS).join(format!(".now-{}-{}", host(), std::process::id()));
         let dated = File::create(&probe).and_then(|mut file| {
@@ -98,44 +98,46 @@ impl SharedFolder {
         dated.unwrap_or_else(|_| SystemTime::now())
     }
 
-    /// Where a claim is; it holds the machine and the process.
+    /// The path of a claim file; the file contains the machine name and the process id.
     pub fn claim_file(&self, name: &str) -> PathBuf {
         self.0.join(CLAIMS).join(name)
     }
 
-    /// Takes something for this process alone; false if another one has it.
+    /// Claims an item for this process; returns `false` if another process holds it.
     pub fn claim(&self, name: &str) -> bool {
         let claim = self.claim_file(name);
         if claim.exists() && is_void(&claim, self.now()) {
-            // Two that find it void do at worst the same work twice.
+            // If two processes find the claim void at the same time, at worst they duplicate the work.
             let _ = fs::remove_file(&claim);
         }
         match File::create_new(&claim) {
-            // Without its holder a claim is void when it is old.
+            // If the holder cannot be written, the claim becomes void by age.
             Ok(mut made) => drop(write!(made, "{} {}", host(), std::process::id())),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return false,
-            // Nobody can claim anything here: whoever waited would wait for ever. Publishing says what is wrong.
+            // No claim can be created here, and waiting would never end. Publishing the results will report the
+            // problem.
             Err(_) => {}
         }
         true
     }
 
-    /// Says that the holder of a claim is alive.
+    /// Refreshes a claim, so that other processes see that its holder is alive.
     pub fn keep_claim(&self, name: &str) {
         let now = Timespec { tv_sec: 0, tv_nsec: UTIME_NOW };
         let touched = File::options().write(true).open(self.claim_file(name));
-        // Without it the work is at worst done twice.
+        // If this fails, at worst the work is done twice.
         drop(touched.map(|claim| futimens(claim, &Timestamps { last_access: now, last_modification: now })));
     }
 
-    /// Gives something back.
+    /// Releases a claim.
     pub fn release(&self, name: &str) {
-        // A claim that stays is void after a while.
+        // A claim that cannot be removed becomes void later.
         let _ = fs::remove_file(self.claim_file(name));
     }
 }
 
-/// Whether the holder of a claim is gone: silent for long, or a process of this machine that has ended.
+/// Whether the holder of a claim is gone: the claim was not refreshed for too long, or its process on this machine has
+/// ended.
 fn is_void(claim: &Path, now: SystemTime) -> bool {
     if is_silent(claim, now) {
         return true;
@@ -148,13 +150,13 @@ fn is_void(claim: &Path, now: SystemTime) -> bool {
         && process.is_some_and(|process| !processes.join(process.to_string()).exists())
 }
 
-/// Whether a file has not been touched for so long that nobody is at work on it.
+/// Whether a file has not been modified for so long that its process must have stopped working on it.
 fn is_silent(file: &Path, now: SystemTime) -> bool {
     let touched = fs::metadata(file).and_then(|file| file.modified());
     touched.is_ok_and(|at| now.duration_since(at).unwrap_or_default() > SILENT_FOR)
 }
 
-/// The name of this machine; two with one name do at worst the same work twice.
+/// The name of this machine. If two machines have the same name, at worst they duplicate work.
 fn host() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     name.split_whitespace().next().unwrap_or("?").to_owned()

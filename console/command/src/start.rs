@@ -1,4 +1,4 @@
-//! How a program begins, and what it says when it fails.
+//! Start-up of a program, and its failure messages.
 
 use flight::failure::{BAD_INPUT, INTERNAL, is_input};
 use report::print::warn_line;
@@ -16,20 +16,22 @@ pub fn fail(error: &anyhow::Error) -> ExitCode {
     ExitCode::from(INTERNAL)
 }
 
-/// Keeps other processes of the same user, planners among them, from reading or changing this one; leaves no core dump.
+/// Prevents other processes of the same user, including planners, from reading or changing this process; disables core
+/// dumps.
 pub fn close_memory() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{DumpableBehavior, set_dumpable_behavior};
-        // Where the system refuses, planners are still closed off.
+        // If the system refuses, planners are still sandboxed.
         let _ = set_dumpable_behavior(DumpableBehavior::NotDumpable);
     }
 }
 
-/// A file that may not grow (`ulimit -f`) is an error of the write, as a full disk is, and not the end of the process.
+/// Makes a write beyond the file size limit (`ulimit -f`) fail with an error, as on a full disk, instead of ending the
+/// process.
 ///
-/// A handler that does nothing, because ignoring the signal would be inherited by the planners' processes.
+/// Installs a handler that does nothing. Ignoring the signal instead would be inherited by the planners' processes.
 pub fn survive_file_size_limit() {
-    // Without a handler the signal ends the process, as it does by default.
+    // If this fails, the signal ends the process, as by default.
     let _ = signal_hook::flag::register(libc::SIGXFSZ, Arc::default());
 }

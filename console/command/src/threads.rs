@@ -1,4 +1,4 @@
-//! The threads and processes that the system grants.
+//! Limits on threads and processes.
 
 use anyhow::anyhow;
 use std::{
@@ -8,31 +8,32 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A planner: its process, and the thread in it that ends it with the program. Counted with `prlimit --nproc`.
+/// The number of threads and processes of a planner, as counted by `prlimit --nproc`: its process, and a thread that
+/// ends the process together with the program.
 pub const PLANNER: usize = 2;
-/// Who waits for a signal.
+/// The thread that waits for signals.
 pub const SIGNAL: usize = 1;
 
-/// Within this the system has cleared away threads that have ended, even on a busy machine.
+/// The time within which the system releases ended threads, even on a busy machine.
 const CLEARED_WITHIN: Duration = Duration::from_secs(1);
-/// They do nothing.
+/// The stack of each test thread in bytes; the threads do nothing.
 const STACK_BYTES: usize = 64 << 10;
 
-/// Threads and processes of missions that are flown at once without being recorded; 0: one for each core.
+/// The number of threads and processes for this many simultaneous missions without recording; 0: one mission per core.
 pub fn missions(at_once: usize) -> usize {
     SIGNAL + (1 + PLANNER) * if at_once > 0 { at_once } else { cores() }
 }
 
-/// Processor cores that this process may use.
+/// The number of processor cores that this process can use.
 pub fn cores() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 
-/// Makes sure that the system grants what a command needs, before it begins something that it could not end. Takes less than a
-/// millisecond.
+/// Checks that the system grants enough threads and processes for a command, before it starts work that it could not
+/// finish. Takes less than a millisecond.
 ///
 /// # Errors
-/// It does not; the sentence names the limit.
+/// The system grants fewer threads and processes than needed.
 pub fn check(needed: usize) -> anyhow::Result<()> {
     let before = running();
     let gate = Mutex::new(());
@@ -46,11 +47,12 @@ pub fn check(needed: usize) -> anyhow::Result<()> {
     })
     .map_err(|error| {
         anyhow!(
-            "this command needs {} threads and processes, and the system grants fewer ({error}): `ulimit -u` limits them",
+            "this command needs {} threads and processes, but the system grants fewer ({error}); raise the \
+             limit with `ulimit -u`",
             needed + 1
         )
     })?;
-    // Who has ended counts until the system has cleared it away.
+    // Ended threads still count until the system has released them.
     let until = Instant::now() + CLEARED_WITHIN;
     while running() > before && Instant::now() < until {
         thread::sleep(Duration::from_micros(50));
@@ -58,7 +60,7 @@ pub fn check(needed: usize) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Threads of this process, where the system says so.
+/// The number of threads of this process, if the system reports it.
 fn running() -> usize {
     fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
 }

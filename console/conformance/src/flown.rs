@@ -1,4 +1,4 @@
-//! One flight, as fast as it goes.
+//! Flies one mission as fast as possible.
 
 use crate::tape::Taping;
 use account::{Fold, Summary};
@@ -8,25 +8,25 @@ use planner_api::Code;
 use planner_host::{Host, PluginDirs};
 use scenario::Scenario;
 
-/// What came of a flight.
+/// The result of a flight.
 #[derive(Debug)]
 pub(crate) struct Flown {
     pub(crate) summary: Summary,
-    /// Median time for a step, milliseconds by the wall clock; absent without steps.
+    /// Median wall time of a step, milliseconds; absent without steps.
     pub(crate) p50_ms: Option<f64>,
-    /// Time that 99 of 100 steps do not exceed.
+    /// 99th percentile of the wall time of a step, milliseconds; absent without steps.
     pub(crate) p99_ms: Option<f64>,
-    /// Memory that its process had at most, bytes; absent where the system does not say.
+    /// Peak memory of the planner's process, bytes; absent where the system does not report it.
     pub(crate) memory_bytes: Option<u64>,
-    /// Threads that were left between its last calls; absent where the system does not say.
+    /// Threads left running between the last calls; absent if there are none or the system does not report them.
     pub(crate) threads_left: Option<u32>,
-    /// How it ended when it was not wanted any more, if not well.
+    /// How the planner ended when it was no longer needed, if not cleanly.
     pub(crate) bad_end: Option<String>,
-    /// First fault that no good planner has.
+    /// The first fault that a correct planner never has.
     pub(crate) misbehaved: Option<String>,
-    /// First time that it said no.
+    /// The planner's first refusal.
     pub(crate) gave_up: Option<String>,
-    /// It said that it does not fly such missions.
+    /// Whether the planner reported that it does not fly such missions.
     pub(crate) unsupported: bool,
 }
 
@@ -36,40 +36,65 @@ impl Flown {
     }
 }
 
-/// The memory of planners is looked at every so many ticks.
+/// How often the memory of the planner is measured, ticks.
 const LOOK_AT_MEMORY_EVERY: u64 = 16;
 
-/// So many looks in a row must find a thread for it to count as left.
+/// How many consecutive measurements must find a thread for it to count as left running.
 const LOOKS: usize = 3;
-/// Threads that every worker has.
+/// The number of threads that every worker has.
 const OWN_THREADS: u32 = 2;
 
-/// A flight that goes on until its mission ends, or somebody stops looking.
+/// A flight that continues until its mission ends or the caller stops.
 pub(crate) struct Pilot {
-    /// Whose faults are looked for.
+    /// The planner whose faults are recorded.
     planner: String,
     flight: Flight,
     answers: Taping,
     fold: Fold,
     memory_bytes: Option<u64>,
-    /// Threads that its process had at the last looks, newest first.
+    /// The number of threads of the process at the last measurements, newest first.
     threads: [u32; LOOKS],
-    misbehaved: Option<String>,
-    gave_up: Option<String>,
-    /// First failure of another planner than that one.
-    failed_beside: bool,
-    unsupported: bool,
+    faults: Faults,
     tick: u64,
 }
 
-/// A tank, to be flown by this planner.
+/// The faults of a flight, by what they mean for the planner under test.
+#[derive(Debug, Default, PartialEq)]
+struct Faults {
+    /// The first fault that a correct planner never has.
+    misbehaved: Option<String>,
+    /// The planner's first refusal.
+    gave_up: Option<String>,
+    /// Whether a different planner failed.
+    beside: bool,
+    /// Whether the planner reported that it does not fly such missions.
+    unsupported: bool,
+}
+
+impl Faults {
+    fn note(&mut self, planner: &str, fault: &Fault) {
+        if fault.planner != planner {
+            self.beside = true;
+            return;
+        }
+        self.unsupported |= fault.cause == Cause::Planner(Code::Unsupported);
+        let first = match fault.cause {
+            Cause::Planner(_) => &mut self.gave_up,
+            Cause::Quarantined => return,
+            _ => &mut self.misbehaved,
+        };
+        first.get_or_insert_with(|| fault.message.clone());
+    }
+}
+
+/// Returns the scenario of a tank with this planner.
 pub(crate) fn with_planner(tank: &Scenario, id: &str, parameters: Parameters) -> Scenario {
     let mut scenario = tank.clone();
     scenario.mission.planner = PlannerChoice { id: id.to_owned(), parameters };
     scenario
 }
 
-/// Flies a tank with a planner to the end.
+/// Flies a tank with a planner until the mission ends.
 pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
     let mut pilot = Pilot::new(id, &with_planner(tank, id, Parameters::new()), plugins, false);
     while pilot.tick(&[]).is_some() {}
@@ -77,7 +102,7 @@ pub(crate) fn fly(tank: &Scenario, id: &str, plugins: &PluginDirs) -> Flown {
 }
 
 impl Pilot {
-    /// Ready to start, and to look for faults of this planner; with an operator a hold does not end the mission.
+    /// Prepares a flight and records faults of this planner. If it is `attended`, a hold does not end the mission.
     pub(crate) fn new(planner: &str, scenario: &Scenario, plugins: &PluginDirs, attended: bool) -> Self {
         let flight = Flight::prepare(scenario, attended);
         let host = Host::new(plugins, hosts::config(&scenario.mission));
@@ -90,15 +115,12 @@ impl Pilot {
             fold,
             memory_bytes: None,
             threads: [0; LOOKS],
-            misbehaved: None,
-            gave_up: None,
-            failed_beside: false,
-            unsupported: false,
+            faults: Faults::default(),
             tick: 0,
         }
     }
 
-    /// Flies one tick with these orders; its events, or none when the mission has ended.
+    /// Flies one tick with these orders. Returns the events, or `None` when the mission has ended.
     pub(crate) fn tick(&mut self, orders: &[Order]) -> Option<Vec<Event>> {
         if matches!(self.flight.phase(), Phase::Ended(_)) {
             return None;
@@ -112,24 +134,10 @@ impl Pilot {
         for event in &events {
             self.fold.apply(event);
             if let EventKind::PlannerFailed { fault, .. } = &event.kind {
-                self.note(fault);
+                self.faults.note(&self.planner, fault);
             }
         }
         Some(events)
-    }
-
-    fn note(&mut self, fault: &Fault) {
-        if fault.planner != self.planner {
-            self.failed_beside = true;
-            return;
-        }
-        self.unsupported |= fault.cause == Cause::Planner(Code::Unsupported);
-        let first = match fault.cause {
-            Cause::Planner(_) => &mut self.gave_up,
-            Cause::Quarantined => return,
-            _ => &mut self.misbehaved,
-        };
-        first.get_or_insert_with(|| fault.message.clone());
     }
 
     fn look_at_process(&mut self) {
@@ -139,17 +147,17 @@ impl Pilot {
         self.threads[0] = memory.map_or(0, |memory| memory.threads);
     }
 
-    /// Whether another planner failed.
+    /// Whether a different planner failed.
     pub(crate) fn failed_beside(&self) -> bool {
-        self.failed_beside
+        self.faults.beside
     }
 
-    /// First fault that no good planner has.
+    /// Returns the first fault that a correct planner never has.
     pub(crate) fn misbehaved(&self) -> Option<&str> {
-        self.misbehaved.as_deref()
+        self.faults.misbehaved.as_deref()
     }
 
-    /// What the planners were asked first.
+    /// Returns the first requests to the planner.
     pub(crate) fn into_tape(self) -> Vec<mission::What> {
         self.answers.into_tape()
     }
@@ -167,9 +175,58 @@ impl Pilot {
             memory_bytes: self.memory_bytes,
             threads_left: threads.checked_sub(OWN_THREADS).filter(|left| *left > 0),
             bad_end: bad_end.map(|end| end.to_string()),
-            misbehaved: self.misbehaved,
-            gave_up: self.gave_up,
-            unsupported: self.unsupported,
+            misbehaved: self.faults.misbehaved,
+            gave_up: self.faults.gave_up,
+            unsupported: self.faults.unsupported,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mission::During;
+
+    fn fault(planner: &str, cause: Cause) -> Fault {
+        Fault {
+            planner: planner.into(),
+            during: During::Step,
+            cause,
+            message: format!("planner {planner}: {cause}"),
+            partial: Vec::new(),
+            plugin_sha256: None,
+        }
+    }
+
+    fn noted(faults: &[Fault]) -> Faults {
+        let mut noted = Faults::default();
+        for fault in faults {
+            noted.note("own", fault);
+        }
+        noted
+    }
+
+    #[test]
+    fn a_refusal_is_no_misbehaviour_and_the_first_of_each_counts() {
+        let no_path = Cause::Planner(Code::NoPath);
+        let all = [fault("own", no_path), fault("own", Cause::Panic), fault("own", Cause::Hung)];
+        let expected = Faults {
+            misbehaved: Some("planner own: panic".into()),
+            gave_up: Some("planner own: the planner reports: no path found".into()),
+            ..Faults::default()
+        };
+        assert_eq!(noted(&all), expected);
+    }
+
+    #[test]
+    fn a_mission_that_the_planner_does_not_fly_is_told_from_one_that_it_gives_up() {
+        let unsupported = noted(&[fault("own", Cause::Planner(Code::Unsupported))]);
+        assert!(unsupported.unsupported && unsupported.gave_up.is_some() && unsupported.misbehaved.is_none());
+    }
+
+    #[test]
+    fn faults_of_others_and_the_quarantine_that_follows_a_fault_are_not_its_own() {
+        let others = noted(&[fault("other", Cause::Panic), fault("own", Cause::Quarantined)]);
+        assert_eq!(others, Faults { beside: true, ..Faults::default() });
     }
 }

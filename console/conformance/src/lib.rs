@@ -1,6 +1,8 @@
-//! What a planner must do whatever it plans, and how it flies in random tanks beside others: for its author.
+//! Tests a planner for its author: checks what every planner must do, and compares its flights in random tanks with
+//! those of other planners.
 //!
-//! Everything but times is determined by the plugin and a seed. Frame: the tank frame, metres, radians.
+//! Everything but the times is determined by the plugin and a seed. Coordinates are in the tank frame, in metres and
+//! radians.
 #![forbid(unsafe_code)]
 
 mod checks;
@@ -21,18 +23,18 @@ use rayon::prelude::*;
 use scenario::Scenario;
 use serde::Serialize;
 
-/// How a planner was tried.
+/// The test of one planner with one task.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
-    /// Its id.
+    /// Id of the planner.
     pub planner: String,
-    /// What was to be done in the tanks.
+    /// The task in the tanks.
     pub task: Task,
     /// Seed of the first tank; the others follow.
     pub first_seed: u64,
-    /// What it must do.
+    /// The checks with their results.
     pub checks: Vec<Check>,
-    /// How it flew, and how the others did in the same tanks.
+    /// The results of the flights: those of this planner first, then those of the others in the same tanks.
     pub rows: Vec<Row>,
 }
 
@@ -41,22 +43,22 @@ pub struct Trial {
 pub struct Lost {
     /// The name of the scenario.
     pub name: String,
-    /// The scenario, to be flown by that planner.
+    /// The scenario, with that planner.
     pub scenario: String,
 }
 
-/// The planners that one is tried beside.
+/// The planners to compare with.
 #[derive(Debug, Clone, Copy)]
 pub struct Others<'a> {
-    /// All that were found.
+    /// All planners found.
     pub found: &'a [PlannerInfo],
-    /// Ids of those that came with tankops: another one that an author is working on may fail at any time.
+    /// Ids of the planners shipped with tankops; any other planner may be under development and could fail at any time.
     pub shipped: &'a [String],
 }
 
 impl Trial {
-    /// Tries a planner in `n` tanks, beside others as far as they fly such missions: by going somewhere, and one that covers
-    /// floor by that, too.
+    /// Tests a planner in `n` tanks, together with the other planners that fly such missions. Every planner drives to a
+    /// goal; one that covers the floor is tested for that, too.
     pub fn all_of(
         planner: &PlannerInfo,
         others: Others<'_>,
@@ -84,13 +86,13 @@ impl Trial {
         let flown: Vec<Flown> = flights.par_iter().map(|(id, tank)| fly(tank, ids[*id], plugins)).collect();
         let rows = ids.iter().zip(flown.chunks(tanks.len().max(1)));
         let mut rows: Vec<Row> = rows.map(|(id, flown)| Row::of(id, flown, first_seed)).collect();
-        // A planner that does not fly such missions at all is nothing to compare with.
+        // A planner that does not fly such missions at all cannot be compared.
         rows.retain(|row| row.planner == planner.id || row.unsupported < row.tanks);
         let is_sound = |row: &&Row| row.faults == 0 && others.shipped.contains(&row.planner);
         let beside = rows[1..].iter().filter(is_sound).map(|row| row.planner.as_str()).take(1).collect();
         let subject = Subject { planner, plugins, tank: &tanks[0], beside };
         let checks = if rows[0].unsupported == rows[0].tanks {
-            vec![Check::not_made("flies such missions", "it says that it does not: nothing was checked")]
+            vec![Check::not_made("flies such missions", "it reports that it does not; nothing was checked")]
         } else {
             checks::all(&subject, &flown[..tanks.len()], first_seed)
         };
@@ -102,7 +104,7 @@ impl Trial {
         self.checks.iter().all(|check| check.failure.is_none())
     }
 
-    /// The tanks in which it did not complete its mission.
+    /// Returns the tanks in which the planner did not complete its mission.
     pub fn lost(&self) -> Vec<Lost> {
         let lost = self.rows.first().into_iter().flat_map(Row::lost);
         let named = |tank: &InTank| Lost {
@@ -112,16 +114,15 @@ impl Trial {
         lost.map(named).collect()
     }
 
-    /// Checks and rows as text.
+    /// Formats checks and rows as text.
     pub fn human(&self) -> String {
         let checks = self.checks.iter().map(Check::line);
-        let rows = self.rows.iter().map(Row::line);
         let n = self.rows.first().map_or(0, |row| row.tanks);
         let title = format!(
-            "\n{}, {}, in {n} random tanks from seed {} on:\n",
+            "\n{}, {}, in {n} random tanks starting with seed {}:\n",
             self.planner, self.task, self.first_seed
         );
         let lost = self.rows.first().into_iter().flat_map(Row::lost).map(InTank::line);
-        checks.chain([title, Row::HEADINGS.to_owned()]).chain(rows).chain(lost).collect()
+        checks.chain([title, row::table(&self.rows)]).chain(lost).collect()
     }
 }

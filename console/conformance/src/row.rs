@@ -1,57 +1,74 @@
-//! How a planner flew in some tanks, as a row of a table.
+//! The results of a planner in several tanks, as a row of a table.
 
 use crate::flown::Flown;
+use comfy_table::{
+    CellAlignment::{Left, Right},
+    Table, presets,
+};
 use mission::Outcome;
 use serde::Serialize;
 
-/// How a planner flew in some tanks.
+const HEADINGS: [&str; 10] = [
+    "planner",
+    "complete",
+    "collided",
+    "stuck",
+    "faults",
+    "time s",
+    "path m",
+    "clearance m",
+    "step p99 ms",
+    "memory MB",
+];
+
+/// The results of a planner in several tanks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// Its id.
+    /// Id of the planner.
     pub planner: String,
-    /// How many tanks.
+    /// The number of tanks.
     pub tanks: usize,
-    /// In how many of them the mission was completed.
+    /// The number of tanks in which the mission was completed.
     pub complete: usize,
-    /// In how many of them the robot touched something.
+    /// The number of tanks in which the robot touched something.
     pub collided: usize,
-    /// In how many of them it did not get on.
+    /// The number of tanks in which the robot got stuck.
     pub stuck: usize,
-    /// How often the planner failed.
+    /// The number of faults of the planner.
     pub faults: u64,
-    /// In how many of them it said that it does not fly such missions.
+    /// The number of tanks in which the planner reported that it does not fly such missions.
     pub unsupported: usize,
-    /// Mission time of completed missions, median, seconds.
+    /// Median mission time of the completed missions, seconds.
     pub time_s: Option<f64>,
-    /// Way of completed missions, median, metres.
+    /// Median path length of the completed missions, metres.
     pub way_m: Option<f64>,
-    /// Least distance to anything solid in completed missions, median, metres.
+    /// Median of the smallest distance to anything solid in the completed missions, metres.
     pub clearance_m: Option<f64>,
-    /// Time for a step that 99 of 100 do not exceed, median, milliseconds by the wall clock.
+    /// Median over the tanks of the 99th percentile of the wall time of a step, milliseconds.
     pub step_p99_ms: Option<f64>,
-    /// Memory of the planner's process at most in any of them, libraries among it, megabytes; absent where the system does
-    /// not say.
+    /// Largest memory of the planner's process in any tank, including libraries, megabytes; absent where the system
+    /// does not report it.
     pub memory_mb: Option<f64>,
-    /// Each tank.
+    /// The results in each tank.
     pub by_tank: Vec<InTank>,
 }
 
-/// How a planner flew in one tank.
+/// The results of a planner in one tank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InTank {
-    /// The seed by which the tank was drawn.
+    /// The seed from which the tank was drawn.
     pub seed: u64,
     /// How the mission ended.
     pub outcome: Option<Outcome>,
-    /// How often the planner failed.
+    /// The number of faults of the planner.
     pub faults: u64,
-    /// Its first failure.
+    /// The first fault.
     pub failure: Option<String>,
     /// Mission time, seconds.
     pub time_s: Option<f64>,
-    /// Way, metres.
+    /// Path length, metres.
     pub way_m: Option<f64>,
-    /// Least distance to anything solid, metres.
+    /// Smallest distance to anything solid, metres.
     pub clearance_m: Option<f64>,
 }
 
@@ -69,7 +86,7 @@ impl InTank {
         }
     }
 
-    /// A line about a tank that was not completed.
+    /// Formats a line about a tank that was not completed.
     pub(crate) fn line(&self) -> String {
         let ended = self.outcome.map_or("did not end", Outcome::word).replace('_', " ");
         let after = self.time_s.map(|s| format!(" after {s:.1} s")).unwrap_or_default();
@@ -79,8 +96,6 @@ impl InTank {
 }
 
 impl Row {
-    pub(crate) const HEADINGS: &'static str = "planner             complete  collided  stuck  faults  time s   way m  clearance m  step p99 ms  memory MB\n";
-
     pub(crate) fn of(planner: &str, flown: &[Flown], first_seed: u64) -> Self {
         let ended = |outcome| flown.iter().filter(move |flown| flown.summary.outcome == Some(outcome));
         let of_complete =
@@ -109,33 +124,79 @@ impl Row {
         }
     }
 
-    /// The tanks that were not completed.
+    /// Returns the tanks that were not completed.
     pub(crate) fn lost(&self) -> impl Iterator<Item = &InTank> {
         self.by_tank.iter().filter(|tank| tank.outcome != Some(Outcome::Complete))
     }
 
-    pub(crate) fn line(&self) -> String {
+    fn cells(&self) -> [String; 10] {
         let figure = |value: Option<f64>, digits| {
             value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
         };
-        format!(
-            "{:<18}  {:>8}  {:>8}  {:>5}  {:>6}  {:>6}  {:>6}  {:>11}  {:>11}  {:>9}\n",
-            self.planner,
+        [
+            self.planner.clone(),
             format!("{}/{}", self.complete, self.tanks),
-            self.collided,
-            self.stuck,
-            self.faults,
+            self.collided.to_string(),
+            self.stuck.to_string(),
+            self.faults.to_string(),
             figure(self.time_s, 1),
             figure(self.way_m, 2),
             figure(self.clearance_m, 2),
             figure(self.step_p99_ms, 2),
             figure(self.memory_mb, 1),
-        )
+        ]
     }
+}
+
+/// Formats rows as a text table, one line each below the headings.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).add_row(HEADINGS).add_rows(rows.iter().map(Row::cells));
+    for column in table.column_iter_mut() {
+        let is_first = column.index == 0;
+        column.set_padding((0, 2)).set_cell_alignment(if is_first { Left } else { Right });
+    }
+    table.trim_fmt() + "\n"
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_stay_aligned_below_a_planner_with_a_long_name() {
+        let row = |planner: &str| Row {
+            planner: planner.into(),
+            tanks: 10,
+            complete: 9,
+            collided: 0,
+            stuck: 1,
+            faults: 0,
+            unsupported: 0,
+            time_s: Some(61.25),
+            way_m: Some(7.258),
+            clearance_m: None,
+            step_p99_ms: Some(0.124),
+            memory_mb: Some(12.0),
+            by_tank: Vec::new(),
+        };
+        let text = table(&[row("apf"), row("a-planner-with-a-very-long-name")]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(text.ends_with('\n') && lines.len() == 3, "{text}");
+        assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{text}");
+        let figures = ["9/10", "0", "1", "0", "61.2", "7.26", "-", "0.12", "12.0"];
+        assert!(lines[1].split_whitespace().skip(1).eq(figures), "{text}");
+    }
+
+    #[test]
+    fn the_median_of_nothing_is_absent() {
+        assert_eq!(median(std::iter::empty()), None);
+        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), Some(2.0));
+    }
 }

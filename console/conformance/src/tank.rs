@@ -7,13 +7,13 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::fmt::{self, Write};
 
-/// What is to be done in a tank.
+/// The task in a tank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Task {
     /// Drive from one side to the other.
     Goto,
-    /// Scan all of it.
+    /// Scan the whole floor.
     Cover,
 }
 
@@ -26,19 +26,19 @@ impl fmt::Display for Task {
     }
 }
 
-/// Distance between an obstacle and anything else, metres: the robot passes everywhere.
+/// Smallest distance between an obstacle and anything else, metres: the robot fits through everywhere.
 const GAP_M: f64 = 0.9;
 
-/// The tank of a seed: columns and boxes, two of three on the drawing.
+/// Draws the tank of a seed: columns and boxes, two thirds of which are on the drawing.
 ///
 /// # Panics
-/// Never: every text that is drawn is a scenario, as the tests show.
+/// Never: the tests show that every text drawn is a valid scenario.
 pub(crate) fn draw(task: Task, seed: u64) -> Scenario {
     Scenario::parse_with(&text(task, seed, "it"), &format!("tank {seed}"), &Settings::default())
         .unwrap_or_else(|errors| panic!("{}", errors.render()))
 }
 
-/// The text of that tank's scenario, to be flown by this planner.
+/// Returns the text of that tank's scenario, with this planner.
 pub(crate) fn text(task: Task, seed: u64, planner: &str) -> String {
     let mut random = Pcg64::seed_from_u64(seed);
     let (tank_radius, most) = if task == Task::Goto { (5.0, 9) } else { (3.0, 4) };

@@ -1,16 +1,16 @@
-//! What a planner was asked on a flight, to ask another instance the same.
+//! Records the requests to a planner during a flight, so that they can be sent to a different instance.
 
 use flight::answers::{Answers, InOrder};
 use mission::{Answer, Ask, AskId, Fault, Given, Mission, What, WorkerId};
 use planner_host::{Host, Memory};
 
-/// So many asks are kept.
+/// The maximum number of requests kept.
 const MOST: usize = 60;
 
-/// Answers of a host, and the first asks.
+/// Forwards the answers of a host and records the first requests.
 pub(crate) struct Taping {
     answers: InOrder,
-    /// The worker that was asked first.
+    /// The worker that received the first request.
     worker: Option<WorkerId>,
     tape: Vec<What>,
 }
@@ -24,7 +24,7 @@ impl Taping {
         self.answers.host()
     }
 
-    /// Memory of the first planner's process.
+    /// Returns the memory of the first planner's process.
     pub(crate) fn memory(&mut self) -> Option<Memory> {
         self.answers.host().memory(self.worker?)
     }
@@ -36,7 +36,7 @@ impl Taping {
 
 impl Answers for Taping {
     fn submit(&mut self, ask: Ask) {
-        // The rest of a tape makes sense only as long as it is of one planner from its beginning.
+        // A tape is useful only if it contains the requests of a single planner from its beginning.
         let first = *self.worker.get_or_insert(ask.id.worker);
         if self.tape.len() < MOST && ask.id.worker == first && ask.what != What::Close {
             self.tape.push(ask.what.clone());
@@ -49,7 +49,7 @@ impl Answers for Taping {
     }
 }
 
-/// Asks planners what is on tapes, one ask after the other.
+/// Sends recorded requests to planners, one after the other.
 pub(crate) struct Player {
     host: Host,
     n: u32,
@@ -60,17 +60,17 @@ impl Player {
         Self { host, n: 0 }
     }
 
-    /// Memory of a worker's process now, bytes.
+    /// Returns the current memory of a worker's process, bytes.
     pub(crate) fn memory_bytes(&self, worker: u16) -> Option<u64> {
         self.host.memory(WorkerId(worker)).map(|memory| memory.now_bytes)
     }
 
-    /// Asks a worker; the name of the ask with its answer.
+    /// Sends a request to a worker; returns the id of the request and the answer.
     pub(crate) fn ask(&mut self, worker: u16, what: What) -> (AskId, Result<Given, Fault>) {
         self.n += 1;
         let id = AskId { worker: WorkerId(worker), n: self.n };
         self.host.submit(Ask { id, what });
-        let answer = self.host.next(None).expect("what is asked is answered once");
+        let answer = self.host.next(None).expect("every ask is answered exactly once");
         (id, answer.result)
     }
 }

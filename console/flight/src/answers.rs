@@ -1,7 +1,8 @@
-//! Where the answers of planners come from, and how long a tick waits for them.
+//! The sources of planners' answers, and how long a tick waits for them.
 //!
-//! The mission itself never waits. A headless flight answers every ask before time moves on, in the order of the asks, so
-//! that it does not depend on the machine; the console gives each tick a time window and continues without late answers.
+//! The mission itself never waits. A headless flight answers every ask before mission time advances, in the order of the
+//! asks, so the result does not depend on the machine. The console gives each tick a time window and continues without
+//! late answers.
 
 use mission::{Answer, Ask, AskId, Awaits, Mission, What};
 use planner_host::Host;
@@ -10,27 +11,27 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Answers asks of a mission.
+/// A source of answers to the mission's asks.
 pub trait Answers {
     /// Takes an ask.
     fn submit(&mut self, ask: Ask);
 
-    /// The next answer that is to enter this tick of a mission; `None` when the tick is to end.
+    /// The next answer for the current tick of a mission; `None` if the tick should end.
     fn next(&mut self, mission: &Mission) -> Option<Answer>;
 }
 
-/// Waits for every answer, and gives them in the order of the asks. A tick that a [`planner_host::Waker`] interrupts
-/// leaves its asks open for the next one.
+/// Waits for every answer, and returns the answers in the order of the asks. If a [`planner_host::Waker`] interrupts a
+/// tick, its asks stay open for the next one.
 pub struct InOrder {
     host: Host,
     /// Asks without an answer, oldest first.
     open: VecDeque<AskId>,
-    /// Answers that came before older ones.
+    /// Answers that arrived before those to older asks.
     early: Vec<Answer>,
 }
 
 impl InOrder {
-    /// The answers of a host, which from now on is asked by this thread alone.
+    /// Creates the source from a host that only this thread uses from now on.
     pub fn new(mut host: Host) -> Self {
         host.share_processor();
         Self { host, open: VecDeque::new(), early: Vec::new() }
@@ -41,14 +42,14 @@ impl InOrder {
         &mut self.host
     }
 
-    /// Ends a mission; the next one begins as with a new host, but for the processes of its planners.
+    /// Ends a mission. The next one starts as with a new host, except that planner processes may be reused.
     pub fn end_mission(&mut self) {
         self.host.end_mission();
         self.open.clear();
         self.early.clear();
     }
 
-    /// The host, after the flight.
+    /// Returns the host after the flight.
     pub fn into_host(self) -> Host {
         self.host
     }
@@ -77,20 +78,20 @@ impl Answers for InOrder {
     }
 }
 
-/// Gives each tick a window; what comes later enters a later tick.
+/// Gives each tick a time window; a later answer is used in a later tick.
 pub struct Windowed<'a> {
     host: &'a mut Host,
-    /// How long a tick waits for the command of the robot; `None` for as long as it takes.
+    /// How long a tick waits for the robot's command; `None` to wait without limit.
     step: Option<Duration>,
-    /// How long a tick waits for work that the robot stands for.
+    /// How long a tick waits for work during which the robot stands still.
     work: Duration,
-    /// How long a tick waits for the planner in shadow alone.
+    /// How long a tick waits if only the planner in shadow has an open ask.
     shadow: Duration,
     began: Instant,
 }
 
 impl<'a> Windowed<'a> {
-    /// For the tick that begins now.
+    /// Starts the window for a tick that begins now.
     pub fn new(host: &'a mut Host, window: Window) -> Self {
         let Window { step, work, shadow } = window;
         Self { host, step, work, shadow, began: Instant::now() }
@@ -107,7 +108,7 @@ impl Answers for Windowed<'_> {
             Awaits::Step => self.step.map(|window| self.began + window),
             Awaits::Work => Some(self.began + self.work),
             Awaits::Shadow => Some(self.began + self.shadow),
-            // What is there already enters; nobody waits for the rest.
+            // Answers that have already arrived are used; nothing waits for the others.
             Awaits::Candidate | Awaits::Nothing => Some(self.began),
         };
         self.host.next(until)
@@ -117,34 +118,34 @@ impl Answers for Windowed<'_> {
 /// How long a tick waits for answers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// For the command of the robot; `None` for as long as it takes.
+    /// For the robot's command; `None` to wait without limit.
     pub step: Option<Duration>,
-    /// For opening a planner or making a plan, for which the robot stands.
+    /// For opening a planner or making a plan while the robot stands still.
     pub work: Duration,
-    /// For the planner in shadow, when nothing else is asked. At the pace of the clock nobody waits for it: it has the time
-    /// until the next tick.
+    /// For the planner in shadow, if it has the only open ask. In real time there is no wait: the planner has until the
+    /// next tick.
     pub shadow: Duration,
 }
 
-/// Share of a tick that is left for answers.
+/// Share of a tick that is available for waiting.
 const SHARE: f64 = 0.6;
-/// A simulation that runs faster than the clock waits this long at least: its pace slips before the robot stands still.
+/// Minimum wait of a simulation that runs faster than real time: it slows down rather than letting the robot stop.
 const AT_LEAST: Duration = Duration::from_millis(100);
 
 impl Window {
-    /// At the pace of the clock.
+    /// Windows for real time.
     pub fn real_time(tick: Duration) -> Self {
         let share = tick.mul_f64(SHARE);
         Self { step: Some(share), work: share, shadow: Duration::ZERO }
     }
 
-    /// Faster than the clock.
+    /// Windows for a simulation that runs faster than real time.
     pub fn faster(tick: Duration) -> Self {
         let real_time = Self::real_time(tick);
         Self { step: Some(real_time.work.max(AT_LEAST)), shadow: AT_LEAST, ..real_time }
     }
 
-    /// As fast as it goes.
+    /// Windows for a simulation at maximum speed.
     pub fn unbounded(tick: Duration) -> Self {
         Self { step: None, shadow: AT_LEAST, ..Self::real_time(tick) }
     }

@@ -1,4 +1,4 @@
-//! Failures by who has to act: the user or the developers.
+//! Classifies failures by who must act: the user or the developers.
 
 use account::Summary;
 use mission::Outcome;
@@ -6,16 +6,17 @@ use recording::JournalError;
 use runs::{Kept, RunError};
 use std::fmt;
 
-/// The mission was flown, is complete, and kept the bounds of its scenario (`[expect]`).
+/// The mission was flown, is complete, and kept all bounds of its scenario (`[expect]`).
 pub const COMPLETE: u8 = 0;
-/// The mission was flown and ended otherwise, or did not keep a bound; also a verification that found a difference.
+/// The mission was flown, but ended without being complete or did not keep a bound. Also used for a verification that
+/// found a difference.
 pub const ENDED_OTHERWISE: u8 = 1;
-/// Usage or input is wrong.
+/// Wrong usage or wrong input.
 pub const BAD_INPUT: u8 = 2;
 /// A fault of the program or the machine.
 pub const INTERNAL: u8 = 3;
 
-/// An input error that the user can fix; its text is complete, with place and remedy.
+/// An input error that the user can fix; its text is complete, including the place and the remedy.
 #[derive(Debug)]
 pub struct BadInput(pub String);
 
@@ -27,12 +28,12 @@ impl fmt::Display for BadInput {
 
 impl std::error::Error for BadInput {}
 
-/// A failure of input, as an error.
+/// Creates an input error.
 pub fn bad_input(text: impl Into<String>) -> anyhow::Error {
     BadInput(text.into()).into()
 }
 
-/// Whether a failure is one of input: also a journal that cannot be read, or a folder that takes no run.
+/// Whether a failure is an input error; this includes a journal that cannot be read and a folder that cannot take runs.
 pub fn is_input(error: &anyhow::Error) -> bool {
     let of_run = error.downcast_ref::<RunError>().is_some_and(RunError::is_input);
     of_run || error.is::<BadInput>() || error.is::<JournalError>()
@@ -44,7 +45,7 @@ pub fn mission_code(flown: &Summary) -> u8 {
     if flown.outcome == Some(Outcome::Complete) && keeps_bounds { COMPLETE } else { ENDED_OTHERWISE }
 }
 
-/// The exit code of a run with this result of its mission: a run that was to be kept and is not is a fault.
+/// The exit code of a run, given the result of its mission. A run that should have been kept but was not is a fault.
 pub fn exit_code(mission: u8, kept: Option<&Kept>) -> u8 {
     if kept.is_some_and(|kept| kept.problem().is_some()) { INTERNAL } else { mission }
 }

@@ -11,7 +11,7 @@ use sim::{AeConfig, Disturbances, SimConfig, Simulator};
 use std::time::Duration;
 use world::{Floor, Readings};
 
-/// A scenario being flown.
+/// A scenario in flight.
 #[derive(Clone)]
 pub struct Flight {
     simulator: Simulator,
@@ -23,12 +23,12 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A flight that waits for its start; `attended` says whether an operator is there.
+    /// Creates a flight that waits for its start; `attended` tells whether an operator is present.
     pub fn prepare(scenario: &Scenario, attended: bool) -> Self {
         Self::of(scenario, MissionConfig { attended, ..scenario.mission.clone() })
     }
 
-    /// A flight that waits for the operator of a console, who sees the plan before the start.
+    /// Creates a flight for the operator of a console, who sees the plan before the start.
     pub fn for_operator(scenario: &Scenario) -> Self {
         let mission = scenario.mission.clone();
         Self::of(scenario, MissionConfig { attended: true, start_names_plan: true, ..mission })
@@ -61,8 +61,8 @@ impl Flight {
         }
     }
 
-    /// How the flight would go on in a tank that holds only what the mission knows, without faults on purpose. Its first order
-    /// has to choose a planner.
+    /// Creates a forecast of how the flight would continue, in a tank that holds only what the mission knows, without
+    /// injected faults. Its first order must choose a planner.
     #[must_use]
     pub fn forked(&self, scenario: &Scenario) -> Self {
         let Fork { mission, world, pose, cable } = self.mission.fork();
@@ -86,27 +86,28 @@ impl Flight {
         Event { tick: 0, t_s: 0.0, kind: EventKind::RunOpened(Box::new(self.opened.clone())) }
     }
 
-    /// The mission that is flown.
+    /// The mission.
     pub fn mission(&self) -> &Mission {
         &self.mission
     }
 
-    /// What the mission is doing.
+    /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         self.mission.phase()
     }
 
-    /// What was sensed in the last tick.
+    /// The sensor readings of the last tick.
     pub fn readings(&self) -> &Readings {
         &self.readings
     }
 
-    /// Length of a tick, mission time.
+    /// Length of a tick in mission time.
     pub fn tick_length(&self) -> Duration {
         Duration::from_secs_f64(self.tick_s)
     }
 
-    /// Flies one tick: sense, ask and be answered, act. The truth goes into the events first, and nowhere else.
+    /// Flies one tick: sense, ask planners and process their answers, act. The true state is written to the events first,
+    /// and is used nowhere else.
     pub fn tick(&mut self, orders: &[Order], answers: &mut impl Answers) -> Vec<Event> {
         self.readings = self.simulator.sense();
         let truth = self.truth();
@@ -125,7 +126,7 @@ impl Flight {
         truth.chain(step.events).map(Event::rounded).collect()
     }
 
-    /// Faults of stations that the mission accepted begin with the next tick.
+    /// Injected station faults that the mission accepted begin with the next tick.
     fn inject_faults(&mut self, events: &[Event]) {
         for event in events {
             if let EventKind::Ordered { order: Order::Inject(Injection { station, fault, for_s, .. }) } =
@@ -140,7 +141,7 @@ impl Flight {
         }
     }
 
-    /// What only the simulator knows of this tick.
+    /// Events of this tick that only the simulator can report.
     fn truth(&self) -> impl Iterator<Item = Event> + use<> {
         let truth = self.simulator.truth();
         let (tick, t_s) = (self.tick, self.tick as f64 * self.tick_s);

@@ -1,4 +1,4 @@
-//! A host for the planners of a scenario, and what it measured.
+//! The host for the planners of a scenario, and its measurements.
 
 use account::PlannerCalls;
 use mission::{MissionConfig, TaskConfig};
@@ -6,17 +6,17 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use scenario::Scenario;
 use std::time::Duration;
 
-/// Time that a planner may take for a plan of the whole floor.
+/// Time limit for a plan of the whole floor.
 const COVER_WITHIN: Duration = Duration::from_mins(1);
-/// Memory that it may use for it: large floors have many cells.
+/// Memory limit for such a plan: large floors have many cells.
 const COVER_MEMORY_BYTES: u64 = 1 << 30;
 
-/// A host for the planners of a scenario.
+/// Creates a host for the planners of a scenario.
 pub fn host(scenario: &Scenario, plugins: &PluginDirs) -> Host {
     Host::new(plugins, config(&scenario.mission))
 }
 
-/// What planners are given for a mission: a plan for a whole floor takes longer than a way to a point, and more memory.
+/// The limits of planners for a mission: a plan of a whole floor needs more time and memory than a path to a point.
 pub fn config(mission: &MissionConfig) -> HostConfig {
     let config = HostConfig::default();
     match mission.task {
@@ -27,7 +27,7 @@ pub fn config(mission: &MissionConfig) -> HostConfig {
     }
 }
 
-/// Figures about the planners' calls, by the wall clock.
+/// Wall-clock figures of the planners' calls.
 pub fn calls(host: &Host) -> PlannerCalls {
     let stats = host.stats();
     PlannerCalls {

@@ -1,7 +1,8 @@
-//! Flying a scenario, whoever flies it: the console, `tankops run`, a what-if or a verification.
+//! Flies a scenario for every caller: the console, `tankops run`, a what-if, or a verification.
 //!
-//! A [`Flight`] is simulator and mission, tick by tick; where its planners' answers come from is an [`answers::Answers`].
-//! What is flown is read ([`scenarios`]) and held against the planners that there are ([`planners`]) first.
+//! A [`Flight`] combines simulator and mission, tick by tick. The answers of its planners come from an
+//! [`answers::Answers`]. Before a flight the scenario is read ([`scenarios`]) and checked against the installed planners
+//! ([`planners`]).
 
 pub mod answers;
 pub mod failure;

@@ -1,25 +1,25 @@
-//! Which planner is being opened or is planning, for display. This depends on wall-clock time, so it enters neither
-//! journal nor recording.
+//! Tracks which planner is being opened or is planning, for display. This depends on wall-clock time, so it enters
+//! neither journal nor recording.
 
 use crate::answers::Answers;
 use mission::{Answer, Ask, AskId, Mission, What, WorkerId};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Callback for the planners' work: what it is when it begins, `None` when it ends.
+/// Callback for the planners' work: the work when it begins, `None` when it ends.
 pub type OnWork = Box<dyn FnMut(Option<&Work>) + Send>;
 
-/// Work of a planner that takes its time.
+/// Work of a planner that may take a while.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Work {
     /// The ask that it answers.
     pub ask: AskId,
-    /// What it is, as shown: `Planning (tether-safe)`.
+    /// Description for the screen, such as `Planning (tether-safe)`.
     pub what: String,
-    /// How long it may take; `None` for what is short.
+    /// Time limit; `None` for short work.
     pub limit: Option<Duration>,
 }
 
-/// Watches the work of planners.
+/// Tracks the work of planners.
 pub struct PlanWatch {
     plan_limit: Duration,
     names: BTreeMap<WorkerId, String>,
@@ -28,12 +28,12 @@ pub struct PlanWatch {
 }
 
 impl PlanWatch {
-    /// For plans that may take so long; with a callback for every change.
+    /// Creates a watch with the time limit for a plan and a callback for every change.
     pub fn new(plan_limit: Duration, on_work: Option<OnWork>) -> Self {
         Self { plan_limit, names: BTreeMap::new(), open: BTreeMap::new(), on_work }
     }
 
-    /// The current work: that of the planner that drives before that of one that is being prepared.
+    /// The current work; that of the active planner takes precedence over that of one being prepared.
     pub fn current(&self) -> Option<&Work> {
         self.open.values().next()
     }
@@ -72,14 +72,14 @@ impl PlanWatch {
     }
 }
 
-/// Answers with somebody who watches plans being made.
+/// Answers whose planning work is watched.
 pub struct Watched<'a, A> {
     answers: &'a mut A,
     watch: &'a mut PlanWatch,
 }
 
 impl<'a, A: Answers> Watched<'a, A> {
-    /// These answers, watched.
+    /// Wraps these answers.
     pub fn new(answers: &'a mut A, watch: &'a mut PlanWatch) -> Self {
         Self { answers, watch }
     }

@@ -1,4 +1,4 @@
-//! The planners that there are, and whether a scenario can be flown with them.
+//! The installed planners, and whether a scenario can be flown with them.
 
 use crate::failure::bad_input;
 use anyhow::anyhow;
@@ -7,7 +7,7 @@ use planner_host::{PluginDirs, Survey, Surveyor, WorkerCommand, check_limits, pa
 use scenario::Scenario;
 use std::path::PathBuf;
 
-/// What there is to choose from.
+/// The planners to choose from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Found {
     /// Planners that can be chosen.
@@ -22,16 +22,16 @@ impl From<&Survey> for Found {
     }
 }
 
-/// Looks at every plugin.
+/// Examines every plugin.
 pub fn found(plugins: &PluginDirs) -> Found {
     Found::from(&survey(plugins, &WorkerCommand::default()))
 }
 
-/// Makes sure, before anything is flown, that the planners of a scenario are there and take their parameters. Only the plugins
-/// that may have them are looked at; all of them if something is wrong, to say what there is instead.
+/// Checks, before a flight, that the planners of a scenario are installed and accept their parameters. Only the plugins
+/// that may contain them are examined; if something is wrong, all plugins are examined to list the available planners.
 ///
 /// # Errors
-/// Every objection, with its place in the scenario; or the machine lets no planner run.
+/// Every objection, with its place in the scenario; or the reason why this machine cannot run any planner.
 pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Result<()> {
     check_limits(plugins).map_err(anyhow::Error::msg)?;
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
@@ -47,27 +47,26 @@ pub fn check_installed(scenario: &Scenario, plugins: &PluginDirs) -> anyhow::Res
     })
 }
 
-/// Sentences about planners of a scenario that more than one plugin has: which of them flies.
+/// Messages about planners of the scenario that more than one plugin contains: which plugin is used.
 pub fn shadowed(scenario: &Scenario, plugins: &PluginDirs) -> Vec<String> {
     let ids: Vec<&str> = chosen(scenario).map(|(_, choice)| choice.id.as_str()).collect();
     let worker = WorkerCommand::default();
     let twice = Surveyor::new(plugins, &worker).shadowed(&ids);
     let sentence = |(id, taken, other): (String, PathBuf, PathBuf)| {
         let (taken, other) = (taken.display(), other.display());
-        format!("planner {id} is the one of {taken}; it shadows that of {other}")
+        format!("planner {id} is taken from {taken}; it shadows the one in {other}")
     };
     twice.into_iter().map(sentence).collect()
 }
 
-/// The planners of a scenario, with the sections that name them.
+/// The planners of a scenario, each with the section that names it.
 fn chosen(scenario: &Scenario) -> impl Iterator<Item = (&'static str, &PlannerChoice)> {
     let mission = &scenario.mission;
     let fallback = mission.fallback.iter().map(|choice| ("planner.fallback", choice));
     std::iter::once(("planner", &mission.planner)).chain(fallback)
 }
 
-/// Makes sure, before anything is flown, that the planners of a scenario are among those that were found and take their
-/// parameters.
+/// Checks, before a flight, that the planners of a scenario are among those found and accept their parameters.
 ///
 /// # Errors
 /// Every objection, with its place in the scenario.
@@ -91,9 +90,9 @@ fn objections(
             let ids: Vec<&str> =
                 found.planners.iter().filter(|info| info.covers).map(|info| info.id.as_str()).collect();
             let who = if ids.is_empty() {
-                "none that was found does".into()
+                "no installed planner does".into()
             } else {
-                format!("these do: {}", ids.join(", "))
+                format!("planners that do: {}", ids.join(", "))
             };
             vec![(format!("{section}.id"), format!("planner `{}` {why}; {who}", info.id))]
         }
@@ -104,28 +103,28 @@ fn objections(
     }
 }
 
-/// Planners for coverage, the one with the shortest ways first (`tankops reproduce coverage-suite`).
+/// Planners for coverage, starting with the one with the shortest paths (`tankops reproduce coverage-suite`).
 const FOR_COVERAGE: [&str; 3] = ["tether-safe", "hull-partition", "boustrophedon"];
 
-/// The planner that a scenario for a coverage mission names unless somebody says otherwise.
+/// The default planner in scenarios for coverage missions.
 pub const COVERAGE_PLANNER: &str = FOR_COVERAGE[0];
 
-/// Why a planner does not suit a task; none if it does.
+/// Why a planner does not suit a task; `None` if it does.
 pub fn why_unsuited(info: &PlannerInfo, task: &TaskConfig) -> Option<&'static str> {
     info.why_no_coverage().filter(|_| matches!(task, TaskConfig::Cover { .. }))
 }
 
-/// The planner for a coverage mission among those that were found: the best known first, then any that covers.
+/// The best planner found for a coverage mission: a well-known one if possible, otherwise any that covers floor.
 pub fn suited_to_coverage(found: &Found) -> Option<&PlannerInfo> {
     let covering = || found.planners.iter().filter(|info| info.covers);
     let rank = |info: &&PlannerInfo| FOR_COVERAGE.iter().position(|id| *id == info.id).unwrap_or(usize::MAX);
     covering().min_by_key(rank)
 }
 
-/// The planner of this id.
+/// Finds the planner with this id.
 ///
 /// # Errors
-/// Why its plugin is refused, or one sentence with what there is.
+/// Why its plugin is refused, or a sentence with the planners found.
 pub fn choice_of<'a>(id: &str, found: &'a Found) -> Result<&'a PlannerInfo, String> {
     found.planners.iter().find(|info| info.id == id).ok_or_else(|| {
         if let Some(RefusedPlugin { plugin, reason }) =
@@ -135,7 +134,7 @@ pub fn choice_of<'a>(id: &str, found: &'a Found) -> Result<&'a PlannerInfo, Stri
         }
         let ids: Vec<&str> = found.planners.iter().map(|info| info.id.as_str()).collect();
         let has = if ids.is_empty() {
-            "no planner was found at all".into()
+            "no planners were found".into()
         } else {
             format!("found: {}", ids.join(", "))
         };
@@ -146,7 +145,8 @@ pub fn choice_of<'a>(id: &str, found: &'a Found) -> Result<&'a PlannerInfo, Stri
             .collect();
         let refused = refused.concat();
         format!(
-            "there is no planner `{id}`; {has}{refused}; `tankops planners` shows where they are searched for"
+            "there is no planner `{id}`; {has}{refused}; `tankops planners` shows the folders that are \
+             searched"
         )
     })
 }

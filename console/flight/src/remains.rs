@@ -1,21 +1,21 @@
-//! What planners leave beside their answers, kept in the folder of the run.
+//! Output and crash files of planners, kept in the folder of the run.
 
 use mission::{Event, EventKind};
 use planner_api::LogLevel;
 use planner_host::{Crash, Host, Printed, digest_of, plugin_of};
 use runs::RunLog;
 
-/// How a planner failed.
+/// Description of the failure.
 pub const CRASH_FILE: &str = "crash.txt";
-/// What it was asked before.
+/// The last requests to the planner.
 pub const FRAMES_FILE: &str = "frames.bin";
-/// What is written there about the requests.
+/// Start of the line with their digest.
 const FRAMES_DIGEST: &str = "frames.bin: sha256 ";
-/// So many lines are shown at once.
+/// Maximum number of lines shown at once.
 const MOST_SHOWN: usize = 8;
 
-/// Keeps what planners have printed and what is left of those that failed since the last time, in files of the run beside the
-/// journal; gives the printed lines as events for whoever watches, which are not the journal's.
+/// Keeps the output of planners and the crash files of failed ones since the last call, in files of the run beside the
+/// journal. Returns the printed lines as events for display; they do not enter the journal.
 pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f64)) -> Vec<Event> {
     let (printed, crashes, bad_ends) = (host.take_printed(), host.take_crashes(), host.take_bad_ends());
     if let Some(log) = &mut log {
@@ -41,12 +41,12 @@ pub fn keep(host: &mut Host, mut log: Option<&mut RunLog>, (tick, t_s): (u64, f6
     shown.chain(ends).map(|kind| Event { tick, t_s, kind }).collect()
 }
 
-/// Where the plugin lies that failed.
+/// Path of the plugin that failed.
 fn plugin_file(crash: &Crash) -> String {
     plugin_of(&crash.frames).map_or_else(|| "unknown".to_owned(), |file| file.display().to_string())
 }
 
-/// The files of a crash, for `tankops replay-worker`.
+/// The crash files for `tankops replay-worker`.
 fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
     let Crash { fault, frames, output } = crash;
     let about = format!(
@@ -60,15 +60,15 @@ fn files(crash: &Crash) -> [(&'static str, Vec<u8>); 3] {
     [(CRASH_FILE, about.into()), (FRAMES_FILE, frames.clone()), ("output.txt", output.clone().into())]
 }
 
-/// Makes sure that the requests of a crash are those that were kept with it; `about` is what was written about it.
+/// Checks that the requests of a crash are the original ones; `about` is the description kept with them.
 ///
 /// # Errors
-/// They are not; reads on after the name of their file.
+/// The requests do not match; the text continues after the name of their file.
 pub fn check_frames(about: &str, frames: &[u8]) -> Result<(), String> {
     let kept = about.lines().find_map(|line| line.strip_prefix(FRAMES_DIGEST));
     match kept {
         None => Err(format!(
-            "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; an earlier tankops wrote it, or it was changed"
+            "cannot be checked: {CRASH_FILE} beside it has no line `{FRAMES_DIGEST}...`; it was changed, or written by an older tankops"
         )),
         Some(kept) if kept.trim() == digest_of(frames) => Ok(()),
         Some(_) => Err(format!("was cut or changed: its SHA-256 is not the one in {CRASH_FILE}")),

@@ -1,21 +1,22 @@
-//! The scenario that a command line names.
+//! Reads the scenario named on the command line.
 
 use crate::failure::bad_input;
 use scenario::{Scenario, Settings, is_stdin};
 use std::path::{Path, PathBuf};
 
-/// The demo, so that `tankops` shows something wherever it is started.
+/// The built-in demo, so that `tankops` shows something in whatever folder it is started.
 const DEMO: &str = include_str!("../../../scenarios/demo.toml");
 
-/// The demo, with what the command line changes about it.
+/// The demo, with the settings of the command line applied.
 ///
 /// # Errors
-/// Every objection to the changes.
+/// Every objection to these settings.
 pub fn demo(settings: &Settings) -> anyhow::Result<Scenario> {
     Scenario::parse_with(DEMO, "the demo scenario", settings).map_err(|errors| bad_input(errors.render()))
 }
 
-/// Reads a scenario by its path, from the standard input (`-`), or by the name that the home screen lists: `cover-circle` is `scenarios/cover-circle.toml`.
+/// Reads a scenario from a path, from the standard input (`-`), or by the name listed on the home screen: `cover-circle`
+/// is `scenarios/cover-circle.toml`.
 ///
 /// # Errors
 /// Every objection, with its place in the file.
@@ -25,7 +26,7 @@ pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
         Some(file) if file.exists() => read_file(file, settings),
         Some(_) if path == Path::new("demo") => demo(settings),
         Some(file) => Err(bad_input(format!(
-            "{}: there is no such file, and no {} either; give the path of a scenario, or a name that the home screen lists",
+            "{}: there is no such file, and no {} either; give the path of a scenario, or a name from the home screen",
             path.display(),
             file.display()
         ))),
@@ -33,7 +34,7 @@ pub fn read(path: &Path, settings: &Settings) -> anyhow::Result<Scenario> {
     }
 }
 
-/// The file of a scenario that is named without folder and extension.
+/// The scenario file for a name without folder and extension.
 fn listed(name: &Path) -> Option<PathBuf> {
     let is_bare = name.components().count() == 1 && name.file_name().is_some() && name.extension().is_none();
     is_bare.then(|| Path::new("scenarios").join(name).with_extension("toml"))

@@ -1,21 +1,21 @@
-//! Short texts that people write: scripts, plans, facts, lists.
+//! Reads short text files written by people: scripts, plans, facts, lists.
 
 use crate::failure::bad_input;
 use foreign::{MOST_TEXT_BYTES, open_waiting, text_of};
 use std::{io, path::Path};
 
-/// The text of a file, which may be a pipe.
+/// Reads a text file, which may be a pipe.
 ///
 /// # Errors
-/// It cannot be read or is not UTF-8: what it is instead, and what to do about it.
+/// The file cannot be read or is not UTF-8; the message tells what it is instead and what to do.
 pub fn read(file: &Path) -> anyhow::Result<String> {
     named(file, open_waiting(file).and_then(|open| text_of(open, MOST_TEXT_BYTES)))
 }
 
-/// The text of a regular file.
+/// Reads a regular text file.
 ///
 /// # Errors
-/// As [`read`]; also that it is not a regular file.
+/// As for [`read`]; also if the file is not a regular one.
 pub fn read_regular(file: &Path) -> anyhow::Result<String> {
     named(file, foreign::read_regular(file))
 }
@@ -37,7 +37,7 @@ mod tests {
         for read in [read, read_regular] {
             let error = read(file.path()).unwrap_err().to_string();
             assert!(
-                error.contains(": not UTF-8 but ISO-8859-1, by line 2; save it as UTF-8: `iconv"),
+                error.contains(": ISO-8859-1 instead of UTF-8, judging by line 2; save it as UTF-8: `iconv"),
                 "{error}"
             );
         }

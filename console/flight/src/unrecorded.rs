@@ -1,12 +1,12 @@
-//! Missions of which only the report is wanted: nothing is written, and nobody looks on.
+//! Missions of which only the report is needed: nothing is written or displayed.
 
 use crate::{Flight, answers::InOrder};
 use account::{Fold, Summary};
 use mission::{Order, Phase};
 use scenario::Scenario;
 
-/// Flies a scenario to its end, every ask answered before time moves on; `None` if it was stopped before. Figures by the wall
-/// clock, hashes of files and the account of the floor are absent: equal missions have equal summaries.
+/// Flies a scenario to its end and answers every ask before mission time advances; `None` if it was stopped early. The
+/// summary has no wall-clock figures, no file hashes and no account of the floor, so equal missions have equal summaries.
 pub fn fly(scenario: &Scenario, answers: &mut InOrder, is_stopped: impl Fn() -> bool) -> Option<Summary> {
     let mut flight = Flight::prepare(scenario, false);
     let mut fold = Fold::of_figures();

@@ -1,9 +1,9 @@
-//! Which encoding a text is in that should be UTF-8, and what to do about it.
+//! Detects the encoding of a text that should be UTF-8 but is not, and suggests what to do about it.
 
-/// So much of a text decides whether it has two bytes a character, bytes.
+/// The number of bytes from the start of a text that decide whether it has two bytes a character.
 const BEGINNING: usize = 2000;
 
-/// The name of an encoding of two bytes a character without a byte order mark, by the zeros of its Latin letters.
+/// Returns the name of a two-byte encoding without a byte order mark, recognised by the zero bytes of Latin letters.
 pub fn wide(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(BEGINNING) / 2 * 2];
     let zeros = |odd: usize| head.iter().skip(odd).step_by(2).filter(|byte| **byte == 0).count();
@@ -15,17 +15,18 @@ pub fn wide(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// A text that is not in UTF-8, where that is demanded.
+/// A text that should be UTF-8 but is not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotUtf8 {
-    /// The line of the first byte that UTF-8 does not have, from 1.
+    /// The line with the first byte that is not valid UTF-8, counted from 1.
     pub line: usize,
-    /// What its encoding was recognised as, as `iconv` calls it; none if it does not seem to be text.
+    /// The encoding that was recognised, under its `iconv` name; `None` if the bytes do not seem to be text.
     pub encoding: Option<&'static str>,
 }
 
 impl NotUtf8 {
-    /// What is not UTF-8 in some bytes, or what in them shows that they are another encoding; none if they are plain UTF-8.
+    /// Finds what makes some bytes not UTF-8: an invalid byte, or signs of a different encoding. Returns `None` if
+    /// they are plain UTF-8.
     ///
     /// ```
     /// use foreign::NotUtf8;
@@ -48,18 +49,18 @@ impl NotUtf8 {
         let is_control = |byte: &u8| *byte < 0x20 && !b"\t\r\n\x0c".contains(byte);
         let encoding = match bytes {
             _ if bytes.iter().any(is_control) => None,
-            // Only Windows has letters and signs there.
+            // Only Windows encodings have letters and signs in this range.
             _ if bytes.iter().any(|byte| (0x80..0xa0).contains(byte)) => Some("WINDOWS-1252"),
             _ => Some("ISO-8859-1"),
         };
         Some(Self { line, encoding })
     }
 
-    /// What to do about it.
+    /// Returns the advice for the user.
     pub fn remedy(&self) -> String {
         match self.encoding {
             Some(encoding) => format!("save it as UTF-8: `iconv -f {encoding} -t UTF-8 FILE > NEW`"),
-            None => "the file does not seem to be a text; is this the right file?".into(),
+            None => "the file does not seem to be text; is this the right file?".into(),
         }
     }
 }
@@ -67,9 +68,9 @@ impl NotUtf8 {
 impl std::fmt::Display for NotUtf8 {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match (self.encoding, self.line) {
-            (Some(encoding), 1) => write!(f, "not UTF-8 but {encoding}, by its first line"),
-            (Some(encoding), line) => write!(f, "not UTF-8 but {encoding}, by line {line}"),
-            (None, line) => write!(f, "not a text: line {line} is not UTF-8"),
+            (Some(encoding), 1) => write!(f, "{encoding} instead of UTF-8, judging by its first line"),
+            (Some(encoding), line) => write!(f, "{encoding} instead of UTF-8, judging by line {line}"),
+            (None, line) => write!(f, "not text: line {line} is not UTF-8"),
         }
     }
 }
@@ -91,8 +92,11 @@ mod tests {
         assert_eq!(told(text.as_bytes()), None);
         assert_eq!(told(&[b"\xef\xbb\xbf", text.as_bytes()].concat()), None);
         let latin: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
-        assert_eq!(told(&latin).unwrap(), "not UTF-8 but ISO-8859-1, by line 3");
-        assert_eq!(told(b"price = \x80").unwrap(), "not UTF-8 but WINDOWS-1252, by its first line");
+        assert_eq!(told(&latin).unwrap(), "ISO-8859-1 instead of UTF-8, judging by line 3");
+        assert_eq!(
+            told(b"price = \x80").unwrap(),
+            "WINDOWS-1252 instead of UTF-8, judging by its first line"
+        );
         for (bytes, mark, name) in [
             (u16::to_le_bytes as fn(u16) -> [u8; 2], &[0xff_u8, 0xfe][..], "UTF-16"),
             (u16::to_be_bytes, &[0xfe, 0xff], "UTF-16"),
@@ -100,9 +104,9 @@ mod tests {
             (u16::to_be_bytes, &[], "UTF-16BE"),
         ] {
             let foreign = NotUtf8::of(&wide_text(text, bytes, mark)).unwrap();
-            assert_eq!(foreign.to_string(), format!("not UTF-8 but {name}, by its first line"));
+            assert_eq!(foreign.to_string(), format!("{name} instead of UTF-8, judging by its first line"));
             assert_eq!(foreign.remedy(), format!("save it as UTF-8: `iconv -f {name} -t UTF-8 FILE > NEW`"));
         }
-        assert_eq!(told(b"\x7fELF\x01\n\xfe\xff").unwrap(), "not a text: line 2 is not UTF-8");
+        assert_eq!(told(b"\x7fELF\x01\n\xfe\xff").unwrap(), "not text: line 2 is not UTF-8");
     }
 }

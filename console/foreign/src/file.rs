@@ -1,4 +1,4 @@
-//! Files read within limits.
+//! Reads files within limits.
 
 use crate::NotUtf8;
 use rustix::{
@@ -13,37 +13,38 @@ use std::{
     path::Path,
 };
 
-/// A text that is read whole is no longer than this where nothing smaller is asked for, bytes.
+/// The greatest length of a text that is read as a whole, unless a smaller limit is given, bytes.
 pub const MOST_TEXT_BYTES: u64 = 64 << 20;
 
-/// Opens a regular file: a device or a pipe may never end. Never waits for the other end of a pipe.
+/// Opens a regular file, and refuses devices and pipes, which may never end. Never waits for the other end of a pipe.
 ///
 /// # Errors
-/// It is not a regular file, has holes (its length costs nothing, and no file that is written here has any), or cannot be opened.
+/// The file is not regular, cannot be opened, or is sparse. A hole costs no disk space, so the length of a sparse
+/// file means nothing; no file written by this project has holes.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     let file = OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)?;
     let about = file.metadata()?;
     if !about.is_file() {
         return Err(io::Error::new(ErrorKind::InvalidInput, "it is not a regular file"));
     }
-    // Where the system cannot tell, the end of the file is the first hole.
+    // Where the system does not report holes, the end of the file counts as the first one.
     let first_hole = seek(&file, SeekFrom::Hole(0)).unwrap_or(about.len());
     seek(&file, SeekFrom::Start(0))?;
     if first_hole < about.len() {
         return Err(damaged(format!(
-            "it is damaged: {} bytes long, and has a hole from byte {first_hole} on, where nothing was ever written",
+            "it is damaged: {} bytes long, with a hole at byte {first_hole} that was never written",
             about.len()
         )));
     }
     Ok(file)
 }
 
-/// Opens a file that may be a pipe; then waits until its other end has written something or is closed.
+/// Opens a file that may be a pipe. For a pipe, waits until the other end has written something or is closed.
 ///
-/// Who wrote and left already is not missed, as long as somebody else keeps the pipe open.
+/// Data from a writer that has already closed its end is not lost while another process keeps the pipe open.
 ///
 /// # Errors
-/// It cannot be opened.
+/// The file cannot be opened.
 pub fn open_waiting(path: &Path) -> io::Result<File> {
     let file =
         OpenOptions::new().read(true).custom_flags(OFlags::NONBLOCK.bits().cast_signed()).open(path)?;
@@ -54,7 +55,7 @@ pub fn open_waiting(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// The text of a regular file of at most [`MOST_TEXT_BYTES`].
+/// Reads the text of a regular file of at most [`MOST_TEXT_BYTES`].
 ///
 /// # Errors
 /// See [`read_at_most`].
@@ -62,29 +63,30 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
     read_at_most(path, MOST_TEXT_BYTES)
 }
 
-/// The text of a regular file, which may not exceed `most_bytes`.
+/// Reads the text of a regular file of at most `most_bytes`.
 ///
 /// # Errors
-/// It is not a regular file, is longer, cannot be read, or is not UTF-8.
+/// The file is not regular, is too long, cannot be read, or is not UTF-8.
 pub fn read_at_most(path: &Path, most_bytes: u64) -> io::Result<String> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
     if length > most_bytes {
-        return Err(damaged(format!("it has {length} bytes, and at most {most_bytes} are read")));
+        return Err(damaged(format!("it is {length} bytes long; the limit is {most_bytes}")));
     }
-    // It may grow meanwhile.
+    // The file may grow while it is read.
     text_of(file, most_bytes)
 }
 
-/// The whole text of a reader, which may not exceed `most_bytes`.
+/// Reads the whole text of a reader, at most `most_bytes`.
 ///
 /// # Errors
-/// It gives more, cannot be read, or is not UTF-8: what it is instead, and what to do about it.
+/// The reader returns too many bytes, cannot be read, or is not UTF-8. In the last case the message names the
+/// encoding and says what to do about it.
 pub fn text_of(reader: impl Read, most_bytes: u64) -> io::Result<String> {
     let mut bytes = Vec::new();
     reader.take(most_bytes + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most_bytes {
-        return Err(damaged(format!("it has more than {most_bytes} bytes, which are not read")));
+        return Err(damaged(format!("it is longer than the limit of {most_bytes} bytes")));
     }
     if let Some(other) = NotUtf8::of(&bytes) {
         return Err(damaged(format!("{other}; {}", other.remedy())));
@@ -92,25 +94,27 @@ pub fn text_of(reader: impl Read, most_bytes: u64) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| damaged(error.to_string()))
 }
 
-/// The text of a regular JSON file, which may not exceed `most_bytes`, nor a small multiple of that in memory.
+/// Reads the text of a regular JSON file of at most `most_bytes`. The memory that its values need is limited to a
+/// small multiple of that.
 ///
 /// # Errors
-/// See [`read_at_most`]; it holds too many values.
+/// See [`read_at_most`]; also if the file holds too many values.
 pub fn read_json(path: &Path, most_bytes: u64) -> io::Result<String> {
     let text = read_at_most(path, most_bytes)?;
     if json_weight(text.as_bytes()) as u64 > MOST_GROWTH * most_bytes {
-        return Err(damaged("it holds more values than any such file does".to_owned()));
+        return Err(damaged("it holds more values than any valid file of this kind".to_owned()));
     }
     Ok(text)
 }
 
-/// What a JSON file may weigh, as a multiple of its greatest length.
+/// The greatest weight of a JSON file, as a multiple of its greatest length.
 const MOST_GROWTH: u64 = 8;
-/// What a number, word or key takes in memory as any value, and what a list or an object does, bytes.
+/// The memory that a number, a word or a key takes as any JSON value, and what a list or an object takes, bytes.
 const VALUE_BYTES: usize = 32;
 const LIST_BYTES: usize = 176;
 
-/// At most what the values of a JSON text take in memory when it is read as any value, bytes; signs within its texts count, too.
+/// Returns an upper bound for the memory that the values of a JSON text take when it is read as any JSON value,
+/// bytes. Commas, colons and brackets inside its strings are counted, too.
 pub fn json_weight(text: &[u8]) -> usize {
     let weight = |byte: &u8| match byte {
         b',' | b':' => VALUE_BYTES,
@@ -193,11 +197,11 @@ mod tests {
         fs::write(&path, "12345678").unwrap();
         assert_eq!(read_at_most(&path, 8).unwrap(), "12345678");
         let refused = read_at_most(&path, 7).unwrap_err().to_string();
-        assert_eq!(refused, "it has 8 bytes, and at most 7 are read");
+        assert_eq!(refused, "it is 8 bytes long; the limit is 7");
         fs::write(&path, b"ab\nGr\xfcn").unwrap();
         let refused = read_regular(&path).unwrap_err().to_string();
         assert!(
-            refused.starts_with("not UTF-8 but ISO-8859-1, by line 2; save it as UTF-8: `iconv"),
+            refused.starts_with("ISO-8859-1 instead of UTF-8, judging by line 2; save it as UTF-8: `iconv"),
             "{refused}"
         );
     }

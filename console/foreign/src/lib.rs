@@ -1,8 +1,9 @@
-//! What is not ours: names, texts and files that other people and other programs wrote.
+//! Handles names, texts and files that other people and other programs wrote.
 //!
-//! One rule makes text plain ([`plain`] and its relatives), so that no name moves a cursor, turns the text around it, or hides in
-//! it, wherever it goes. One rule names the encoding of a text that is not UTF-8 ([`NotUtf8`]). One rule opens files ([`open_regular`]), so that no pipe is waited for, no device is read without end, and
-//! no file takes more memory than its kind may.
+//! [`plain`] and its relatives make a text plain: wherever a name is shown, it cannot move a cursor, reverse the text
+//! around it, or hide in it. [`NotUtf8`] names the encoding of a text that is not UTF-8. [`open_regular`] opens
+//! files; it never waits for a pipe, and refuses devices that never end. The functions that read files limit the
+//! memory that a file can take.
 
 mod encoding;
 mod file;
@@ -12,4 +13,4 @@ pub use encoding::{NotUtf8, wide};
 pub use file::{
     MOST_TEXT_BYTES, json_weight, open_regular, open_waiting, read_at_most, read_json, read_regular, text_of,
 };
-pub use text::{is_plain, plain, plain_json, plain_lines, seen, unplain};
+pub use text::{is_plain, markup, plain, plain_json, plain_lines, seen, unplain};

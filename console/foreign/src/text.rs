@@ -1,14 +1,15 @@
-//! Text made plain.
+//! Makes text plain.
 
 use std::{borrow::Cow, fmt::Write};
 
-/// What stands in place of a character that is not plain.
+/// Replaces a character that is not plain.
 const INSTEAD: char = '\u{fffd}';
 
-/// Whether a character is one that can be seen, or a space: it moves no cursor, turns no text around, and does not hide.
+/// Whether a character is visible or a space, and so cannot move a cursor, reverse text, or hide.
 ///
-/// Not plain are the control characters (C0, DEL, C1), the marks of direction, what has no width or no picture (soft hyphen,
-/// joiners, fillers, selectors of variants, byte order mark), separators of lines and paragraphs, tags, and what is not a character.
+/// The following are not plain: control characters (C0, DEL, C1), direction marks, characters without width or glyph
+/// (soft hyphen, joiners, fillers, variation selectors, byte order mark), line and paragraph separators, tags, and
+/// code points that are not characters.
 pub fn is_plain(c: char) -> bool {
     let is_hidden = matches!(
         c,
@@ -34,7 +35,7 @@ pub fn is_plain(c: char) -> bool {
     !c.is_control() && !is_hidden && !is_none
 }
 
-/// The first character of a text that is not plain, as `U+202E`; ends of lines and tabs count as plain.
+/// Returns the first character of a text that is not plain, as `U+202E`. Line ends and tabs count as plain.
 pub fn unplain(text: &str) -> Option<String> {
     let is_end = |at: usize| text[at..].starts_with("\r\n");
     let is_odd = |(at, c): &(usize, char)| !is_plain(*c) && !matches!(c, '\n' | '\t') && !is_end(*at);
@@ -42,13 +43,14 @@ pub fn unplain(text: &str) -> Option<String> {
     found.map(|c| format!("U+{:04X}", u32::from(c)))
 }
 
-/// A text on one line: what ends a line or is a tab is a space, everything else that is not plain is `�`.
+/// Returns a text on one line: line ends and tabs become spaces, all other characters that are not plain become `�`.
 pub fn plain(text: &str) -> Cow<'_, str> {
     let is_end = |c| matches!(c, '\t'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}');
     replaced(text, |c| if is_end(c) { ' ' } else { INSTEAD })
 }
 
-/// A name of another program without what cannot be seen in it, as soft hyphens and joiners; ends of lines and tabs are spaces.
+/// Returns a name from another program without its invisible characters, such as soft hyphens and joiners. Line ends
+/// and tabs become spaces.
 pub fn seen(name: &str) -> String {
     plain(name)
         .chars()
@@ -58,7 +60,7 @@ pub fn seen(name: &str) -> String {
         .collect()
 }
 
-/// A text of several lines: line feeds and tabs stay, everything else that is not plain is `�`.
+/// Returns a text of several lines: line feeds and tabs stay, all other characters that are not plain become `�`.
 pub fn plain_lines(text: &str) -> Cow<'_, str> {
     let instead = |c| if matches!(c, '\n' | '\t') { c } else { INSTEAD };
     if text.contains("\r\n") {
@@ -68,11 +70,31 @@ pub fn plain_lines(text: &str) -> Cow<'_, str> {
     }
 }
 
+/// Returns a text as content or attribute value of XML and HTML: plain, with line feeds and tabs, its markup escaped.
+///
+/// ```
+/// assert_eq!(foreign::markup("S1 <\"5 m\">"), "S1 &lt;&quot;5 m&quot;&gt;");
+/// ```
+pub fn markup(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in plain_lines(text).chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
 fn replaced(text: &str, instead: impl Fn(char) -> char) -> Cow<'_, str> {
     rewritten(text, is_plain, |plain, c| plain.push(instead(c)))
 }
 
-/// Keeps the characters of a text that may stay and has `write` replace each of the others.
+/// Keeps the characters of a text for which `may_stay` is true, and calls `write` to replace each of the others.
 fn rewritten(
     text: &str,
     may_stay: impl Fn(char) -> bool,
@@ -92,9 +114,9 @@ fn rewritten(
     plain.into()
 }
 
-/// JSON with the same values in which every character is plain: the others are written as `\u202e`.
+/// Returns JSON with the same values in which every character is plain: the others are escaped, as in `\u202e`.
 ///
-/// Line feeds and tabs are white space between values, and JSON has none within them.
+/// Line feeds and tabs are kept: in JSON they occur only as white space between values.
 pub fn plain_json(text: &str) -> Cow<'_, str> {
     let may_stay = |c: char| is_plain(c) || matches!(c, '\n' | '\t');
     rewritten(text, may_stay, |plain, c| {

@@ -25,7 +25,7 @@ pub enum Boundary<P = Vec<Point>> {
 }
 
 impl<P: AsRef<[Point]>> Boundary<P> {
-    /// The same wall with its corners borrowed.
+    /// The same wall with borrowed corners.
     ///
     /// ```
     /// use geometry::{Boundary, Point, shape::rectangle};
@@ -40,7 +40,7 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// The same wall with its own corners.
+    /// The same wall with owned corners.
     ///
     /// ```
     /// use geometry::{Boundary, Point, shape::rectangle};
@@ -55,7 +55,7 @@ impl<P: AsRef<[Point]>> Boundary<P> {
         }
     }
 
-    /// Whether a point lies on the floor or on the wall.
+    /// Whether a point is on the floor or on the wall.
     ///
     /// ```
     /// use geometry::{Boundary, Point};

@@ -1,11 +1,11 @@
-//! How far a robot goes until it stands, and how fast it may be where it has to stand or to be slower: the one law of
-//! braking, for the mission, for planners and for the times that are promised.
+//! The one law of braking, used by the mission, by planners and for time estimates: how far a robot moves until it has
+//! stopped, and how fast it may be if it must stop, or slow down, within a given distance.
 //!
-//! A robot that is told to brake goes on for up to a tick before it does; then it slows down at its acceleration.
+//! A robot that is ordered to brake continues for up to one tick, and then slows down at its acceleration.
 
 use crate::Limits;
 
-/// What a robot can do to become slower.
+/// The braking capability of a robot.
 ///
 /// ```
 /// use geometry::Braking;
@@ -16,14 +16,14 @@ use crate::Limits;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Braking {
-    /// Largest change of speed, metres per second squared.
+    /// Maximum deceleration, metres per second squared.
     pub acceleration_m_per_s2: f64,
-    /// Time until a command takes effect: a tick, seconds.
+    /// Delay until a command takes effect: one tick, seconds.
     pub tick_s: f64,
 }
 
 impl Braking {
-    /// That of a robot with these limits.
+    /// The braking capability of a robot with these limits.
     ///
     /// ```
     /// use geometry::{Braking, Limits, Motion};
@@ -39,8 +39,8 @@ impl Braking {
         Self { acceleration_m_per_s2: limits.acceleration_m_per_s2.max(0.0), tick_s: limits.tick_s.max(0.0) }
     }
 
-    /// Way from the moment at which a robot of some speed begins to brake until it stands, metres; infinite for one that
-    /// cannot brake.
+    /// Distance that a robot moves from the moment it begins to brake until it has stopped, metres; infinite if it cannot
+    /// brake.
     ///
     /// ```
     /// use geometry::Braking;
@@ -55,7 +55,7 @@ impl Braking {
         speed_m_per_s * speed_m_per_s / (2.0 * self.acceleration_m_per_s2)
     }
 
-    /// Way until a robot of some speed stands that is told so now: a tick on, and then as it brakes; metres.
+    /// Stopping distance of a robot that is ordered to brake now, including the tick before it begins to brake, metres.
     ///
     /// ```
     /// use geometry::Braking;
@@ -66,7 +66,7 @@ impl Braking {
         speed_m_per_s.abs() * self.tick_s + self.way_m(speed_m_per_s)
     }
 
-    /// The largest speed from which a robot still stands within a distance, metres per second.
+    /// The maximum speed from which a robot can stop within a distance, metres per second.
     ///
     /// ```
     /// use geometry::Braking;
@@ -78,7 +78,8 @@ impl Braking {
         self.speed_before(distance_m, 0.0)
     }
 
-    /// The largest speed from which a robot is as slow as it has to be, metres per second, after a distance, metres.
+    /// The maximum speed from which a robot can slow down to `then_m_per_s` within a distance in metres; metres per
+    /// second.
     ///
     /// ```
     /// use geometry::Braking;

@@ -1,4 +1,4 @@
-//! Shapes as convex parts: signed distances, gaps and outward directions.
+//! Decomposes shapes into convex parts, with signed distances, gaps and outward directions.
 
 use crate::{
     Point, Shape, Vector, direction_or,
@@ -15,7 +15,7 @@ use crate::{
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
-    /// Everything within `half_width_m` of a segment; a disc when both ends coincide.
+    /// Everything within `half_width_m` of a segment; a disc if both ends coincide.
     Capsule {
         /// One end.
         a: Point,
@@ -34,11 +34,11 @@ pub enum Part {
 /// The shortest segment between two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
-    /// Its length, metres; not above zero when they touch.
+    /// Its length, metres; zero or negative if the parts touch.
     pub width_m: f64,
     /// Its end on the centre line of the first part (capsule) or on its edge (polygon).
     pub from: Point,
-    /// Its end on the second part, likewise.
+    /// Its end on the second part: on the centre line (capsule) or on the edge (polygon).
     pub to: Point,
 }
 
@@ -60,7 +60,7 @@ pub fn parts_of<P: AsRef<[Point]>>(shape: &Shape<P>) -> Vec<Part> {
 }
 
 impl Part {
-    /// A disc of a radius in metres.
+    /// A disc with a radius in metres.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -100,7 +100,7 @@ impl Part {
         }
     }
 
-    /// Distance from a point to the outline, metres, negative inside, and the outward unit vector there.
+    /// Signed distance from a point to the outline, metres (negative inside), and the outward unit vector there.
     ///
     /// ```
     /// use geometry::{Point, Vector, convex::Part};
@@ -123,7 +123,7 @@ impl Part {
         }
     }
 
-    /// A point inside: the middle of a capsule, the mean of a polygon's corners.
+    /// A point inside the part: the middle of a capsule, the mean of a polygon's corners.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -137,7 +137,7 @@ impl Part {
         }
     }
 
-    /// Distance from a segment to the outline, metres; not above zero when they touch.
+    /// Distance from a segment to the outline, metres; zero or negative if they touch.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -175,7 +175,7 @@ impl Part {
         best
     }
 
-    /// Discs (centre, radius in metres) whose convex hull is the part.
+    /// Discs (centre, and radius in metres) whose convex hull is the part.
     ///
     /// ```
     /// use geometry::{Point, convex::Part};
@@ -196,7 +196,7 @@ impl Part {
         }
     }
 
-    /// The centre line of a capsule, the edges of a polygon.
+    /// The centre line of a capsule, or the edges of a polygon.
     fn pieces(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
         let (line, ring): (_, &[Point]) = match self {
             Self::Capsule { a, b, .. } => (Some((*a, *b)), &[]),
@@ -214,12 +214,12 @@ fn nearest_on_ring(vertices: &[Point], point: Point) -> (Point, f64) {
         .unwrap_or((point, f64::INFINITY))
 }
 
-/// Whether a point lies inside a convex polygon.
+/// Whether a point is inside a convex polygon.
 fn is_inside(vertices: &[Point], point: Point) -> bool {
     vertices.len() > 2 && edges(vertices).all(|(a, b)| (b - a).perp(&(point - a)) > 0.0)
 }
 
-/// The nearest points of two segments; the same point twice where they cross.
+/// The nearest points of two segments; both are the same point where the segments cross.
 fn closest_of_segments(a: Point, b: Point, c: Point, d: Point) -> (Point, Point) {
     if let Some(crossing) = crossing(a, b, c, d) {
         return (crossing, crossing);
@@ -253,7 +253,7 @@ pub fn away_from(point: Point, signed_m: f64, closest: Point, center: Point) -> 
     direction_or(outward, from_center)
 }
 
-/// The point at which two segments meet, their ends included; `None` for parallel ones.
+/// The point at which two segments meet, including their ends; `None` for parallel ones.
 ///
 /// ```
 /// use geometry::{Point, convex::crossing};

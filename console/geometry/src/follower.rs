@@ -1,26 +1,27 @@
-//! Following a path: how far along it the robot is, and where to go next.
+//! Follows a path: how far along it the robot is, and where to go next.
 
 use crate::{Point, polyline, wrap_angle_rad};
 use std::collections::VecDeque;
 
 /// Distance ahead of the robot at which it aims, metres.
 const LOOKAHEAD_M: f64 = 0.5;
-/// The same on a path that is followed exactly, metres.
+/// Lookahead on a path that is followed exactly, metres.
 const EXACT_LOOKAHEAD_M: f64 = 0.25;
 /// Spacing of the points of a path that is followed exactly, metres.
 const EXACT_SPACING_M: f64 = 0.1;
-/// Change of direction above which a point of the path is a corner: the robot drives to it before it turns, radians.
+/// Minimum change of direction that makes a point of the path a corner, radians. The robot drives to a corner before it
+/// turns.
 const CORNER_RAD: f64 = 0.5;
 /// Distance at which a corner counts as reached, metres.
 const CORNER_M: f64 = 0.05;
-/// Distance from a corner within which having passed it counts as having reached it, metres.
+/// Distance from a corner within which passing it counts as reaching it, metres.
 const BESIDE_CORNER_M: f64 = 0.4;
 /// Length of path searched for the nearest point, metres; shorter than one turn of any useful spiral.
 const WINDOW_M: f64 = 1.5;
-/// The same on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
+/// Length searched on a path that is followed exactly, metres: shorter than a lap of the smallest ring worth scanning.
 const EXACT_WINDOW_M: f64 = 0.6;
 
-/// Progress along a path; it only grows, because the nearest point is searched forward from the last one.
+/// Progress along a path; it never decreases, because the nearest point is searched forward from the last one.
 ///
 /// ```
 /// use geometry::{PathFollower, Point};
@@ -34,16 +35,17 @@ pub struct PathFollower {
     stations_m: Vec<f64>,
     nearest: usize,
     target: usize,
-    /// Last point with room for the robot; later ones lie in obstacles.
+    /// Last point with room for the robot; all later ones are blocked by obstacles.
     last: usize,
     lookahead_m: f64,
     window_m: f64,
-    /// Points to be reached before the path beyond them is considered, the next one first; empty when corners may be cut.
+    /// Corners that must be reached before the path beyond them is considered, the next one first; empty if corners may
+    /// be cut.
     corners: VecDeque<usize>,
 }
 
 impl PathFollower {
-    /// A follower at the start of a path of at least one point; it cuts corners by its lookahead of 0.5 m.
+    /// Creates a follower at the start of a path with at least one point. It cuts corners by its lookahead of 0.5 m.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -59,8 +61,8 @@ impl PathFollower {
         Self { path, stations_m, nearest: 0, target: 0, last, lookahead_m, window_m, corners }
     }
 
-    /// A follower that reaches every corner of a path before it turns, so that no lane is cut short or mistaken for the one
-    /// beside it. The path has at least one point.
+    /// Creates a follower that reaches every corner of a path before it turns, so that no lane is cut short or mistaken
+    /// for the one next to it. The path must have at least one point.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -78,8 +80,8 @@ impl PathFollower {
 
     /// Advances to the robot's position, tank frame, and chooses the next target.
     ///
-    /// The target is the first point at least the lookahead ahead at which `has_room` holds; points without room are
-    /// skipped.
+    /// The target is the first point that is at least the lookahead ahead and has room; points where `has_room` is false
+    /// are skipped.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -108,7 +110,7 @@ impl PathFollower {
             .min(self.next_corner());
     }
 
-    /// Distance to the next corner, metres; `None` if there is none left.
+    /// Distance to the next corner, metres; `None` if no corner is left.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -121,7 +123,7 @@ impl PathFollower {
         self.corners.front().map(|corner| (self.path[*corner] - position).norm())
     }
 
-    /// Counts the next corner as reached, for a robot that cannot come nearer.
+    /// Counts the next corner as reached, for a robot that cannot get closer to it.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -139,8 +141,8 @@ impl PathFollower {
         self.corners.front().copied().unwrap_or(self.path.len() - 1)
     }
 
-    /// Whether a position is at a corner, or beside and past it. A corner far ahead along the path is not reached by passing
-    /// it on an earlier lane.
+    /// Whether a position is at a corner, or close to it and past it. A corner farther along the path is not reached by
+    /// passing it on an earlier lane.
     fn has_reached(&self, corner: usize, position: Point) -> bool {
         if self.stations_m[corner] - self.stations_m[self.nearest] > self.window_m {
             return false;
@@ -174,7 +176,7 @@ impl PathFollower {
         self.stations_m[self.target]
     }
 
-    /// The points of the path from the target on, within `length_m` of it along the path; at least the target.
+    /// The points of the path from the target on, within `length_m` of it along the path; always includes the target.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -212,7 +214,7 @@ impl PathFollower {
         self.stations_m[self.nearest]
     }
 
-    /// Way from a position to the target and on to the end of the path, metres.
+    /// Distance from a position to the target and on to the end of the path, metres.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};
@@ -235,7 +237,7 @@ impl PathFollower {
         self.stations_m.last().copied().unwrap_or(0.0)
     }
 
-    /// Distance from a position to the path around the nearest point, metres.
+    /// Distance from a position to the part of the path near the nearest point, metres.
     ///
     /// ```
     /// use geometry::{PathFollower, Point};

@@ -1,7 +1,7 @@
-//! Points, poses, shapes, paths and motion on a tank floor: what the console, the planner API and the planners share.
+//! Points, poses, shapes, paths and motion on a tank floor, shared by the console, the planner API and the planners.
 //!
-//! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise from
-//! east; SI units throughout.
+//! All coordinates are in the tank frame: origin at the tank's centre, x east, y north, metres; angles in radians,
+//! counter-clockwise from east. SI units throughout.
 
 pub mod boundary;
 pub mod braking;

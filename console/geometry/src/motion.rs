@@ -1,32 +1,33 @@
-//! How a robot moves, its limits, and the control law that turns a planner's command into a drive within them.
+//! The robot's way of moving, its limits, and the control law that turns a planner's command into a drive within them.
 
 use crate::{Amphibious, Point, Pose, Vector, unit_vector, wrap_angle_rad};
 
 /// Heading error above which a unicycle turns on the spot before it drives, radians.
 pub const TURN_FIRST_RAD: f64 = 1.0;
-/// The same on lanes that are followed exactly, radians: a wide curve at the end of a lane leads into the wall.
+/// Heading error above which a unicycle turns on the spot on lanes that are followed exactly, radians: a wide curve at
+/// the end of a lane would lead into the wall.
 pub const TURN_FIRST_IN_LANES_RAD: f64 = 0.25;
 /// Turn rate per heading error, 1/s: a 0.5 rad error decays in about a second.
 const HEADING_GAIN_PER_S: f64 = 2.5;
 
-/// Between the poses of a rollout, seconds.
+/// Interval between the poses of a rollout, seconds.
 const ROLLOUT_STEP_S: f64 = 0.1;
 
-/// Share by which rounding may leave a speed above the limit.
+/// Relative tolerance for a speed above the limit, to allow for rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// How the robot moves.
+/// The robot's way of moving.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum Motion {
-    /// In any direction without turning, like the papers' point robots.
+    /// In any direction without turning, like the point robots of the papers.
     Point = 0,
-    /// Along its heading and turning, like tracked and wheeled robots.
+    /// Ahead and backward along its heading, and turning, like tracked and wheeled robots.
     Unicycle = 1,
 }
 
-/// What the robot can do.
+/// The robot's limits.
 ///
 /// ```
 /// use geometry::{Limits, Motion};
@@ -45,26 +46,26 @@ pub enum Motion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
-    /// How it moves.
+    /// The robot's way of moving.
     pub motion: Motion,
-    /// Largest speed, metres per second.
+    /// Maximum speed, metres per second.
     pub v_max_m_per_s: f64,
-    /// Largest turn rate, radians per second.
+    /// Maximum turn rate, radians per second.
     pub w_max_rad_per_s: f64,
     /// Radius of the hull, a disc about the robot's centre, metres.
     pub radius_m: f64,
-    /// Range at which it sees obstacles, metres.
+    /// Range within which the robot sees obstacles, metres.
     pub sensing_range_m: f64,
-    /// Largest change of its speed, metres per second squared.
+    /// Maximum acceleration, metres per second squared.
     pub acceleration_m_per_s2: f64,
-    /// Length of a tick, seconds: a command takes effect for so long before the next one can.
+    /// Length of a tick, seconds: the time for which a command takes effect before the next one can.
     pub tick_s: f64,
-    /// For a robot that walks and swims: what holds in each mode. What is above are the larger limits of both.
+    /// For a robot that walks and swims: the limits in each mode. The limits above are the larger of the two.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub amphibious: Option<Amphibious>,
 }
 
-/// How a robot is to move until the next tick.
+/// The robot's motion until the next tick.
 ///
 /// ```
 /// use geometry::Drive;
@@ -81,20 +82,21 @@ pub enum Drive {
         w_rad_per_s: f64,
     },
     /// Velocity in the tank frame, metres per second, for planners that compute directions: [`drive_for`] controls the
-    /// heading, so that they need not.
+    /// heading for them.
     Velocity(Vector),
 }
 
 impl Drive {
-    /// Standing still.
+    /// A robot that stands still.
     pub const STILL: Self = Self::Twist { v_m_per_s: 0.0, w_rad_per_s: 0.0 };
 }
 
-/// The drive that is sent to the robot for a planner's command: within its limits, and as its kind of motion needs it.
+/// Converts a planner's command to the drive that is sent to the robot: within its limits, and in a form that suits its
+/// way of moving.
 ///
-/// A unicycle is given a turn rate proportional to the error between `heading_rad` and the direction of the velocity, and
-/// the cosine of that error as its share of the speed; above `turn_first_rad` it turns on the spot. A point robot takes a
-/// twist as a velocity along its heading. A drive that was sent comes back unchanged.
+/// A unicycle receives a turn rate proportional to the error between `heading_rad` and the direction of the velocity. The
+/// speed is multiplied by the cosine of that error; above `turn_first_rad` the unicycle turns on the spot. For a point
+/// robot, a twist becomes a velocity along its heading. A drive that has been converted already is returned unchanged.
 ///
 /// ```
 /// use geometry::{Drive, Limits, Motion, Vector, motion::{TURN_FIRST_RAD, drive_for}};
@@ -125,7 +127,8 @@ pub fn drive_for(command: Drive, heading_rad: f64, limits: &Limits, turn_first_r
     }
 }
 
-/// Where a robot that obeys one command all the time would be, every tenth of a second, from a pose on for some time, seconds.
+/// The poses of a robot that follows one constant command, every tenth of a second, from a start pose for a given time,
+/// seconds.
 ///
 /// ```
 /// use geometry::{Drive, Limits, Motion, Pose, Vector, motion::{TURN_FIRST_RAD, rollout}};
@@ -189,8 +192,8 @@ fn twist(v_m_per_s: f64, w_rad_per_s: f64, limits: &Limits) -> Drive {
     }
 }
 
-/// The velocity, shortened to a speed if it exceeds it by more than rounding: a velocity that was shortened before stays as
-/// it is to the bit.
+/// The velocity, shortened to a maximum speed if it exceeds that by more than rounding. A velocity that was shortened
+/// before is returned bit for bit.
 ///
 /// ```
 /// use geometry::{Vector, motion::at_most};

@@ -1,16 +1,16 @@
-//! How fast a robot may move, and one that walks and swims in each of its ways.
+//! The maximum speeds of a robot, and for one that walks and swims those of each mode.
 
-/// How fast a robot may move.
+/// The maximum speeds of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pace {
-    /// Largest speed, metres per second.
+    /// Maximum speed, metres per second.
     pub v_max_m_per_s: f64,
-    /// Largest turn rate, radians per second.
+    /// Maximum turn rate, radians per second.
     pub w_max_rad_per_s: f64,
 }
 
-/// The limits of an amphibious robot in both of its modes.
+/// The limits of an amphibious robot in its two modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Amphibious {
@@ -23,14 +23,14 @@ pub struct Amphibious {
 }
 
 impl Amphibious {
-    /// The limits of Yang et al. 2021, Table 1, with their transition of 20 steps.
+    /// The limits of Yang et al. 2021, Table 1, with a transition of 20 steps as in that paper.
     pub const YANG_2021: Self = Self {
         land: Pace { v_max_m_per_s: 0.13, w_max_rad_per_s: 0.12 },
         underwater: Pace { v_max_m_per_s: 0.23, w_max_rad_per_s: 0.31 },
         transition_steps: 20,
     };
 
-    /// The limits with a share of swimming, 0 to 1, interpolated linearly between both.
+    /// The limits at a share of swimming from 0 to 1, interpolated linearly between the two modes.
     ///
     /// ```
     /// use geometry::Amphibious;
@@ -45,7 +45,7 @@ impl Amphibious {
         }
     }
 
-    /// The larger limits of both modes.
+    /// The larger limits of the two modes.
     ///
     /// ```
     /// use geometry::Amphibious;

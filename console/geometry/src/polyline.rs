@@ -11,7 +11,7 @@ use crate::Point;
 /// assert!(length_m(&[]).is_sign_positive());
 /// ```
 pub fn length_m(path: &[Point]) -> f64 {
-    // The sum of no floats at all is negative zero.
+    // The sum of an empty iterator of floats is negative zero.
     0.0 + path.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>()
 }
 
@@ -52,8 +52,8 @@ pub fn distance_m(path: &[Point], point: Point) -> f64 {
     }
 }
 
-/// Walks from point `from` as long as the next point is at least as near to the place, and gives the index where it stops.
-/// `from` itself at the end of the list and beyond.
+/// Walks from point `from` as long as the next point is at least as close to `at`, and returns the index where it
+/// stops. Returns `from` itself at or beyond the end of the list.
 ///
 /// ```
 /// use geometry::{Point, polyline::nearest_ahead};
@@ -67,7 +67,8 @@ pub fn nearest_ahead(path: &[Point], from: usize, at: Point) -> usize {
     from + going_on.count()
 }
 
-/// Whether two segments cross, each with its ends strictly on both sides of the other; segments that touch do not.
+/// Whether two segments cross, with the ends of each strictly on both sides of the other; segments that only touch do not
+/// cross.
 ///
 /// ```
 /// use geometry::{Point, polyline::segments_cross};
@@ -80,7 +81,7 @@ pub fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-/// The edges of a closed polygon, the one from the last corner to the first included; none without corners.
+/// The edges of a closed polygon, including the one from the last corner to the first; none without corners.
 ///
 /// ```
 /// use geometry::{Point, polyline::edges};
@@ -91,7 +92,7 @@ pub fn edges(vertices: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1)).take(vertices.len())
 }
 
-/// Distance from a point to the edges of a closed polygon, metres, from inside as from outside; infinite without corners.
+/// Distance from a point to the edges of a closed polygon, metres, both inside and outside; infinite without corners.
 ///
 /// ```
 /// use geometry::{Point, polyline::distance_to_ring_m, shape::rectangle};
@@ -123,7 +124,7 @@ pub fn stations_m(path: &[Point]) -> Vec<f64> {
         .collect()
 }
 
-/// The changes of heading along a path, radians, from 0 to pi; points on top of each other have no heading.
+/// The changes of heading along a path, radians, from 0 to pi; coincident points are skipped.
 ///
 /// ```
 /// use geometry::{Point, polyline::turns_rad};
@@ -139,7 +140,7 @@ pub fn turns_rad(path: &[Point]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The path without its first and its last `end_m` metres; empty if it is no longer than both together.
+/// The path without its first and last `end_m` metres; empty if it is no longer than twice that.
 ///
 /// ```
 /// use geometry::{Point, polyline::without_ends};

@@ -23,7 +23,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// A pose from its coordinates, metres, and its heading, radians; all in the tank frame.
+    /// Creates a pose from its coordinates, metres, and its heading, radians; all in the tank frame.
     ///
     /// ```
     /// use geometry::{Point, Pose};
@@ -56,7 +56,7 @@ impl Pose {
         Isometry2::new(self.position.coords, self.heading_rad)
     }
 
-    /// The pose after an arc: `forward_m` and `sideways_m` along the robot's own axes, metres, while they turn at a
+    /// The pose after an arc: `forward_m` and `sideways_m` along the robot's own axes, metres, while these axes turn at a
     /// constant rate by `turn_rad`, radians.
     ///
     /// ```
@@ -70,7 +70,7 @@ impl Pose {
     #[must_use]
     pub fn moved(&self, forward_m: f64, sideways_m: f64, turn_rad: f64) -> Self {
         let half = turn_rad / 2.0;
-        // Chord of the arc over its length.
+        // Ratio of the chord to the length of the arc.
         let shortening = if half.abs() < 1e-6 { 1.0 } else { half.sin() / half };
         let chord = Rotation2::new(self.heading_rad + half) * Vector::new(forward_m, sideways_m) * shortening;
         Self { position: self.position + chord, heading_rad: wrap_angle_rad(self.heading_rad + turn_rad) }

@@ -8,7 +8,7 @@ use nalgebra::Isometry2;
 
 /// The outline of an obstacle or a zone, tank frame unless stated otherwise.
 ///
-/// `P` stores the corners: `Shape` owns them, `Shape<&[Point]>` borrows them, as planners do.
+/// `P` is the storage of the corners: `Shape` owns them, `Shape<&[Point]>` borrows them, as planners do.
 ///
 /// ```
 /// use geometry::{Point, Shape};
@@ -40,7 +40,7 @@ pub enum Shape<P = Vec<Point>> {
 }
 
 impl<P: AsRef<[Point]>> Shape<P> {
-    /// The same shape with its corners borrowed.
+    /// The same shape with borrowed corners.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -58,7 +58,7 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The same shape with its own corners.
+    /// The same shape with owned corners.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -95,7 +95,7 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The centre of a disc, the mean of the corners otherwise.
+    /// The centre of a disc, otherwise the mean of the corners.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -129,7 +129,7 @@ impl<P: AsRef<[Point]>> Shape<P> {
         }
     }
 
-    /// The smallest axis-aligned box around the shape: south-west and north-east corner.
+    /// The smallest axis-aligned box around the shape: its south-west and north-east corners.
     ///
     /// ```
     /// use geometry::{Point, Shape};
@@ -148,7 +148,7 @@ impl<P: AsRef<[Point]>> Shape<P> {
     }
 }
 
-/// The mean of some points; the origin without any.
+/// The mean of some points; the origin if there are none.
 ///
 /// ```
 /// use geometry::{Point, shape::mean_of};
@@ -159,8 +159,8 @@ pub fn mean_of(points: &[Point]) -> Point {
     Point::from(sum / points.len().max(1) as f64)
 }
 
-/// The smallest axis-aligned box around some points: south-west and north-east corner; without any, corners at
-/// infinity with the first beyond the second.
+/// The smallest axis-aligned box around some points: its south-west and north-east corners. Without points, the corners
+/// are at infinity, with the first beyond the second.
 ///
 /// ```
 /// use geometry::{Point, shape::bounds_of};
@@ -174,7 +174,7 @@ pub fn bounds_of(points: &[Point]) -> (Point, Point) {
         .fold((Point::new(far, far), Point::new(-far, -far)), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Whether a point lies inside a simple polygon, by the crossing number; on an edge the answer may be either.
+/// Whether a point is inside a simple polygon, by the crossing number; for a point on an edge the result is unspecified.
 ///
 /// ```
 /// use geometry::{Point, shape::{rectangle, ring_contains}};
@@ -190,7 +190,7 @@ pub fn ring_contains(vertices: &[Point], point: Point) -> bool {
     })
 }
 
-/// The corners of a box, counter-clockwise from the south-west one, given that one and the north-east one.
+/// The corners of a box, counter-clockwise from the south-west one, given its south-west and north-east corners.
 ///
 /// ```
 /// use geometry::{Point, shape::rectangle};
@@ -210,7 +210,7 @@ pub fn ring_area_m2(vertices: &[Point]) -> f64 {
     edges(vertices).map(|(a, b)| a.coords.perp(&b.coords)).sum::<f64>() / 2.0
 }
 
-/// Indices of the corners at which a simple polygon, of either sense, has an interior angle above 180 degrees.
+/// Indices of the corners at which a simple polygon, of either orientation, has an interior angle above 180 degrees.
 ///
 /// ```
 /// use geometry::{Point, shape::reflex_corners};

@@ -1,17 +1,17 @@
-//! How symmetric matrices are written: the upper triangle, row by row.
+//! Serializes symmetric matrices: the upper triangle, row by row.
 
 use nalgebra::SMatrix;
 use serde::{Deserialize, Deserializer, Serializer, de::Error, ser::SerializeSeq};
 
-/// Writes the upper triangle.
+/// Serializes the upper triangle.
 ///
 /// # Errors
-/// As the serializer.
+/// The serializer fails.
 pub fn serialize<S: Serializer, const N: usize>(
     matrix: &SMatrix<f64, N, N>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    // Their number is stated: a format that is not text writes it first.
+    // The length is given because binary formats write it first.
     let mut numbers = serializer.serialize_seq(Some(N * (N + 1) / 2))?;
     for (row, column) in (0..N).flat_map(|row| (row..N).map(move |column| (row, column))) {
         numbers.serialize_element(&matrix[(row, column)])?;
@@ -19,10 +19,10 @@ pub fn serialize<S: Serializer, const N: usize>(
     numbers.end()
 }
 
-/// Reads an upper triangle.
+/// Deserializes an upper triangle.
 ///
 /// # Errors
-/// There are fewer or more numbers.
+/// There are too few or too many numbers.
 pub fn deserialize<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<SMatrix<f64, N, N>, D::Error> {

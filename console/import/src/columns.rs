@@ -1,4 +1,4 @@
-//! Lists of columns as CSV.
+//! Reads lists of columns from CSV files.
 
 mod fields;
 mod marks;
@@ -14,20 +14,20 @@ use marks::Marks;
 use std::collections::HashSet;
 use world::{Boundary, Point, Shape};
 
-/// Notes after which columns that stand in each other are no longer named one by one.
+/// The number of notes after which overlapping columns are no longer listed individually.
 const MOST_NOTES: usize = 20;
 
-/// Reads a list of round columns in a round tank of a radius, metres.
+/// Reads a list of round columns in a round tank of the given radius, in metres.
 ///
-/// The first line names the fields: x, y, radius or diameter, each with its unit, as `x_m` or `X [mm]`, and perhaps `name`,
-/// in any order, separated by commas, semicolons or tabs; but for commas, numbers may have a decimal comma. The origin is the
-/// tank's centre. Lines that begin with `#` are skipped, and fields of other names listed. Columns that stand in each other are
-/// named in the notes.
+/// The first line names the fields: x, y, and radius or diameter, each with its unit, as in `x_m` or `X [mm]`, and
+/// optionally `name`. Fields can be in any order, separated by commas, semicolons or tabs. Unless commas separate the
+/// fields, numbers may have a decimal comma. The origin is the tank's centre. Lines that begin with `#` are skipped.
+/// The notes list unknown fields, and columns of which one stands on the centre of another.
 ///
 /// # Errors
-/// Line and field of everything that is wrong.
+/// Every problem, with its line and field.
 pub fn read(input: &Input, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportError>> {
-    // Lines are counted by their line feeds.
+    // Use line feeds only, because lines are counted by them.
     let text = decoded(&input.bytes, None).replace("\r\n", "\n").replace('\r', "\n") + "\n";
     let wrong = |Wrong { line, field, what }: Wrong| ImportError {
         file: input.name.clone(),
@@ -41,13 +41,16 @@ pub fn read(input: &Input, tank_radius_m: f64) -> Result<FloorPlan, Vec<ImportEr
     note_coincident(&rows, &mut notes);
     let obstacles: Vec<Named> = rows.into_iter().map(|(_, named)| named).collect();
     if obstacles.is_empty() {
-        return Err(vec![ImportError::of_input(input, "no columns: below the first line there are no rows")]);
+        return Err(vec![ImportError::of_input(
+            input,
+            "no columns: the list has no rows below the first line",
+        )]);
     }
     let boundary = Boundary::Circle { radius_m: tank_radius_m };
     Ok(FloorPlan { boundary, obstacles, no_go: Vec::new(), plates: Vec::new(), notes })
 }
 
-/// What is wrong in a line, perhaps in one of its fields.
+/// A problem in a line, optionally in one of its fields.
 struct Wrong {
     line: u64,
     field: String,
@@ -60,14 +63,18 @@ impl Wrong {
     }
 }
 
-/// A column with its line.
+/// A column with its line number.
 type Row = (u64, Named);
 
-/// The columns of a list, and the names of fields that are not used.
+/// Parses a list; returns its columns and the names of unused fields.
 fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<Wrong>> {
     if let Some(at) = text.find('\0') {
         let line = text[..at].lines().count().max(1) as u64;
-        return Err(vec![Wrong::new(line, "", "not a text: it holds a byte 0; save the list as CSV")]);
+        return Err(vec![Wrong::new(
+            line,
+            "",
+            "not a text file: contains a zero byte; save the list as CSV",
+        )]);
     }
     let delimiter = delimiter(text);
     let mut reader = csv::ReaderBuilder::new()
@@ -92,7 +99,7 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<W
                 problems.push(no_row(&error, line));
                 continue;
             }
-            // Spreadsheets leave lines of empty cells behind a list.
+            // Spreadsheets write lines of empty cells after a list.
             Ok(true) if record.iter().all(str::is_empty) => continue,
             Ok(true) => {}
         }
@@ -102,18 +109,18 @@ fn list(text: &str, tank_radius_m: f64) -> Result<(Vec<Row>, Vec<String>), Vec<W
         let given = fields.name(&record).filter(|name| !name.is_empty());
         let name = given.map_or_else(|| format!("column {}", columns.len() + 1), foreign::seen);
         if !names.insert(name.clone()) {
-            problems.push(Wrong::new(line, "name", format!("`{name}` occurs twice")));
+            problems.push(Wrong::new(line, "name", format!("the name `{name}` is used twice")));
         }
         columns.extend(shape.map(|shape| (line, Named { name, shape })));
     }
     if let Some((line, field, what)) = marks.doubt() {
-        // What the numbers mean comes before what they say.
+        // Report ambiguous numbers before problems with their values.
         problems.insert(0, Wrong::new(line, field, what));
     }
     if problems.is_empty() { Ok((columns, fields.unused)) } else { Err(problems) }
 }
 
-/// The column of a row; otherwise the field that is wrong, and what is wrong with it.
+/// The shape of the column in a row. An error is the field and its problem.
 fn disc(
     fields: &Fields,
     record: &csv::StringRecord,
@@ -127,12 +134,12 @@ fn disc(
     let (center, radius_m) =
         (Point::new(metres(Quantity::X)?, metres(Quantity::Y)?), metres(Quantity::Radius)?);
     if radius_m <= 0.0 {
-        let what = format!("{radius_m} m for the radius; it must be greater than 0");
+        let what = format!("the radius is {radius_m} m; it must be greater than 0");
         return Err((fields.name_of(Quantity::Radius).to_owned(), what));
     }
     if center.coords.norm() - radius_m >= tank_radius_m {
         let what = format!(
-            "({}, {}) lies outside the tank of {tank_radius_m} m; x and y count from its centre",
+            "({}, {}) is outside the tank of radius {tank_radius_m} m; x and y are measured from its centre",
             center.x, center.y
         );
         return Err((fields.name_of(Quantity::X).to_owned(), what));
@@ -140,7 +147,7 @@ fn disc(
     Ok(Shape::Disc { center, radius_m })
 }
 
-/// Names columns of which one stands on the centre of another: no two do.
+/// Notes pairs of columns of which one contains the centre of the other, which real columns cannot do.
 fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     let mut discs: Vec<(f64, Point, &Row)> = rows
         .iter()
@@ -166,7 +173,7 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
                 std::mem::swap(&mut first, &mut second);
             }
             notes.push(format!(
-                "`{}` (line {}) stands in `{}` (line {}): their centres are {:.0} mm apart",
+                "`{}` (line {}) overlaps `{}` (line {}): their centres are {:.0} mm apart",
                 second.1,
                 second.0,
                 first.1,
@@ -177,23 +184,23 @@ fn note_coincident(rows: &[Row], notes: &mut Vec<String>) {
     }
 }
 
-/// Why a line is not a row.
+/// The problem of a line that is not a valid row.
 fn no_row(error: &csv::Error, line: u64) -> Wrong {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} cells, but the first line names {expected_len}")
+            format!("{len} cells, but the first line has {expected_len}")
         }
         _ => format!("not a CSV file: {error}"),
     };
     Wrong::new(line, "", what)
 }
 
-/// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.
+/// The current line of the reader. The reader's record position is wrong after comments and empty lines.
 fn line_of(reader: &csv::Reader<&[u8]>) -> u64 {
     reader.position().line().saturating_sub(1).max(1)
 }
 
-/// What separates the cells of the line that names them.
+/// The separator of the cells in the first line.
 fn delimiter(text: &str) -> u8 {
     let names = text.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
     [b';', b'\t'].into_iter().find(|delimiter| names.contains(char::from(*delimiter))).unwrap_or(b',')

@@ -1,4 +1,4 @@
-//! The free floor of a map that belongs together, and its outlines.
+//! The connected free floor of a map, and its outlines.
 
 use crate::OccupancyMap;
 use std::collections::VecDeque;
@@ -6,20 +6,20 @@ use std::collections::VecDeque;
 /// A lattice point.
 pub(crate) type Node = [i32; 2];
 
-/// Free cells that can be reached from one another through shared edges; everything else is solid.
+/// Free cells that are connected through shared edges; all other cells are solid.
 pub(crate) struct Component {
     columns: usize,
     is_free: Vec<bool>,
-    /// Free cells.
+    /// The number of free cells.
     pub n_cells: usize,
-    /// First column and row with a free cell.
+    /// The first column and row with a free cell.
     pub low: Node,
-    /// One beyond the last ones.
+    /// One more than the last column and row with a free cell.
     pub high: Node,
 }
 
 impl Component {
-    /// The component that holds a cell; without one, or if it is solid, the largest.
+    /// The component that contains a cell; if none is given, or the cell is solid, the largest component.
     pub(crate) fn new(map: &OccupancyMap, start: Option<(usize, usize)>) -> Option<Self> {
         let at_start = start.map(|(x, y)| y * map.columns + x).filter(|cell| map.is_free[*cell]);
         let mut seen = vec![false; map.is_free.len()];
@@ -44,12 +44,12 @@ impl Component {
         (!cells.is_empty()).then_some(Self { columns: map.columns, is_free, n_cells: cells.len(), low, high })
     }
 
-    /// Its cells among those of the map.
+    /// Whether each cell of the map belongs to the component.
     pub(crate) fn into_cells(self) -> Vec<bool> {
         self.is_free
     }
 
-    /// Whether a cell is free; outside the map none is.
+    /// Whether a cell is free; cells outside the map are not.
     pub(crate) fn is_free(&self, [x, y]: Node) -> bool {
         x >= 0
             && y >= 0
@@ -57,12 +57,12 @@ impl Component {
             && self.is_free.get(y as usize * self.columns + x as usize).is_some_and(|free| *free)
     }
 
-    /// The outlines as closed chains of corners, floor to the left: the outer one counter-clockwise, those of solids within
-    /// clockwise.
+    /// The outlines as closed chains of corners with the floor to the left: the outer outline counter-clockwise, those
+    /// of inner solids clockwise.
     ///
-    /// Where two free cells share no more than a corner, the outline keeps them apart.
+    /// Where two free cells share only a corner, the outline separates them.
     pub(crate) fn rings(&self) -> Vec<Vec<Node>> {
-        // One bit for each direction (east, north, west, south) of the edge that leaves a lattice point.
+        // One bit for the direction (east, north, west, south) of each edge that leaves a lattice point.
         let wide = self.columns + 1;
         let mut edges = vec![0_u8; wide * (self.is_free.len() / self.columns + 1)];
         let index = |[x, y]: Node| y as usize * wide + x as usize;
@@ -91,7 +91,7 @@ impl Component {
     }
 }
 
-/// Follows edges from a point back to it, to the left where there is a choice; gives the corners.
+/// Follows edges from a point back to it, keeping left where there is a choice; returns the corners.
 fn trace(first: Node, edges: &mut [u8], index: impl Fn(Node) -> usize) -> Vec<Node> {
     const STEPS: [Node; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
     let start = edges[index(first)].trailing_zeros() as usize;
@@ -101,7 +101,7 @@ fn trace(first: Node, edges: &mut [u8], index: impl Fn(Node) -> usize) -> Vec<No
         at = [at[0] + STEPS[direction][0], at[1] + STEPS[direction][1]];
         let leaving = [1, 0, 3].map(|turn| (direction + turn) % 4);
         let next = leaving.into_iter().find(|next| edges[index(at)] & (1 << next) != 0);
-        let next = next.expect("as many edges leave a point as arrive");
+        let next = next.expect("every point has as many leaving as arriving edges");
         if next != direction {
             corners.push(at);
         }

@@ -1,8 +1,8 @@
-//! Floor drawings as DXF.
+//! Reads floor drawings in DXF format.
 //!
-//! Layers say what is what: SHELL, COLUMNS, PIPES, SUMP, NOGO and PLATES; a layer counts if one word of its name is one of these, in
-//! the singular or the plural, or if somebody names it. Blocks are taken apart, with the layer of their insertion for what
-//! lies on layer 0.
+//! The layer determines what an entity is: SHELL, COLUMNS, PIPES, SUMP, NOGO or PLATES. A layer is used if a word of
+//! its name is one of these, in the singular or the plural, or if the caller assigns it. Blocks are expanded; their
+//! entities on layer 0 take the layer of the insertion.
 
 mod areas;
 mod curves;
@@ -30,27 +30,27 @@ pub use roles::{Layers, Role};
 use sorted::Sorted;
 use world::{Boundary, Point, Shape};
 
-/// Width of pipes that are drawn as lines, metres.
+/// The default width in metres of pipes drawn as lines without a width.
 pub const PIPE_WIDTH_M: f64 = 0.1;
-/// A shell that measures less or more across is drawn in another unit, metres.
+/// The range of tank sizes in metres. A shell outside it suggests that the unit is wrong.
 const ACROSS_M: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
-/// What to take where a drawing says nothing or something else.
+/// Values for what a drawing does not state, or states wrongly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
-    /// Metres to the unit of the drawing, whatever its header says.
+    /// The size of the drawing's unit in metres; overrides the header.
     pub unit_m: Option<f64>,
-    /// Width of pipes that are drawn as lines, metres.
+    /// The width in metres of pipes drawn as lines without a width.
     pub pipe_width_m: f64,
-    /// What layers hold.
+    /// The roles assigned to layers.
     pub layers: Layers,
 }
 
-/// Reads a drawing.
+/// Reads a floor plan from a drawing.
 ///
 /// # Errors
-/// It is not DXF, names no unit and none is stated, has no closed outline for the shell, or a layer that is named holds
-/// nothing.
+/// The drawing is not DXF, or its unit is neither in the header nor given; it has no closed outline for the shell; or
+/// an assigned layer is empty.
 pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> {
     let of_file = |what: String| ImportError::of_input(input, what);
     let drawing = Drawing::read(input)?;
@@ -58,13 +58,13 @@ pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> 
     let unit_m = unit(drawing.units, assumed.unit_m, &mut notes).map_err(of_file)?;
     let all = entities::all(&drawing, unit_m).ok_or_else(|| {
         of_file(format!(
-            "more than {} entities, those of inserted blocks included; keep the layers of the floor only",
+            "more than {} entities, including those of inserted blocks; keep only the layers of the floor",
             entities::MOST
         ))
     })?;
     let listed = roles::list(&all);
     if let Some(missing) = assumed.layers.missing(&all) {
-        return Err(of_file(format!("nothing lies on a layer `{missing}`; layers: {listed}")));
+        return Err(of_file(format!("layer `{missing}` is empty or does not exist; layers: {listed}")));
     }
     let mut sorted = Sorted::new(all, unit_m, assumed, &drawing.hidden, &mut notes);
     let (boundary, moved, rest) =
@@ -90,7 +90,8 @@ pub fn read(input: &Input, assumed: &Assumed) -> Result<FloorPlan, ImportError> 
     Ok(FloorPlan { boundary, obstacles, no_go, plates, notes })
 }
 
-/// The shell in the tank frame, how the drawing is moved to it, and what else on the shell's layer is a column.
+/// The shell in the tank frame, the transformation from the drawing to this frame, and the other areas on the shell's
+/// layer, which are columns.
 fn floor(
     sorted: &mut Sorted,
     unit_m: f64,
@@ -104,7 +105,7 @@ fn floor(
         && vertices.len() > MOST_CORNERS
     {
         return Err(format!(
-            "the shell has {} corners that count; draw it with at most {MOST_CORNERS}, or as a circle",
+            "the shell has {} relevant corners; draw it with at most {MOST_CORNERS}, or as a circle",
             vertices.len()
         ));
     }
@@ -112,8 +113,8 @@ fn floor(
     let across_m = (high - low).max();
     if !ACROSS_M.contains(&across_m) {
         return Err(format!(
-            "the shell is {across_m:.6} m across, with {unit_m} m to the unit of the drawing; tanks of {} to {} m are read: \
-             state the unit, as in --units mm",
+            "the shell is {across_m:.6} m across if a unit of the drawing is {unit_m} m; tanks must be {} to {} \
+             m across: state the unit, for example --units mm",
             ACROSS_M.start(),
             ACROSS_M.end()
         ));
@@ -121,7 +122,7 @@ fn floor(
     let center = center
         .unwrap_or_else(|| if is_near(low, high) { Point::origin() } else { nalgebra::center(&low, &high) });
     if center != Point::origin() {
-        notes.push(format!("({:.3}, {:.3}) m of the drawing is [0, 0] here", center.x, center.y));
+        notes.push(format!("({:.3}, {:.3}) m in the drawing is [0, 0] in the scenario", center.x, center.y));
     }
     let moved = Isometry2::new(-center.coords, 0.0);
     let boundary = match boundary {
@@ -133,68 +134,68 @@ fn floor(
     Ok((boundary, moved, rest))
 }
 
-/// That nothing stands on the floor, and what to say if something does.
+/// A note that no obstacles were found, and what to do if there should be some.
 fn no_obstacles(assumed: &Assumed, listed: &str) -> String {
     let stated = [Role::Columns, Role::Pipes].map(|role| assumed.layers.stated(role)).concat();
     let remedy = match stated[..] {
-        [] => "if there are any, say which layer holds them, as in --layer COLUMNS=NAME".to_owned(),
-        _ => format!("the layers that are named for them hold none: {}", stated.join(", ")),
+        [] => "if there are any, name their layer, for example --layer COLUMNS=NAME".to_owned(),
+        _ => format!("the layers assigned to them contain none: {}", stated.join(", ")),
     };
-    format!("no columns and no pipes were found; {remedy}; layers: {listed}")
+    format!("no columns or pipes were found; {remedy}; layers: {listed}")
 }
 
-/// Why a drawing has no shell; what somebody has said already is not asked for again.
+/// A message that explains why a drawing has no shell. It does not suggest options that the user has already given.
 fn no_shell(why: &str, assumed: &Assumed, listed: &str) -> String {
     let stated = assumed.layers.stated(Role::Shell);
     let layer = match stated[..] {
-        [] => "a layer SHELL".to_owned(),
-        _ => format!("the layer {} that is named for SHELL", stated.join(", ")),
+        [] => "the layer SHELL".to_owned(),
+        _ => format!("the layer {} assigned to SHELL", stated.join(", ")),
     };
     if !why.is_empty() {
         return format!("no shell on {layer}: {why}; layers: {listed}");
     }
     let remedy = if stated.is_empty() {
-        "draw the inner side of the shell there, or say which layer holds it, as in --layer SHELL=0"
+        "draw the inner side of the shell there, or name its layer, for example --layer SHELL=0"
     } else {
-        "draw the inner side of the shell there, or name another layer"
+        "draw the inner side of the shell there, or name a different layer"
     };
-    format!("no circle and no closed outline on {layer}; {remedy}; layers: {listed}")
+    format!("no circle or closed outline on {layer}; {remedy}; layers: {listed}")
 }
 
-/// Leaves out what lies beyond the shell.
+/// Removes shapes that are wholly outside the shell.
 fn keep_inside(boundary: &Boundary, all: &mut Vec<Named>, notes: &mut Vec<String>) {
     all.retain(|named| {
         let is_inside = !is_wholly_outside(boundary, &named.shape);
         if !is_inside {
-            notes.push(format!("{} lies outside the shell and is left out", named.name));
+            notes.push(format!("{} is outside the shell and was left out", named.name));
         }
         is_inside
     });
 }
 
-/// Metres to the unit: as stated, else as the header says.
+/// The size of the drawing's unit in metres: as given, else from the header.
 fn unit(header: Option<i32>, stated_m: Option<f64>, notes: &mut Vec<String>) -> Result<f64, String> {
     let header_m = header.and_then(metres);
-    let unit_m = stated_m
-        .or(header_m)
-        .ok_or("the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm")?;
+    let unit_m = stated_m.or(header_m).ok_or(
+        "the header ($INSUNITS) states no unit of length; state it with --units, for example --units mm",
+    )?;
     match header_m {
-        None => notes.push(format!("the drawing names no unit; one unit was taken as {unit_m} m")),
+        None => notes.push(format!("the drawing states no unit; one unit was taken as {unit_m} m")),
         Some(header_m) if (header_m / unit_m - 1.0).abs() > 1e-9 => {
-            notes.push(format!("one unit was taken as {unit_m} m, as stated; the header says {header_m} m"));
+            notes.push(format!("one unit was taken as {unit_m} m, as given; the header states {header_m} m"));
         }
         Some(_) => {}
     }
     Ok(unit_m)
 }
 
-/// Whether a box is where scenarios have their tanks; a drawing in coordinates of a survey is not.
+/// Whether a box is near the origin, as in a scenario. A drawing in survey coordinates is not.
 fn is_near(low: Point, high: Point) -> bool {
     let most = *ACROSS_M.end();
     [low, high].iter().all(|at| at.coords.amax() <= most)
 }
 
-/// Metres to a unit by its number in `$INSUNITS`, if it is one of length that drawings have.
+/// The size in metres of a unit by its number in `$INSUNITS`, if it is a plausible unit of length.
 fn metres(units: i32) -> Option<f64> {
     match units {
         1 => Some(0.0254),

@@ -1,35 +1,35 @@
-//! What becomes of a map: a wall and convex obstacles.
+//! Converts a map to a wall and convex obstacles.
 
 use crate::{OccupancyMap, contour::Component, pieces::pieces, simplify::Simplified};
 use world::{Boundary, Point};
 
-/// A floor made of a map, tank frame.
+/// The floor of a map, in the tank frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapFloor {
-    /// The rectangle around the free floor, which may be turned.
+    /// The rectangle around the free floor, which may be rotated.
     pub wall: Boundary,
-    /// Everything solid within the wall as convex polygons, counter-clockwise.
+    /// Everything solid inside the wall, as convex counter-clockwise polygons.
     pub pieces: Vec<Vec<Point>>,
-    /// Free cells that belong together.
+    /// The number of connected free cells.
     pub n_free: usize,
-    /// Free cells of the whole map.
+    /// The number of free cells in the whole map.
     pub n_free_in_map: usize,
-    /// Outlines of the floor: the outer one and one for each solid within.
+    /// The number of outlines: the outer outline, and one for each solid inside.
     pub n_outlines: usize,
-    /// Corners of the outlines: of the cells, and after simplification.
+    /// The number of corners of the outlines: along the cells, and after simplification.
     pub n_corners: [usize; 2],
-    /// Farthest that any floor that became solid is from a solid cell, metres.
+    /// The largest distance in metres from floor that became solid to a solid cell.
     pub error_m: f64,
-    /// Which cells of the map belong together.
+    /// Whether each cell of the map belongs to the floor.
     is_joined: Vec<bool>,
 }
 
 impl MapFloor {
-    /// The floor that can be reached from a start; without one, or if it is not free, the largest one. None if no cell is
-    /// free.
+    /// The floor that is reachable from a start; if none is given, or the start is not free, the largest floor. `None`
+    /// if no cell is free.
     ///
-    /// Outlines lose corners where no floor that becomes solid is farther than `tolerance_m` from a solid cell; by default
-    /// half a cell. No solid becomes floor.
+    /// Removes corners of the outlines as long as no floor that becomes solid is farther than `tolerance_m` from a
+    /// solid cell; the default is half a cell. Solid cells never become floor.
     pub fn new(map: &OccupancyMap, start: Option<Point>, tolerance_m: Option<f64>) -> Option<Self> {
         let component = Component::new(map, start.and_then(|place| map.cell_at(place)))?;
         let tolerance = tolerance_m.map_or(0.5, |tolerance_m| tolerance_m / map.cell_m);
@@ -50,7 +50,7 @@ impl MapFloor {
         })
     }
 
-    /// Whether a place is free in the map, but no way over free cells leads there.
+    /// Whether a point is free in the map but not connected to the floor by free cells.
     pub fn is_cut_off(&self, map: &OccupancyMap, place: Point) -> bool {
         let is_joined = map.cell_at(place).is_some_and(|(x, y)| self.is_joined[y * map.columns + x]);
         map.is_free_at(place) && !is_joined

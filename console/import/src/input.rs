@@ -1,4 +1,4 @@
-//! What is imported: a file or the standard input.
+//! Input to import: a file or standard input.
 
 use crate::{
     error::{ImportError, LARGEST_BYTES, read_file},
@@ -9,18 +9,18 @@ use std::{
     path::Path,
 };
 
-/// A drawing or a list, as bytes.
+/// The bytes of a drawing or a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
-    /// What messages call it.
+    /// The name for messages.
     pub name: String,
-    /// All of it.
+    /// The complete contents.
     pub(crate) bytes: Vec<u8>,
-    /// What it is by the name of its file.
+    /// The kind according to the file name.
     kind: Option<InputKind>,
 }
 
-/// What an input can be.
+/// The kind of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputKind {
     /// A DXF drawing.
@@ -30,10 +30,10 @@ pub enum InputKind {
 }
 
 impl Input {
-    /// Reads a file, or, for `-`, the standard input.
+    /// Reads a file or, for `-`, standard input.
     ///
     /// # Errors
-    /// It cannot be read, is empty or too large.
+    /// The input cannot be read, or is empty or too large.
     pub fn read(path: &Path) -> Result<Self, ImportError> {
         if path == Path::new("-") {
             return Self::of_stdin();
@@ -42,7 +42,7 @@ impl Input {
         let kind = match suffix.as_str() {
             "dxf" => InputKind::Drawing,
             "csv" => InputKind::List,
-            _ => return Err(ImportError::of_file(path, "import reads .dxf and .csv files")),
+            _ => return Err(ImportError::of_file(path, "only .dxf and .csv files can be imported")),
         };
         Ok(Self { name: path.display().to_string(), bytes: read_file(path)?, kind: Some(kind) })
     }
@@ -54,14 +54,15 @@ impl Input {
             Err(error) => format!("cannot be read: {error}"),
             Ok(0) => "is empty".into(),
             Ok(n) if n as u64 > LARGEST_BYTES => {
-                format!("more than {} MB, which are not read", LARGEST_BYTES / 1_000_000)
+                format!("more than {} MB; inputs may not be larger", LARGEST_BYTES / 1_000_000)
             }
             Ok(_) => return Ok(input),
         };
         Err(ImportError::of_input(&input, wrong))
     }
 
-    /// What it is: by the name of the file, else by how it begins. A drawing begins with the number of a code alone on a line.
+    /// The kind of the input: by the file name, else by its beginning. A drawing begins with the number of a code alone
+    /// on a line.
     pub fn kind(&self) -> InputKind {
         let is_code = |line: &str| line.trim().parse::<u16>().is_ok();
         let begins_as_drawing = || {

@@ -1,11 +1,11 @@
-//! Floors from the files of other programs.
+//! Import of floors from the files of other programs.
 //!
-//! [`OccupancyMap::read`] takes the map of a ROS map server, [`MapFloor::new`] makes a wall and convex obstacles of it.
-//! [`drawing::read`] takes a DXF drawing, [`columns::read`] a list of columns; both give a [`FloorPlan`], of which
-//! [`FloorPlan::scenario`] makes a scenario.
+//! [`OccupancyMap::read`] reads a map of the ROS map server, and [`MapFloor::new`] turns it into a wall and convex
+//! obstacles. [`drawing::read`] reads a DXF drawing, and [`columns::read`] a list of columns; both return a
+//! [`FloorPlan`], which [`FloorPlan::scenario`] turns into a scenario.
 //!
-//! Frame: the tank frame, metres, unless a comment says *lattice*: cells of the map, x right, y up, the origin at the lower
-//! left corner of the lower left cell.
+//! Frame: the tank frame in metres, unless a comment states *lattice*: the cells of the map, with x right, y up, and
+//! the origin at the lower left corner of the lower left cell.
 
 pub mod columns;
 mod contour;

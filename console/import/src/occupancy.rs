@@ -1,8 +1,8 @@
-//! Occupancy maps in the form of the ROS map server: a YAML file that names an image and gives its scale.
+//! Occupancy maps in the format of the ROS map server: a YAML file that names an image and states its scale.
 //!
-//! Values are interpreted as the ROS 2 `nav2_map_server` does. Cells that are not known to be free count as solid, as the
-//! robots of the papers treat them. So do cells of the grey 205, which map savers write for what nobody has seen, whatever the
-//! thresholds make of it.
+//! Values are interpreted as in the ROS 2 `nav2_map_server`. Cells that are not known to be free count as solid, as for
+//! the robots of the papers. Cells of grey 205, which map savers write for unseen cells, also count as solid, whatever
+//! the thresholds.
 
 mod image;
 mod settings;
@@ -17,29 +17,29 @@ use settings::Settings;
 use std::{fmt, path::Path};
 use world::{Point, Vector};
 
-/// A map: which cells are free, row by row from the lower left.
+/// A map: whether each cell is free, row by row from the lower left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyMap {
-    /// Cells along x.
+    /// The number of cells along x.
     pub columns: usize,
     /// Whether a cell is known to be free.
     pub is_free: Vec<bool>,
-    /// Edge of a cell, metres.
+    /// The edge of a cell in metres.
     pub cell_m: f64,
-    /// Takes lattice points, in metres, to the tank frame.
+    /// The transformation from lattice points, in metres, to the tank frame.
     pub tank_from_map: Isometry2<f64>,
-    /// Cells that nobody has seen and that `free_thresh` would make floor; they are not free.
+    /// Unseen cells that `free_thresh` would make floor; they are not free.
     pub unseen: Option<Unseen>,
 }
 
-/// Cells of the grey that map savers write for what nobody has seen, where the thresholds of the map take it for floor.
+/// Cells with the grey of unseen cells that the thresholds of the map would make floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unseen {
-    /// How many there are.
+    /// The number of cells.
     pub n_cells: usize,
-    /// Their grey.
+    /// The grey of the cells.
     pub grey: u8,
-    /// The threshold that would make them floor.
+    /// The threshold that would make these cells floor.
     pub free_thresh: f64,
 }
 
@@ -48,17 +48,17 @@ impl fmt::Display for Unseen {
         let Self { n_cells, grey, free_thresh } = self;
         write!(
             f,
-            "{n_cells} cells of grey {grey} count as solid: map savers write it for what nobody has seen, although \
-             free_thresh {free_thresh} takes it for floor"
+            "{n_cells} cells of grey {grey} count as solid: map savers write this grey for unseen cells, \
+             although it is floor by free_thresh {free_thresh}"
         )
     }
 }
 
 impl OccupancyMap {
-    /// Reads a map by its YAML file; the image lies beside it unless its path is absolute.
+    /// Reads a map from its YAML file; the path of the image is relative to its folder.
     ///
     /// # Errors
-    /// File, line and key of what is wrong.
+    /// The problem, with file, line and key.
     pub fn read(yaml: &Path) -> Result<Self, ImportError> {
         let settings = Settings::parse(yaml, &decoded(&read_file(yaml)?, None))?;
         let file = yaml.parent().unwrap_or(Path::new("")).join(&settings.image);
@@ -69,7 +69,7 @@ impl OccupancyMap {
                 ..ImportError::of_file(
                     yaml,
                     format!(
-                        "there is no file {}; a path counts from the folder of this file",
+                        "file {} does not exist; paths are relative to the folder of this file",
                         file.display()
                     ),
                 )
@@ -91,24 +91,24 @@ impl OccupancyMap {
         })
     }
 
-    /// Cells along y.
+    /// The number of cells along y.
     pub fn rows(&self) -> usize {
         self.is_free.len() / self.columns
     }
 
-    /// The cell (column, row) that holds a place, if the map extends to it.
+    /// The cell (column, row) that contains a point, if the point is on the map.
     pub fn cell_at(&self, place: Point) -> Option<(usize, usize)> {
         let at = self.tank_from_map.inverse_transform_point(&place) / self.cell_m;
         let fits = |v: f64, n: usize| (v >= 0.0 && v < n as f64).then_some(v as usize);
         Some((fits(at.x, self.columns)?, fits(at.y, self.rows())?))
     }
 
-    /// Whether a place lies on a free cell.
+    /// Whether a point is on a free cell.
     pub fn is_free_at(&self, place: Point) -> bool {
         self.cell_at(place).is_some_and(|(x, y)| self.is_free[y * self.columns + x])
     }
 
-    /// A lattice point in the tank frame.
+    /// Converts a lattice point to the tank frame.
     pub(crate) fn to_tank(&self, x: f64, y: f64) -> Point {
         self.tank_from_map * (Point::new(x, y) * self.cell_m)
     }

@@ -1,8 +1,8 @@
-//! What lies in the wall, and what beyond it.
+//! Tests whether outlines are outside the tank.
 
 use world::{Boundary, Point, Shape};
 
-/// Whether no part of an outline lies in the tank.
+/// Whether an outline is completely outside the tank.
 pub fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
     if let Boundary::Circle { radius_m } = boundary {
         return shape.distance_m(Point::origin()) >= *radius_m;
@@ -19,8 +19,8 @@ pub fn is_wholly_outside(boundary: &Boundary, shape: &Shape) -> bool {
     !corner_inside && points.iter().all(|point| boundary.wall_distance_m(*point) <= -reach_m)
 }
 
-/// Points along an outline, close enough together to see whether any of it lies on the floor, and how far the
-/// outline reaches beyond them, metres.
+/// Points along an outline, close enough together to detect any part of it on the floor, and the distance in metres by
+/// which the outline extends beyond them.
 fn samples(shape: &Shape) -> (Vec<Point>, f64) {
     const PIECES: u32 = 16;
     let along = |a: &Point, b: &Point| -> Vec<Point> {

@@ -1,7 +1,8 @@
-//! What is solid around and within the outlines, as convex pieces.
+//! Converts the solid area around and inside the outlines to convex pieces.
 //!
-//! A constrained Delaunay triangulation of the outlines; the solid triangles are joined across edges that no outline needs
-//! as long as the result stays convex (Hertel and Mehlhorn). All corners are lattice points, so all tests are exact.
+//! Builds a constrained Delaunay triangulation of the outlines. Solid triangles are then merged across edges that are
+//! not part of an outline, as long as the result stays convex (Hertel and Mehlhorn). All corners are lattice points, so
+//! all tests are exact.
 
 use crate::{
     contour::{Component, Node},
@@ -10,10 +11,10 @@ use crate::{
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::collections::HashMap;
 
-/// Corners that a piece may have.
+/// The largest number of corners of a piece.
 const MOST_CORNERS: usize = 64;
 
-/// Convex polygons, counter-clockwise, that together are exactly the solid part of a component's box.
+/// Convex counter-clockwise polygons that together exactly cover the solid part of a component's box.
 pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<Node>> {
     let ([west, south], [east, north]) = (component.low, component.high);
     let frame = vec![[west, south], [east, south], [east, north], [west, north]];
@@ -23,7 +24,7 @@ pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<No
     nodes.dedup();
     let points = nodes.iter().map(|node| Point2::new(f64::from(node[0]), f64::from(node[1]))).collect();
     let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(points, Vec::new())
-        .expect("lattice points are finite and differ");
+        .expect("lattice points are finite and distinct");
     let vertices: Vec<_> = mesh.vertices().map(|vertex| vertex.fix()).collect();
     let vertex = |node: &Node| vertices[nodes.binary_search(node).expect("every corner is in the list")];
     for ring in rings {
@@ -44,7 +45,7 @@ pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<No
         .filter(|edge| !edge.is_constraint_edge())
         .map(|edge| edge.positions().map(node_of))
         .collect();
-    // Short edges between pieces are the least useful, so they go first; ties by place.
+    // Short edges between pieces are the least useful, so they are removed first; ties are broken by position.
     inner.sort_unstable_by_key(|[a, b]| ((b[0] - a[0]).pow(2) + (b[1] - a[1]).pow(2), *a, *b));
     for [a, b] in inner {
         joined.join(a, b);
@@ -52,7 +53,7 @@ pub(crate) fn pieces(component: &Component, outlines: &Simplified) -> Vec<Vec<No
     joined.polygons.into_iter().flatten().map(|ring| without_collinear(&ring)).collect()
 }
 
-/// Polygons and which of them has an edge.
+/// Polygons, and which polygon has which edge.
 struct Joined {
     polygons: Vec<Option<Vec<Node>>>,
     by_edge: HashMap<[Node; 2], usize>,
@@ -68,7 +69,7 @@ impl Joined {
         Self { polygons: polygons.into_iter().map(Some).collect(), by_edge }
     }
 
-    /// Joins the polygons on both sides of an edge, if both are solid and the result is convex.
+    /// Merges the polygons on both sides of an edge, if both are solid and the result is convex.
     fn join(&mut self, a: Node, b: Node) {
         let (Some(left), Some(right)) = (self.by_edge.get(&[a, b]), self.by_edge.get(&[b, a])) else {
             return;
@@ -78,7 +79,7 @@ impl Joined {
         if left == right || one.len() + other.len() > MOST_CORNERS + 2 {
             return;
         }
-        // From b around the left polygon to a, and on around the right one back to b.
+        // From b around the left polygon to a, then around the right polygon back to b.
         let mut ring = from(one, b);
         ring.extend(&from(other, a)[1..other.len() - 1]);
         let n = ring.len();
@@ -98,8 +99,8 @@ impl Joined {
     }
 }
 
-/// A ring that begins at one of its corners.
+/// The ring, rotated to begin at one of its corners.
 fn from(ring: &[Node], first: Node) -> Vec<Node> {
-    let at = ring.iter().position(|node| *node == first).expect("the edge is one of the ring's");
+    let at = ring.iter().position(|node| *node == first).expect("the edge is part of the ring");
     ring[at..].iter().chain(&ring[..at]).copied().collect()
 }

@@ -1,49 +1,49 @@
-//! A floor as another program's file states it, and the scenario made of it.
+//! A floor plan from the file of another program, and the scenario made from it.
 
 use std::{f64::consts::TAU, fmt::Write};
 use world::{Boundary, DrawnPlate, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
 
-/// Corners that a polygon of a scenario may have; its sides are compared pair by pair.
+/// The largest number of corners of a polygon in a scenario; its sides are compared in pairs.
 pub const MOST_CORNERS: usize = 200;
-/// Plates that a floor of a scenario may have.
+/// The largest number of plates of a floor in a scenario.
 pub const MOST_PLATES: usize = 2_000;
-/// Stations of a scenario whose file names none.
+/// The number of stations in a scenario from a file without stations.
 const N_STATIONS: usize = 5;
-/// Places along a side of the floor among which the start is chosen.
+/// The number of points along each side of the grid on which the start is chosen.
 const N_PLACES: usize = 64;
-/// Width of floor scanned in one pass, metres, and the pace by which the time limit is estimated, metres per second.
+/// The width of a scanned pass in metres, and the speed in metres per second for estimating the time limit.
 const SWATH_M: f64 = 0.6;
 const PACE_M_PER_S: f64 = 0.1;
 
-/// Time limit that a scenario is given at most, seconds: its ticks are counted.
+/// The largest time limit for a scenario in seconds; the number of ticks is limited.
 const LONGEST_S: f64 = 500_000.0;
 
-/// Something with a name, tank frame.
+/// A named shape in the tank frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
-    /// What it is called; no two are called the same.
+    /// The name; it is unique.
     pub name: String,
-    /// Its outline, convex if a polygon.
+    /// The outline; a polygon is convex.
     pub shape: Shape,
 }
 
-/// A floor plan, tank frame: a round tank is centred at the origin.
+/// A floor plan in the tank frame; a round tank is centred at the origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FloorPlan {
-    /// The shell.
+    /// The shell of the tank.
     pub boundary: Boundary,
-    /// Columns and pipes.
+    /// The columns and pipes.
     pub obstacles: Vec<Named>,
-    /// Where the robot must not go: sumps and no-go areas.
+    /// Areas that the robot must not enter: sumps and no-go areas.
     pub no_go: Vec<Named>,
-    /// Plates of the floor, if the file shows them; where they overlap the first one counts.
+    /// Plates of the floor, if the file contains them; where plates overlap, the first takes precedence.
     pub plates: Vec<DrawnPlate>,
-    /// What was assumed, changed or not understood, for people.
+    /// Notes for the user: what was assumed, changed or not understood.
     pub notes: Vec<String>,
 }
 
 impl FloorPlan {
-    /// The plan as a world, for a picture.
+    /// The plan as a world, for drawing it.
     pub fn world(&self) -> World {
         let obstacle = |(index, named): (usize, &Named)| Obstacle {
             id: ObstacleId(index as u32 + 1),
@@ -64,9 +64,10 @@ impl FloorPlan {
         }
     }
 
-    /// The text of a scenario that scans this floor by a planner; what the file does not say is a default that a comment names.
+    /// The text of a scenario that scans this floor with a planner. Comments mark defaults for what the file does not
+    /// state.
     pub fn scenario(&self, name: &str, source: &str, planner: &str) -> String {
-        let mut text = format!("# The floor is that of {}.\n", commented(source));
+        let mut text = format!("# The floor was imported from {}.\n", commented(source));
         for note in &self.notes {
             let _ = writeln!(text, "# - {}", commented(note));
         }
@@ -85,7 +86,7 @@ impl FloorPlan {
         let cell_m = (self.boundary.area_m2().sqrt() / 400.0).max(0.05);
         let _ = write!(
             text,
-            "\n# Where the robot is put down, the place with the most room; change it to the manhole.\n\
+            "\n# The start is the place with the most room; change it to the manhole.\n\
              [robot]\nstart_m = {}\n\n\
              # Assumed: replace these stations by the surveyed ones.\n\
              [ae]\nnoise = {{ model = \"uniform\", ratio = 0.02 }}\nstations = [\n",
@@ -104,7 +105,7 @@ impl FloorPlan {
         text
     }
 
-    /// The place with the most room, of those on a grid.
+    /// The point of a grid with the most room.
     fn roomiest(&self) -> Point {
         let world = self.world();
         let solids: Vec<Obstacle> = world
@@ -129,7 +130,7 @@ impl FloorPlan {
         best.unwrap_or_else(Point::origin)
     }
 
-    /// Places on the shell, spread evenly.
+    /// Points on the shell, evenly spaced.
     fn stations(&self) -> Vec<Point> {
         match &self.boundary {
             Boundary::Circle { radius_m } => {
@@ -175,12 +176,12 @@ fn plates(text: &mut String, plates: &[DrawnPlate]) {
     *text += "]\n";
 }
 
-/// A text as TOML, whatever is in it: names are those of other programs' files.
+/// A text as a TOML string; escapes any content, since names come from files of other programs.
 fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// A text on the line of a comment, in which TOML allows no control characters.
+/// A text for a comment line; TOML allows no control characters there.
 fn commented(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
@@ -193,13 +194,13 @@ fn point(at: Point) -> String {
     format!("[{}, {}]", micrometres(at.x), micrometres(at.y))
 }
 
-/// Points as TOML, to the micrometre.
+/// Points as TOML, rounded to the micrometre.
 pub fn points(points: &[Point]) -> String {
     let all: Vec<String> = points.iter().map(|at| point(*at)).collect();
     format!("[{}]", all.join(", "))
 }
 
-/// Centre, least and largest radius of a ring of many corners that is a circle to within half a per cent.
+/// The centre, smallest and largest radius of a ring with many corners that is a circle to within half a per cent.
 pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
     const MANY: usize = 16;
     let center = world::shape::mean_of(ring);
@@ -208,7 +209,7 @@ pub(crate) fn round(ring: &[Point]) -> Option<(Point, f64, f64)> {
     (ring.len() >= MANY && largest_m - least_m < 0.005 * largest_m).then_some((center, least_m, largest_m))
 }
 
-/// The convex hull of some points, counter-clockwise, without collinear corners (Andrew's monotone chain).
+/// The convex hull of points, counter-clockwise, without collinear corners (Andrew's monotone chain).
 pub(crate) fn hull(points: &[Point]) -> Vec<Point> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));

@@ -1,35 +1,36 @@
-//! Outlines with fewer corners, on the safe side: floor may be lost, none is gained.
+//! Simplifies outlines on the safe side: floor may be lost, but none is gained.
 //!
-//! A chord between two corners of an outline replaces the chain between them where all of the chain lies on its solid
-//! side. The floor between, the *pocket*, becomes solid; none of it may be farther from a solid cell than the tolerance.
-//! No cell belongs to two pockets, so outlines never cross and the pocket of a point is known by its cell.
+//! A chord between two corners of an outline replaces the chain between them if the whole chain is on its solid side.
+//! The floor between chord and chain, the *pocket*, becomes solid; no part of it may be farther from a solid cell than
+//! the tolerance. No cell belongs to two pockets, so outlines never cross, and the cell of a point determines its
+//! pocket.
 
 use crate::contour::{Component, Node};
 use std::collections::HashMap;
 
-/// Corners of an outline that one chord may replace, and edges of cells along them.
+/// The largest number of corners of an outline that one chord may replace, and of cell edges along them.
 const LONGEST_CHAIN: usize = 32;
 const MOST_EDGES: i32 = 64;
-/// Chords tried in vain before a corner is kept.
+/// The number of failed chords after which a corner is kept.
 const MOST_FAILED: usize = 6;
-/// Slack for sums of areas and distances of cells.
+/// Slack for sums of areas and distances, in cells.
 const ROUNDING: f64 = 1e-9;
 
-/// A straight edge of an outline: solid to the right.
+/// A straight edge of an outline, with the solid side to the right.
 pub(crate) type Chord = [Node; 2];
 
-/// Outlines after simplification, lattice.
+/// Outlines after simplification, in lattice coordinates.
 pub(crate) struct Simplified {
-    /// Closed chains of corners, floor to the left.
+    /// Closed chains of corners, with the floor to the left.
     pub rings: Vec<Vec<Node>>,
-    /// The chord that takes a part of a free cell, by cell.
+    /// The chord that cuts each partly solid free cell.
     pub chords: HashMap<Node, Chord>,
-    /// Farthest that any floor that became solid is from a solid cell, cells.
+    /// The largest distance in cells from floor that became solid to a solid cell.
     pub error_cells: f64,
 }
 
 impl Simplified {
-    /// Outlines simplified by at most `tolerance` cells.
+    /// Simplifies the outlines of a component by at most `tolerance` cells.
     pub(crate) fn new(component: &Component, tolerance: f64) -> Self {
         let mut simplified = Self { rings: Vec::new(), chords: HashMap::new(), error_cells: 0.0 };
         for ring in component.rings() {
@@ -39,7 +40,7 @@ impl Simplified {
         simplified
     }
 
-    /// Whether a point within a cell is free; on a chord the answer may be either.
+    /// Whether a point in a cell is free; for a point on a chord, the answer can be either.
     pub(crate) fn is_free(&self, component: &Component, x: f64, y: f64) -> bool {
         let cell = [x.floor() as i32, y.floor() as i32];
         component.is_free(cell) && self.chords.get(&cell).is_none_or(|chord| side(*chord, [x, y]) > 0.0)
@@ -47,7 +48,7 @@ impl Simplified {
 
     fn shorten(&mut self, component: &Component, mut ring: Vec<Node>, tolerance: f64) -> Vec<Node> {
         let n = ring.len();
-        // Chords begin at corners of solids; an outline without any has nothing to gain.
+        // Chords begin at solid corners; an outline without solid corners cannot be simplified.
         let turn = |k: usize| cross(ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]);
         let Some(first) = (0..n).find(|k| turn(*k) < 0) else { return ring };
         ring.rotate_left(first);
@@ -56,7 +57,7 @@ impl Simplified {
         let mut at = 0;
         while at < n {
             kept.push(ring[at]);
-            // Two corners of the outline stay, whatever happens.
+            // Always keep two corners of the outline.
             let last = (at + LONGEST_CHAIN).min(n).min(at + n.saturating_sub(2));
             let (mut best, mut n_failed) = (None, 0);
             for to in at + 2..=last {
@@ -118,20 +119,20 @@ impl Pocket {
                 return None;
             }
             let sides = Sides::of(component, cell);
-            // A slot in which the robot may drive is not filled, however narrow its cells make it.
+            // Do not fill a slot that the robot may be able to enter, however narrow its cells are.
             n_whole += usize::from(sides.is_slot());
             error = error.max(sides.farthest(cell, &region));
             area += region_area;
             within.push(cell);
         }
-        // Any cell that has no solid beside it is missing from the sum.
+        // A cell without a solid neighbour would be missing from the sum.
         let is_whole = (area - enclosed(chain)).abs() < 1e-6;
         let is_near = error <= tolerance + ROUNDING && (n_whole == 0 || within.len() == 1);
         (is_whole && is_near).then_some(Self { cells: within, error })
     }
 }
 
-/// Free cells to the left of every unit edge of a chain; none if the chain is too long.
+/// The free cells to the left of every unit edge of a chain; `None` if the chain is too long.
 fn cells_along(chain: &[Node]) -> Option<Vec<Node>> {
     let length = |pair: &[Node]| (pair[1][0] - pair[0][0]).abs() + (pair[1][1] - pair[0][1]).abs();
     if chain.windows(2).map(length).sum::<i32>() > MOST_EDGES {
@@ -152,7 +153,7 @@ fn cells_along(chain: &[Node]) -> Option<Vec<Node>> {
     Some(cells.collect())
 }
 
-/// Which neighbours of a cell are solid: west, east, south, north.
+/// Whether the neighbours of a cell are solid: west, east, south, north.
 struct Sides([bool; 4]);
 
 impl Sides {
@@ -165,12 +166,12 @@ impl Sides {
         (west && east) || (south && north)
     }
 
-    /// Farthest that any point of a convex region of the cell is from the solid sides, cells; at least that.
+    /// An upper bound on the distance of any point of a convex region in the cell from the solid sides, in cells.
     fn farthest(&self, cell: Node, region: &[[f64; 2]]) -> f64 {
         if self.is_slot() {
             return 0.5;
         }
-        // Turned so that what is solid lies to the west and south: distances are x and y.
+        // Mirrored so that the solid sides are west and south; distances are then x and y.
         let [west, east, south, north] = self.0;
         let turned = |p: &[f64; 2]| {
             let (x, y) = (p[0] - f64::from(cell[0]), p[1] - f64::from(cell[1]));
@@ -180,7 +181,7 @@ impl Sides {
         };
         let points: Vec<[f64; 2]> = region.iter().map(turned).collect();
         let edges = points.iter().zip(points.iter().cycle().skip(1));
-        // The least of both grows towards where they are equal.
+        // The smaller distance increases towards the points where both are equal.
         let equal = edges.filter_map(|(p, q)| {
             let (before, after) = (p[0] - p[1], q[0] - q[1]);
             let crosses = before.is_finite() && before * after < 0.0;
@@ -213,19 +214,19 @@ fn area_of(ring: &[[f64; 2]]) -> f64 {
     edges.map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() / 2.0
 }
 
-/// Area that a chain and its chord enclose, cells.
+/// The area in cells that a chain and its chord enclose.
 fn enclosed(chain: &[Node]) -> f64 {
     let ring: Vec<[f64; 2]> = chain.iter().map(|node| node.map(f64::from)).collect();
     area_of(&ring)
 }
 
-/// Positive to the left of a chord, negative on its solid side.
+/// Positive to the left of a chord, and negative on its solid side.
 fn side([a, b]: Chord, [x, y]: [f64; 2]) -> f64 {
     let [ax, ay, bx, by] = [a[0], a[1], b[0], b[1]].map(f64::from);
     (bx - ax) * (y - ay) - (by - ay) * (x - ax)
 }
 
-/// Twice the area of a triangle, positive when counter-clockwise.
+/// Twice the area of a triangle; positive if counter-clockwise.
 pub(crate) fn cross(a: Node, b: Node, c: Node) -> i64 {
     let wide = |v: i32| i64::from(v);
     (wide(b[0]) - wide(a[0])) * (wide(c[1]) - wide(a[1]))

@@ -1,8 +1,8 @@
-//! Text in the encodings that drawing programs, spreadsheets and editors write.
+//! Decodes text in the encodings that drawing programs, spreadsheets and editors write.
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 
-/// A text: UTF-8, UTF-16; else in the encoding that the file is said to have, by default that of Western European Windows.
+/// Decodes a text as UTF-8 or UTF-16, else in the encoding that the file states, by default Western European Windows.
 pub(crate) fn decoded(bytes: &[u8], said: Option<&'static Encoding>) -> String {
     let marked = Encoding::for_bom(bytes).map(|(encoding, _)| encoding);
     let wide = || Encoding::for_label(foreign::wide(bytes)?.as_bytes());
@@ -12,7 +12,7 @@ pub(crate) fn decoded(bytes: &[u8], said: Option<&'static Encoding>) -> String {
     encoding.decode(bytes).0.into_owned()
 }
 
-/// The encoding that a drawing names as its code page (`$DWGCODEPAGE`), as `ANSI_1252`.
+/// The encoding for a code page named in a drawing (`$DWGCODEPAGE`), for example `ANSI_1252`.
 pub(crate) fn code_page(name: &str) -> Option<&'static Encoding> {
     let number = name.trim().rsplit('_').next()?;
     let label = match number {

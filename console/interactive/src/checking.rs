@@ -1,4 +1,5 @@
-//! What the start depends on outside the screen: the plugin's file, the disk, the recorder, the engine, the clock.
+//! Checks before the start of everything outside the screen that a mission depends on: plugins, disk, recorder, engine
+//! and clock.
 
 use super::{desk::Tools, inbox::RunOutbox, line::EngineHandle};
 use mission::{Check, CheckOutcome};
@@ -10,17 +11,17 @@ use std::{
 };
 use tui::RunMsg;
 
-/// An engine that takes longer than this to answer would be late to stop the robot.
+/// The longest acceptable response time of the engine; a slower engine would be late to stop the robot.
 const STOP_LIMIT: Duration = Duration::from_millis(50);
-/// How long an answer of the engine is waited for.
+/// The longest wait for an answer of the engine.
 const STOP_PATIENCE: Duration = Duration::from_secs(2);
-/// How long the two clocks are compared, and by how much they may differ.
+/// The time over which the two clocks are compared, and the largest acceptable difference.
 const CLOCK_SPAN: Duration = Duration::from_millis(100);
 const CLOCK_LIMIT: Duration = Duration::from_millis(20);
-/// Space that is wanted besides what the mission is expected to take, bytes.
+/// The free space in bytes required beyond the expected size of the run.
 const RESERVE_BYTES: u64 = 50_000_000;
 
-/// Checks everything in a thread of its own, and reports to the screen.
+/// Runs all checks on a separate thread and reports them to the screen.
 pub(super) fn begin(tools: &Tools, engine: Option<EngineHandle>, screen: RunOutbox, needed_bytes: u64) {
     let (tools, fallback) = (tools.clone(), screen.clone());
     let began = thread::Builder::new().name("check".into()).spawn(move || {
@@ -30,7 +31,7 @@ pub(super) fn begin(tools: &Tools, engine: Option<EngineHandle>, screen: RunOutb
         screen.send(RunMsg::Checked(checks));
     });
     if let Err(error) = began {
-        let found = format!("cannot check: {error}");
+        let found = format!("checks failed: {error}");
         fallback.send(RunMsg::Checked(vec![check("system", CheckOutcome::Failed, found)]));
     }
 }
@@ -39,7 +40,7 @@ fn check(what: &str, outcome: CheckOutcome, found: String) -> Check {
     Check { what: what.to_owned(), outcome, found }
 }
 
-/// Whether the plugins are still the files that were looked at when the console was started.
+/// Checks that the plugin files have not changed since they were surveyed.
 fn plugins(tools: &Tools) -> Check {
     let found = tools.planners.get();
     let planners = &found.planners;
@@ -65,7 +66,7 @@ fn disk(logs: &Path, needed_bytes: u64) -> Check {
             "disk",
             CheckOutcome::Failed,
             format!(
-                "{} free, {} needed; delete runs or choose another --logs",
+                "{} free, {} needed; delete runs or choose a different --logs",
                 megabytes(free),
                 megabytes(needed_bytes)
             ),
@@ -93,7 +94,7 @@ fn recorder(logs: &Path) -> Check {
     }
 }
 
-/// How long a stop would wait for the engine.
+/// Measures how long an order to stop would wait for the engine.
 fn stop(engine: Option<&EngineHandle>) -> Check {
     let Some(took) = engine.and_then(|engine| engine.measure(STOP_PATIENCE)) else {
         let found = format!("the engine did not answer within {} s", STOP_PATIENCE.as_secs());
@@ -101,11 +102,11 @@ fn stop(engine: Option<&EngineHandle>) -> Check {
     };
     let outcome = if took <= STOP_LIMIT { CheckOutcome::Passed } else { CheckOutcome::Warning };
     let found =
-        format!("engine answers in {:.1} ms, limit {} ms", took.as_secs_f64() * 1e3, STOP_LIMIT.as_millis());
+        format!("engine answers in {:.1} ms (limit {} ms)", took.as_secs_f64() * 1e3, STOP_LIMIT.as_millis());
     check("stop", outcome, found)
 }
 
-/// Whether the clock on the wall runs as fast as the one that never jumps.
+/// Checks that the wall clock runs at the same rate as the monotonic clock.
 fn clock() -> Check {
     let (steady, wall) = (Instant::now(), SystemTime::now());
     thread::sleep(CLOCK_SPAN);
@@ -120,10 +121,8 @@ fn clock() -> Check {
         Ok(difference) => check(
             "clock",
             CheckOutcome::Warning,
-            format!("jumped by {:.0} ms: times of files may be wrong", difference.as_secs_f64() * 1e3),
+            format!("jumped by {:.0} ms: file times may be wrong", difference.as_secs_f64() * 1e3),
         ),
-        Err(_) => {
-            check("clock", CheckOutcome::Warning, "jumped backwards: times of files may be wrong".into())
-        }
+        Err(_) => check("clock", CheckOutcome::Warning, "jumped backwards: file times may be wrong".into()),
     }
 }

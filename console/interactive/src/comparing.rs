@@ -1,4 +1,4 @@
-//! Another planner's plan of the mission that waits, made in a worker of its own; it is never flown.
+//! Another planner's plan of the waiting mission, made in a separate worker for comparison; it is never run.
 
 use super::inbox::RunOutbox;
 use account::Estimate;
@@ -20,7 +20,7 @@ use tui::{RunMsg, model::GhostPlan};
 /// The only worker of a comparison.
 const WORKER: WorkerId = WorkerId(0);
 
-/// A plan that is being made for comparison; given up when dropped.
+/// A comparison plan in progress; dropping this cancels it.
 pub(super) struct Comparing {
     given_up: Arc<AtomicBool>,
     waker: Waker,
@@ -37,7 +37,7 @@ impl Comparing {
     /// Begins to plan.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The thread cannot be started.
     pub(super) fn begin(
         scenario: Arc<Scenario>,
         choice: PlannerChoice,
@@ -72,7 +72,7 @@ fn plan(
     let open = What::Open { choice: choice.clone(), site: Arc::clone(&plan_ask.site), restore: None };
     answer(host, 1, open, given_up)?;
     let Given::Plan(plan) = answer(host, 2, What::Plan(Box::new(plan_ask)), given_up)? else {
-        return Err(format!("planner {} gave no plan", choice.id));
+        return Err(format!("planner {} returned no plan", choice.id));
     };
     let certified = mission
         .tether
@@ -82,12 +82,12 @@ fn plan(
     Ok(GhostPlan { path: tui::model::Trail::thinned(&plan.path), estimate, certified })
 }
 
-/// Asks, and waits for the answer, unless it is given up.
+/// Sends an ask and waits for its answer, unless the comparison is cancelled.
 fn answer(host: &mut Host, n: u32, what: What, given_up: &AtomicBool) -> Result<Given, String> {
     host.submit(Ask { id: AskId { worker: WORKER, n }, what });
     loop {
         if given_up.load(Ordering::SeqCst) {
-            return Err("given up".to_owned());
+            return Err("cancelled".to_owned());
         }
         if let Some(Answer { result, .. }) = host.next(None) {
             return result.map_err(|fault| fault.message);

@@ -1,4 +1,4 @@
-//! What the operator has set up: `config.toml` and `keys.toml` in the XDG configuration folder.
+//! The operator's configuration: `config.toml` and `keys.toml` in the XDG configuration folder.
 
 mod fault;
 mod keys;
@@ -18,27 +18,27 @@ use tui::{
     model::{console::Preferences, home::Attention},
 };
 
-/// Name of the file of settings.
+/// The name of the settings file.
 const SETTINGS: &str = "config.toml";
-/// Name of the file of keys.
+/// The name of the key-bindings file.
 const KEYS: &str = "keys.toml";
 
-/// What the operator has set up.
+/// The operator's configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Config {
-    /// The colours; `None`: by the terminal's background.
+    /// The colour theme; `None`: chosen by the terminal's background.
     pub theme: Option<ThemeName>,
-    /// How many colours; `None`: as many as the terminal has.
+    /// The number of colours; `None`: as many as the terminal supports.
     pub colours: Option<Colours>,
-    /// Folders of scenarios for the home screen.
+    /// The scenario folders of the home screen.
     pub scenarios: Vec<PathBuf>,
-    /// Speed of a simulation at first.
+    /// The initial speed of a simulation.
     pub speed: Speed,
-    /// What the screen itself needs to know.
+    /// The settings that the screen uses.
     pub preferences: Preferences,
-    /// Keys and short names of commands.
+    /// Key bindings and aliases of commands.
     pub keys: Keymap,
-    /// What is wrong with the files, for the home screen.
+    /// Problems of the files, for the home screen.
     pub attention: Vec<Attention>,
 }
 
@@ -57,7 +57,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Reads both files; what is missing or faulty leaves its default.
+    /// Reads both files; a missing or faulty entry keeps its default.
     pub(crate) fn load() -> Self {
         let Some(folder) = folder() else { return Self::default() };
         let mut config = Self::default();
@@ -67,7 +67,7 @@ impl Config {
         config
     }
 
-    /// A model with what the operator has set up.
+    /// Applies the configuration to a model.
     pub(crate) fn apply(&self, mut model: Model) -> Model {
         let background = std::env::var("COLORFGBG").ok();
         model.ui.theme = self.theme.unwrap_or_else(|| ThemeName::for_background(background.as_deref()));
@@ -87,7 +87,7 @@ impl Config {
     }
 }
 
-/// Reads the text of a file into the configuration.
+/// Reads the text of a file into the configuration; returns its faults.
 type Read = fn(&mut Config, &str) -> Vec<Fault>;
 
 fn attention_to(fault: &Fault, name: &str, text: &str) -> Attention {
@@ -107,7 +107,7 @@ fn name_of(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Whether a file is one of the two by its name.
+/// Whether the name of a file is that of a configuration file.
 pub fn is_one(file: &Path) -> bool {
     reader_of(file).is_some()
 }
@@ -120,10 +120,10 @@ fn reader_of(file: &Path) -> Option<Read> {
     }
 }
 
-/// Checks a file if it is one of the two by its name; what it holds.
+/// Checks a file if its name is that of a configuration file; returns a description.
 ///
 /// # Errors
-/// What is wrong with it, a line each.
+/// The faults of the file, one per line.
 pub fn check(file: &Path) -> Option<Result<String, String>> {
     let read = reader_of(file)?;
     let text = match texts::read_regular(file) {

@@ -1,13 +1,14 @@
-//! What is kept when the screen itself fails.
+//! The crash report of the screen.
 
 use anyhow::anyhow;
 use runs::utc;
 use std::{path::Path, time::SystemTime};
 use tui::Model;
 
-/// Writes what the screen knew beside the runs; the error says where, and that the run was closed.
+/// Writes the state of the screen to the folder of the runs. Returns an error that states the file, and that the run
+/// was closed.
 ///
-/// The file is a model as JSON: it can be opened in a test of the screen.
+/// The file is a model as JSON, which a test of the screen can open.
 pub(super) fn report(logs: &Path, model: &Model) -> anyhow::Error {
     let name = format!("crash-{}.json", utc(SystemTime::now()));
     let path = logs.join(name);
@@ -17,10 +18,15 @@ pub(super) fn report(logs: &Path, model: &Model) -> anyhow::Error {
     });
     match kept {
         Ok(()) => {
-            anyhow!("the screen failed; the run was closed, what the screen knew is in {}", path.display())
+            anyhow!(
+                "the screen failed; the run was closed, and the state of the screen was saved in {}",
+                path.display()
+            )
         }
         Err(error) => {
-            anyhow!("the screen failed; the run was closed, but no crash report could be written: {error}")
+            anyhow!(
+                "the screen failed; the run was closed, but the crash report could not be written: {error}"
+            )
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The thread that opens runs one after the other, and has work done beside the screen.
+//! The desk: a thread that opens runs one after the other and starts background work.
 //!
-//! The engine of a run that is open is closed before the next one is opened: the journal of a run is whole before the
+//! The engine of the open run is closed before the next run is opened, so the journal of a run is complete before the
 //! next one begins.
 
 use super::{
@@ -39,59 +39,59 @@ use std::{
 };
 use tui::{Job, Msg, RunId, RunMsg, Source, Speed, Transport};
 
-/// What the desk is asked for.
+/// A request to the desk.
 pub(super) enum Request {
-    /// Close the run that is open and open another one; it stays open if that cannot be.
+    /// Close the open run and open another; if the new run cannot be opened, the old one stays open.
     Open { id: RunId, source: Source, planner: Option<PlannerChoice>, speed: Speed },
-    /// Close the run that is open and play a past one back.
+    /// Close the open run and play back a past run.
     Replay { id: RunId, run: String },
-    /// Something for the replay that is open.
+    /// Control the open replay.
     Transport(Transport),
-    /// Play back at another pace.
+    /// Change the speed of the replay.
     Pace(Speed),
-    /// Look at what the start depends on.
+    /// Run the checks before the start.
     Check { needed_bytes: u64 },
-    /// Have another planner plan the mission that is open.
+    /// Have another planner plan the open mission, for comparison.
     Compare(PlannerChoice),
-    /// Give that plan up.
+    /// Cancel the comparison plan.
     StopComparing,
-    /// Forecast how the held mission would go on with some planners.
+    /// Forecast how the held mission would continue with each of these planners.
     Forecast(Vec<PlannerChoice>),
-    /// Give the forecasts up.
+    /// Cancel the forecasts.
     StopForecasting,
-    /// Keep parameters under a name.
+    /// Save parameters as a named preset.
     SavePreset { name: String, choice: PlannerChoice },
-    /// Keep a command line for later sessions.
+    /// Save a command line in the history.
     Remember(String),
-    /// Take together what the run that is open and those before it have scanned.
+    /// Combine the coverage of the open run and of these earlier runs.
     Combine(Vec<String>),
-    /// Look at the plugins again.
+    /// Survey the plugins again.
     Survey,
-    /// Look at the disk again.
+    /// Rescan the scenarios and runs on disk.
     Look,
-    /// Work on a past run.
+    /// Run a job on a past run.
     Do(Job),
-    /// Close the run that is open, quickly after a signal, and stop.
+    /// Close the open run and stop; after a signal (`hurry`), quickly.
     Leave { hurry: bool },
 }
 
-/// The planners and plugins as they were found last.
+/// The planners and plugins of the latest survey.
 #[derive(Clone, Default)]
 pub(super) struct Known(Arc<Mutex<Arc<Found>>>);
 
 impl Known {
-    /// Other planners were found.
+    /// Replaces the result of the survey.
     pub(super) fn set(&self, found: Found) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(found);
     }
 
-    /// What was found.
+    /// The result of the latest survey.
     pub(super) fn get(&self) -> Arc<Found> {
         Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// What everything at the desk needs.
+/// The resources that all work of the desk shares.
 #[derive(Clone)]
 pub(super) struct Tools {
     pub logs: PathBuf,
@@ -101,40 +101,40 @@ pub(super) struct Tools {
     pub config: Arc<Config>,
 }
 
-/// The desk.
+/// The desk's thread.
 pub(super) struct Desk {
     tools: Tools,
     disk: Arc<Disk>,
-    /// What the command line changes in the scenario that it names.
+    /// Changes from the command line to the scenario named there.
     settings: Settings,
-    /// The pace at which runs are opened.
+    /// The speed of newly opened runs.
     speed: Speed,
     drill: Option<Drill>,
     current: Current,
     engine: Option<Engine>,
-    /// The past run that is played back; then there is no engine.
+    /// The replay of a past run; there is no engine then.
     player: Option<Player>,
-    /// The mission that is open.
+    /// The open mission.
     opened: Option<(RunId, Arc<Scenario>)>,
     comparing: Option<Comparing>,
     forecasting: Option<Forecasting>,
-    /// The last run that was flown.
+    /// The last run that was flown, if any.
     flown: Option<Closed>,
 }
 
-/// The desk, seen from outside.
+/// A handle that sends requests to the desk.
 #[derive(Clone)]
 pub(super) struct DeskHandle(Sender<Request>);
 
 impl DeskHandle {
-    /// Hands in a request; a desk that has stopped takes none.
+    /// Sends a request; ignored if the desk has stopped.
     pub(super) fn request(&self, request: Request) {
         let _ = self.0.send(request);
     }
 }
 
 impl Desk {
-    /// A desk without a run.
+    /// Creates a desk without a run.
     pub(super) fn new(tools: Tools, settings: Settings, speed: Speed, drill: Option<Drill>) -> Self {
         let disk = Arc::new(Disk::new(tools.clone()));
         let current = Current::default();
@@ -154,15 +154,15 @@ impl Desk {
         }
     }
 
-    /// The engine of the run that is open.
+    /// The engine of the open run.
     pub(super) fn current(&self) -> Current {
         self.current.clone()
     }
 
-    /// Opens a scenario that has been read, with the flight that was prepared of it.
+    /// Opens a scenario that has been read, with its prepared flight.
     ///
     /// # Errors
-    /// Its planners are not there or do not take their parameters; the system gives no thread.
+    /// A planner is not available or does not accept its parameters, or the thread cannot be started.
     pub(super) fn open(&mut self, id: RunId, scenario: &Scenario, flight: Flight) -> anyhow::Result<()> {
         check_choices(scenario, &self.tools.planners.get())?;
         self.launch(id, scenario, flight)
@@ -178,7 +178,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Works in a thread of its own from now on.
+    /// Starts the desk's thread.
     pub(super) fn start(self) -> anyhow::Result<(DeskHandle, JoinHandle<anyhow::Result<Option<Closed>>>)> {
         let (requests, asked) = mpsc::channel();
         let thread = thread::Builder::new().name("desk".into()).spawn(move || self.work(&asked))?;
@@ -215,7 +215,7 @@ impl Desk {
         Ok(self.flown)
     }
 
-    /// Everything that can be wrong with a scenario is found before the run that is open is closed.
+    /// Finds every problem of the new scenario before it closes the open run.
     fn replace(&mut self, id: RunId, source: &Source, planner: Option<PlannerChoice>) -> anyhow::Result<()> {
         let opened = match self.prepare(source, planner) {
             Ok((scenario, flight)) => {
@@ -240,10 +240,10 @@ impl Desk {
         Ok((scenario, flight))
     }
 
-    /// Closes the run that is open and plays a past one back.
+    /// Closes the open run and plays back a past run.
     ///
     /// # Errors
-    /// The run that is open cannot be closed.
+    /// The open run cannot be closed.
     pub(super) fn replay(&mut self, id: RunId, run: String) -> anyhow::Result<()> {
         self.close(false)?;
         let Tools { logs, outbox, .. } = &self.tools;
@@ -255,12 +255,12 @@ impl Desk {
         Ok(())
     }
 
-    /// Hands something to the replay that is open.
+    /// Passes a control to the open replay.
     pub(super) fn transport(&self, transport: &Transport) {
         self.player.iter().for_each(|player| player.transport(transport.clone()));
     }
 
-    /// Plays back at another pace.
+    /// Changes the speed of the replay.
     pub(super) fn pace(&self, speed: Speed) {
         self.player.iter().for_each(|player| player.speed(speed));
     }
@@ -285,11 +285,11 @@ impl Desk {
         let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
         match Comparing::begin(Arc::clone(scenario), choice, &self.tools.plugins, screen) {
             Ok(comparing) => self.comparing = Some(comparing),
-            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot compare: {error}")),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("comparison failed to start: {error}")),
         }
     }
 
-    /// Reading the journals of long runs takes seconds: the desk does not wait for it.
+    /// Runs on a separate thread, because reading the journals of long runs takes seconds.
     fn combine(&self, runs: Vec<String>) {
         let Some((run, _)) = &self.opened else { return };
         let screen = RunOutbox { run: *run, outbox: self.tools.outbox.clone() };
@@ -299,7 +299,7 @@ impl Desk {
             let _ = screen.send(RunMsg::Combined(floor.map(Box::new)));
         });
         if let Err(error) = began {
-            jobs::report(&self.tools.outbox, &format!("cannot combine the runs: {error}"));
+            jobs::report(&self.tools.outbox, &format!("failed to combine the runs: {error}"));
         }
     }
 
@@ -310,7 +310,7 @@ impl Desk {
         let plugins = self.tools.plugins.clone();
         match Forecasting::begin(Arc::clone(scenario), choices, engine, plugins, screen) {
             Ok(forecasting) => self.forecasting = Some(forecasting),
-            Err(error) => jobs::report(&self.tools.outbox, &format!("cannot forecast: {error}")),
+            Err(error) => jobs::report(&self.tools.outbox, &format!("forecast failed to start: {error}")),
         }
     }
 
@@ -318,13 +318,13 @@ impl Desk {
         let Tools { outbox, planners, .. } = &self.tools;
         let (severity, text) = match presets::save(name, choice) {
             Ok(file) => (Severity::Info, format!("preset {name} saved: {}", file.display())),
-            Err(error) => (Severity::Warn, format!("preset {name} is not saved: {error:#}")),
+            Err(error) => (Severity::Warn, format!("preset {name} not saved: {error:#}")),
         };
         outbox.send(Msg::Presets(presets::load(&planners.get().planners)));
         outbox.send(Msg::Notice { severity, text });
     }
 
-    /// Every plugin is opened in a worker of its own; the desk does not wait for them.
+    /// Runs on a separate thread, because a worker is started for each plugin.
     fn survey(&self) {
         let Tools { plugins, planners, outbox, .. } = self.tools.clone();
         let began = thread::Builder::new().name("survey".into()).spawn(move || {
@@ -333,20 +333,20 @@ impl Desk {
             outbox.send(Msg::Planners { found: found.planners, refused: found.refused });
         });
         if let Err(error) = began {
-            jobs::report(&self.tools.outbox, &format!("cannot look at the plugins: {error}"));
+            jobs::report(&self.tools.outbox, &format!("failed to survey the plugins: {error}"));
         }
     }
 
-    /// Scenarios that are many or large take a while to read: the desk is not kept from opening one.
+    /// Runs on a separate thread, because reading many or large scenarios takes time.
     fn look(&self) {
         let disk = Arc::clone(&self.disk);
         let began = thread::Builder::new().name("look".into()).spawn(move || disk.look());
         if let Err(error) = began {
-            jobs::report(&self.tools.outbox, &format!("cannot look at the disk: {error}"));
+            jobs::report(&self.tools.outbox, &format!("failed to rescan the disk: {error}"));
         }
     }
 
-    /// Closes the run that is open.
+    /// Closes the open run.
     fn close(&mut self, hurry: bool) -> anyhow::Result<()> {
         self.current.set(None);
         self.player = None;

@@ -1,7 +1,8 @@
-//! The thread that flies: takes orders, keeps the pace, hands every event to recorder, report and screen.
+//! The engine: a thread that runs the mission. It receives orders, paces the ticks, and sends every event to recorder,
+//! report and screen.
 //!
-//! It never waits in a planner, for the screen or for the disk. Whatever it waits for (the next tick, an answer, room in the
-//! screen's inbox or in the recorder's queue), an order to hold or to end ends the wait at once.
+//! The engine never blocks in a planner, on the screen or on the disk. An order to hold or end immediately interrupts
+//! any wait: for the next tick, an answer, or space in the screen's inbox or in the recorder's queue.
 
 mod estimating;
 mod keeping;
@@ -35,17 +36,17 @@ use std::{
 };
 use tui::{RunMsg, Speed};
 
-/// Time limit for closing the recording when a signal has asked the process to exit.
+/// Time limit for closing the recording after a signal has asked the process to exit.
 const HURRY: Duration = Duration::from_millis(900);
 
-/// The flying thread, seen from outside.
+/// A handle to the engine's thread.
 pub(super) struct Engine {
     handle: EngineHandle,
     thread: JoinHandle<Option<Closed>>,
 }
 
 impl Engine {
-    /// Starts the thread; nothing moves and nothing is written before the operator starts the mission.
+    /// Starts the thread. The robot does not move, and nothing is written, until the operator starts the mission.
     pub(super) fn start(
         (scenario, flight): (&Scenario, Flight),
         (logs, plugins): (&Path, &PluginDirs),
@@ -60,9 +61,9 @@ impl Engine {
             // The receiver lives as long as the host.
             let _ = progress.send((ask, at.clone()));
         }));
-        // Before the screen hears of the run, so that its first order finds an engine.
+        // Set this before the screen receives the run, so that the screen's first order finds an engine.
         current.set(Some(handle.clone()));
-        // Before the thread runs, so that the first frame of the screen shows the scenario and every key counts.
+        // Send this before the thread runs, so that the first frame shows the scenario and every key takes effect.
         screen.send(RunMsg::Events(vec![flight.opened()]));
         let now = Instant::now();
         let engine = EngineThread {
@@ -92,7 +93,7 @@ impl Engine {
         Ok(Self { handle, thread })
     }
 
-    /// Ends the run, closes its files and waits for that; less time is allowed after a signal (`hurry`).
+    /// Ends the run, closes its files and waits for completion; after a signal (`hurry`), with a shorter time limit.
     pub(super) fn close(self, hurry: bool) -> anyhow::Result<Option<Closed>> {
         self.handle.close(hurry);
         self.thread.join().map_err(|panic| anyhow::anyhow!("the engine panicked: {}", words(&*panic)))
@@ -101,35 +102,35 @@ impl Engine {
 
 fn words(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a message".into())
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".into())
 }
 
-/// Everything the thread owns.
+/// The state of the engine's thread.
 struct EngineThread {
     scenario: Scenario,
     logs: PathBuf,
     flight: Flight,
     host: Host,
     watch: PlanWatch,
-    /// How far planners say they are.
+    /// Progress reports of planners.
     reported: Receiver<(AskId, Progress)>,
-    /// The planners' work that the screen shows.
+    /// The planner's work that the screen currently shows.
     shown_work: Option<Work>,
-    /// Whether the estimate of the plan was sent to the screen.
+    /// Whether an estimate of a plan was sent to the screen.
     has_estimated: bool,
     asked: Receiver<Request>,
     screen: RunOutbox,
     speed: Speed,
-    /// What happened before the mission was started; it is written down when it is.
+    /// Events from before the start of the mission; written to the journal when it starts.
     early: Vec<Event>,
-    /// When the stop was asked for that the next tick brings.
+    /// When the stop was requested that the next tick will carry out.
     stop_asked: Option<Instant>,
-    /// How long each stop took, milliseconds.
+    /// The duration of each stop in milliseconds.
     stops_ms: Vec<f64>,
     log: Option<RunLog>,
-    /// Number and mission time of the last tick, seconds.
+    /// The number of the last tick, and its mission time in seconds.
     now: (u64, f64),
-    /// What planners printed in this tick, for the screen alone.
+    /// The planners' output during this tick; only the screen receives it.
     printed: Vec<Event>,
     closed: Option<Closed>,
     health_sent_at: Instant,
@@ -156,7 +157,7 @@ impl EngineThread {
         }
     }
 
-    /// Whether ticks pass by themselves: the mission is under way, or a planner is being prepared for it.
+    /// Whether ticks pass without orders: the mission is under way, or a planner is being prepared.
     fn is_under_way(&self) -> bool {
         match self.flight.phase() {
             Phase::Waiting => self.flight.mission().awaits() != Awaits::Nothing,
@@ -165,14 +166,14 @@ impl EngineThread {
         }
     }
 
-    /// Whether a planner is at work or owes an answer, or only an order can let the robot move.
+    /// Whether a planner is working or owes an answer, or only an order can make the robot move.
     fn waits(&self) -> bool {
         let is_silent =
             matches!(self.flight.phase(), Phase::Held(Hold { by: HoldReason::PlannerSilent { .. }, .. }));
         is_silent || self.is_held_for_good() || self.flight.mission().is_preparing()
     }
 
-    /// Whether nothing but an order changes what the robot does, and no planner owes an answer.
+    /// Whether only an order can change what the robot does, and no planner owes an answer.
     fn rests(&self) -> bool {
         self.is_held_for_good() && !self.flight.mission().is_preparing() && self.watch.current().is_none()
     }
@@ -185,7 +186,7 @@ impl EngineThread {
         if let Some(start) = self.start_among(&orders)
             && let Err(error) = self.open_log()
         {
-            // Nothing moves without being recorded.
+            // The robot must not move unrecorded.
             let why = format!("cannot start: {error:#}");
             self.screen.send_urgent(RunMsg::OrderFailed { order: start, why });
             orders.retain(|order| !order.is_start());
@@ -203,15 +204,15 @@ impl EngineThread {
         }
     }
 
-    /// The order that begins the mission, if nothing is recorded yet and the mission accepts it: one that it refuses leaves no
-    /// run behind.
+    /// The start order, if the mission accepts it and nothing is recorded yet. A refused start order must not create a
+    /// run.
     fn start_among(&self, orders: &[Order]) -> Option<Order> {
         let standing = self.flight.mission().standing();
         let mut starts = orders.iter().filter(|order| order.is_start() && standing.allows(order).is_ok());
         starts.next().filter(|_| self.log.is_none() && self.closed.is_none()).cloned()
     }
 
-    /// Flies a tick and keeps what happened.
+    /// Runs a tick and stores its events.
     fn fly_tick(&mut self, orders: &[Order], window: Window) -> Vec<Event> {
         let mut answers = Windowed::new(&mut self.host, window);
         let events = self.flight.tick(orders, &mut Watched::new(&mut answers, &mut self.watch));
@@ -225,7 +226,7 @@ impl EngineThread {
         events
     }
 
-    /// Sends to the screen what planners are doing beyond this tick, and how far they are.
+    /// Sends to the screen the planners' work that outlasts this tick, with its progress.
     fn send_work(&mut self) {
         let work = self.watch.current();
         if work != self.shown_work.as_ref() {
@@ -233,7 +234,7 @@ impl EngineThread {
             let shown = work.map(|work| (work.what.clone(), work.limit.map(|limit| limit.as_secs_f64())));
             self.send(RunMsg::Busy(shown));
         }
-        // Of each planner the last word counts, and only that of the work that is shown.
+        // Only the latest report counts, and only for the work that is shown.
         let shown = self.shown_work.as_ref().map(|work| work.ask);
         let last = self.reported.try_iter().filter(|(ask, _)| Some(*ask) == shown).last();
         if let Some((_, Progress { share, what })) = last {
@@ -241,7 +242,7 @@ impl EngineThread {
         }
     }
 
-    /// Ends the mission in a tick that waits for nobody, and closes its files.
+    /// Ends the mission in a tick that does not wait for answers, and closes the files.
     fn close(mut self, mut orders: Vec<Order>, hurry: bool) -> Option<Closed> {
         if matches!(self.flight.phase(), Phase::Running(_) | Phase::Held(_)) {
             orders.push(if hurry { Order::Terminate } else { Order::Abort });

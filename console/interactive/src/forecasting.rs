@@ -1,4 +1,5 @@
-//! How a held mission would go on with one planner or another: flown ahead in a copy of the mission, in workers of its own.
+//! Forecasts how a held mission would continue with different planners: a copy of the mission is run ahead with
+//! separate workers.
 
 use super::{inbox::RunOutbox, line::EngineHandle};
 use flight::{Flight, answers::InOrder, hosts};
@@ -19,12 +20,12 @@ use tui::{
 };
 use world::Point;
 
-/// How long the engine may take to give a copy of its flight.
+/// The longest wait for the engine's copy of its flight.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// How often a forecast reports how far it is, ticks.
+/// The number of ticks between two progress reports of a forecast.
 const REPORT_TICKS: u64 = 500;
 
-/// Forecasts that are being made, one after the other; given up when dropped.
+/// Forecasts in progress, one after the other; dropping this cancels them.
 pub(super) struct Forecasting {
     given_up: Arc<AtomicBool>,
 }
@@ -39,7 +40,7 @@ impl Forecasting {
     /// Begins to forecast.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The thread cannot be started.
     pub(super) fn begin(
         scenario: Arc<Scenario>,
         choices: Vec<PlannerChoice>,
@@ -54,7 +55,7 @@ impl Forecasting {
             for choice in choices {
                 let forecast = match &flight {
                     Some(flight) => fly(flight.clone(), &choice, &scenario, &plugins, (&screen, &given_up)),
-                    None => Err("the engine gave no copy of the mission".to_owned()),
+                    None => Err("the engine did not provide a copy of the mission".to_owned()),
                 };
                 if given_up.load(Ordering::SeqCst) {
                     return;
@@ -66,7 +67,7 @@ impl Forecasting {
     }
 }
 
-/// What a forecast has come to so far.
+/// The interim result of a forecast.
 struct Ahead {
     outlook: Outlook,
     path: Vec<Point>,
@@ -115,7 +116,7 @@ impl Ahead {
             EventKind::Held { by, .. } => outlook.reason = by.to_string(),
             _ => {}
         }
-        // The truth of a forecast counts its own ticks, the mission those of the run.
+        // Truth events carry the forecast's own time; all other events carry the time of the run.
         if !matches!(event.kind, EventKind::Truth { .. } | EventKind::TetherTruth { .. }) {
             outlook.after_s = event.t_s - *self.from_s.get_or_insert(event.t_s);
         }
@@ -134,7 +135,7 @@ fn fly(
     let mut orders = vec![Order::ChoosePlanner(choice.clone()), Order::Resume];
     for tick in 0.. {
         if given_up.load(Ordering::SeqCst) {
-            return Err("given up".to_owned());
+            return Err("cancelled".to_owned());
         }
         let events = flight.tick(&orders, &mut answers);
         for event in &events {
@@ -154,7 +155,7 @@ fn fly(
     Ok(Forecast { path: Trail::thinned(&ahead.path), outlook: ahead.outlook })
 }
 
-/// Why the mission does not even go on.
+/// The reason why the mission refuses to continue.
 fn refusal(event: &Event) -> Option<String> {
     match &event.kind {
         EventKind::OrderRefused { why, .. } => Some(why.clone()),
@@ -162,7 +163,7 @@ fn refusal(event: &Event) -> Option<String> {
     }
 }
 
-/// Whether nobody but an operator could let the mission go on.
+/// Whether only an operator could make the mission continue.
 fn is_over(phase: &Phase) -> bool {
     match phase {
         Phase::Ended(_) => true,

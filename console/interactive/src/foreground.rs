@@ -1,7 +1,8 @@
-//! The terminal's foreground group: only its processes may read keys. Another process of the session that takes the terminal
-//! would leave a console that hears nothing, so the console takes the terminal back, within two seconds or at the next key.
+//! Keeps the console in the terminal's foreground group, whose processes alone may read keys. If another process of the
+//! session takes the terminal, the console would receive no keys, so it takes the terminal back within two seconds or
+//! at the next key.
 //!
-//! A planner's worker cannot be that process: it has left the session before anything of a plugin runs.
+//! A planner's worker cannot take the terminal: it leaves the session before any plugin code runs.
 
 use rustix::{
     process::{Signal, getpgrp, getpid, kill_process},
@@ -17,22 +18,23 @@ use std::{
     },
 };
 
-/// Whether this process has left the terminal to others on purpose.
+/// Whether this process has given up the terminal on purpose.
 #[derive(Clone)]
 pub(super) struct Foreground(Arc<AtomicBool>);
 
 impl Foreground {
-    /// A console that is started in the background has left it.
+    /// Detects whether the console was started in the background, and so has given up the terminal.
     pub(super) fn new() -> Self {
         Self(Arc::new(AtomicBool::new(!has_terminal())))
     }
 
-    /// The process goes on after it was stopped: who continued it has decided who has the terminal.
+    /// Call this after a stopped process is continued: the job control that continued it also decided who owns the
+    /// terminal.
     pub(super) fn continued(&self) {
         self.0.store(!has_terminal(), Ordering::SeqCst);
     }
 
-    /// The system did not give this process a key, and would stop it if nobody listened.
+    /// Handles a key that the system withheld from this process. By default, the system would stop the process.
     pub(super) fn missed_key(&self) {
         if self.0.load(Ordering::SeqCst) {
             let _ = kill_process(getpid(), Signal::STOP);
@@ -46,11 +48,11 @@ impl Foreground {
         !self.0.load(Ordering::SeqCst) && !has_terminal() && stdin().is_terminal()
     }
 
-    /// Takes the terminal back if another process has taken it. To be called now and then, too: a process without a shell
-    /// above it gets no signal.
+    /// Takes the terminal back if another process has taken it. Call this periodically, too: without a parent shell,
+    /// the process receives no signal.
     ///
-    /// A process in the background that takes the terminal is stopped by the system unless it ignores that signal, which a
-    /// shell can arrange for a child.
+    /// The system stops a background process that takes the terminal, unless the process ignores SIGTTOU. A shell can
+    /// set this for its child.
     pub(super) fn keep(&self) {
         if !self.is_lost() {
             return;
@@ -66,7 +68,7 @@ fn has_terminal() -> bool {
     tcgetpgrp(stdin()).is_ok_and(|group| group == getpgrp())
 }
 
-/// What the hidden command `take-terminal` runs: gives the terminal to the group of this process.
+/// The hidden command `take-terminal`: gives the terminal to the group of this process.
 pub fn take_terminal() -> ExitCode {
     if tcsetpgrp(stdin(), getpgrp()).is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -1,5 +1,5 @@
-//! The command lines of earlier sessions: `history` in the XDG state folder, one a line, the newest last. Nothing depends on
-//! it: what cannot be read or written is left out.
+//! The command lines of earlier sessions: the file `history` in the XDG state folder, one line each, newest last.
+//! Failures to read or write the file are ignored.
 
 use planner_host::user_folder;
 use std::{
@@ -8,19 +8,19 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Command lines that are recalled at most.
+/// The largest number of command lines that are recalled.
 const RECALLED: usize = 100;
-/// Lines of the file from which on the old ones are dropped.
+/// If the file has more lines than this, the oldest are dropped.
 const MOST: usize = 1000;
 
-/// The command lines of earlier sessions, each once, the newest last.
+/// Loads the command lines of earlier sessions without duplicates, newest last.
 pub(super) fn load() -> Vec<String> {
     file().map_or_else(Vec::new, |file| load_from(&file))
 }
 
-/// Adds a command line.
+/// Appends a command line.
 pub(super) fn append(line: &str) {
-    // The console goes on without its history.
+    // The console works without its history.
     let _ = file().map(|file| append_to(&file, line));
 }
 
@@ -39,7 +39,7 @@ fn load_from(file: &Path) -> Vec<String> {
     }
     recalled.reverse();
     if text.lines().count() > MOST {
-        // Another console may be reading it.
+        // Replace the file as a whole; another console may be reading it.
         let _ = runs::write_whole(file, (recalled.join("\n") + "\n").as_bytes());
     }
     recalled
@@ -50,7 +50,7 @@ fn append_to(file: &Path, line: &str) -> io::Result<()> {
         fs::create_dir_all(folder)?;
     }
     let mut file = OpenOptions::new().append(true).create(true).open(file)?;
-    // In one piece, so that the lines of two consoles do not mix.
+    // Write the line in one call, so that the lines of two consoles do not mix.
     file.write_all(format!("{line}\n").as_bytes())
 }
 

@@ -1,5 +1,5 @@
-//! The message queue of the drawing thread: urgent messages (keys, signals) come before all others, and senders never
-//! block.
+//! The message queue of the drawing thread. Urgent messages (keys, signals) are delivered before all others, and
+//! senders never block.
 
 use std::{
     collections::VecDeque,
@@ -23,7 +23,7 @@ struct Queues {
 
 impl Shared {
     fn queues(&self) -> MutexGuard<'_, Queues> {
-        // A queue is whole between any two statements.
+        // A poisoned lock is harmless: no statement leaves a queue incomplete.
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -31,11 +31,11 @@ impl Shared {
 /// The receiving end; once it is dropped, messages are discarded.
 pub(super) struct Inbox(Arc<Shared>);
 
-/// The sending end, for any number of threads.
+/// The sending end; any number of threads can use it.
 #[derive(Clone)]
 pub(super) struct Outbox(Arc<Shared>);
 
-/// The sending end of the engine of a run.
+/// A sending end that tags each message with its run.
 #[derive(Clone)]
 pub(super) struct RunOutbox {
     pub run: RunId,
@@ -43,40 +43,41 @@ pub(super) struct RunOutbox {
 }
 
 impl RunOutbox {
-    /// Sends news that come before all others. `false` if the inbox is closed.
+    /// Sends a message that is delivered before all others. Returns `false` if the inbox is closed.
     pub(super) fn send_urgent(&self, msg: RunMsg) -> bool {
         self.outbox.send_urgent(Msg::Run(self.run, msg))
     }
 
-    /// Sends any other news. `false` if the inbox is closed.
+    /// Sends a normal message. Returns `false` if the inbox is closed.
     pub(super) fn send(&self, msg: RunMsg) -> bool {
         self.outbox.send(Msg::Run(self.run, msg))
     }
 
-    /// Number of waiting messages that are not urgent.
+    /// The number of normal messages waiting.
     pub(super) fn backlog(&self) -> usize {
         self.outbox.backlog()
     }
 }
 
-/// A connected pair of ends.
+/// Creates a connected pair of ends.
 pub(super) fn inbox() -> (Outbox, Inbox) {
     let shared = Arc::new(Shared::default());
     (Outbox(Arc::clone(&shared)), Inbox(shared))
 }
 
 impl Outbox {
-    /// Sends a message that comes before all others: a key, a signal, a failure. `false` if the inbox is closed.
+    /// Sends a message that is delivered before all others: a key, a signal, a failure. Returns `false` if the inbox is
+    /// closed.
     pub(super) fn send_urgent(&self, msg: Msg) -> bool {
         self.put(|queues| queues.urgent.push_back(msg))
     }
 
-    /// Sends any other message. `false` if the inbox is closed.
+    /// Sends a normal message. Returns `false` if the inbox is closed.
     pub(super) fn send(&self, msg: Msg) -> bool {
         self.put(|queues| queues.normal.push_back(msg))
     }
 
-    /// Number of waiting messages that are not urgent.
+    /// The number of normal messages waiting.
     pub(super) fn backlog(&self) -> usize {
         self.0.queues().normal.len()
     }
@@ -94,7 +95,7 @@ impl Outbox {
 }
 
 impl Inbox {
-    /// The next message, urgent ones first; waits until the given time, or without one for as long as it takes.
+    /// Takes the next message, urgent ones first. Waits until the given time; without one, waits indefinitely.
     pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
         let mut queues = self.0.queues();
         loop {

@@ -1,4 +1,4 @@
-//! Work on past runs beside the screen, each in a thread of its own.
+//! Background jobs on past runs, each on a separate thread.
 
 use super::{desk::Tools, inbox::Outbox};
 use anyhow::{Context, bail};
@@ -13,10 +13,10 @@ use std::{
 };
 use tui::{Job, Msg};
 
-/// Name of the report in the folder of its run.
+/// The file name of the report in a run folder.
 const PAGE: &str = "report.html";
 
-/// Begins a job; its end is reported to the screen.
+/// Begins a job; its result is reported to the screen.
 pub(super) fn begin(job: Job, tools: &Tools) {
     let (tools, outbox) = (tools.clone(), tools.outbox.clone());
     let began = thread::Builder::new().name("job".into()).spawn(move || {
@@ -24,11 +24,11 @@ pub(super) fn begin(job: Job, tools: &Tools) {
         tools.outbox.send(Msg::Done(job, done));
     });
     if let Err(error) = began {
-        report(&outbox, &format!("cannot begin: {error}"));
+        report(&outbox, &format!("job failed to start: {error}"));
     }
 }
 
-/// Informs the operator that something beside the screen failed.
+/// Notifies the operator that background work failed.
 pub(super) fn report(outbox: &Outbox, text: &str) {
     outbox.send(Msg::Notice { severity: Severity::Warn, text: text.to_owned() });
 }
@@ -40,21 +40,21 @@ fn carry_out(job: &Job, Tools { logs, plugins, .. }: &Tools) -> anyhow::Result<S
         Job::Report(_) => {
             let (file, text) = (folder.join(PAGE), report_page(&folder)?);
             runs::write_whole(&file, text.as_bytes()).context("writing the report")?;
-            Ok(format!("report written, a draft: {}", file.display()))
+            Ok(format!("draft report written: {}", file.display()))
         }
         Job::View(_) => view(&folder.join(RECORDING_FILE)),
-        // The viewer takes a moment only in the address of a server, not beside a file.
+        // The viewer accepts a time only with the address of a server, not with a file.
         Job::ViewAt(_, at) => {
             let opened = view(&folder.join(RECORDING_FILE)).with_context(|| format!("at {at}"))?;
-            Ok(format!("go to {at} there: {opened}"))
+            Ok(format!("{opened}; go to {at} there"))
         }
     }
 }
 
-/// Opens a recording in the viewer, which goes on when the console is left.
+/// Opens a recording in the viewer, which stays open when the operator leaves the console.
 fn view(recording: &Path) -> anyhow::Result<String> {
     if !recording.is_file() {
-        bail!("there is no recording: {}", recording.display());
+        bail!("no recording: {}", recording.display());
     }
     let viewer = Command::new("rerun")
         .arg(recording)
@@ -70,9 +70,9 @@ fn view(recording: &Path) -> anyhow::Result<String> {
         Err(error) => {
             let why = match error.kind() {
                 io::ErrorKind::NotFound => {
-                    "there is no program rerun on the PATH (pip install rerun-sdk==0.36.3)".to_owned()
+                    "rerun is not on the PATH; install it with `pip install rerun-sdk==0.36.3`".to_owned()
                 }
-                _ => format!("rerun cannot be started: {error}"),
+                _ => format!("cannot start rerun: {error}"),
             };
             bail!("{why}; the recording is {}", recording.display())
         }

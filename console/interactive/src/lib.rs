@@ -1,4 +1,4 @@
-//! The console: engine, keys, signals and screen, each in a thread of its own; this one draws.
+//! The console: engine, keys, signals and screen, each on its own thread. The calling thread draws.
 
 pub mod config;
 
@@ -49,73 +49,73 @@ use std::{
 };
 use tui::{Caps, Colours, Glyphs, Model, Msg, RunId, Source, Speed, Transport, terminal};
 
-/// What a console is opened with; `None` leaves a choice to `config.toml` and then to the terminal.
+/// The options for opening a console; `None` leaves a choice to `config.toml` and then to the terminal.
 #[derive(Debug)]
 pub struct Options {
-    /// Scenario file; `None`: the demo.
+    /// The scenario file; `None`: the demo.
     pub scenario: Option<PathBuf>,
-    /// What the command line changes about it.
+    /// Changes to the scenario from the command line.
     pub settings: Settings,
-    /// Folder that holds the runs.
+    /// The folder of the runs.
     pub logs: PathBuf,
-    /// Speed of the simulation at first.
+    /// The initial speed of the simulation.
     pub speed: Option<Speed>,
-    /// Number of colours.
+    /// The number of colours.
     pub colours: Option<Colours>,
-    /// Characters of map and charts.
+    /// The character set of the map and the charts.
     pub glyphs: Option<Glyphs>,
-    /// Who operates it.
+    /// How the console is operated.
     pub by: By,
-    /// A run to look on at, instead of opening a scenario: its folder, or its name in `logs`.
+    /// A run to watch instead of opening a scenario: its folder, or its name in `logs`.
     pub view: Option<PathBuf>,
     /// A past run to play back, instead of opening a scenario.
     pub replay: Option<Replay>,
-    /// A part that fails on purpose.
+    /// The part of the console to fail on purpose.
     pub drill: Option<Drill>,
 }
 
 /// A past run to play back: its folder, or its name in the folder of the runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Replay {
-    /// The run.
+    /// The run to play back.
     pub run: PathBuf,
-    /// Another one to compare it with.
+    /// A second run to compare with the first.
     pub with: Option<PathBuf>,
 }
 
-/// Who operates a console.
+/// How a console is operated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum By {
-    /// Somebody at the terminal, with keys.
+    /// By a person at the terminal, with keys.
     Keys,
-    /// The commands in a file, without a terminal.
+    /// By the commands in a file, without a terminal.
     Script(PathBuf),
-    /// Commands on stdin, answered in sentences on stdout.
+    /// By commands on stdin, answered in sentences on stdout.
     Lines,
 }
 
-/// A part of the console that fails on purpose, to see that the run and the terminal survive it.
+/// A part of the console that fails on purpose, to test that the run and the terminal survive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Drill {
-    /// The thread that draws panics.
+    /// The drawing thread panics.
     PanicScreen,
-    /// The thread that flies panics.
+    /// The engine thread panics.
     PanicEngine,
 }
 
-/// How a console was left.
+/// How the console was closed.
 enum Ended {
     /// By the operator or a signal.
     Left(Left),
-    /// By the end of its script, or the line that failed.
+    /// The script ended, or a line of it failed.
     Script(Result<(), String>),
 }
 
 /// Opens the console on a scenario, or on the demo; returns when the operator leaves or the script ends.
 ///
 /// # Errors
-/// There is no terminal; the scenario, its planners, the script or the folder of the runs are refused; the system gives no
-/// thread; the run could not be closed.
+/// There is no terminal; the scenario, its planners, the script or the folder of the runs is refused; a thread cannot
+/// be started; or the run could not be closed.
 pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode> {
     let config = Arc::new(Config::load());
     let script = match &options.by {
@@ -127,11 +127,11 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     }
     let Options { settings, logs, drill, .. } = options;
     let speed = options.speed.unwrap_or(config.speed);
-    // The plugins are looked at while the scenario is read and its floor laid out.
+    // Survey the plugins while the scenario is read and its floor is laid out.
     let dirs = plugins.clone();
     let survey = thread::Builder::new().name("survey".into()).spawn(move || planners::found(&dirs))?;
     let opening = Opening::of(options)?;
-    let found = survey.join().map_err(|_| anyhow::anyhow!("looking at the plugins panicked"))?;
+    let found = survey.join().map_err(|_| anyhow::anyhow!("the plugin survey panicked"))?;
     let (outbox, inbox) = inbox();
     let tools = Tools {
         logs: logs.clone(),
@@ -143,7 +143,7 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     tools.planners.set(found.clone());
     let mut desk = Desk::new(tools, settings.clone(), speed, *drill);
     let run = RunId(1);
-    // Before the screen opens, so that its first frame shows the scenario and every key counts.
+    // Open the run before the screen, so that the first frame shows the scenario and every key takes effect.
     let model = match opening {
         Opening::Mission(source, mission) => {
             let (scenario, flight) = *mission;
@@ -179,10 +179,11 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
         None if options.by == By::Lines => plain::speak(session, &outbox, &current).map(Ended::Left),
         None => show(session, caps(options, &config), logs, (outbox, current), *drill).map(Ended::Left),
     };
-    // Whatever happened to the screen, the run is closed cleanly.
+    // Close the run cleanly, whatever happened to the screen.
     let hurry = matches!(&ended, Ok(Ended::Left(left)) if left.signal.is_some());
     desk.request(Request::Leave { hurry });
-    let closed = thread.join().map_err(|_| anyhow::anyhow!("the thread that closes the run panicked"))?;
+    let closed =
+        thread.join().map_err(|_| anyhow::anyhow!("the desk thread, which closes the run, panicked"))?;
     let closed = closed?;
     match ended? {
         Ended::Left(left) => Ok(left.report_end(closed.as_ref())),
@@ -190,13 +191,13 @@ pub fn open(options: &Options, plugins: &PluginDirs) -> anyhow::Result<ExitCode>
     }
 }
 
-/// What a console opens on.
+/// What the console opens first.
 enum Opening {
-    /// A mission of its own, with the flight that was prepared.
+    /// A new mission, with its prepared flight.
     Mission(Source, Box<(Scenario, Flight)>),
-    /// A run to look on at, in this folder.
+    /// A run to watch, in this folder.
     View(PathBuf),
-    /// A past run to play back, and another one to compare it with.
+    /// A past run to play back, and optionally a run to compare it with.
     Replay { run: String, with: Option<String> },
 }
 
@@ -219,7 +220,7 @@ impl Opening {
     }
 }
 
-/// What a run is called on the screen: its name in the folder of the runs, or its folder if it lies elsewhere.
+/// The name of a run on the screen: its name in the folder of the runs, or its path if it is elsewhere.
 fn named(folder: &Path, logs: &Path) -> String {
     let name = folder.file_name().filter(|name| folder == logs.join(name).as_path());
     name.map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
@@ -235,11 +236,12 @@ fn caps(options: &Options, config: &Config) -> Caps {
 fn check_terminal() -> anyhow::Result<()> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(bad_input(
-            "the console needs a terminal on stdin and stdout; without one use `tankops run SCENARIO`, --script or --plain",
+            "the console needs a terminal on stdin and stdout; without one, use `tankops run SCENARIO`, \
+             --script or --plain",
         ));
     }
     if std::env::var("TERM").is_ok_and(|term| term == "dumb") {
-        return Err(bad_input("the console cannot draw on TERM=dumb; use `tankops run SCENARIO`"));
+        return Err(bad_input("the console cannot draw with TERM=dumb; use `tankops run SCENARIO`"));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The line to the engine's thread: orders and other requests, from every thread that may have to stop the robot.
+//! The request channel to the engine's thread, used by every thread that may have to stop the robot.
 
 use flight::Flight;
 use mission::Order;
@@ -17,65 +17,66 @@ use tui::Speed;
 pub(super) enum Request {
     /// An order, and when it was received.
     Order(Order, Instant),
-    /// Change the pace.
+    /// Change the speed.
     Speed(Speed),
-    /// Answer, so that somebody knows how long an order waits.
+    /// Answer immediately, to measure how long an order waits.
     Answer(Sender<()>),
-    /// Copy the flight as it stands, for forecasts.
+    /// Return a copy of the flight in its present state, for forecasts.
     Fork(Sender<Flight>),
-    /// End the run, close everything, stop.
+    /// End the run, close everything and stop.
     Close {
-        /// Whether a signal has asked the process to exit: then less time is allowed.
+        /// Whether a signal has asked the process to exit; the time limit is shorter then.
         hurry: bool,
     },
 }
 
-/// The sending end.
+/// The sending end of the channel.
 #[derive(Clone)]
 pub(super) struct EngineHandle {
     requests: Sender<Request>,
     waker: Waker,
-    /// Whether the robot moves or may begin to, as the screen knows it.
+    /// Whether the robot moves or may start to move, as last reported by the screen.
     may_move: Arc<AtomicBool>,
-    /// Whether the operator types text, as the screen knows it.
+    /// Whether the operator is typing text, as last reported by the screen.
     is_typing: Arc<AtomicBool>,
 }
 
-/// A line to an engine whose planners this waker interrupts.
+/// Creates a channel to an engine; `waker` interrupts its waits for planners.
 pub(super) fn line(waker: Waker) -> (EngineHandle, Receiver<Request>) {
     let (requests, asked) = mpsc::channel();
     (EngineHandle { requests, waker, may_move: Arc::default(), is_typing: Arc::default() }, asked)
 }
 
 impl EngineHandle {
-    /// Hands an order to the mission; it enters with the next tick. What stops the robot makes that tick begin now.
+    /// Sends an order to the mission, which receives it with the next tick. An order that stops the robot triggers that
+    /// tick immediately.
     pub(super) fn order(&self, order: Order) {
         let is_urgent = matches!(order, Order::Hold | Order::Abort);
         self.request(Request::Order(order, Instant::now()), is_urgent);
     }
 
-    /// Whether the robot moves or may begin to, as the screen knows it.
+    /// Whether the robot moves or may start to move, as last reported by the screen.
     pub(super) fn may_move(&self) -> bool {
         self.may_move.load(Ordering::Relaxed)
     }
 
-    /// Whether the operator types text, as the screen knows it.
+    /// Whether the operator is typing text, as last reported by the screen.
     pub(super) fn is_typing(&self) -> bool {
         self.is_typing.load(Ordering::Relaxed)
     }
 
-    /// The screen reports whether the robot may move, and whether the operator types text.
+    /// Records whether the robot may move and whether the operator is typing text, as reported by the screen.
     pub(super) fn report(&self, may_move: bool, is_typing: bool) {
         self.may_move.store(may_move, Ordering::Relaxed);
         self.is_typing.store(is_typing, Ordering::Relaxed);
     }
 
-    /// Sets the pace.
+    /// Sets the speed.
     pub(super) fn speed(&self, speed: Speed) {
         self.request(Request::Speed(speed), false);
     }
 
-    /// How long an order that stops the robot waits until the engine takes it; `None` if that takes too long.
+    /// Measures how long an order that stops the robot waits for the engine; `None` if it takes longer than `patience`.
     pub(super) fn measure(&self, patience: Duration) -> Option<Duration> {
         let (answer, answered) = mpsc::channel();
         let asked = Instant::now();
@@ -83,7 +84,7 @@ impl EngineHandle {
         answered.recv_timeout(patience).ok().map(|()| asked.elapsed())
     }
 
-    /// The flight as it stands now, for forecasts; `None` if the engine does not answer in time.
+    /// Copies the flight in its present state, for forecasts; `None` if the engine does not answer within `patience`.
     pub(super) fn fork(&self, patience: Duration) -> Option<Flight> {
         let (answer, answered) = mpsc::channel();
         self.request(Request::Fork(answer), false);
@@ -96,7 +97,7 @@ impl EngineHandle {
     }
 
     fn request(&self, request: Request, is_urgent: bool) {
-        // An engine that has ended has already sent the reason to the screen.
+        // If the engine has ended, it has already sent the reason to the screen.
         let _ = self.requests.send(request);
         if is_urgent {
             self.waker.wake();
@@ -104,17 +105,17 @@ impl EngineHandle {
     }
 }
 
-/// The engine of the run that is open, if one is, for the threads that may have to stop the robot.
+/// The engine of the open run, if any, for the threads that may have to stop the robot.
 #[derive(Clone, Default)]
 pub(super) struct Current(Arc<Mutex<Option<EngineHandle>>>);
 
 impl Current {
-    /// Another engine, or none, is the one of the run that is open.
+    /// Replaces the engine of the open run; `None` if no run is open.
     pub(super) fn set(&self, engine: Option<EngineHandle>) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = engine;
     }
 
-    /// The engine of the run that is open.
+    /// The engine of the open run.
     pub(super) fn get(&self) -> Option<EngineHandle> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

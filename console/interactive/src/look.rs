@@ -1,4 +1,4 @@
-//! What the home screen shows: scenarios, past runs, and what is wrong on the disk.
+//! The contents of the home screen: scenarios, past runs, and problems on disk.
 
 use super::{config::presets, desk::Tools, inbox::Outbox};
 use flight::{planners::check_choices, scenarios};
@@ -20,24 +20,24 @@ use tui::{
 };
 use world::Boundary;
 
-/// Past runs that are shown, the newest ones.
+/// The largest number of past runs shown; the newest are kept.
 const MOST_RUNS: usize = 1000;
-/// Past runs about which the operator is warned, the newest ones.
+/// The number of newest past runs for which the operator is warned.
 const RECENT: usize = 20;
 
-/// The disk as it was seen last: a file that has not changed is not read again.
+/// A scan of the disk. An unchanged file is not read again.
 pub(super) struct Disk {
     tools: Tools,
     read: Mutex<BTreeMap<PathBuf, (Option<SystemTime>, ScenarioEntry)>>,
 }
 
 impl Disk {
-    /// A disk that was not looked at yet.
+    /// Creates a scan that has not run yet.
     pub(super) fn new(tools: Tools) -> Self {
         Self { tools, read: Mutex::default() }
     }
 
-    /// Looks at it, and reports to the screen.
+    /// Scans the disk and reports to the screen.
     pub(super) fn look(&self) {
         let outbox: &Outbox = &self.tools.outbox;
         outbox.send(Msg::Presets(presets::load(&self.tools.planners.get().planners)));
@@ -55,7 +55,7 @@ impl Disk {
         attention.extend(self.tools.config.attention.clone());
         attention.extend(unreadable.map(|why| point(Severity::Crit, "LOGS", why)));
         attention.push(match runs::check_logs(logs) {
-            Ok(()) => point(Severity::Info, "ok", format!("runs can be kept in {}", logs.display())),
+            Ok(()) => point(Severity::Info, "ok", format!("runs will be kept in {}", logs.display())),
             Err(error) => point(Severity::Crit, "LOGS", error.to_string()),
         });
         attention.sort_by_key(|point| std::cmp::Reverse(point.severity));
@@ -68,7 +68,7 @@ impl Disk {
         }
     }
 
-    /// The scenarios in the folders, by name; the demo too, wherever the console was started.
+    /// The scenarios in the folders, by name, and always the demo, wherever the console was started.
     fn scenarios(&self) -> Vec<ScenarioEntry> {
         let folders = &self.tools.config.scenarios;
         let mut files: Vec<PathBuf> = folders
@@ -103,11 +103,11 @@ impl Disk {
         }
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let source = Source::File(file.display().to_string());
-        // A pipe would be waited for without end.
+        // Reading a pipe could block forever.
         let scenario = if file.is_file() {
             scenarios::read(file, &Settings::default()).map_err(|error| error.to_string())
         } else {
-            Err(format!("{}: not a file", file.display()))
+            Err(format!("{}: not a regular file", file.display()))
         };
         let entry = entry_of(source, &name, scenario, self);
         read.insert(file.to_owned(), (changed, entry.clone()));
@@ -177,7 +177,7 @@ fn past_run(listed: &Listed) -> PastRun {
     }
 }
 
-/// Month, day and time of a folder's name, `20261122T040049Z-...`.
+/// The month, day and time from a folder name, `20261122T040049Z-...`.
 fn began(name: &str) -> String {
     let digits = |range| name.get(range).filter(|part: &&str| part.bytes().all(|byte| byte.is_ascii_digit()));
     match (digits(4..6), digits(6..8), digits(9..11), digits(11..13)) {

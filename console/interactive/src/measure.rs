@@ -1,4 +1,4 @@
-//! How the screen does: time from keys to their frames, frames skipped.
+//! Performance of the screen: response time to keys, and skipped frames.
 
 use std::{
     collections::VecDeque,
@@ -6,36 +6,36 @@ use std::{
 };
 use tui::{Measured, Msg};
 
-/// How often it is reported.
+/// The reporting interval.
 const PERIOD: Duration = Duration::from_secs(1);
-/// How long a key counts. Fewer than a hundred make the slowest of them the figure.
+/// The time for which a key press counts. With fewer than a hundred key presses, the slowest is reported.
 const KEYS: Duration = Duration::from_secs(30);
-/// How long a skipped frame counts.
+/// The time for which a skipped frame counts.
 const SKIPPED: Duration = Duration::from_secs(10);
 
-/// How the screen does.
+/// Measures the performance of the screen.
 pub(super) struct Measure {
     reported: Instant,
-    /// When the key came that the next frame answers.
+    /// When the key press arrived that the next frame answers.
     key: Option<Instant>,
-    /// When each key was answered, and how long that took.
+    /// When each key press was answered, and its response time.
     answered: VecDeque<(Instant, Duration)>,
     /// When frames were skipped, and how many.
     skipped: VecDeque<(Instant, u32)>,
-    /// When the first message came that the next frame shows.
+    /// When the first message arrived that the next frame shows.
     changed: Option<Instant>,
 }
 
 impl Measure {
-    /// Measures from now on.
+    /// Starts measuring now.
     pub(super) fn since(now: Instant) -> Self {
         let (answered, skipped) = (VecDeque::new(), VecDeque::new());
         Self { reported: now, key: None, answered, skipped, changed: None }
     }
 
-    /// A message was taken.
+    /// Records the arrival of a message.
     pub(super) fn arrived(&mut self, msg: &Msg, now: Instant) {
-        // A burst may have begun before the process was stopped and continued.
+        // A message may have waited since before the process was stopped and continued.
         let now = now.max(self.reported);
         self.changed.get_or_insert(now);
         if matches!(msg, Msg::Key(_)) {
@@ -43,12 +43,13 @@ impl Measure {
         }
     }
 
-    /// A frame was drawn, so long after the one before, where one is due every `interval` while things change.
+    /// Records a drawn frame. `after` is the time since the previous frame; a frame is due every `interval` while
+    /// things change.
     pub(super) fn drew(&mut self, now: Instant, after: Duration, interval: Duration) {
         if let Some(key) = self.key.take() {
             self.answered.push_back((now, now - key));
         }
-        // Time in which nothing changed needed no frames.
+        // No frames are due while nothing changes.
         let waited = self.changed.take().map_or(Duration::ZERO, |changed| after.min(now - changed));
         let due = waited.div_duration_f64(interval) as u32;
         if due > 1 {
@@ -56,7 +57,7 @@ impl Measure {
         }
     }
 
-    /// What there is to report, once a period.
+    /// Returns a report once per period.
     pub(super) fn report(&mut self, now: Instant) -> Option<Measured> {
         if now.saturating_duration_since(self.reported) < PERIOD {
             return None;

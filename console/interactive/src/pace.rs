@@ -1,36 +1,36 @@
-//! When ticks are due, and how long each waits for answers.
+//! The times at which ticks are due, and how long each tick waits for answers.
 
 use flight::answers::Window;
 use std::time::{Duration, Instant};
 use tui::Speed;
 
-/// A tick that is later than this is not made up for.
+/// If a tick is later than this, the lost time is not made up.
 const MOST_LATE: Duration = Duration::from_millis(50);
 
-/// Ticks that are flown at one go while the mission rests: each wake-up costs three threads more than a tick does. What
-/// happens by itself then (a station that falls silent) shows this many ticks late at most.
+/// The number of ticks that run together while the mission rests, because a wake-up of three threads costs more than a
+/// tick. Events of this phase, such as a station that falls silent, are shown at most this many ticks late.
 const TOGETHER: u32 = 4;
 
-/// When ticks are due.
+/// The schedule of ticks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pace {
     /// When the next tick is due.
     due: Instant,
-    /// From each tick to the next; absent when the next is due at once.
+    /// The time between ticks; `None` if the next tick is due immediately.
     period: Option<Duration>,
-    /// Whether ticks may be flown late, several at one go.
+    /// Whether ticks may run late, several at a time.
     rests: bool,
 }
 
 impl Pace {
-    /// The first tick is due now.
+    /// Creates a schedule whose first tick is due now.
     pub(super) fn from(now: Instant) -> Self {
         Self { due: now, period: None, rests: false }
     }
 
-    /// Sets when the tick after this one is due; time that was lost is not made up for by rushing.
+    /// Sets when the following tick is due. Lost time is not made up by running faster.
     ///
-    /// While the mission waits (`waits`: for a planner, or for an order), its time passes no faster than the clock.
+    /// While the mission waits for a planner or an order (`waits`), it runs no faster than real time.
     pub(super) fn tick_flown(&mut self, now: Instant, tick: Duration, speed: Speed, waits: bool) {
         self.period = match speed {
             Speed::Times(factor) if waits => Some(tick.div_f64(factor.min(1.0))),
@@ -42,12 +42,12 @@ impl Pace {
         self.due = self.period.map_or(now, |period| if is_late { now } else { self.due } + period);
     }
 
-    /// Sets whether ticks may be flown late, because only an order changes anything.
+    /// Sets whether ticks may run late, because only an order can change anything.
     pub(super) fn rest(&mut self, rests: bool) {
         self.rests = rests;
     }
 
-    /// When the engine is to wake: with orders for the next tick, when that is due.
+    /// When the engine must wake; with orders, when the next tick is due.
     pub(super) fn wakes_at(&self, has_orders: bool) -> Instant {
         match self.period {
             Some(period) if self.rests && !has_orders => self.due + period * (TOGETHER - 1),
@@ -55,7 +55,7 @@ impl Pace {
         }
     }
 
-    /// Whether a tick was left out while the mission rested: another is due by now. It counts as flown.
+    /// Whether another tick is due that was left out while the mission rested. That tick then counts as run.
     pub(super) fn makes_up(&mut self, now: Instant) -> bool {
         let next = self.period.filter(|_| self.rests).map(|period| self.due + period);
         let is_due = next.is_some_and(|next| next <= now);
@@ -75,7 +75,7 @@ pub(super) fn window(tick: Duration, speed: Speed) -> Window {
     }
 }
 
-/// How fast the mission has gone, measured over a period.
+/// The speed that the mission reached over a period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reached {
     since: Instant,
@@ -83,17 +83,17 @@ pub(super) struct Reached {
 }
 
 impl Reached {
-    /// Measures from now on.
+    /// Starts measuring now.
     pub(super) fn since(since: Instant) -> Self {
         Self { since, n_ticks: 0 }
     }
 
-    /// A tick was flown.
+    /// Counts a tick.
     pub(super) fn count(&mut self) {
         self.n_ticks = self.n_ticks.saturating_add(1);
     }
 
-    /// How many times as fast as the clock the mission went, and a new period.
+    /// The mission time per wall time of this period; begins a new period.
     pub(super) fn take(&mut self, now: Instant, tick: Duration) -> f64 {
         let wall = now.saturating_duration_since(self.since).max(Duration::from_nanos(1));
         let factor = (tick * self.n_ticks).div_duration_f64(wall);

@@ -1,4 +1,4 @@
-//! The console in sentences: what changes goes to stdout, commands come from stdin.
+//! The console in sentences: changes go to stdout, and commands come from stdin.
 
 use super::{
     foreground::Foreground,
@@ -20,17 +20,18 @@ use std::{
 };
 use tui::{Effect, Key, Model, Msg, Signal, plain::Said};
 
-/// Speaks until the operator leaves. The end of stdin holds the robot, ends the mission and leaves.
+/// Prints sentences until the operator leaves. The end of stdin holds the robot, ends the mission and leaves the
+/// console.
 ///
 /// # Errors
-/// The system gives no thread; stdout cannot be written to.
+/// A thread cannot be started, or stdout cannot be written to.
 pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> anyhow::Result<Left> {
     watch::signals(outbox, engine.clone(), Foreground::new())?;
     let is_over = Arc::new(AtomicBool::new(false));
     let mut is_listening = false;
     let mut said = Said::default();
     loop {
-        // A command counts from when the scenario is open, as for an operator who sees the screen.
+        // Accept commands only once the scenario is open, as for an operator who sees the screen.
         if !is_listening && is_open(&session.model) {
             listen(outbox, Arc::clone(&is_over))?;
             is_listening = true;
@@ -54,19 +55,19 @@ pub(super) fn speak(mut session: Session, outbox: &Outbox, engine: &Current) -> 
     }
 }
 
-/// What is wrong with the command that was given.
+/// The fault in the last command.
 fn fault(model: &Model) -> Option<String> {
     let tui::model::Overlay::Commands(palette) = &model.ui.overlay else { return None };
     palette.fault.as_ref().map(|fault| format!("Refused: {}.", fault.what))
 }
 
-/// Commands from stdin: `yes` and `no` answer a question, `key NAME` presses a key, everything else is a command line.
-/// `is_over` becomes true at their end.
+/// Reads commands from stdin: `yes` and `no` answer a question, `key NAME` presses a key, and everything else is a
+/// command line. `is_over` becomes true at the end of stdin.
 fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let began = thread::Builder::new().name("stdin".into()).spawn(move || {
         for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
-            // A line that is not text is refused as an unknown command; the lines after it count.
+            // A line that is not valid text is refused as an unknown command; later lines still count.
             let msg = match String::from_utf8_lossy(&line).trim() {
                 "" => continue,
                 "yes" => Msg::Key(Key::Enter.into()),
@@ -83,5 +84,5 @@ fn listen(outbox: &Outbox, is_over: Arc<AtomicBool>) -> anyhow::Result<()> {
         is_over.store(true, Ordering::Relaxed);
         outbox.send_urgent(Msg::Signal(Signal::Hangup));
     });
-    began.map(drop).context("starting the thread for stdin")
+    began.map(drop).context("starting the stdin thread")
 }

@@ -1,17 +1,18 @@
-//! Plugins that are rebuilt while the console is open: they are looked at again once their files rest.
+//! Watches for plugins that are rebuilt while the console is open, and surveys them again once their files stop
+//! changing.
 
 use super::desk::{DeskHandle, Request};
 use anyhow::Context;
 use planner_host::{PluginDirs, discovery::Stamps};
 use std::{thread, time::Duration};
 
-/// How often the files are looked at: a build is noticed within two of these.
+/// The interval at which the files are checked; a build is noticed within two intervals.
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// Has the desk look at the plugins whenever their files have changed and have not changed again for a period.
+/// Makes the desk survey the plugins whenever their files have changed and then stayed unchanged for one interval.
 ///
 /// # Errors
-/// The system gives no thread.
+/// The thread cannot be started.
 pub(super) fn watch(desk: DeskHandle, plugins: PluginDirs) -> anyhow::Result<()> {
     let watching = thread::Builder::new().name("plugins".into()).spawn(move || {
         let mut stamps = Stamps::of(&plugins);

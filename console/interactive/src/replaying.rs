@@ -1,7 +1,7 @@
-//! A past run, played back: a thread of its own reads its journal, goes to any moment of it, and keeps the pace.
+//! The replay of a past run: a separate thread reads its journal, seeks to any moment and keeps the pace.
 //!
-//! While a journal is read for the first time, at most [`reel::MOST_FRAMES`] copies of the folded run are kept, evenly spaced
-//! by its bytes: going to a moment means to fold on from the nearest copy before it. Nothing here knows an engine.
+//! During the first reading of a journal, at most [`reel::MOST_FRAMES`] copies of the folded run are kept, evenly
+//! spaced by bytes. A seek folds the events from the nearest earlier copy on. This module does not use an engine.
 
 mod deck;
 mod player;

@@ -1,4 +1,5 @@
-//! The drawing thread: messages in, model updated, effects carried out, a frame when something changed.
+//! The drawing thread: takes messages, updates the model, carries out effects, and draws a frame when something has
+//! changed.
 
 use super::{measure::Measure, session::Session, watch::SharedPlaces};
 use crate::Drill;
@@ -15,35 +16,35 @@ use tui::{
     Cache, Caps, Effect, Model, Msg, Redraw, ReplayMsg, RunMsg, Signal, redraw, terminal::TerminalGuard,
 };
 
-/// Messages that are taken in before the next frame, at most.
+/// The largest number of messages taken before the next frame.
 const BURST: usize = 256;
-/// Time that is spent on them before the next frame, at most.
+/// The longest time spent on these messages before the next frame.
 const BURST_TIME: Duration = Duration::from_millis(5);
-/// Shortest time between two frames that only show new values of a robot that stands still.
+/// The shortest time between two frames that only show new values of a robot at rest.
 const CALM_FRAME: Duration = Duration::from_secs(1);
-/// Bytes a second that new values take at most, however fast the mission goes, and while the robot stands still; answers to
-/// keys are not held back.
+/// The largest data rate for new values, in bytes per second: at any mission speed, and while the robot is at rest.
+/// Answers to keys are not delayed.
 const LINE_RATE: f64 = 15_000.0;
 const CALM_RATE: f64 = 200.0;
-/// Longest time between two frames of a robot that stands still.
+/// The longest time between two frames of a robot at rest.
 const LONGEST_CALM: Duration = Duration::from_secs(4);
-/// New values wait for the line no longer than this, even after every cell was redrawn.
+/// The longest time that new values wait for the line, even after a complete redraw.
 const LONGEST_DEBT: Duration = Duration::from_millis(250);
-/// Shortest time between two frames that answer keys.
+/// The shortest time between two frames that answer keys.
 const KEY_FRAME: Duration = Duration::from_millis(8);
 
-/// The screen while the console is open.
+/// The screen of an open console.
 pub(super) struct Screen {
     terminal: TerminalGuard,
     session: Session,
     caps: Caps,
     drawn: Instant,
     frame_interval: Duration,
-    /// Shortest time between the last frame and one that only shows new values of a robot that stands still.
+    /// The shortest time between the last frame and a frame that only shows new values of a robot at rest.
     calm_pause: Duration,
-    /// For how long after the last frame a line of [`LINE_RATE`] is busy with it and those before it.
+    /// The time after the last frame for which a line with [`LINE_RATE`] is still busy.
     line_busy: Duration,
-    /// How soon there is to be a frame.
+    /// How soon a frame must be drawn.
     due: Redraw,
     cache: Cache,
     places: SharedPlaces,
@@ -53,15 +54,15 @@ pub(super) struct Screen {
     drill: Option<Drill>,
 }
 
-/// Why the screen was left.
+/// The reason why the operator left the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Left {
-    /// The signal that asked for it, if one did.
+    /// The signal that asked to leave, if any.
     pub signal: Option<Signal>,
 }
 
 impl Screen {
-    /// Takes the terminal over.
+    /// Takes over the terminal.
     pub(super) fn open(
         caps: Caps,
         mut session: Session,
@@ -69,7 +70,7 @@ impl Screen {
         drill: Option<Drill>,
     ) -> anyhow::Result<Self> {
         let mut terminal = TerminalGuard::enter().context("taking over the terminal")?;
-        terminal.take_mouse(session.model.ui.mouse).context("taking the mouse")?;
+        terminal.take_mouse(session.model.ui.mouse).context("enabling the mouse")?;
         let (width, height) = crossterm::terminal::size().unwrap_or((80, 24));
         session.take(Msg::Resize { width, height });
         Ok(Self {
@@ -90,12 +91,12 @@ impl Screen {
         })
     }
 
-    /// What the screen knows, for a crash report.
+    /// The model, for a crash report.
     pub(super) fn model(&self) -> &Model {
         &self.session.model
     }
 
-    /// Runs until the operator or a signal wants to leave.
+    /// Runs until the operator leaves or a signal asks to leave.
     pub(super) fn run(&mut self) -> anyhow::Result<Left> {
         loop {
             if let Some(left) = self.take_burst()? {
@@ -107,7 +108,7 @@ impl Screen {
         }
     }
 
-    /// Shortest time between the last frame and the next; `None` if none is due.
+    /// The shortest time between the last frame and the next; `None` if no frame is due.
     fn pause(&self) -> Option<Duration> {
         match self.due {
             Redraw::No => None,
@@ -117,10 +118,10 @@ impl Screen {
         }
     }
 
-    /// Waits for a message, then takes in what else is there.
+    /// Waits for a message, then takes all others that are waiting.
     fn take_burst(&mut self) -> anyhow::Result<Option<Left>> {
         let first = self.wait();
-        // What the screen waited for may be that it changes by itself.
+        // The wait may have been for a change of the model over time.
         let by_itself = self.session.model.wakes_at_mono_s();
         self.session.update_time();
         if by_itself.is_some_and(|at_s| at_s <= self.session.model.console.now.mono_s) {
@@ -159,7 +160,7 @@ impl Screen {
         self.settle()
     }
 
-    /// What a key does that was waited for, now that no other press is left to take in.
+    /// Carries out the action of a pending key, now that no other key press is waiting.
     fn settle(&mut self) -> anyhow::Result<Option<Left>> {
         if !self.session.model.has_settled() {
             return Ok(None);
@@ -173,7 +174,7 @@ impl Screen {
         Ok(None)
     }
 
-    /// Takes in a message. What was measured of the console is seen only if it raises or clears an alarm.
+    /// Takes a message. A measurement of the console is shown only if it raises or clears an alarm.
     fn take(&mut self, msg: Msg) -> Vec<Effect> {
         let alarms = |screen: &Self| screen.session.model.live.run.alarms.clone();
         let before = matches!(msg, Msg::Measured(_)).then(|| alarms(self));
@@ -184,7 +185,7 @@ impl Screen {
         effects
     }
 
-    /// The next message, or `None` when it is time to draw; with nothing due it sleeps for as long as it takes.
+    /// The next message, or `None` when it is time to draw; if no frame is due, waits indefinitely.
     fn wait(&self) -> Option<Msg> {
         let frame = self.pause().map(|pause| self.drawn + pause);
         self.session.next(frame.into_iter().chain(self.session.wakes_at()).min())
@@ -194,23 +195,23 @@ impl Screen {
         match effect {
             Effect::Redraw => self.terminal.redraw().context("drawing")?,
             Effect::Bell => ring()?,
-            Effect::Mouse(taken) => self.terminal.take_mouse(*taken).context("taking the mouse")?,
+            Effect::Mouse(taken) => self.terminal.take_mouse(*taken).context("enabling the mouse")?,
             Effect::Copy(line) => self.terminal.copy(line).context("copying")?,
             Effect::Suspend => self.suspend()?,
             Effect::Quit { signal } => return Ok(Some(Left { signal: *signal })),
-            // The session has carried out the others.
+            // The session has carried out all other effects.
             _ => {}
         }
         Ok(None)
     }
 
-    /// Gives the terminal back and stops the process until the shell continues it.
+    /// Releases the terminal and stops the process until the shell continues it.
     fn suspend(&mut self) -> anyhow::Result<()> {
         self.terminal.suspend();
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)
             .context("stopping the process")?;
-        self.terminal.resume().context("taking the terminal over again")?;
-        // Nobody waited for a frame while the process was stopped.
+        self.terminal.resume().context("taking over the terminal again")?;
+        // Frames were not needed while the process was stopped.
         self.measure = Measure::since(Instant::now());
         self.due = Redraw::Soon;
         Ok(())
@@ -224,7 +225,7 @@ impl Screen {
         let (model, caps, cache) = (&self.session.model, &self.caps, &mut self.cache);
         let bytes =
             self.terminal.draw(|frame| tui::view_cached(model, caps, cache, frame)).context("drawing")?;
-        // A frame that the line had no room for was not skipped.
+        // A frame that was delayed because the line was busy was not skipped.
         let interval = self.frame_interval.max(self.line_busy);
         self.calm_pause = taken(bytes, CALM_RATE).clamp(CALM_FRAME, LONGEST_CALM);
         let left = self.line_busy.saturating_sub(self.drawn.elapsed());
@@ -239,12 +240,13 @@ impl Screen {
     }
 }
 
-/// How long some bytes take on a line of a rate in bytes a second.
+/// The time to send this many bytes at a rate in bytes per second.
 fn taken(bytes: usize, rate: f64) -> Duration {
     Duration::from_secs_f64(bytes as f64 / rate)
 }
 
-/// Whether an operator waits to see this: a key, that the robot was stopped, or the moment of a past run that was gone to.
+/// Whether the operator is waiting to see this message: a key, a stop of the robot, or the result of a seek in a past
+/// run.
 fn is_answer(model: &Model, msg: &Msg) -> bool {
     match msg {
         Msg::Key(_) | Msg::Paste(_) | Msg::Mouse(_) | Msg::Resize { .. } | Msg::Signal(_) => true,
@@ -264,10 +266,10 @@ fn ring() -> anyhow::Result<()> {
 }
 
 impl Left {
-    /// Reports on the normal screen how the run ended; the exit code reports it to scripts.
+    /// Prints on the normal screen how the run ended; the exit code reports it to scripts.
     pub(super) fn report_end(self, closed: Option<&Closed>) -> ExitCode {
         let kept = closed.and_then(|closed| closed.kept.as_ref());
-        // A terminal that was closed shows nothing.
+        // A closed terminal cannot show anything.
         if let Some(closed) = closed.filter(|_| self.signal != Some(Signal::Hangup)) {
             let line = kept.map(|kept| kept.text() + "\n").unwrap_or_default();
             let text = report::human(&closed.summary) + &line;

@@ -1,4 +1,4 @@
-//! Console commands from a file: the same model, rules and engine, without a terminal.
+//! Console commands from a file: the same model, rules and engine, but no terminal.
 //!
 //! ```text
 //! # one a line
@@ -41,37 +41,37 @@ use tui::{
     actions::{ActionId, context::contexts, find, keymap::Keymap},
 };
 
-/// Columns and rows of the screen at first; `size` changes them.
+/// The initial columns and rows of the screen; `size` changes them.
 const SIZE: (u16, u16) = (120, 36);
-/// Time within which a condition is looked at again although nothing was heard.
+/// The interval at which a condition is rechecked even if no message arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
-/// Time for which a command waits for what it needs to be opened.
+/// The longest wait for the scenario to open.
 const OPENING: Duration = Duration::from_secs(30);
-/// Time for which a command waits for the mission to accept what it orders: the next tick, at any pace.
+/// The longest wait for the mission to accept an order; it answers in the next tick, at any speed.
 const ANSWERING: Duration = Duration::from_secs(30);
 
-/// What a line of a script does.
+/// A step of a script.
 #[derive(Debug, Clone, PartialEq)]
 enum Step {
-    /// Runs a console command.
+    /// Run a console command.
     Command(String),
-    /// Presses a key.
+    /// Press a key.
     Key(Key),
-    /// Waits for a condition, for so many seconds by the wall clock.
+    /// Wait for a condition, at most for this many seconds of wall time.
     Wait(Condition, f64),
-    /// Demands a condition.
+    /// Require a condition.
     Assert(Condition),
-    /// Makes the screen so many columns and rows large.
+    /// Set the columns and rows of the screen.
     Size((u16, u16)),
-    /// Writes the screen to a file as a picture.
+    /// Write the screen to a file as a picture.
     Picture(PathBuf),
 }
 
-/// A script.
+/// A parsed script.
 #[derive(Debug)]
 pub(super) struct Script {
     file: PathBuf,
-    /// The lines that do something, by their number.
+    /// The steps with their line numbers.
     steps: Vec<(usize, Step)>,
 }
 
@@ -79,7 +79,7 @@ impl Script {
     /// Reads a script.
     ///
     /// # Errors
-    /// The file cannot be read, or some lines are not commands: every such line with its number.
+    /// The file cannot be read, or lines are invalid; all of these are listed with their numbers.
     pub(super) fn read(file: &Path, keys: &Keymap) -> anyhow::Result<Self> {
         let shown = file.display();
         let text = texts::read(file)?;
@@ -90,10 +90,10 @@ impl Script {
         Ok(Self { file: file.to_owned(), steps })
     }
 
-    /// Runs the script; the line that failed, and why.
+    /// Runs the script; the inner error states the line that failed, and why.
     ///
     /// # Errors
-    /// The system gives no thread for signals.
+    /// The signal thread cannot be started.
     pub(super) fn run(
         self,
         session: Session,
@@ -107,7 +107,7 @@ impl Script {
     }
 }
 
-/// Reports how a script went; the exit code.
+/// Reports the result of a script; returns the exit code.
 pub(super) fn report(done: Result<(), String>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::from(COMPLETE),
@@ -126,7 +126,7 @@ struct Runner {
 
 impl Runner {
     fn carry_out(&mut self, script: &Script) -> Result<(), String> {
-        // A command counts from when the scenario is open, as for an operator who sees the screen.
+        // Accept commands only once the scenario is open, as for an operator who sees the screen.
         self.hear_until(OPENING, is_open)?;
         for (line, step) in &script.steps {
             let done = self.step(step);
@@ -137,7 +137,7 @@ impl Runner {
 
     fn step(&mut self, step: &Step) -> Result<(), String> {
         if self.is_left {
-            return Err("the console was left before".into());
+            return Err("an earlier line left the console".into());
         }
         match step {
             Step::Size((width, height)) => self.take(Msg::Resize { width: *width, height: *height }),
@@ -164,18 +164,18 @@ impl Runner {
                     return Ok(());
                 }
                 Err(format!(
-                    "not within {within_s} s: {condition}; {}",
+                    "timed out after {within_s} s waiting for: {condition}; {}",
                     condition.instead(&self.session.model)
                 ))
             }
             Step::Assert(condition) if condition.holds(&self.session.model, screen) => Ok(()),
             Step::Assert(condition) => {
-                Err(format!("not so: {condition}; {}", condition.instead(&self.session.model)))
+                Err(format!("assertion failed: {condition}; {}", condition.instead(&self.session.model)))
             }
         }
     }
 
-    /// Whoever starts a mission has waited for its plan. How long a planner may take, it is told itself.
+    /// Waits for the plan before a start, as an operator would. The time limit for planning is the planner's own.
     fn see_plan(&mut self, action: Option<ActionId>) -> Result<(), String> {
         if action != Some(ActionId::Start) {
             return Ok(());
@@ -185,7 +185,7 @@ impl Runner {
             Readiness::Preparing => Some(true),
             Readiness::Unseen | Readiness::Failed(_) | Readiness::Plan(_) => None,
         };
-        // The plan is ordered when the scenario is open.
+        // The plan is ordered when the scenario opens.
         self.hear_until(ANSWERING, |model| !model.live.waits() || readiness(model) != Some(false))?;
         let is_planning = |model: &Model| model.live.waits() && readiness(model) == Some(true);
         while is_planning(&self.session.model) && !self.is_left {
@@ -194,7 +194,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Gives a command or a key to the console; what it or the mission refuses is a failure.
+    /// Sends a command or a key to the console; a refusal by the console or the mission is a failure.
     fn order(&mut self, msg: Msg) -> Result<(), String> {
         self.hear_until(Duration::ZERO, |_| false)?;
         self.session.model.console.notice = None;
@@ -207,14 +207,14 @@ impl Runner {
         }
         let end = Instant::now() + ANSWERING;
         while self.answers.is_waiting() && !self.is_left {
-            let next = self.session.next(Some(end)).ok_or("the mission does not answer the order")?;
+            let next = self.session.next(Some(end)).ok_or("the mission did not answer the order")?;
             self.session.update_time();
             self.take(next)?;
         }
         self.answers.refusal().map_or(Ok(()), |why| Err(format!("order refused: {why}")))
     }
 
-    /// Whether the console has taken what it was given.
+    /// Checks whether the console has accepted the last input.
     fn accepted(&self) -> Result<(), String> {
         let model = &self.session.model;
         if let tui::model::Overlay::Commands(palette) = &model.ui.overlay
@@ -228,7 +228,7 @@ impl Runner {
         }
     }
 
-    /// Takes in messages until a condition holds, at most for some time; whether it does.
+    /// Takes messages until a condition holds or the time is up; returns whether the condition holds.
     fn hear_until(&mut self, within: Duration, holds: impl Fn(&Model) -> bool) -> Result<bool, String> {
         let end = Instant::now() + within;
         loop {
@@ -257,11 +257,11 @@ impl Runner {
             signal @ (Signal::Interrupt | Signal::Terminate | Signal::Hangup | Signal::End(_)),
         ) = msg
         {
-            return Err(format!("interrupted ({signal:?})"));
+            return Err(format!("interrupted ({signal})"));
         }
         self.answers.hear(&msg);
         let effects = self.session.take(msg);
-        // A HOLD that finds the robot held for good stops nothing, and no answer comes.
+        // If the robot is already held for good, HOLD stops nothing and gets no answer.
         let may_move = self.session.model.live.may_move();
         let sent = self.session.sent().iter().filter(|order| may_move || **order != Order::Hold);
         self.answers.await_for(sent);
@@ -275,7 +275,7 @@ fn screen(model: &Model) -> anyhow::Result<String> {
     Ok(drawn(model, Colours::None)?.backend().to_string())
 }
 
-/// The screen, in memory.
+/// The screen, drawn in memory.
 fn drawn(model: &Model, colours: Colours) -> anyhow::Result<Terminal<TestBackend>> {
     let caps = Caps { colours, glyphs: Glyphs::Braille, ssh: false };
     let mut terminal = Terminal::new(TestBackend::new(model.ui.width, model.ui.height)).context("drawing")?;

@@ -1,4 +1,4 @@
-//! The model and what it is connected to; the same for the screen, for a script and for plain sentences.
+//! The model with its connections; shared by the screen, scripts and the console in sentences.
 
 use super::{
     desk::{DeskHandle, Request},
@@ -10,43 +10,43 @@ use mission::Order;
 use std::time::{Duration, Instant, SystemTime};
 use tui::{Effect, Model, Msg, Times, is_typing, update};
 
-/// The model and what it is connected to.
+/// The model with its connections to the engine and the desk.
 pub(super) struct Session {
     pub model: Model,
     inbox: Inbox,
     engine: Current,
     desk: DeskHandle,
     began: Instant,
-    /// The command line that was kept last; `None` if they are not kept.
+    /// The command line that was saved last; `None` if command lines are not saved.
     kept: Option<String>,
-    /// The orders that the last message led to.
+    /// The orders that the last message caused.
     sent: Vec<Order>,
 }
 
 impl Session {
-    /// A session that begins now.
+    /// Creates a session that begins now.
     pub(super) fn new(model: Model, inbox: Inbox, (engine, desk): (Current, DeskHandle)) -> Self {
         Self { model, inbox, engine, desk, began: Instant::now(), kept: None, sent: Vec::new() }
     }
 
-    /// Begins with the command lines of earlier sessions, and keeps those of this one for later ones.
+    /// Loads the command lines of earlier sessions, and saves those of this session.
     pub(super) fn remember(&mut self) {
         self.model.console.history = history::load();
         self.kept = Some(self.model.console.history.last().cloned().unwrap_or_default());
     }
 
-    /// The next message; waits until the given time, or without one for as long as it takes.
+    /// Takes the next message. Waits until the given time; without one, waits indefinitely.
     pub(super) fn next(&self, until: Option<Instant>) -> Option<Msg> {
         self.inbox.next(until)
     }
 
-    /// When the model next changes by itself, a little after the moment, so that the moment has passed then.
+    /// When the model next changes by itself, plus a millisecond, so that the moment has passed on waking.
     pub(super) fn wakes_at(&self) -> Option<Instant> {
         let at_s = self.model.wakes_at_mono_s()?;
         Some(self.began + Duration::from_secs_f64(at_s.max(0.0)) + Duration::from_millis(1))
     }
 
-    /// Sends the time to the model.
+    /// Sends the current time to the model.
     pub(super) fn update_time(&mut self) {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         let now =
@@ -54,7 +54,7 @@ impl Session {
         update(&mut self.model, Msg::Time(now));
     }
 
-    /// Takes in a message and carries out what follows, but for what concerns the terminal: that is the answer.
+    /// Takes a message and carries out its effects. Returns the effects that concern the terminal.
     pub(super) fn take(&mut self, msg: Msg) -> Vec<Effect> {
         let effects = update(&mut self.model, msg);
         if let (Some(kept), Some(line)) = (&mut self.kept, self.model.console.history.last())
@@ -70,7 +70,7 @@ impl Session {
         effects.into_iter().filter_map(|effect| self.carry_out(effect)).collect()
     }
 
-    /// The orders that the last message led to; the mission accepts or refuses them in a later one.
+    /// The orders that the last message caused; a later message accepts or refuses them.
     pub(super) fn sent(&self) -> &[Order] {
         &self.sent
     }
@@ -115,7 +115,7 @@ impl Session {
     }
 }
 
-/// Whether the scenario and the home screen are open, or the scenario cannot be opened.
+/// Whether the scenario or the home screen is open, or the scenario failed to open.
 pub(super) fn is_open(model: &Model) -> bool {
     !model.live.is_opening && model.home.found.is_some()
 }

@@ -1,4 +1,4 @@
-//! Looking on at a run: its journal is read while another process writes it, or after it has ended.
+//! Watching a run: its journal is read while another process writes it, or after it has ended.
 
 use super::inbox::RunOutbox;
 use anyhow::Context;
@@ -12,19 +12,19 @@ use std::{
 };
 use tui::{Msg, RunMsg, RunResult};
 
-/// How often a journal that has not grown is looked at again.
+/// The interval at which a journal that has not grown is rechecked.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long what was read may wait for the rest of its tick.
+/// How long events may wait for the rest of their tick.
 const PATIENCE: Duration = Duration::from_millis(50);
-/// Events that are sent together at most, but for those of one tick.
+/// The largest number of events sent together, unless one tick has more.
 const MOST: usize = 512;
-/// With this many messages waiting for the screen, the journal is read no further.
+/// The number of messages waiting for the screen above which reading pauses.
 const MOST_BACKLOG: usize = 64;
 
-/// Reads the journal of a run from its beginning, and on as long as it is being written; in a thread of its own.
+/// Reads the journal of a run from its beginning, and follows it while it is being written, on a separate thread.
 ///
 /// # Errors
-/// There is no journal; the system gives no thread.
+/// There is no journal, or the thread cannot be started.
 pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
     let folder = folder.to_owned();
     let writer = folder.clone();
@@ -40,7 +40,7 @@ pub(super) fn begin(folder: &Path, screen: RunOutbox) -> anyhow::Result<()> {
 struct Viewing {
     folder: PathBuf,
     screen: RunOutbox,
-    /// What was read and not sent yet.
+    /// Events that were read but not sent yet.
     read: Vec<Event>,
     sent_at: Instant,
 }
@@ -60,7 +60,7 @@ impl Viewing {
         }
     }
 
-    /// Sends every event; whether the last one ends the run.
+    /// Sends every event; returns whether the last one ends the run.
     fn read_all(&mut self, reader: JournalReader) -> Result<bool, recording::JournalError> {
         let mut has_ended = false;
         for event in reader {
@@ -84,7 +84,7 @@ impl Viewing {
         self.sent_at = Instant::now();
     }
 
-    /// What the run leaves, as its journal says.
+    /// The result of the run according to its journal.
     fn result(&self) -> anyhow::Result<RunResult> {
         let past = Past::read(&self.folder)?;
         let doubt = past.run.logs.error.clone();

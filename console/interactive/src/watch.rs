@@ -1,4 +1,4 @@
-//! The threads that only listen: keys, signals, a terminal that is closed.
+//! The listening threads: keys, signals, and a closed terminal.
 
 use super::{
     foreground::Foreground,
@@ -24,11 +24,11 @@ use tui::{
     terminal::{self, Keyboard, Pointer},
 };
 
-/// How long the console may take to exit cleanly after a signal; then it exits anyway.
+/// The time for a clean exit after a signal; then the process exits in any case.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Signals that nobody sends to a console on purpose, and that end a process which does not listen to them: the terminal would
-/// stay as the screen has it. A file that grows too large is noticed where it is written.
+/// Signals that are not meant for a console, but would end a process without a handler and leave the terminal in the
+/// state of the screen. SIGXFSZ is not listed: the failing write reports it.
 const OTHERS: [i32; 11] = [
     libc::SIGQUIT,
     libc::SIGTRAP,
@@ -43,13 +43,13 @@ const OTHERS: [i32; 11] = [
     libc::SIGPWR,
 ];
 
-/// How often it is looked at who has the terminal.
+/// The interval at which the terminal's ownership is checked.
 const TERMINAL_PERIOD: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
 
-/// How often the disk is asked how much space is left: at 100 MB an hour that is less than a megabyte.
+/// The interval at which free space is checked; at 100 MB per hour, less than a megabyte is written in between.
 const DISK_PERIOD: Duration = Duration::from_secs(10);
 
-/// Space left where runs are kept, whenever it has changed by a megabyte. A disk may answer late: only this thread waits.
+/// Reports the free space for runs whenever it changes by a megabyte. A slow disk delays only this thread.
 pub(super) fn disk(outbox: &Outbox, logs: &Path) -> anyhow::Result<()> {
     let (outbox, logs) = (outbox.clone(), logs.to_owned());
     let megabytes = |bytes: Option<u64>| bytes.map(|bytes| bytes >> 20);
@@ -69,7 +69,7 @@ pub(super) fn disk(outbox: &Outbox, logs: &Path) -> anyhow::Result<()> {
     })
 }
 
-/// Where the last frame put what a mouse can hit, for the thread that listens to it.
+/// The places of clickable items in the last frame, for the thread that listens to the mouse.
 #[derive(Clone, Default)]
 pub(super) struct SharedPlaces(Arc<Mutex<Places>>);
 
@@ -83,7 +83,8 @@ impl SharedPlaces {
     }
 }
 
-/// Keys, mouse, pastes and sizes. A key that stops the robot does so from here, whatever the screen is doing.
+/// Listens for keys, mouse, pastes and size changes. A key that stops the robot takes effect from this thread, whatever
+/// the screen is doing.
 pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("keys", move || {
@@ -105,12 +106,12 @@ pub(super) fn keys(outbox: &Outbox, engine: Current, places: SharedPlaces) -> an
     })
 }
 
-/// Signals; one that ends the process ends it within [`GRACE`], whatever the other threads do.
+/// Listens for signals. A signal that ends the process ends it within [`GRACE`], whatever the other threads do.
 pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     let others = OTHERS.into_iter().chain(libc::SIGRTMIN()..=libc::SIGRTMAX());
     let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGTTIN].into_iter().chain(others);
-    let mut signals = Signals::new(all).context("listening to signals")?;
+    let mut signals = Signals::new(all).context("listening for signals")?;
     spawn("signals", move || {
         for number in signals.forever() {
             match number {
@@ -129,7 +130,7 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
                 SIGINT => Signal::Interrupt,
                 other => Signal::End(other),
             };
-            // The robot is stopped from here, whatever the screen is doing.
+            // Stop the robot from this thread, whatever the screen is doing.
             if !send_and_hold(&outbox, &engine, Msg::Signal(signal), signal != Signal::Continue) {
                 return;
             }
@@ -140,11 +141,12 @@ pub(super) fn signals(outbox: &Outbox, engine: Current, foreground: Foreground) 
     })
 }
 
-/// Sends a message to the screen, and orders a hold if the message stops the robot and the robot may move; `false` if the
-/// inbox is closed.
+/// Sends a message to the screen, and orders a hold if the message stops the robot and the robot may move. Returns
+/// `false` if the inbox is closed.
 ///
-/// The screen gets the message first: how it handles the key must not depend on the hold that follows. It orders a hold
-/// itself as well: this one may overtake an order to move that the screen has not sent yet, that one cannot.
+/// The screen gets the message first, because its handling of the key must not depend on the hold that follows. The
+/// screen orders a hold, too: the hold from here may overtake an order to move that the screen has not sent yet, but
+/// the hold from the screen cannot.
 fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bool {
     let is_delivered = outbox.send_urgent(msg);
     if stops && let Some(engine) = engine.get().filter(EngineHandle::may_move) {
@@ -153,10 +155,10 @@ fn send_and_hold(outbox: &Outbox, engine: &Current, msg: Msg, stops: bool) -> bo
     is_delivered
 }
 
-/// Whether a key stops a robot that moves. Where text is typed the space is a letter.
+/// Whether a key stops a moving robot. While text is typed, the space key is a letter.
 ///
-/// What the screen reports may be a key behind: a space that follows the key that opens a text line may hold, and one that
-/// follows the key that closes it is left to the screen.
+/// The screen's report may be one key late. A space right after the key that opens a text line may hold the robot; a
+/// space right after the key that closes it is left to the screen.
 fn is_stop_key(msg: &Msg, is_typing: bool) -> bool {
     match msg {
         Msg::Key(press) if !press.repeat => {
@@ -172,7 +174,8 @@ fn leave_in_any_case(signal: i32) {
     std::process::exit(128 + signal);
 }
 
-/// A terminal that is closed while SIGHUP is ignored, as under nohup, is noticed here, and one that others have taken.
+/// Detects a terminal that is closed while SIGHUP is ignored, as under nohup, and a terminal that another process has
+/// taken.
 pub(super) fn terminal(outbox: &Outbox, engine: Current, foreground: Foreground) -> anyhow::Result<()> {
     let outbox = outbox.clone();
     spawn("terminal", move || {
@@ -181,7 +184,8 @@ pub(super) fn terminal(outbox: &Outbox, engine: Current, foreground: Foreground)
         let mut was_lost = false;
         loop {
             let waited = poll(&mut watched, Some(&TERMINAL_PERIOD));
-            // Twice in a row: whoever continues a stopped console in the background has it heard of that first.
+            // Only after two checks in a row: a console continued in the background must first receive the signal that
+            // tells it so.
             let is_lost = foreground.is_lost();
             if is_lost && was_lost {
                 foreground.keep();

@@ -1,4 +1,4 @@
-//! A located run, computed again from its readings.
+//! Recomputes a located run from its readings.
 
 use crate::Task;
 use anyhow::Context;
@@ -8,42 +8,42 @@ use recording::{JournalReader, journal_of, sha256};
 use scenario::Scenario;
 use std::path::Path;
 
-/// What comes of the readings again.
+/// The result of recomputing a located run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Again {
-    /// The same, byte for byte: so many events.
+    /// Byte for byte the same journal, of this many events.
     Equal(usize),
-    /// Something else from this line of the journal on.
+    /// A journal that differs from this line on.
     Different {
-        /// Which line, from 1.
+        /// The number of the line, from 1.
         line: usize,
-        /// What is recorded there.
+        /// The recorded line.
         recorded: String,
-        /// What is computed.
+        /// The computed line.
         computed: String,
     },
-    /// Nothing, because the readings are not there any more: why.
+    /// Nothing, because the readings are missing or have changed; the reason.
     NoReadings(String),
 }
 
-/// Computes the located run in a folder again from its readings, if they are where they were.
+/// Recomputes the located run in a folder from its readings, if the file is still in its old place.
 ///
 /// # Errors
-/// Its journal cannot be read, is of another version, or is that of a run that was flown.
+/// The journal cannot be read, has a different version, or belongs to a run that was flown.
 pub fn again(folder: &Path) -> anyhow::Result<Again> {
     let path = journal_of(folder);
     let mut reader = JournalReader::open(&path)?;
     let Some(EventKind::RunOpened(opened)) = reader.next_line()?.map(|line| line.event.kind) else {
         return Err(reader.not_opened().into());
     };
-    let measured = opened.measured.context("the run was flown and not located")?;
+    let measured = opened.measured.context("the run was flown, not located")?;
     let file = Path::new(&measured.file);
     match sha256(file) {
         Ok(now) if now == measured.sha256 => {}
         Ok(now) => {
             let (file, then) = (&measured.file, &measured.sha256);
             return Ok(Again::NoReadings(format!(
-                "{file} has another SHA-256: expected {then}, found {now}"
+                "{file} has a different SHA-256: expected {then}, found {now}"
             )));
         }
         Err(error) => return Ok(Again::NoReadings(format!("{}: {error}", measured.file))),
@@ -68,7 +68,7 @@ pub fn again(folder: &Path) -> anyhow::Result<Again> {
     compared.finish()
 }
 
-/// A journal beside what is computed.
+/// Compares a journal with the computed events.
 struct Compared {
     reader: JournalReader,
     lines: usize,
@@ -86,7 +86,7 @@ impl Compared {
         let computed = serde_json::to_string(event).context("writing an event as JSON")?;
         let recorded = self.reader.next_line()?.map(|line| String::from_utf8_lossy(line.raw).into_owned());
         self.lines += 1;
-        let recorded = recorded.unwrap_or_else(|| "nothing more".to_owned());
+        let recorded = recorded.unwrap_or_else(|| "no further event".to_owned());
         Ok((recorded != computed).then_some(Again::Different { line: self.lines, recorded, computed }))
     }
 
@@ -97,7 +97,7 @@ impl Compared {
         let more = self.reader.next_line()?.map(|line| String::from_utf8_lossy(line.raw).into_owned());
         Ok(match more {
             Some(recorded) => {
-                Again::Different { line: self.lines + 1, recorded, computed: "nothing more".to_owned() }
+                Again::Different { line: self.lines + 1, recorded, computed: "no further event".to_owned() }
             }
             None => Again::Equal(self.lines),
         })

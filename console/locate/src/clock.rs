@@ -5,22 +5,22 @@ use jiff::{
     civil::{DateTime, Time},
 };
 
-/// A time as it is to be written.
+/// An example of a valid time, for messages.
 pub(crate) const EXAMPLE: &str = "2026-10-25T02:59:58.250Z";
 
-/// How a time is written.
+/// The form in which a time is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Written {
-    /// As a number of seconds, or of parts of a second.
+    /// A number of seconds, or of a fraction of a second.
     Number,
-    /// As a time of day: seconds since midnight.
+    /// A time of day: seconds since midnight.
     OfDay,
-    /// With a date: seconds since 1970.
+    /// A time with a date: seconds since 1970.
     Dated,
 }
 
 impl Written {
-    /// How a cell has its time.
+    /// Returns the form of the time in a cell.
     pub(crate) fn of(cell: &str) -> Self {
         match cell {
             cell if is_date(cell) => Self::Dated,
@@ -29,7 +29,7 @@ impl Written {
         }
     }
 
-    /// A time as the file has it.
+    /// Returns a time in the form that the file uses.
     pub(crate) fn shown(self, seconds: f64) -> String {
         match self {
             Self::Number => format!("{seconds} s"),
@@ -45,25 +45,26 @@ pub(crate) fn is_date(cell: &str) -> bool {
     bytes.len() >= 8 && bytes[..4].iter().all(u8::is_ascii_digit) && bytes[4] == b'-'
 }
 
-/// Seconds since midnight of a time of day, as `07:40:12.250` or `07:40:12,250`; `None` if it is not one.
+/// Returns the seconds since midnight of a time of day, such as `07:40:12.250` or `07:40:12,250`; `None` for any
+/// other text.
 pub(crate) fn seconds_of_day(cell: &str) -> Option<f64> {
     let time: Time = cell.replace(',', ".").parse().ok().filter(|_| cell.matches(':').count() == 2)?;
     let whole = f64::from(time.hour()) * 3600.0 + f64::from(time.minute()) * 60.0 + f64::from(time.second());
     Some(whole + f64::from(time.subsec_nanosecond()) * 1e-9)
 }
 
-/// Seconds since 1970 of a time with date and zone.
+/// Returns the seconds since 1970 of a time with date and zone.
 pub(crate) fn seconds(cell: &str) -> Result<f64, String> {
     match cell.parse::<Timestamp>() {
         Ok(time) => Ok(time.as_second() as f64 + f64::from(time.subsec_nanosecond()) * 1e-9),
         Err(_) if cell.parse::<DateTime>().is_ok() => Err(format!(
-            "`{cell}` states no zone; append Z if it is UTC, or the difference from it, as +01:00"
+            "`{cell}` has no time zone; append Z for UTC, or the offset from UTC, such as +01:00"
         )),
-        Err(_) => Err(format!("`{cell}` is not a time; write date, time and zone, as {EXAMPLE}")),
+        Err(_) => Err(format!("`{cell}` is not a time; write date, time and zone, such as {EXAMPLE}")),
     }
 }
 
-/// A time in any form in which readings have it, seconds: a number, a time of day, or a date.
+/// Returns a time in seconds from any form that readings may use: a number, a time of day, or a date.
 pub(crate) fn time_s(cell: &str, has_commas: bool) -> Result<f64, String> {
     if is_date(cell) {
         return seconds(cell);
@@ -71,20 +72,18 @@ pub(crate) fn time_s(cell: &str, has_commas: bool) -> Result<f64, String> {
     let number = if has_commas { cell.replace(',', ".").parse() } else { cell.parse() };
     let number = number.ok().filter(|number: &f64| number.is_finite());
     seconds_of_day(cell).or(number).ok_or_else(|| {
-        format!(
-            "`{cell}` is not a time; write seconds, a time of day as 07:40:12.250, or a date as {EXAMPLE}"
-        )
+        format!("`{cell}` is not a time; write seconds, a time of day (07:40:12.250), or a date ({EXAMPLE})")
     })
 }
 
-/// Seconds since midnight as a time of day.
+/// Returns seconds since midnight as a time of day.
 fn written_of_day(seconds: f64) -> String {
     let ms = (seconds * 1e3).round() as i64;
     let (hours, minutes, rest) = (ms / 3_600_000, ms / 60_000 % 60, ms % 60_000);
     format!("{hours:02}:{minutes:02}:{:02}.{:03}", rest / 1000, rest % 1000)
 }
 
-/// Seconds since 1970 as a time of UTC.
+/// Returns seconds since 1970 as a UTC time.
 pub(crate) fn written(seconds: f64) -> String {
     let time = Timestamp::from_millisecond((seconds * 1e3).round() as i64);
     time.map_or_else(|_| format!("{seconds} s"), |time| time.to_string())

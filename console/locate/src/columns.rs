@@ -1,4 +1,4 @@
-//! The columns of a file of readings, and what a row of cells says.
+//! The columns of a file of readings, and how a row of cells is interpreted.
 
 use crate::{
     clock::{self, Written},
@@ -9,12 +9,12 @@ use report::document::csv::cell;
 use std::collections::HashMap;
 use world::{Odometry, Point, Pose, Station, StationId};
 
-/// A quantity with the suffixes of its units, each with its factor to seconds, metres or radians.
+/// A quantity with the suffixes of its units. Each suffix has its factor to seconds, metres or radians.
 type Column = (&'static str, &'static [(&'static str, f64)]);
 
 const TIME: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6)];
 const TIME_OR_DATE: &[(&str, f64)] = &[("_s", 1.0), ("_ms", 1e-3), ("_us", 1e-6), ("", DATED)];
-/// A time of the day and the date, without a unit.
+/// The factor of a time of day or a date, which has no unit.
 const DATED: f64 = 0.0;
 const LENGTH: &[(&str, f64)] = &[("_m", 1.0), ("_mm", 1e-3)];
 const ANGLE: &[(&str, f64)] = &[("_rad", 1.0), ("_deg", std::f64::consts::PI / 180.0)];
@@ -54,25 +54,25 @@ const COLUMNS: [Column; 15] = [
     ("tool_on", NAME),
 ];
 
-/// A mean of more repetitions than this is not a reading.
+/// The largest accepted number of repetitions behind one mean.
 const REPETITIONS_MAX: u32 = 1000;
 
-/// What the readings of a file are.
+/// The kind of readings in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Distances, or times of flight.
     Ranges,
-    /// Times of arrival without the time of emission, or their differences: only differences count.
+    /// Arrival times without the emission time, or their differences: only differences count.
     Differences,
 }
 
-/// Where the columns of a file stand.
+/// The positions of the columns in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct Columns {
     names: Vec<String>,
-    /// Where each of [`COLUMNS`] stands, and its factor.
+    /// The position of each of [`COLUMNS`], and its factor.
     at: [Option<(usize, f64)>; COLUMNS.len()],
-    /// Metres per second; for files of times.
+    /// Metres per second; used for files of times.
     sound_speed_m_s: f64,
     stations: HashMap<String, StationId>,
     station_names: String,
@@ -80,33 +80,34 @@ pub(crate) struct Columns {
     pub has_commas: bool,
 }
 
-/// What a row says.
+/// The contents of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub line: u64,
     pub t_s: f64,
-    /// How the time was written.
+    /// The form in which the time was written.
     pub written: Written,
-    /// Rows of one emission belong together.
+    /// The emission that the row belongs to.
     pub emission: Option<String>,
     pub range: Option<Heard>,
     pub motion: Option<Odometry>,
     pub truth: Option<Pose>,
-    /// Whether the tool is on from here on; none if the row does not say it.
+    /// Whether the tool is on from this row on; `None` if the row does not state it.
     pub tool_on: Option<bool>,
 }
 
-/// A station was heard.
+/// A reading of one station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Heard {
     pub station: StationId,
-    /// Metres; if only differences count, too long by any length, and perhaps negative.
+    /// The range, metres. If only differences count, it is off by an unknown length that all readings share, and may
+    /// be negative.
     pub range_m: f64,
     pub repetitions: u32,
 }
 
 impl Columns {
-    /// The columns that the first line names.
+    /// Finds the columns named in the first line.
     pub(crate) fn new(
         header: &StringRecord,
         stations: &[Station],
@@ -117,10 +118,10 @@ impl Columns {
         for (index, name) in names.iter().enumerate() {
             let Some((column, factor)) = known(name) else { continue };
             match at[column] {
-                // A column with a unit counts more than a date beside it.
+                // A column with a unit takes precedence over a date column.
                 Some((_, present)) if factor <= DATED && present > DATED => {}
                 Some((_, present)) if present > DATED || factor <= DATED => {
-                    return Err(format!("column {name}: {} occurs twice", COLUMNS[column].0));
+                    return Err(format!("column {name}: {} is duplicated", COLUMNS[column].0));
                 }
                 _ => at[column] = Some((index, factor)),
             }
@@ -129,28 +130,28 @@ impl Columns {
         let measured = [RANGE, ARRIVAL, DIFFERENCE].into_iter().filter(|column| is_there(*column)).count();
         let has_time = is_there(T) || (is_there(ARRIVAL) && is_there(EMISSION));
         let wrong = if !is_there(STATION) {
-            Some("no column `station`")
+            Some("column `station` is missing")
         } else if measured == 0 {
-            Some("no column says what was measured: range_m, arrival_s or tdoa_s (also in mm, ms and us)")
+            Some("no measurement column: add range_m, arrival_s or tdoa_s (also in mm, ms and us)")
         } else if measured > 1 {
-            Some("more than one column says what was measured; keep one of range, arrival and tdoa")
+            Some("more than one measurement column; keep only one of range, arrival and tdoa")
         } else if !has_time {
             Some(
-                "no column t_s (or t_ms, t_us, or `time` with dates); only files with `arrival_s` and `emission` need none",
+                "no time column: add t_s, t_ms, t_us or `time` with dates, or both `arrival_s` and `emission`",
             )
         } else if !is_there(RANGE) && sound_speed_m_s.is_none() {
-            Some("times need the speed of sound: add --sound-speed with metres per second")
+            Some("times need the speed of sound; add --sound-speed in metres per second")
         } else if is_there(TRUE_X) != is_there(TRUE_Y) {
-            Some("true_x and true_y belong together")
+            Some("true_x and true_y must be given together")
         } else {
             None
         };
         if let Some(wrong) = wrong {
-            return Err(format!("{wrong}; the first line has {}", names.join(", ")));
+            return Err(format!("{wrong}; the columns found are {}", names.join(", ")));
         }
         let by_number = stations.iter().map(|station| (station.id.0.to_string(), station.id));
         let by_name = stations.iter().map(|station| (station.name.clone(), station.id));
-        // As a table names them.
+        // The names as a table writes them.
         let by_cell = stations.iter().map(|station| (cell(&station.name), station.id));
         Ok(Self {
             names,
@@ -162,13 +163,13 @@ impl Columns {
         })
     }
 
-    /// What the readings are.
+    /// Returns the kind of the readings.
     pub(crate) fn kind(&self) -> Kind {
         let is_known = self.has(RANGE) || (self.has(ARRIVAL) && self.has(EMITTED));
         if is_known { Kind::Ranges } else { Kind::Differences }
     }
 
-    /// Columns that say nothing here.
+    /// Iterates over the columns that are not used.
     pub(crate) fn ignored(&self) -> impl Iterator<Item = &str> {
         let is_used = |index: usize| self.at.iter().flatten().any(|(used, _)| *used == index);
         self.names
@@ -194,7 +195,7 @@ impl Columns {
         let t_s = match (number(T)?, arrival_s) {
             (Some(t_s), _) => t_s,
             (None, Some(arrival_s)) if !self.has(T) => arrival_s,
-            _ => return Err(self.problem(line, T, "empty, and a row needs its time".into())),
+            _ => return Err(self.problem(line, T, "empty; every row needs a time".into())),
         };
         let is_known = self.kind() == Kind::Ranges;
         let time_s = match (arrival_s, number(DIFFERENCE)?) {
@@ -241,20 +242,20 @@ impl Columns {
         let range_m = match (written.is_empty(), range_m) {
             (true, None) => return Ok(None),
             (true, Some(_)) => {
-                return Err(self.problem(line, STATION, "empty, and the row has a reading".into()));
+                return Err(self.problem(line, STATION, "empty, although the row has a reading".into()));
             }
             (false, None) => {
                 let column = measured.filter(|column| self.cell(cells, *column).is_empty());
                 return Err(self.problem(
                     line,
                     column.unwrap_or(EMITTED),
-                    format!("empty, and station {written} was heard"),
+                    format!("empty, although the row names station {written}"),
                 ));
             }
             (false, Some(range_m)) => range_m,
         };
         let station = *self.stations.get(written).ok_or_else(|| {
-            let what = format!("the scenario has no station `{written}`; it has {}", self.station_names);
+            let what = format!("the scenario has no station `{written}`, only {}", self.station_names);
             self.problem(line, STATION, what)
         })?;
         let repetitions = match self.cell(cells, REPETITIONS) {
@@ -265,7 +266,7 @@ impl Columns {
                     self.problem(
                         line,
                         REPETITIONS,
-                        format!("`{text}` is not a number from 1 to {REPETITIONS_MAX}"),
+                        format!("`{text}` is not a whole number from 1 to {REPETITIONS_MAX}"),
                     )
                 })?
             }
@@ -290,13 +291,13 @@ impl Columns {
             return Ok(Some(seconds));
         }
         let parsed = if self.has_commas { text.replace(',', ".").parse::<f64>() } else { text.parse() };
-        // What an instrument writes for no range is a range that cannot be, and not a bad row.
+        // What an instrument writes for "no range" is treated as an impossible range, not as a bad row.
         let is_word = [RANGE, ARRIVAL, DIFFERENCE].contains(&column) && (column != ARRIVAL || self.has(T));
         let number = parsed.ok().filter(|number| number.is_finite() || is_word);
         let number = number.ok_or_else(|| self.problem(line, column, format!("`{text}` is not a number")))?;
         if factor <= DATED {
             let what = format!(
-                "`{text}` has no unit; call the column t_s, t_ms or t_us, or write dates, as {}",
+                "`{text}` has no unit; name the column t_s, t_ms or t_us, or write dates, such as {}",
                 clock::EXAMPLE
             );
             return Err(self.problem(line, column, what));
@@ -304,7 +305,7 @@ impl Columns {
         Ok(Some(number * factor))
     }
 
-    /// What is wrong with the time of a row.
+    /// Returns a problem with the time of a row.
     pub(crate) fn wrong_time(&self, line: u64, what: String) -> Problem {
         self.problem(line, if self.has(T) { T } else { ARRIVAL }, what)
     }
@@ -315,7 +316,7 @@ impl Columns {
     }
 }
 
-/// Which of [`COLUMNS`] a name means, as `range_mm` or `Range [mm]`, and its factor.
+/// Finds the one of [`COLUMNS`] that a name such as `range_mm` or `Range [mm]` stands for, and its factor.
 fn known(name: &str) -> Option<(usize, f64)> {
     let lower = name.to_lowercase().replace(['µ', 'μ'], "u");
     let words: Vec<&str> =

@@ -1,36 +1,37 @@
-//! What could not be decided, or was left out, while readings were located.
+//! Records what remained undecided or was left out while readings were located.
 
 use positioning::{Impossible, Sides};
 use std::collections::{BTreeMap, BTreeSet};
 use world::StationId;
 
-/// Ranges of a station that no place in the tank explains.
+/// The impossible ranges of a station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refused {
-    /// How many.
+    /// The number of impossible ranges.
     pub count: u64,
-    /// The first of them, metres.
+    /// The first impossible range, metres.
     pub range_m: f64,
-    /// The longest one that can be, metres.
+    /// The longest possible range, metres.
     pub most_m: f64,
-    /// Mission time of the first, seconds.
+    /// Mission time of the first impossible range, seconds.
     pub t_s: f64,
 }
 
-/// What was decided how, and what was left out.
+/// The doubts about a located run: mirror images and impossible ranges.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Doubts {
-    /// Stations that were heard where a fix has a mirror image.
+    /// The numbers of the stations that were heard in fixes with a mirror image.
     pub mirrored_by: BTreeSet<u32>,
     /// Fixes whose mirror image lies behind the wall.
     pub sides_by_walls: u64,
-    /// Fixes whose mirror image is too far from where the robot was before: the start and the track decide.
+    /// Fixes whose mirror image is too far from the robot's previous position, so that the start and the track
+    /// decide.
     pub sides_by_track: u64,
-    /// Fixes for which nothing decides between two sides.
+    /// Fixes for which nothing decides between the position and its mirror image.
     pub sides_open: u64,
-    /// Whether the first of them contradicts the start of the scenario on either side.
+    /// Whether both positions of the first fix with a mirror image contradict the start in the scenario.
     pub contradicts_start: bool,
-    /// Impossible ranges by the number of the station.
+    /// Impossible ranges by station number.
     pub impossible: BTreeMap<u32, Refused>,
 }
 

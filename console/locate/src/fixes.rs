@@ -1,4 +1,4 @@
-//! Fixes and track as a table, one line for each moment with ranges.
+//! Writes fixes and track as a table, with one line for each moment with ranges.
 
 use crate::columns::Kind;
 use mission::{Event, EventKind};
@@ -13,17 +13,17 @@ use world::{Point, Pose, Station};
 const HEADER: &str = "t_s,fix_x_m,fix_y_m,fix_xx_m2,fix_xy_m2,fix_yy_m2,fix_95_m,integrity,stations,left_out,chi2,gdop,\
     protection_m,why_none,x_m,y_m,heading_rad,xx_m2,xy_m2,yy_m2,error_95_m,true_x_m,true_y_m\n";
 
-/// Writes the table out of the events of each moment.
+/// Writes the table from the events of each moment.
 pub struct Fixes<W: Write> {
     out: W,
     stations: Vec<Station>,
 }
 
 impl<W: Write> Fixes<W> {
-    /// A table with its first line.
+    /// Begins a table and writes its header line.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// The table cannot be written.
     pub fn new(mut out: W, stations: &[Station]) -> io::Result<Self> {
         out.write_all(HEADER.as_bytes())?;
         Ok(Self { out, stations: stations.to_vec() })
@@ -32,7 +32,7 @@ impl<W: Write> Fixes<W> {
     /// Writes a line if the moment had ranges.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// The table cannot be written.
     pub fn take(&mut self, events: &[Event]) -> io::Result<()> {
         let (mut fix, mut truth, mut estimate) = (None, None, None);
         for event in events {
@@ -79,16 +79,16 @@ impl<W: Write> Fixes<W> {
         )
     }
 
-    /// Writes what is still held back.
+    /// Writes any buffered data.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// The table cannot be written.
     pub fn finish(mut self) -> io::Result<()> {
         self.out.flush()
     }
 }
 
-/// What people read.
+/// Returns the word that is shown to people.
 pub(crate) fn word(integrity: Integrity) -> &'static str {
     match integrity {
         Integrity::Ok => "ok",
@@ -99,7 +99,7 @@ pub(crate) fn word(integrity: Integrity) -> &'static str {
 }
 
 impl Kind {
-    /// What people read.
+    /// Returns the words that are shown to people.
     pub fn word(self) -> &'static str {
         match self {
             Self::Ranges => "ranges",

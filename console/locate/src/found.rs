@@ -1,9 +1,9 @@
-//! What a session says of clocks and sound.
+//! Clock and sound errors found in a session.
 
 use positioning::{Calibration, Ranging};
 use world::RangeSet;
 
-/// What all ranges have in common, each with its standard deviation: `range = distance * (1 + scale) + offset`.
+/// The common error of all ranges, each part with its standard deviation: `range = distance * (1 + scale) + offset`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
     scale: (f64, f64),
@@ -11,22 +11,22 @@ pub struct Found {
 }
 
 impl Found {
-    /// A share by which all ranges are too long.
+    /// Creates a correction for ranges that are all too long by a share.
     pub(crate) fn of_scale(scale: (f64, f64)) -> Self {
         Self { scale, offset_m: (0.0, 0.0) }
     }
 
-    /// By how much too long all ranges are, as a share, and its standard deviation.
+    /// The share by which all ranges are too long, and its standard deviation.
     pub fn scale(&self) -> (f64, f64) {
         self.scale
     }
 
-    /// By how much too long all ranges are, metres, and its standard deviation.
+    /// The length by which all ranges are too long, and its standard deviation, metres.
     pub fn offset_m(&self) -> (f64, f64) {
         self.offset_m
     }
 
-    /// Takes it out of ranges.
+    /// Removes the common error from sets of ranges.
     pub(crate) fn correct(&self, sets: &mut [RangeSet]) {
         let by = 1.0 / (1.0 + self.scale.0);
         for range_m in sets.iter_mut().flat_map(|set| &mut set.ranges_m) {
@@ -34,7 +34,7 @@ impl Found {
         }
     }
 
-    /// The same for single ranges.
+    /// Removes the common error from single ranges.
     pub(crate) fn corrected(&self, ranges: &mut [Ranging]) {
         let by = 1.0 / (1.0 + self.scale.0);
         for range in ranges {

@@ -1,8 +1,9 @@
-//! Readings measured by others, an acoustic-emission system on a real robot for example: to fixes and a track, by the same
-//! estimator as in a mission, as the events of a run, so that journal, recording and report are made of them as of any run.
+//! Turns readings that others measured, for example with an acoustic-emission system on a real robot, into fixes and
+//! a track. It uses the same estimator as a mission and produces the events of a run, so journal, recording and
+//! report are made as for any other run.
 //!
-//! A file is read twice, row by row: once to check it and to find out about clocks and sound, once to locate. Memory does not
-//! grow with it.
+//! A file is read row by row, once to check it and once to locate; memory does not grow with its length. To estimate
+//! clock and sound errors, it is read more often.
 
 mod again;
 mod clock;

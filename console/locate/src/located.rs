@@ -1,4 +1,4 @@
-//! A file of readings, located.
+//! Locates a file of readings.
 
 use crate::{
     clock::{self, Written},
@@ -23,69 +23,71 @@ use world::{CoverageGrid, ObstacleMap, RangeSet, StationId, Tool};
 
 mod learning;
 
-/// Bad rows that an error lists.
+/// The number of bad rows that an error lists.
 const LISTED: usize = 10;
-/// A gap between motions of more than this many times their usual distance in time is one: some were lost.
+/// A time between two motions of more than this many times the usual interval is a gap: some motions were lost.
 const GAP: f64 = 5.0;
-/// Distances in time of so many motions are looked at to know the usual one.
+/// The number of intervals between motions that determine the usual one.
 const INTERVALS: usize = 4_096;
 
-/// `locate` ignores measured motion that at least this many fixes contradict. A wrong start alone makes three fixes contradict it.
+/// The motion is ignored if at least this many fixes contradict it. A wrong start alone makes three fixes contradict
+/// it.
 const CONTRADICTING: u64 = 4;
-/// It also takes at least one contradicting fix in this many fixes.
+/// In addition, at least one in this many fixes must contradict the motion.
 const CONTRADICTING_OF: u64 = 4;
 
-/// What is to be located, and how.
+/// A file to locate, with the options.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a> {
     /// The readings.
     pub file: &'a Path,
-    /// What people know them by.
+    /// The name of the file as shown to people.
     pub shown: &'a str,
     /// Stations, tank, start and noise.
     pub scenario: &'a Scenario,
-    /// Metres per second; for times.
+    /// Metres per second; used for files of times.
     pub sound_speed_m_s: Option<f64>,
-    /// Whether the session's own speed of sound is found out.
+    /// Whether to estimate the speed of sound of this session.
     pub finds_sound_speed: bool,
-    /// Whether the offset between the clocks of robot and stations is found out.
+    /// Whether to estimate the offset between the clocks of robot and stations.
     pub finds_clock_offset: bool,
-    /// Whether bad rows are left out instead of refused.
+    /// Whether to leave out bad rows instead of refusing the file.
     pub skips_bad_rows: bool,
-    /// The file that says when the tool was on, if the readings have no column for it.
+    /// The file that states when the tool was on, if the readings have no column for it.
     pub tool_on: Option<&'a Path>,
 }
 
-/// What a look over the whole file found, before anything is located.
+/// The findings about a whole file before it is located.
 #[derive(Debug, Clone)]
 pub struct Survey {
-    /// What the readings are.
+    /// The kind of the readings.
     pub kind: Kind,
-    /// Whether the motion between them was measured, and is used.
+    /// Whether the motion between the readings was measured and is used.
     pub has_motion: bool,
-    /// How far fixes and motion agree, if they contradict each other so often that the motion is not used.
+    /// The agreement of fixes and motion, if they contradict each other so often that the motion is not used.
     pub contradicted: Option<Agreement>,
-    /// Rows, bad ones among them.
+    /// The number of rows, including bad ones.
     pub rows: u64,
-    /// Rows that are left out.
+    /// The number of rows left out.
     pub bad: u64,
-    /// Some of them.
+    /// The first problems found.
     pub problems: Vec<Problem>,
-    /// Columns that say nothing here.
+    /// The columns that are not used.
     pub ignored: Vec<String>,
-    /// What was found out about clocks and sound; absent if it was not asked for.
+    /// The clock and sound errors found; absent if they were not requested.
     pub calibration: Option<Found>,
-    /// From when to when the tool was on, seconds after the first moment; absent if nothing says it.
+    /// The times from when to when the tool was on, seconds after the first moment; absent if neither the readings
+    /// nor a file state them.
     pub tool_on_s: Option<Vec<[f64; 2]>>,
-    /// What the residuals say of sound and stations, with that taken out.
+    /// The errors of sound and stations according to the residuals, after correction for `calibration`.
     pub verdict: Verdict,
-    /// How several readings of one station in one emission scatter.
+    /// The scatter of several readings of one station in one emission.
     pub repeats: Repeats,
-    /// The first time as it is in the file, seconds.
+    /// The first time as written in the file, seconds.
     pub first_s: f64,
-    /// First and last time with their date, in UTC; absent where times have none.
+    /// First and last time with date, in UTC; absent if times have no date.
     pub dates: Option<[String; 2]>,
-    /// Time between motions beyond which some were lost, seconds.
+    /// The time between motions, in seconds, beyond which some motions were lost.
     gap_s: f64,
 }
 
@@ -105,7 +107,7 @@ impl Task<'_> {
         self.scenario.mission.locating.noise.unwrap_or(normal)
     }
 
-    /// What ranges can be before anything is taken out of them.
+    /// The bounds of possible ranges before any correction.
     fn possible(&self) -> Possible {
         let world = &self.scenario.sim.world;
         let too_long = if self.finds_sound_speed { learning::MOST_TOO_LONG } else { 0.0 };
@@ -114,16 +116,17 @@ impl Task<'_> {
     }
 
     fn scatter(&self, kind: Kind) -> Scatter {
-        // Without the time of emission nobody knows how far off a station is; the span of the stations is as far as it can be.
+        // Without the emission time the distance of a station is unknown. The span of the tank is the farthest it can
+        // be.
         let (low, high) = self.scenario.sim.world.boundary.bounds();
         let distance_m = (kind == Kind::Differences).then(|| (high - low).amax());
         Scatter { noise: self.noise(), timing: self.scenario.mission.locating.timing, distance_m }
     }
 
-    /// Reads the whole file once: what it holds, and what is wrong with it; and again for what it says of clocks and sound.
+    /// Reads the whole file once to collect its contents and problems, and again to estimate clock and sound errors.
     ///
     /// # Errors
-    /// It cannot be read, or has bad rows and those are not to be left out.
+    /// The file cannot be read, or has bad rows without a request to leave them out.
     pub fn survey(&self) -> anyhow::Result<Survey> {
         let (mut moments, columns) = self.open()?;
         let in_file = self.tool_on_in_file()?;
@@ -196,7 +199,7 @@ impl Task<'_> {
         Ok(survey)
     }
 
-    /// The moments of the file. Readings that repeat each other count as one.
+    /// Iterates over the moments of the file. Readings that are copies of each other are merged into one.
     fn moments(&self, repeats: &Repeats) -> anyhow::Result<impl Iterator<Item = Moment> + use<>> {
         let are_one = repeats.are_narrow();
         let counted = move |mut moment: Moment| {
@@ -208,14 +211,15 @@ impl Task<'_> {
         Ok(self.open()?.0.flatten().map(counted))
     }
 
-    /// The stretches of the file that says when the tool was on.
+    /// Reads the file that states when the tool was on.
     fn tool_on_in_file(&self) -> anyhow::Result<Option<Vec<[f64; 2]>>> {
         let read =
             |file: &Path| tool::read(file).map_err(|what| bad_input(format!("{}, {what}", file.display())));
         self.tool_on.map(read).transpose()
     }
 
-    /// When the tool was on, by that file or by the readings, which span the times of `span`, seconds.
+    /// Returns the times when the tool was on, from that file or from the readings, which span the times of `span`,
+    /// seconds.
     fn tool_on(
         &self,
         in_file: Option<Vec<[f64; 2]>>,
@@ -227,7 +231,7 @@ impl Task<'_> {
         if of_readings.is_some() {
             let (readings, file) = (self.file.display(), file.display());
             return Err(bad_input(format!(
-                "{readings} has a column tool_on, and {file} states it, too; keep one of the two"
+                "column tool_on of {readings} and {file} both state when the tool was on; remove one"
             )));
         }
         match tool::outside(&stretches, span) {
@@ -243,17 +247,17 @@ impl Task<'_> {
         lines.extend((more > 0).then(|| format!("and {more} more")));
         let is_cut = problems.iter().any(|problem| problem.is_end);
         lines.push(if is_cut {
-            "what follows cannot be read; export the readings again".into()
+            "the rest cannot be read; export the readings again".into()
         } else {
             "correct the rows, or leave them out with --skip-bad-rows".into()
         });
         lines.join("\n")
     }
 
-    /// Locates; gives the events of each moment, as a run has them.
+    /// Locates the readings, and passes the events of each moment to `take`, as a run records them.
     ///
     /// # Errors
-    /// The file cannot be read any more.
+    /// The file can no longer be read.
     pub fn locate(&self, survey: &Survey, mut take: impl FnMut(&[Event])) -> anyhow::Result<Doubts> {
         let config = self.config(survey);
         let mut opened = Flight::prepare(self.scenario, false).opened();
@@ -284,7 +288,7 @@ impl Task<'_> {
         Ok(track.doubts)
     }
 
-    /// The track, and with it the floor that was swept; gives the events of each moment.
+    /// Computes the track and the swept floor, and passes the events of each moment to `take`.
     fn track(
         &self,
         survey: &Survey,
@@ -328,7 +332,7 @@ impl Task<'_> {
         Ok(track)
     }
 
-    /// The mission as far as locating goes.
+    /// Returns the configuration of the mission, reduced to locating.
     fn config(&self, survey: &Survey) -> MissionConfig {
         let mut config = self.scenario.mission.clone();
         config.planner =
@@ -347,13 +351,13 @@ impl Task<'_> {
     }
 }
 
-/// Makes the readings of a station in an emission one: their mean.
+/// Merges the readings of a station in an emission into their mean.
 fn as_one(set: &mut RangeSet) {
     let mean_m = set.ranges_m.iter().sum::<f64>() / set.ranges_m.len().max(1) as f64;
     set.ranges_m = vec![mean_m];
 }
 
-/// Where the robot was, moment by moment.
+/// The position of the robot, moment by moment.
 struct Track {
     locator: Locator,
     map: ObstacleMap,
@@ -362,7 +366,7 @@ struct Track {
     gap_s: f64,
     /// Whether measured motion is used.
     has_motion: bool,
-    /// Whether any motion was measured yet.
+    /// Whether any motion has been measured so far.
     has_moved: bool,
     doubts: Doubts,
     radius_m: f64,
@@ -379,7 +383,7 @@ struct Swept {
 }
 
 impl Swept {
-    /// What an estimate adds to it.
+    /// Returns the floor that an estimate adds.
     fn visit(&mut self, Event { t_s, kind, .. }: &Event) -> Option<EventKind> {
         let EventKind::Estimated { pose } = kind else { return None };
         let (from, to) = self.track.visit(*t_s, pose)?;

@@ -1,4 +1,4 @@
-//! Readings of a run, written in the form that is read here.
+//! Writes the readings of a run in the format that this crate reads.
 
 use report::document::csv::cell;
 use std::io::{self, Write};
@@ -6,26 +6,26 @@ use world::{Odometry, Pose, RangeSet, Readings, Station};
 
 const HEADER: &str = "t_s,station,range_m,forward_m,sideways_m,turn_rad,true_x_m,true_y_m,true_heading_rad\n";
 
-/// Writes readings, tick by tick.
+/// Writes readings tick by tick.
 pub struct MeasuredWriter<W: Write> {
     out: W,
     stations: Vec<Station>,
 }
 
 impl<W: Write> MeasuredWriter<W> {
-    /// A file with its first line.
+    /// Begins a file and writes its header line.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// The file cannot be written.
     pub fn new(mut out: W, stations: &[Station]) -> io::Result<Self> {
         out.write_all(HEADER.as_bytes())?;
         Ok(Self { out, stations: stations.to_vec() })
     }
 
-    /// Writes what was sensed in a tick: a row for the motion and the truth, and one for each range.
+    /// Writes the readings of one tick: one row for the motion and the truth, and one row for each range.
     ///
     /// # Errors
-    /// Nothing can be written.
+    /// The file cannot be written.
     pub fn write(&mut self, t_s: f64, readings: &Readings, truth: Pose) -> io::Result<()> {
         let Odometry { forward_m, sideways_m, turn_rad } = readings.odometry;
         let Pose { position, heading_rad } = truth;
@@ -41,13 +41,13 @@ impl<W: Write> MeasuredWriter<W> {
         Ok(())
     }
 
-    /// Where it was written to.
+    /// Returns the underlying writer.
     pub fn into_inner(self) -> W {
         self.out
     }
 }
 
-/// A name as a cell.
+/// Returns a name as a cell.
 fn quoted(name: &str) -> String {
     if name.contains(['"', ',', ';', '\n', '#']) {
         format!("\"{}\"", name.replace('"', "\"\""))

@@ -1,4 +1,4 @@
-//! Rows of one time or emission put together.
+//! Groups rows by time or emission.
 
 use crate::{
     clock::{self, Written},
@@ -10,58 +10,59 @@ use csv::StringRecord;
 use positioning::{Impossible, Possible};
 use world::{Odometry, Pose, RangeSet};
 
-/// Differences of arrival times become ranges by adding this to the time since the first arrival, metres: a range is positive.
+/// Added to each arrival difference, as a length in metres, to make it a range: ranges must be positive.
 const BASE_M: f64 = 100.0;
 
-/// A time of day that falls by more than this has passed midnight, seconds.
+/// If the time of day falls by more than this, it has passed midnight, seconds.
 const HALF_A_DAY_S: f64 = 43_200.0;
 
-/// What was measured at one time.
+/// All measurements of one time or emission.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Moment {
     /// Time as in the file, seconds.
     pub t_s: f64,
-    /// One set per station heard.
+    /// One set for each station heard.
     pub ranges: Vec<RangeSet>,
-    /// The readings behind them that can be, row by row.
+    /// The possible readings behind `ranges`, row by row.
     pub heard: Vec<Heard>,
-    /// Motion since the moment before, if it was measured.
+    /// Motion since the previous moment, if measured.
     pub odometry: Option<Odometry>,
-    /// Where the robot truly was, if somebody knows.
+    /// The true pose of the robot, if known.
     pub truth: Option<Pose>,
-    /// Whether the tool is on from here on; none if no row says it. Rows that contradict each other: it is off.
+    /// Whether the tool is on from this moment on; `None` if no row states it. If rows contradict each other, it is
+    /// off.
     pub tool_on: Option<bool>,
-    /// How the time is written.
+    /// The form in which the time is written.
     pub written: Written,
 }
 
-/// The moments of a file, and between them what is wrong with rows.
+/// Iterates over the moments of a file, and over the problems with rows between them.
 pub(crate) struct Moments {
     rows: Rows,
     columns: Columns,
     cells: StringRecord,
-    /// The moment that is being put together, and the row that began it.
+    /// The moment being collected, and its first row.
     open: Option<(Row, Moment)>,
-    /// What differences of arrivals can be in the tank.
+    /// The bounds of possible arrival differences in the tank.
     possible: Possible,
     last: Option<Place>,
     back: Option<Back>,
-    /// A row that waits until those before it that go back in time are told of.
+    /// A row that is held back until the out-of-order rows before it have been reported.
     waiting: Option<Row>,
-    /// Rows that are earlier than what came before them, but for the first of each stretch.
+    /// The number of out-of-order rows, not counting the first of each stretch.
     pub left_behind: u64,
-    /// Rows read.
+    /// The number of rows read.
     pub count: u64,
 }
 
-/// Where a time stands.
+/// A time and its line.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     line: u64,
     t_s: f64,
 }
 
-/// Rows that are earlier than what came before them.
+/// A stretch of rows with times earlier than the row before them.
 #[derive(Debug, Clone, Copy)]
 struct Back {
     first: Place,
@@ -87,7 +88,7 @@ impl Moments {
         }
     }
 
-    /// The next row, or what is wrong with it.
+    /// Returns the next row, or the problem with it.
     fn row(&mut self) -> Option<Result<Row, Problem>> {
         if let Some(row) = self.waiting.take() {
             return Some(Ok(row));
@@ -97,7 +98,7 @@ impl Moments {
         Some(read.and_then(|line| self.columns.row(&self.cells, line)))
     }
 
-    /// Takes in a row; gives the moment that it ends, if it begins another.
+    /// Adds a row. Returns the previous moment if the row begins a new one.
     fn take(&mut self, row: Row) -> Result<Option<Moment>, Problem> {
         let place = Place { line: row.line, t_s: row.t_s };
         match &mut self.open {
@@ -121,7 +122,7 @@ impl Moments {
         Ok(self.open.replace((row, moment)).map(|(_, moment)| self.whole(moment)))
     }
 
-    /// Counts a row that is earlier than what came before; the first of them stands for all.
+    /// Counts an out-of-order row; only the first row of a stretch is reported.
     fn went_back(&mut self, place: Place) {
         if let Some(back) = &mut self.back {
             (back.last_line, back.rows) = (place.line, back.rows + 1);
@@ -138,7 +139,8 @@ impl Moments {
         let (earlier, later) = (written.shown(first.t_s), written.shown(before.t_s));
         if written == Written::OfDay && before.t_s - first.t_s > HALF_A_DAY_S {
             let what = format!(
-                "{earlier} comes after {later} in line {}: times of day pass midnight here; write them with their dates, as {}",
+                "{earlier} comes after {later} in line {}: the time of day passes midnight here; \
+                 write times with their dates, such as {}",
                 before.line,
                 clock::EXAMPLE
             );
@@ -146,16 +148,16 @@ impl Moments {
         }
         let until = match rows {
             1 => String::new(),
-            _ => format!("; the {rows} rows up to line {last_line} are earlier than that"),
+            _ => format!("; all {rows} rows up to line {last_line} are too early"),
         };
         let what = format!(
-            "time goes back here: {earlier}, after {later} in line {}{until}; sort the rows by time",
+            "time goes backwards: {earlier} follows {later} in line {}{until}; sort the rows by time",
             before.line
         );
         self.columns.wrong_time(first.line, what)
     }
 
-    /// A moment of which nothing more comes.
+    /// Finishes a moment after its last row.
     fn whole(&self, mut moment: Moment) -> Moment {
         let (_, impossible) = match self.columns.kind() {
             Kind::Ranges => self.possible.ranges(&moment.ranges),
@@ -174,7 +176,7 @@ impl Moments {
     }
 }
 
-/// A bad row in the middle of a moment comes before it and does not divide it.
+/// A bad row within a moment is returned before that moment and does not split it.
 impl Iterator for Moments {
     type Item = Result<Moment, Problem>;
 
@@ -193,7 +195,7 @@ impl Iterator for Moments {
     }
 }
 
-/// Whether a row is of the moment that another began.
+/// Whether a row belongs to the moment that `first` began.
 fn belongs(row: &Row, first: &Row) -> bool {
     match (&row.emission, &first.emission) {
         (Some(one), Some(other)) => one == other,
@@ -224,7 +226,7 @@ impl Moment {
                 self.ranges.push(RangeSet { station, ranges_m: Vec::new() });
                 self.ranges.len() - 1
             });
-            // A mean of so many counts as so many that are equal.
+            // A mean of N repetitions counts as N equal readings.
             self.ranges[index].ranges_m.extend((0..repetitions).map(|_| range_m));
         }
         if let Some(Odometry { forward_m, sideways_m, turn_rad }) = row.motion {
@@ -240,7 +242,7 @@ impl Moment {
         };
     }
 
-    /// Counts ranges of which only the differences matter from the first arrival that can be.
+    /// Makes ranges relative to the first possible arrival; only their differences matter.
     fn count_from_first(&mut self) {
         let least_m = self.heard.iter().map(|heard| heard.range_m).fold(f64::INFINITY, f64::min);
         let heard = self.heard.iter_mut().map(|heard| &mut heard.range_m);

@@ -1,17 +1,17 @@
-//! What is wrong with a row.
+//! Problems with rows.
 
 use std::fmt;
 
-/// A row that cannot be used, and why.
+/// A row that cannot be used, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     /// Line of the file, or number of the message, from 1.
     pub line: u64,
-    /// The column.
+    /// The name of the column.
     pub column: Option<String>,
-    /// What is wrong, and what would be right.
+    /// The problem and its remedy.
     pub what: String,
-    /// Whether what follows it cannot be read.
+    /// Whether the rest of the file cannot be read.
     pub is_end: bool,
 }
 

@@ -1,58 +1,59 @@
-//! Several readings of one station in one emission: repetitions, or two emissions under one time.
+//! Checks several readings of one station in one emission: they are repetitions, or two emissions under one time.
 
 use crate::moments::Moment;
 use positioning::{RangeNoise, Timing, scatter_limit};
 use world::StationId;
 
-/// A squared difference counts up to this many variances, so that noise with far outliers does not condemn a session.
+/// A squared difference counts for at most this many variances, so that a few far outliers do not make a session
+/// suspect.
 const MOST_SQUARES: f64 = 16.0;
-/// Readings that scatter less than this many times as much as the noise, squared, do no harm.
+/// Scatter below this multiple of the noise does no harm; a ratio of variances.
 const HARMLESS: f64 = 1.3;
-/// Readings whose variance is below this share of the noise variance are not independent: they are copies of one reading, or share its
-/// error. They count as one reading.
+/// Readings whose variance is below this share of the noise variance are not independent: they are copies of one
+/// reading, or share its error. Such readings count as one.
 const NARROW: f64 = 0.25;
 /// A sum that deviates by more standard deviations than this is significant.
 const SIGNIFICANT: f64 = 5.0;
 
-/// Two readings of one station that are furthest apart.
+/// The two readings of one station that differ most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeated {
-    /// Which station.
+    /// The station.
     pub station: StationId,
-    /// Readings in the emission.
+    /// The number of readings in the emission.
     pub count: u32,
-    /// How far apart they are, metres.
+    /// The difference of the two readings, metres.
     pub apart_m: f64,
     /// Time of the emission as in the file, seconds.
     pub t_s: f64,
 }
 
-/// How the readings of single stations scatter within emissions.
+/// The scatter of the readings of single stations within emissions.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Repeats {
-    /// Sum of the squared differences from their means over the variance.
+    /// Sum of the squared differences from the means, each divided by its variance.
     sum: f64,
     degrees: u32,
     /// Emissions with several readings of a station.
     pub emissions: u64,
-    /// Emissions among them whose readings scatter more than the noise.
+    /// The emissions among them whose readings scatter more than the noise.
     pub wide: u64,
-    /// The first of those in which they are furthest apart by their noise.
+    /// The readings that differ most in relation to their noise.
     pub worst: Option<Repeated>,
     worst_squares: f64,
 }
 
-/// What is expected of the readings.
+/// The expected scatter of readings.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scatter {
     pub noise: RangeNoise,
     pub timing: Timing,
-    /// The distance to assume where the readings do not give one, metres.
+    /// The distance to assume if the readings do not give one, metres.
     pub distance_m: Option<f64>,
 }
 
 impl Scatter {
-    /// Variance of a reading about the mean of its station, square metres.
+    /// Returns the variance of a reading about the mean of its station, square metres.
     fn variance_m2(&self, range_m: f64) -> f64 {
         let share_m = self.noise.sigma_ratio() * self.distance_m.unwrap_or(range_m);
         let repeats_m = self.timing.mean_sigma_m(share_m, f64::INFINITY);
@@ -123,27 +124,28 @@ impl Repeats {
         }
     }
 
-    /// How many times as far as the noise readings scatter, over all emissions.
+    /// Returns the scatter of the readings over all emissions, as a multiple of the noise.
     pub fn factor(&self) -> f64 {
         (self.sum / f64::from(self.degrees.max(1))).sqrt()
     }
 
-    /// Whether they scatter more than chance and noise make them.
+    /// Whether the readings scatter significantly more than the noise.
     pub fn are_wide(&self) -> bool {
         let degrees = f64::from(self.degrees);
         let limit = (1.0 + SIGNIFICANT * (2.0 / degrees).sqrt()).max(HARMLESS);
         self.degrees > 0 && self.sum > limit * degrees
     }
 
-    /// Whether they scatter so little that they are not independent readings.
+    /// Whether the readings scatter too little to be independent.
     pub fn are_narrow(&self) -> bool {
         let degrees = f64::from(self.degrees);
         let limit = (1.0 - SIGNIFICANT * (2.0 / degrees).sqrt()).min(NARROW);
         self.degrees > 0 && self.sum < limit * degrees
     }
 
-    /// By how much a position from an emission with several readings of a station is likely to be off although nothing is proven,
-    /// metres: a standard deviation, what readings scatter more than the noise and one standard deviation of chance.
+    /// Returns the likely error of a position from an emission with several readings of a station, if nothing is
+    /// proven; a standard deviation, metres. It consists of the excess of the scatter over the noise, less one
+    /// standard deviation of chance.
     pub(crate) fn likely_m(&self, moment: &Moment, scatter: &Scatter) -> f64 {
         let is_repeated = |set: &&world::RangeSet| {
             moment.heard.iter().filter(|heard| heard.station == set.station).count() > 1
@@ -160,7 +162,8 @@ impl Repeats {
         (excess * variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
     }
 
-    /// By how much the readings of an emission may be wrong because of that, metres; `None` if there is no such doubt.
+    /// Returns the likely error of the readings of an emission because of their scatter, metres; `None` if the
+    /// scatter raises no doubt.
     pub(crate) fn doubt_m(&self, moment: &Moment, scatter: &Scatter) -> Option<f64> {
         let once = Once::of(moment, scatter);
         let is_doubtful = once.is_wide() || (once.degrees > 0 && self.are_wide());

@@ -1,4 +1,4 @@
-//! Rows of cells out of a file, one at a time.
+//! Reads a file as rows of cells, one at a time.
 
 mod encoding;
 mod messages;
@@ -15,23 +15,23 @@ use std::{
 };
 use text::Text;
 
-/// What a file of messages begins with.
+/// The first bytes of an MCAP file.
 const MCAP: &[u8; 8] = b"\x89MCAP0\r\n";
 
-/// A file that gives rows.
-#[allow(clippy::large_enum_variant, reason = "there is one, for the whole of a file")]
+/// A file that is read as rows.
+#[allow(clippy::large_enum_variant, reason = "there is only one, for a whole file")]
 pub(crate) enum Rows {
-    /// Text with a line of names first.
+    /// Text whose first line names the columns.
     Csv { reader: csv::Reader<BufReader<Text>>, header: StringRecord, has_commas: bool, file: PathBuf },
-    /// Messages as JSON objects, whose keys are the names.
+    /// Messages that are JSON objects, whose keys name the columns.
     Messages(Box<Messages>),
 }
 
 impl Rows {
-    /// Opens a file: `.mcap`, or text for any other suffix.
+    /// Opens a file: as MCAP by its content or the suffix `.mcap`, otherwise as text.
     ///
     /// # Errors
-    /// It cannot be read, or has no names.
+    /// The file cannot be read, or has no column names.
     pub(crate) fn open(file: &Path) -> Result<Self, String> {
         let mut opened = open_regular(file).map_err(|error| error.to_string())?;
         let mut magic = [0; MCAP.len()];
@@ -61,7 +61,7 @@ impl Rows {
             Err(error) => return Err(of_csv(&error, line_of(&reader), path).to_string()),
         };
         if header.is_empty() {
-            return Err("empty; the first line names the columns, as in t_s,station,range_m".into());
+            return Err("empty; the first line must name the columns, such as t_s,station,range_m".into());
         }
         Ok(Self::Csv { reader, header, has_commas: delimiter != b',', file: path.to_owned() })
     }
@@ -79,10 +79,10 @@ impl Rows {
         matches!(self, Self::Csv { has_commas: true, .. })
     }
 
-    /// The next row into `cells`; gives its line, or `None` at the end.
+    /// Reads the next row into `cells`; returns its line, or `None` at the end.
     ///
     /// # Errors
-    /// What is wrong with the row; the one after it can still be read.
+    /// The problem with the row. Unless [`Problem::is_end`] is true, the next row can still be read.
     pub(crate) fn next(&mut self, cells: &mut StringRecord) -> Result<Option<u64>, Problem> {
         match self {
             Self::Csv { reader, file, .. } => match reader.read_record(cells) {
@@ -95,12 +95,12 @@ impl Rows {
     }
 }
 
-/// The line that a reader has come to: where a record begins is not kept behind comments and empty lines.
+/// Returns the line that a reader has reached. Where a record began is not known after comments and empty lines.
 fn line_of(reader: &csv::Reader<BufReader<Text>>) -> u64 {
     reader.position().line().saturating_sub(1).max(1)
 }
 
-/// Breaks of lines in quoted cells.
+/// Counts the line breaks in quoted cells.
 fn lines_within(cells: &StringRecord) -> u64 {
     cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
 }
@@ -109,7 +109,7 @@ fn of_csv(error: &csv::Error, line: u64, file: &Path) -> Problem {
     let is_end = matches!(error.kind(), csv::ErrorKind::Io(_));
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} cells, and the first line has {expected_len}")
+            format!("{len} cells; the first line has {expected_len}")
         }
         csv::ErrorKind::Utf8 { .. } => encoding::narrow(file, line),
         csv::ErrorKind::Io(error) => error.to_string(),
@@ -118,7 +118,7 @@ fn of_csv(error: &csv::Error, line: u64, file: &Path) -> Problem {
     Problem { line, column: None, what, is_end }
 }
 
-/// What separates the cells, and how many bytes of a mark come before the first.
+/// Finds the separator of the cells, and the length of a byte order mark before the first one, bytes.
 fn delimiter(text: &mut BufReader<Text>) -> io::Result<(u8, u64)> {
     let bytes = text.fill_buf()?;
     let skip = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };

@@ -1,4 +1,4 @@
-//! Figures of fixes and track.
+//! Statistics of fixes and track.
 
 use crate::fixes::{self, word};
 use mission::{Event, EventKind};
@@ -7,14 +7,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use world::Point;
 
-/// How many fixes there were, and how good they and the track were.
+/// The number of fixes, and the quality of fixes and track.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Tally {
     /// Emissions: times with ranges.
     pub emissions: u64,
     /// Positions from ranges, by integrity.
     pub fixes: BTreeMap<&'static str, u64>,
-    /// Emissions that gave none, by the reason.
+    /// Emissions without a fix, by reason.
     pub failed: BTreeMap<String, u64>,
     /// Position of the first fix, tank frame, metres.
     pub first_fix_m: Option<Point>,
@@ -22,13 +22,13 @@ pub struct Tally {
     pub first_fix_t_s: Option<f64>,
     /// Longer half axis of the 95 % ellipse of the first fix, metres.
     pub first_fix_error_95_m: Option<f64>,
-    /// How often each station was left out by its residual, by number.
+    /// How often each station was rejected because of its residual, by station number.
     pub left_out: BTreeMap<u32, u64>,
-    /// 95 % error of the track by its covariance, metres: mean and largest.
+    /// 95 % error of the track from its covariance, metres: mean and largest.
     pub error_95_m: Option<[f64; 2]>,
-    /// Distance of fixes to the truth, metres: mean and largest; absent without the truth.
+    /// Distance of the fixes from the truth, metres: mean and largest; absent if the truth is unknown.
     pub fix_error_m: Option<[f64; 2]>,
-    /// Distance of the track to the truth, metres: mean and largest; absent without the truth.
+    /// Distance of the track from the truth, metres: mean and largest; absent if the truth is unknown.
     pub track_error_m: Option<[f64; 2]>,
     #[serde(skip)]
     claimed: Mean,
@@ -63,7 +63,7 @@ impl Tally {
         self.fixes.keys().any(|word| *word != fixes::word(Integrity::Alarm))
     }
 
-    /// Takes in the events of a moment.
+    /// Adds the events of a moment.
     pub fn take(&mut self, events: &[Event]) {
         let mut truth: Option<Point> = None;
         for event in events {

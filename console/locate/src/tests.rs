@@ -280,7 +280,10 @@ fn tables_of_spreadsheets_with_units_in_brackets_are_readings() {
 #[test]
 fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
     let refused = |bytes: &[u8]| Readable::new("r.csv", bytes).refused();
-    assert_eq!(refused(&[0; 4096]), "r.csv: no text: a byte 0; save the readings as CSV, in UTF-8");
+    assert_eq!(
+        refused(&[0; 4096]),
+        "r.csv: not text: contains a zero byte; save the readings as CSV, in UTF-8"
+    );
     let wide: Vec<u8> = "\u{feff}t_s,station".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert!(refused(&wide).starts_with("r.csv: line 1: text in UTF-16 "), "{}", refused(&wide));
     let rows = "t_s,station,range_m\n0,A,7\n0,B,8.9\n1,A,7\n".to_owned() + &"1,B,8.9\n".repeat(20_000);
@@ -289,7 +292,7 @@ fn what_is_no_text_ends_the_reading_even_where_bad_rows_are_left_out() {
     let task = Task { skips_bad_rows: true, ..file.task(&scenario) };
     let message = task.survey().unwrap_err().to_string();
     assert!(
-        message.contains("no text: a byte 0") && message.ends_with("export the readings again"),
+        message.contains("not text: contains a zero byte") && message.ends_with("export the readings again"),
         "{message}"
     );
     let long = ["t_s,station,range_m\n".as_bytes(), &vec![b'1'; 200_000]].concat();
@@ -334,7 +337,7 @@ fn lines_are_counted_behind_comments_and_empty_lines_and_however_they_end() {
             lines,
             [
                 "6, range_m: `x` is not a number",
-                "7: 2 cells, and the first line has 3",
+                "7: 2 cells; the first line has 3",
                 "8, range_m: `y` is not a number"
             ]
         );
@@ -398,5 +401,5 @@ fn stretches_of_a_file_are_by_the_clock_of_the_readings() {
     assert_eq!(task.survey().unwrap().tool_on_s, Some(vec![[10.0, 20.0], [30.0, 32.0]]));
     let both = Readable::new("r.csv", walk_with_tool(|_| "1"));
     let task = Task { tool_on: Some(&on.file), ..both.task(&scenario) };
-    assert!(task.survey().unwrap_err().to_string().contains("keep one of the two"));
+    assert!(task.survey().unwrap_err().to_string().contains("remove one"));
 }

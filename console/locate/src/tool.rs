@@ -1,10 +1,10 @@
-//! When the tool was on: a column of the readings, or a file of its own.
+//! Determines when the tool was on, from a column of the readings or a file of its own.
 
 use crate::{clock, rows::Rows};
 use csv::StringRecord;
 use std::path::Path;
 
-/// Stretches of time in which the tool was on, put together out of moments.
+/// Collects the stretches of time in which the tool was on from the moments of the readings.
 #[derive(Debug, Default)]
 pub(crate) struct Stretches {
     all: Vec<[f64; 2]>,
@@ -13,7 +13,7 @@ pub(crate) struct Stretches {
 }
 
 impl Stretches {
-    /// A moment at a time, seconds, from which on the tool is on or off; a moment that does not say it leaves it as it was.
+    /// Adds a moment at a time, in seconds, from which the tool is on or off; `None` leaves its state unchanged.
     pub(crate) fn take(&mut self, t_s: f64, tool_on: Option<bool>) {
         if let Some(last) = self.all.last_mut().filter(|_| self.is_on) {
             last[1] = t_s;
@@ -25,17 +25,18 @@ impl Stretches {
         self.is_said |= tool_on.is_some();
     }
 
-    /// The stretches, in order; `None` if no moment says anything of the tool.
+    /// Returns the stretches, in order; `None` if no moment states whether the tool is on.
     pub(crate) fn finish(self) -> Option<Vec<[f64; 2]>> {
         self.is_said.then_some(self.all)
     }
 }
 
-/// Reads a file of stretches: a table with the columns `from_s` and `to_s` (or `from` and `to`), by the clock of the readings and in any
-/// form in which readings have their times.
+/// Reads a file of stretches: a table with the columns `from_s` and `to_s` (or `from` and `to`). Its times use the
+/// clock of the readings, in any form that readings may use.
 ///
 /// # Errors
-/// It cannot be read; a stretch that ends before it begins, or that begins before the one before it ends: with the line.
+/// The file cannot be read, or a stretch ends before it begins or overlaps the one before it. The message has the
+/// line.
 pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
     let mut rows = Rows::open(file)?;
     let header = rows.header().clone();
@@ -46,9 +47,7 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
         };
         let at = header.iter().position(is_it);
         at.ok_or_else(|| {
-            format!(
-                "line 1: no column {name}_s; the columns are from_s and to_s, by the clock of the readings"
-            )
+            format!("line 1: column {name}_s is missing; use from_s and to_s, in the time of the readings")
         })
     };
     let columns = [("from_s", column("from")?), ("to_s", column("to")?)];
@@ -65,23 +64,20 @@ pub(crate) fn read(file: &Path) -> Result<Vec<[f64; 2]>, String> {
             return Err(format!("line {line}: to_s {} must be later than from_s {}", stretch[1], stretch[0]));
         }
         if let Some([_, before_s]) = all.last().filter(|before| stretch[0] < before[1]) {
-            return Err(format!(
-                "line {line}: from_s {} is before the end of the line above, {before_s}",
-                stretch[0]
-            ));
+            return Err(format!("line {line}: from_s {} is before the previous end, {before_s}", stretch[0]));
         }
         all.push(stretch);
     }
     Ok(all)
 }
 
-/// A stretch that no reading belongs to, with what the readings span: the file is by another clock.
+/// Reports a stretch outside the span of the readings: the file uses a different clock.
 pub(crate) fn outside(stretches: &[[f64; 2]], span: [f64; 2]) -> Option<String> {
     let [first_s, last_s] = span;
     let [from_s, to_s] = stretches.iter().find(|[from_s, to_s]| *to_s < first_s || *from_s > last_s)?;
     Some(format!(
-        "the stretch from {from_s} to {to_s} s lies outside the readings, which run from {first_s} to {last_s} s; both files must \
-         have the same clock"
+        "the stretch from {from_s} to {to_s} s lies outside the readings, which run from {first_s} to {last_s} s; \
+         use the same clock in both files"
     ))
 }
 
@@ -117,14 +113,14 @@ mod tests {
         assert_eq!(of("from,to\n07:40:00,07:40:01.5\n").unwrap(), [[27_600.0, 27_601.5]]);
         let dated = of("from_s,to_s\n1970-01-01T00:00:10Z,1970-01-01T00:00:12Z\n").unwrap();
         assert_eq!(dated, [[10.0, 12.0]]);
-        assert!(of("from_s\n1\n").unwrap_err().starts_with("line 1: no column to_s"));
+        assert!(of("from_s\n1\n").unwrap_err().starts_with("line 1: column to_s is missing"));
         assert_eq!(of("from_s,to_s\n1,2\n3,3\n").unwrap_err(), "line 3: to_s 3 must be later than from_s 3");
         assert!(
             of("from_s,to_s\n1,2\n1.5,3\n").unwrap_err().starts_with("line 3: from_s 1.5 is before the end")
         );
         assert_eq!(
             of("from_s,to_s\nsoon,2\n").unwrap_err(),
-            "line 2: from_s: `soon` is not a time; write seconds, a time of day as 07:40:12.250, or a date as 2026-10-25T02:59:58.250Z"
+            "line 2: from_s: `soon` is not a time; write seconds, a time of day (07:40:12.250), or a date (2026-10-25T02:59:58.250Z)"
         );
     }
 

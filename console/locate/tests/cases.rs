@@ -148,7 +148,7 @@ fn times_of_day_that_pass_midnight_ask_for_dates() {
     let text = "time,station,range_m\n23:59:59.5,A0,4.5\n23:59:59.9,A1,3\n00:00:00,A0,4.5\n00:00:00.5,A1,3\n";
     let refused = run(&scenario, text.as_bytes(), |_| {}).err().unwrap();
     assert!(
-        refused.contains("line 4, time: 00:00:00.000 comes after 23:59:59.900 in line 3: times of day pass midnight here; write them with"),
+        refused.contains("line 4, time: 00:00:00.000 comes after 23:59:59.900 in line 3: the time of day passes midnight here; write times with"),
         "{refused}"
     );
 }
@@ -161,7 +161,7 @@ fn time_that_goes_back_is_one_error_that_names_both_rows() {
     let refused = run(&scenario, text.as_bytes(), |_| {}).err().unwrap();
     assert_eq!(
         refused,
-        "r.csv, line 5, t_s: time goes back here: 0.5 s, after 3 s in line 4; the 3 rows up to line 7 are earlier than that; sort the \
+        "r.csv, line 5, t_s: time goes backwards: 0.5 s follows 3 s in line 4; all 3 rows up to line 7 are too early; sort the \
          rows by time\ncorrect the rows, or leave them out with --skip-bad-rows"
     );
     let Located { survey, .. } = run(&scenario, text.as_bytes(), |task| task.skips_bad_rows = true).unwrap();
@@ -184,7 +184,7 @@ fn dates_are_times() {
         assert_eq!(survey.dates.unwrap(), ["2026-10-25T02:00:00Z", "2026-10-25T02:00:04Z"]);
     }
     let refused = run(&scenario, b"t_s,station,range_m\n2026-10-25T02:00:00,A0,4\n", |_| {}).err().unwrap();
-    assert!(refused.contains("line 2, t_s: `2026-10-25T02:00:00` states no zone"), "{refused}");
+    assert!(refused.contains("line 2, t_s: `2026-10-25T02:00:00` has no time zone"), "{refused}");
     let refused = run(&scenario, b"time,station,range_m\n5,A0,4\n", |_| {}).err().unwrap();
     assert!(refused.contains("line 2, time: `5` has no unit"), "{refused}");
 }
@@ -233,9 +233,9 @@ fn the_forecast_says_which_floor_has_a_mirror_image_and_what_decides() {
     assert_eq!(warning(AROUND, [0.0, 0.0]), None);
     let decided = warning(ON_A_LINE, [0.0, 3.0]).unwrap();
     assert!(decided.contains("the line of stations B1, B2 and B3"), "{decided}");
-    assert!(decided.contains("robot.start_m decides, 3.00 m from that line"), "{decided}");
+    assert!(decided.contains("the side follows from robot.start_m, 3.00 m from that line"), "{decided}");
     let open = warning(ON_A_LINE, [0.0, 0.02]).unwrap();
-    assert!(open.contains("cannot be decided: robot.start_m lies 0.02 m from that line"), "{open}");
+    assert!(open.contains("the side is ambiguous: robot.start_m is 0.02 m from that line"), "{open}");
     // Two of three stations all but in one place are a line, too, and so are two.
     let twins = "stations = [{ name = \"A\", at_m = [-5.9, 0.0] }, { name = \"B\", at_m = [-5.9, 0.05] }, { name = \"C\", at_m = [5.9, 0.0] }]";
     assert!(warning(twins, [0.0, 3.0]).is_some());

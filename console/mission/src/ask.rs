@@ -1,10 +1,10 @@
-//! The port to planners: what the mission asks for, and the answers that enter it.
+//! The interface to planners: the mission's requests and the planners' answers.
 //!
-//! The mission never waits. It hands out [`Ask`]s and goes on; whoever runs the planners gives each [`Answer`] back
-//! when it is there, in the same tick or in a later one. Everything in an ask is owned, so it can be kept, sent to
-//! another process, or asked again of another planner.
+//! The mission never waits. It issues [`Ask`]s and continues; the caller that runs the planners passes each [`Answer`]
+//! back when it arrives, in the same tick or in a later one. An ask owns all its data, so it can be stored, sent to
+//! another process, or repeated to another planner.
 //!
-//! Lengths are metres, angles radians, counter-clockwise from the x axis, in the tank frame.
+//! Lengths are in metres. Angles are in radians, counter-clockwise from the x axis of the tank frame.
 
 mod comparison;
 
@@ -19,18 +19,19 @@ use planner_api::{Command, Drawing, LogLevel, Plan};
 use serde::{Deserialize, Serialize};
 use std::{fmt, sync::Arc};
 
-/// One instance of a planner in a worker process, numbered by the mission; no number is used twice.
+/// One planner instance in a worker process. The mission numbers the instances and never reuses a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct WorkerId(pub u16);
 
-/// Names an ask. Asks are counted per worker, so that two planners do not depend on each other's timing.
+/// The id of an ask. Asks are numbered per worker, so that the ids of one planner's asks do not depend on another
+/// planner's timing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(from = "(WorkerId, u32)", into = "(WorkerId, u32)")]
 pub struct AskId {
-    /// Who is asked.
+    /// The worker that is asked.
     pub worker: WorkerId,
-    /// Number of the ask, from 1 for each worker.
+    /// Number of the ask, counted from 1 for each worker.
     pub n: u32,
 }
 
@@ -52,90 +53,92 @@ impl fmt::Display for AskId {
     }
 }
 
-/// Something that the mission wants of a planner. A worker has at most one open ask, [`What::Close`] apart.
+/// A request of the mission to a planner. A worker has at most one open ask, not counting [`What::Close`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ask {
-    /// Its name; the answer carries the same.
+    /// Id of the ask; the answer carries the same id.
     pub id: AskId,
-    /// What is wanted.
+    /// The request.
     pub what: What,
 }
 
-/// What is wanted of a planner.
+/// The kinds of request to a planner.
 #[derive(Debug, Clone, PartialEq)]
 pub enum What {
-    /// Start a worker process, load the plugin, make the planner, and give it the state of an earlier instance.
+    /// Start a worker process, load the plugin, create the planner, and restore the state of an earlier instance.
     Open {
-        /// Which planner, with the parameters that were set by hand.
+        /// The planner, with the parameters that were set by hand.
         choice: PlannerChoice,
-        /// The tank as it is known.
+        /// The tank as known so far.
         site: Arc<Site>,
-        /// The [`What::Snapshot`] whose state the new instance starts from, if it is of the same planner and file.
+        /// The [`What::Snapshot`] from which the new instance restores its state; used only if planner and plugin file
+        /// are the same.
         restore: Option<AskId>,
     },
-    /// Take new values of live parameters; those that are not given stay.
+    /// Change live parameters; parameters that are not listed keep their values.
     Reconfigure(Parameters),
     /// Make a plan.
     Plan(Box<PlanAsk>),
-    /// Decide on a command.
+    /// Compute the command for this tick.
     Step(Box<StepAsk>),
-    /// Save the private state. The state stays with whoever runs the planners; the mission keeps the number of the ask.
+    /// Save the private state. The process that runs the planners keeps the state; the mission keeps only the id of the
+    /// ask.
     Snapshot,
-    /// Give up what is being done and end the process. There is no answer to this one.
+    /// Abandon the current request and end the process. This request has no answer.
     Close,
 }
 
-/// What came of an ask.
+/// The answer to an ask.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Which ask.
+    /// Id of the ask.
     pub ask: AskId,
-    /// What was asked for, or why not.
+    /// The result, or the fault that prevented it.
     pub result: Result<Given, Fault>,
-    /// What the planner drew, reported and said on the way.
+    /// Drawings, figures and log messages that came with the answer.
     pub said: Said,
 }
 
-/// What a planner gave.
+/// The result of a successful ask.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Given {
-    /// It is loaded, made and ready.
+    /// The planner is loaded, created and ready.
     Opened(Box<PlannerInfo>),
-    /// It took the new values.
+    /// The planner accepted the new values.
     Reconfigured,
     /// A plan.
     Plan(Plan),
     /// A command.
     Command(Command),
-    /// Its state was saved under the number of the ask: so many bytes; 0 if it had none to give.
+    /// The state was saved under the id of the ask; the length is 0 if the planner had no state to save.
     State {
         /// Length of the state, bytes.
         bytes: u64,
     },
 }
 
-/// What a planner drew, reported and said besides its answer.
+/// What a planner drew, reported and logged in addition to its answer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Said {
-    /// What it drew.
+    /// The drawings.
     pub drawings: Vec<Drawing>,
     /// Named figures: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// What it said.
+    /// The log messages, with their levels.
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// What the mission would like to have before the tick ends. It can do without any of it.
+/// The answer that the mission would like before the tick ends. It can continue without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Awaits {
-    /// Nothing is asked.
+    /// No ask is open.
     Nothing,
-    /// Only the planner in shadow has been asked; nothing depends on the answer.
+    /// Only the planner in shadow has been asked; nothing depends on its answer.
     Shadow,
-    /// Only a planner that does not drive yet has been asked; the robot does not depend on the answer.
+    /// Only a planner that does not drive yet has been asked; the robot does not depend on its answer.
     Candidate,
-    /// The robot stands until the planner that drives has been opened or has planned.
+    /// The robot stands still until the active planner has been opened or has made a plan.
     Work,
-    /// The command of this tick.
+    /// The command for this tick.
     Step,
 }

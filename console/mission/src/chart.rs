@@ -1,4 +1,4 @@
-//! The mission's own map: the drawing, and what was found on the way.
+//! The mission's own map: the drawing, and what was found during the mission.
 
 use crate::{
     ask::{Site, SiteObstacle, SiteZone},
@@ -12,21 +12,21 @@ use planner_api as api;
 use std::sync::Arc;
 use world::{Obstacle, ObstacleId, ObstacleMap, Point, Pose, Shape, Sighting, World, Zone, ZoneKind};
 
-/// A found obstacle must turn out to stand this much elsewhere before it is reported again, metres.
+/// A found obstacle is reported again once its estimated place has moved by this much, metres.
 const MOVED_M: f64 = 0.05;
-/// Sightings that count in the running mean of a found obstacle's place.
+/// Number of sightings in the running mean of a found obstacle's place.
 const MEMORY: f64 = 50.0;
-/// What moves is forgotten when it was out of sight for this long, seconds.
+/// A moving obstacle is forgotten after being out of sight for this long, seconds.
 const OUT_OF_SIGHT_S: f64 = 2.0;
 
-/// Drawing and found obstacles, with an index for queries.
+/// The drawing and the found obstacles, with an index for queries.
 #[derive(Clone)]
 pub(crate) struct Chart {
     world: World,
-    /// What the drawing knows, in order of the ids.
+    /// Ids of the obstacles on the drawing, in ascending order.
     drawn: Arc<[ObstacleId]>,
     found: Vec<Found>,
-    /// What is in sight now, where it stands by the pose that is believed in now.
+    /// The obstacles in sight now, placed by the current estimated pose.
     in_sight: Vec<(ObstacleId, Shape)>,
     map: ObstacleMap,
     revision: u32,
@@ -47,16 +47,17 @@ struct Found {
     drift: Drift,
 }
 
-/// What sightings changed on the chart.
+/// The changes that sightings made to the chart.
 pub(crate) struct Seen {
-    /// What is new.
+    /// Events for new or moved obstacles.
     pub events: Vec<EventKind>,
-    /// Whether a plan may no longer be right; what merely goes on moving is left to the next steps.
+    /// Whether a plan may have become invalid. The continued motion of a moving obstacle does not count; the next steps
+    /// deal with it.
     pub changes_plans: bool,
 }
 
 impl Chart {
-    /// The chart at the start: the drawing alone.
+    /// The initial chart: the drawing alone.
     pub(crate) fn new(drawing: World, config: &MissionConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
         let mut drawn: Vec<_> = drawing.obstacles.iter().filter(|o| o.known).map(|o| o.id).collect();
@@ -76,26 +77,26 @@ impl Chart {
         }
     }
 
-    /// The tank as far as it is known.
+    /// The tank as known so far.
     pub(crate) fn world(&self) -> &World {
         &self.world
     }
 
-    /// Whether a place is so far from everything solid and from every no-go zone, metres.
+    /// Whether a place is at least `room_m` metres from everything solid and from every no-go zone.
     pub(crate) fn has_room(&self, at: Point, room_m: f64) -> bool {
         let mut no_go = self.world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
         self.map.clearance_m(at) >= room_m && no_go.all(|zone| zone.shape.distance_m(at) >= room_m)
     }
 
-    /// Whether nothing that the hull must not touch is within a reach of a place, metres: nothing that is seen, where it is
-    /// seen, and nothing on the chart.
+    /// Whether everything that the hull must not touch is at least `reach_m` metres from a place: both the obstacles in
+    /// sight, where they are seen, and everything on the chart.
     pub(crate) fn is_free(&self, at: Point, reach_m: f64) -> bool {
         let seen_m = |(_, shape): &(ObstacleId, Shape)| shape.distance_m(at);
         self.has_room(at, reach_m) && self.in_sight.iter().all(|seen| seen_m(seen) >= reach_m)
     }
 
-    /// What the hull must not touch within a reach of a place, metres: what is seen stands where it is seen, and what moved
-    /// away out of sight is nowhere.
+    /// Everything that the hull must not touch within `reach_m` metres of a place. Obstacles in sight are placed where
+    /// they are seen. A moving obstacle that has gone out of sight is left out.
     pub(crate) fn solids(&self, at: Point, reach_m: f64) -> Vec<Solid<'_>> {
         let is_seen = |id: ObstacleId| self.in_sight.iter().any(|(seen, _)| *seen == id);
         let seen = self.in_sight.iter().map(|(_, shape)| (shape, true));
@@ -113,7 +114,7 @@ impl Chart {
         solids
     }
 
-    /// Whether an obstacle moved away out of sight.
+    /// Whether an obstacle was moving and has been out of sight for too long.
     fn is_gone(&self, index: usize) -> bool {
         let found = self.found.iter().find(|found| found.index == index);
         found.is_some_and(|found| {
@@ -126,18 +127,18 @@ impl Chart {
         &self.map
     }
 
-    /// Takes in what is seen from an estimated pose.
+    /// Records what is seen from an estimated pose.
     ///
-    /// A robot that is wrong about its position sees all the same how far off an obstacle is: what planners steer
-    /// round stands where it is seen, not where the chart has it.
+    /// Even when the position is wrong, the robot sees how far away an obstacle is. Planners therefore avoid obstacles
+    /// where they are seen, not where the chart has them.
     pub(crate) fn sight(&mut self, sightings: &[Sighting], from: &Pose) {
         let seen = |s: &Sighting| (s.id, s.shape_in_robot.transformed(&from.tank_from_robot()));
         self.in_sight = sightings.iter().map(seen).collect();
     }
 
-    /// Puts sightings on the chart, seen at a time, in seconds, from an estimated pose; gives what is new.
+    /// Puts sightings on the chart, seen at time `now_s` from an estimated pose; returns what is new.
     ///
-    /// The obstacle tracker knows the columns of the drawing again, so only others are put in.
+    /// The obstacle tracker recognizes the columns of the drawing, so only other obstacles are added.
     pub(crate) fn see(&mut self, now_s: f64, sightings: &[Sighting], from: &Pose) -> Seen {
         self.now_s = now_s;
         let mut events = Vec::new();
@@ -152,7 +153,7 @@ impl Chart {
                 events.extend(event);
             }
         }
-        // What has hardly moved since it was reported may change plans, too: they are checked by this map.
+        // A small movement since the last report may change plans, too: plans are checked against this map.
         if changes_plans || !events.is_empty() {
             self.revision += 1;
             self.map = ObstacleMap::new(&self.world.boundary, &self.world.obstacles);
@@ -167,7 +168,7 @@ impl Chart {
         };
         found.drift.see(now_s, shape.center());
         if found.drift.velocity().is_some() {
-            // A mean of places would lag behind.
+            // A running mean would lag behind a moving obstacle.
             found.sightings = 0.0;
         }
         let obstacle = &mut self.world.obstacles[found.index];
@@ -193,13 +194,13 @@ impl Chart {
         EventKind::ObstacleFound { obstacle }
     }
 
-    /// Draws a zone.
+    /// Adds a zone.
     pub(crate) fn draw(&mut self, zone: Zone) {
         self.world.zones.push(zone);
         self.revision += 1;
     }
 
-    /// The whole chart in the form that planners read.
+    /// The whole chart in the form that planners receive.
     pub(crate) fn site(&self) -> Site {
         Site {
             revision: self.revision,
@@ -218,8 +219,8 @@ impl Chart {
         }
     }
 
-    /// The obstacles within sensing range of a point, in the form that planners read: where they are seen now, and where
-    /// the chart has them while they are not.
+    /// The obstacles within sensing range of a point, in the form that planners receive: where they are seen now, or else
+    /// where the chart has them.
     pub(crate) fn near(&self, point: Point) -> Vec<SiteObstacle> {
         let reach_m = self.limits.sensing_range_m + self.limits.radius_m;
         let near = self.map.within(point, reach_m);
@@ -237,7 +238,7 @@ impl Chart {
         }
     }
 
-    /// An obstacle in the form that planners read; none for one that moved away out of sight.
+    /// An obstacle in the form that planners receive; `None` for a moving one that has gone out of sight.
     fn reported(&self, index: usize) -> Option<SiteObstacle> {
         let obstacle = &self.world.obstacles[index];
         let found = self.found.iter().find(|found| found.index == index);
@@ -250,7 +251,7 @@ impl Chart {
         })
     }
 
-    /// Whether an event is about something that moves.
+    /// Whether an event is about a moving obstacle.
     pub(crate) fn moves(&self, event: &EventKind) -> bool {
         match event {
             EventKind::ObstacleFound { obstacle } | EventKind::ObstacleMoved { obstacle, .. } => {

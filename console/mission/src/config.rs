@@ -1,4 +1,4 @@
-//! What a mission is to do, and within which limits.
+//! The task of a mission and its limits.
 
 use crate::planner::PlannerChoice;
 use geometry::motion::{TURN_FIRST_IN_LANES_RAD, TURN_FIRST_RAD};
@@ -7,7 +7,7 @@ use positioning::{Aggregation, Forecast, RangeNoise, SolverKind, Timing};
 use serde::{Deserialize, Serialize};
 use world::{Point, Pose, PressureSensor, coverage::Tool, tether};
 
-/// What is to be achieved.
+/// The task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TaskConfig {
@@ -15,21 +15,21 @@ pub enum TaskConfig {
     Goto {
         /// The point, metres.
         goal: Point,
-        /// Distance at which it counts as reached, metres.
+        /// Distance at which the point counts as reached, metres.
         tolerance_m: f64,
     },
     /// Follow preset points in order.
     Follow {
-        /// The points, the first one first.
+        /// The points in order, metres.
         path: Vec<Point>,
-        /// Distance at which the last one counts as reached, metres.
+        /// Distance at which the last point counts as reached, metres.
         tolerance_m: f64,
     },
-    /// Scan the floor and come back to the anchor.
+    /// Scan the floor and return to the anchor.
     Cover {
-        /// Where the path ends, and where the tether is made fast if there is one, metres.
+        /// The end of the path, and the place where the tether, if any, is attached; metres.
         anchor: Point,
-        /// What is to be scanned, as closed polygons; empty for all floor that can be reached.
+        /// The areas to scan, as closed polygons; empty for all reachable floor.
         #[serde(default)]
         regions: Vec<Vec<Point>>,
         /// Distance from the anchor at which the robot counts as back, metres.
@@ -38,7 +38,7 @@ pub enum TaskConfig {
 }
 
 impl TaskConfig {
-    /// The last place of the task; `None` for an empty path.
+    /// The last point of the task; `None` for an empty path.
     pub fn end(&self) -> Option<Point> {
         match self {
             Self::Goto { goal, .. } => Some(*goal),
@@ -56,43 +56,43 @@ impl TaskConfig {
     }
 }
 
-/// What it takes for floor to count as scanned.
+/// The conditions under which floor counts as scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ScanConfig {
-    /// Width by which neighbouring lanes shall overlap, metres: planners get a swath narrower by this, so that
-    /// the position error leaves no gaps between lanes.
+    /// Overlap of neighbouring lanes, metres. Planners receive a swath narrower by this much, so that the position error
+    /// leaves no gaps between lanes.
     pub overlap_m: f64,
-    /// Half width of the 95 % position error above which nothing counts as scanned, metres; `None` for the limit
+    /// Half width of the 95 % position error above which no floor counts as scanned, metres; `None` to use the limit
     /// above which the position counts as lost.
     pub position_limit_m: Option<f64>,
 }
 
-/// How ranges become a position.
+/// How positions are computed from ranges.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Locating {
-    /// How single ranges scatter; none: normally, by [`MissionConfig::range_sigma_ratio`].
+    /// Distribution of the errors of single ranges; `None` for a normal one, by [`MissionConfig::range_sigma_ratio`].
     pub noise: Option<RangeNoise>,
-    /// How repetitions become one range.
+    /// How repeated measurements are combined into one range.
     pub aggregation: Aggregation,
-    /// How ranges become a fix.
+    /// How ranges are combined into a fix.
     pub solver: SolverKind,
-    /// How the times behind single ranges err besides.
+    /// Additional timing errors of single ranges.
     #[serde(skip_serializing_if = "Timing::is_none")]
     pub timing: Timing,
-    /// Standard deviation of what all ranges may be too long by as a share, whatever the repetitions.
+    /// Standard deviation of the scale error that all ranges share, as a ratio; repetition does not reduce it.
     #[serde(skip_serializing_if = "is_zero")]
     pub scale_sigma_ratio: f64,
-    /// Whether the speed of sound is found out under way.
+    /// Whether the speed of sound is estimated during the mission.
     pub calibrate_sound_speed: bool,
-    /// Ranges per station and cycle, as far as forecasts of the accuracy go.
+    /// Number of ranges per station and cycle; used only to forecast accuracy.
     pub repetitions: u32,
-    /// Whether a station is of no use where an obstacle hides it.
+    /// Whether a station cannot be used where an obstacle hides it.
     pub needs_line_of_sight: bool,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
 fn is_zero(number: &f64) -> bool {
     *number <= 0.0
 }
@@ -115,77 +115,76 @@ impl Default for Locating {
 /// A tether as scenarios describe it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TetherConfig {
-    /// Where the cable comes out: the start, a manhole, the place below a roof hatch; metres.
+    /// The place where the cable enters the tank: the start, a manhole, or the point below a roof hatch; metres.
     pub anchor: Point,
-    /// What the cable may do.
+    /// The limits of the cable.
     pub limits: tether::Limits,
-    /// Friction of cable on steel, for the pull; the shape of the cable does not depend on it.
+    /// Friction of the cable on steel, used to compute the pull; the shape of the cable does not depend on it.
     pub friction: f64,
-    /// Whether plans fly that cannot be certified.
+    /// Whether plans that cannot be certified are run.
     #[serde(default)]
     pub allow_uncertified: bool,
 }
 
 impl TetherConfig {
-    /// The limits as planners read them.
+    /// The limits in the form that planners receive.
     pub fn as_request(&self) -> TetherLimits {
         let tether::Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad } = self.limits;
         TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }
     }
 }
 
-/// After a repair the planner is asked for a plan for all that is left, while the robot flies on: what becomes of one that is
-/// better.
+/// How a better plan is handled. After a repair the planner makes, in the background, a plan for all that is left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BetterPlan {
-    /// None is made.
+    /// No better plan is computed.
     #[default]
     Off,
-    /// It is offered to the operator. Where nobody is there to take it, none is made.
+    /// A better plan is offered to the operator. Without an operator none is computed.
     Offer,
-    /// It is flown.
+    /// A better plan is taken automatically.
     Take,
 }
 
 impl BetterPlan {
-    /// Whether none is made. Serde gives a reference.
+    /// Whether no better plans are computed. The reference is required by serde.
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
     fn is_off(&self) -> bool {
         *self == Self::Off
     }
 }
 
-/// A mission as the engine needs it; made and checked by whoever reads the scenario.
+/// A mission as the engine needs it. The code that reads the scenario builds and validates it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissionConfig {
-    /// What is to be achieved.
+    /// The task.
     pub task: TaskConfig,
-    /// Where the robot stands at the start, as surveyed at the manway.
+    /// The robot's pose at the start, as surveyed at the manway.
     pub start: Pose,
     /// Standard deviation of the surveyed start, metres.
     pub start_sigma_m: f64,
     /// Length of a tick, seconds.
     pub tick_s: f64,
-    /// The mission ends unfinished after this time, seconds; while it is held and attended, no time counts.
+    /// Time limit, seconds; the mission ends unfinished when it expires. Time in an attended hold does not count.
     pub time_limit_s: f64,
-    /// What the robot can do.
+    /// The robot's limits.
     pub limits: Limits,
     /// Width of floor scanned in one pass, metres.
     pub swath_m: f64,
-    /// Distance to keep between hull and anything solid, metres.
+    /// Minimum distance between the hull and anything solid, metres.
     pub clearance_m: f64,
     /// Edge of a coverage cell, metres.
     pub cell_m: f64,
     /// Half width of the 95 % position error above which the position counts as lost, metres.
     pub position_limit_m: f64,
-    /// The robot holds when the position is lost for this long, seconds.
+    /// The robot is held when the position has been lost for this long, seconds.
     pub position_lost_hold_s: f64,
-    /// The mission ends as stuck after this time without progress, seconds.
+    /// The mission ends as stuck after this long without progress, seconds.
     pub stuck_s: f64,
     /// Standard deviation of the surveyed heading at the start, radians.
     pub start_heading_sigma_rad: f64,
-    /// Standard deviation of odometry as a share of the way travelled.
+    /// Standard deviation of odometry as a share of the distance travelled.
     pub odometry_sigma_per_m: f64,
     /// Standard deviation of odometry as a share of the angle turned.
     pub odometry_turn_sigma_per_rad: f64,
@@ -193,13 +192,14 @@ pub struct MissionConfig {
     pub gyro_sigma_rad_per_s: f64,
     /// Standard deviation of a range as a share of the range.
     pub range_sigma_ratio: f64,
-    /// How ranges become a position.
+    /// How positions are computed from ranges.
     #[serde(default)]
     pub locating: Locating,
-    /// What it takes for floor to count as scanned.
+    /// The conditions under which floor counts as scanned.
     #[serde(default)]
     pub scan: ScanConfig,
-    /// The sensor by which an amphibious robot knows its medium; without it the zone at its estimated place counts.
+    /// The pressure sensor that tells an amphibious robot whether it is under water. Without one, the zone at the
+    /// estimated position decides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<PressureSensor>,
     /// The tether; `None` for a robot without one.
@@ -207,31 +207,32 @@ pub struct MissionConfig {
     pub tether: Option<TetherConfig>,
     /// The planner that drives first.
     pub planner: PlannerChoice,
-    /// The planner that takes over by itself after a fault, if any.
+    /// The planner that takes over automatically after a fault, if any.
     pub fallback: Option<PlannerChoice>,
-    /// Whether an operator is there; without one a hold that only an operator could end ends the mission.
+    /// Whether an operator is present. If not, a hold that only an operator could end ends the mission.
     #[serde(default)]
     pub attended: bool,
-    /// Whether an order to start names the plan that the operator saw, and no other plan begins the mission.
+    /// Whether a start order names the plan that the operator saw, so that the mission cannot begin with a different
+    /// plan.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub start_names_plan: bool,
-    /// What becomes of a plan for all that is left that is better than a repaired one.
+    /// How a better plan than a repaired one is handled.
     #[serde(default, skip_serializing_if = "BetterPlan::is_off")]
     pub better_plan: BetterPlan,
 }
 
 impl MissionConfig {
-    /// Distance to keep between the robot's centre and anything solid, metres.
+    /// Minimum distance between the robot's centre and anything solid, metres.
     pub fn room_m(&self) -> f64 {
         self.limits.radius_m + self.clearance_m
     }
 
-    /// Width of floor that planners may count on in one pass, metres.
+    /// Swath width that planners can rely on in one pass, metres.
     pub fn lane_m(&self) -> f64 {
         self.swath_m - self.scan.overlap_m
     }
 
-    /// Whether plans that are better than repaired ones are made at all.
+    /// Whether better plans than repaired ones are computed at all.
     pub fn wants_better_plans(&self) -> bool {
         match self.better_plan {
             BetterPlan::Off => false,
@@ -240,7 +241,7 @@ impl MissionConfig {
         }
     }
 
-    /// The tool: a bar across the heading of a robot that has one, a disc under a point robot.
+    /// The tool: a bar across the heading, or a disc if the robot has no heading.
     pub fn tool(&self) -> Tool {
         match self.limits.motion {
             Motion::Point => Tool::Disc { swath_m: self.swath_m },
@@ -248,23 +249,23 @@ impl MissionConfig {
         }
     }
 
-    /// Half width of the 95 % position error above which nothing counts as scanned, metres.
+    /// Half width of the 95 % position error above which no floor counts as scanned, metres.
     pub fn scan_limit_m(&self) -> f64 {
         self.scan.position_limit_m.unwrap_or(self.position_limit_m)
     }
 
-    /// Length of the shortest way from the anchor up to which planners lay lanes, and the anchor; `None` without a tether.
-    /// Floor further off lies beyond the reel: the outermost lane runs up to a swath before the end of the cable.
+    /// The anchor, and the length of the shortest path from it up to which planners place lanes; `None` without a tether.
+    /// Floor farther away is beyond the reel: the outermost lane runs up to one swath before the end of the cable.
     pub fn cable_reach(&self) -> Option<(Point, f64)> {
         self.tether.as_ref().map(|tether| (tether.anchor, tether.limits.reel_length_m - self.swath_m))
     }
 
-    /// What the tether bears, for planners; `None` without one.
+    /// The limits of the tether, for planners; `None` without one.
     pub fn tether_limits(&self) -> Option<TetherLimits> {
         self.tether.as_ref().map(TetherConfig::as_request)
     }
 
-    /// What a forecast of the accuracy has to know, for cells of this edge.
+    /// The inputs of an accuracy forecast, for cells with this edge.
     pub fn forecast(&self, cell_m: f64) -> Forecast {
         let normal = RangeNoise::Gaussian { sigma_ratio: self.range_sigma_ratio };
         Forecast {

@@ -1,20 +1,20 @@
-//! Whether something that was found moves, and how fast.
+//! Estimates whether a found obstacle moves, and how fast.
 
 use std::collections::VecDeque;
 use world::{Point, Vector};
 
-/// Places older than this are forgotten, seconds.
+/// Sightings older than this are forgotten, seconds.
 const MEMORY_S: f64 = 1.5;
-/// With fewer places than this nothing is concluded.
+/// Minimum number of sightings for an estimate.
 const LEAST_PLACES: usize = 4;
-/// Slower than this it counts as standing still, metres per second: so much a poor position can feign.
+/// A slower obstacle counts as standing still, metres per second: a poor position can simulate this speed.
 const MOVING_M_PER_S: f64 = 0.08;
-/// What moved before counts as moving down to this speed, metres per second.
+/// An obstacle that counted as moving still does down to this speed, metres per second.
 const STILL_MOVING_M_PER_S: f64 = 0.04;
-/// It must have come this far, too, metres.
+/// Minimum distance that the obstacle must have moved, metres.
 const LEAST_WAY_M: f64 = 0.12;
 
-/// Where something was seen of late.
+/// Recent sightings of one obstacle.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Drift {
     places: VecDeque<(f64, Point)>,
@@ -22,7 +22,7 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// Takes a sighting at a time, in seconds.
+    /// Adds a sighting at a time, in seconds.
     pub(crate) fn see(&mut self, t_s: f64, at: Point) {
         self.places.push_back((t_s, at));
         while self.places.front().is_some_and(|(seen_s, _)| t_s - seen_s > MEMORY_S) {
@@ -39,17 +39,17 @@ impl Drift {
         self.velocity = is_moving.then_some(velocity);
     }
 
-    /// Its velocity, if it moves, metres per second, tank frame.
+    /// The obstacle's velocity, metres per second, tank frame; `None` if it stands still.
     pub(crate) fn velocity(&self) -> Option<Vector> {
         self.velocity
     }
 
-    /// When it was seen last, seconds.
+    /// Time of the last sighting, seconds.
     pub(crate) fn seen_s(&self) -> f64 {
         self.places.back().map_or(f64::NEG_INFINITY, |(t_s, _)| *t_s)
     }
 
-    /// Slope of the straight line through the places, by least squares.
+    /// Slope of the straight line fitted to the places by least squares.
     fn slope(&self) -> Option<Vector> {
         if self.places.len() < LEAST_PLACES {
             return None;

@@ -1,8 +1,8 @@
-//! The engine: what is sensed, ordered and answered goes in; what the robot does, what is asked of planners and everything
-//! that happened comes out.
+//! The engine. Its inputs are sensor readings, orders and answers of planners; its outputs are commands to the robot,
+//! asks to planners, and events.
 //!
 //! A tick is [`Mission::sense`], any number of [`Mission::poll_ask`] and [`Mission::answer`], and [`Mission::act`]. The
-//! mission never waits: an ask that is not answered when [`Mission::act`] is called may be answered in any later tick. The
+//! mission never waits: an ask that is still open when [`Mission::act`] is called may be answered in any later tick. The
 //! same inputs and answers in the same ticks give the same events.
 
 mod answers;
@@ -53,51 +53,51 @@ use worker::Worker;
 use workers::Workers;
 use world::{Floor, Readings, World};
 
-/// What enters the engine at the top of a tick.
+/// The inputs at the start of a tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Input<'a> {
-    /// What was sensed since the last tick.
+    /// Sensor readings since the last tick.
     pub readings: &'a Readings,
-    /// What the operator said since the last tick, oldest first.
+    /// Orders of the operator since the last tick, oldest first.
     pub orders: &'a [Order],
 }
 
-/// What leaves the engine at the end of a tick.
+/// The outputs at the end of a tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// How the robot shall move until the next tick, within its limits and in its own way of moving.
+    /// The robot's motion until the next tick, within its limits and in a form that it can execute.
     pub drive: Drive,
-    /// Everything that happened, in order.
+    /// All events of the tick, in order.
     pub events: Vec<Event>,
 }
 
-/// A mission under way.
+/// A mission in progress.
 ///
-/// Costs per tick: one position update, and work that grows with the obstacles in sensing range and the cells under the
-/// swath. Memory grows by one point per decimetre flown.
+/// Cost per tick: one position update, plus work that grows with the obstacles in sensing range and the cells under the
+/// swath. Memory grows by one point per decimetre driven.
 #[derive(Clone)]
 pub struct Mission {
     known: Known,
     rules: Rules,
     driving: Driving,
-    /// What is prepared beside it.
+    /// A planner that is being prepared in the background.
     preparing: Option<Preparing>,
-    /// A planner that flies beside the one that drives, and moves nothing.
+    /// The planner in shadow, if any.
     shadow: Option<Shadow>,
-    /// Mission time from which on a better plan than the repaired one is looked for, seconds.
+    /// Mission time at which the search for a better plan than the repaired one begins, seconds.
     better_plan_due_s: Option<f64>,
-    /// The plan that was flown when the planner that drives took over.
+    /// The plan that was being run when the active planner took over.
     left: Option<LeftPlan>,
     workers: Workers,
-    /// Where the robot was let go that moves until something happens.
+    /// The robot's position when it was ordered to move until something happens.
     stepped_from: Option<PlaceOnPlan>,
     happened: Happened,
 }
 
 impl Mission {
-    /// A mission that waits for [`Order::Start`].
+    /// Creates a mission that waits for [`Order::Start`].
     ///
-    /// `drawing` is the tank as drawn, `floor` its grid; `seed` is handed to planners for their random choices.
+    /// `drawing` is the tank as drawn, and `floor` its grid; planners receive `seed` for their random choices.
     pub fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
         Self {
             rules: Rules::new(&config),
@@ -113,17 +113,17 @@ impl Mission {
         }
     }
 
-    /// What the mission is doing.
+    /// The phase of the mission.
     pub fn phase(&self) -> &Phase {
         &self.known.phase
     }
 
-    /// The planner that drives, or that will drive first.
+    /// The active planner, or the one that will drive first.
     pub fn planner_id(&self) -> &str {
         self.driving.id()
     }
 
-    /// What a command would become now on its way to the robot.
+    /// The conversion that a command would undergo now on its way to the robot.
     pub fn sending(&self) -> Sending {
         self.known.sending()
     }
@@ -140,7 +140,8 @@ impl Mission {
         }
     }
 
-    /// Begins a tick: obeys the orders, takes in what was sensed, applies the rules. To be called once, first.
+    /// Begins a tick: carries out the orders, processes the sensor readings, and applies the rules. Call it once per
+    /// tick, first.
     pub fn sense(&mut self, input: &Input<'_>) {
         for order in input.orders {
             self.obey(order);
@@ -161,7 +162,7 @@ impl Mission {
         self.lead_better_plan();
     }
 
-    /// Ends a tick: what the robot does until the next one, and everything that happened. To be called once, last.
+    /// Ends a tick: returns the robot's motion until the next one, and all events. Call it once per tick, last.
     pub fn act(&mut self) -> Step {
         self.happened.extend(self.known.update_mode());
         let drive = self.drive();
@@ -173,7 +174,7 @@ impl Mission {
         Step { drive, events }
     }
 
-    /// Has the plan made again that the tether, or the way it lies, no longer permits.
+    /// Requests a new plan if the tether, as it lies now, no longer permits the current one.
     fn watch_tether(&mut self, map_changed: bool) {
         if map_changed {
             self.driving.course.doubt_for_tether(&self.known);
@@ -183,7 +184,7 @@ impl Mission {
         }
     }
 
-    /// The rules that hold the robot, let it go on, or end the mission; the first that has something to say wins.
+    /// Applies the rules that hold the robot, resume, or end the mission; the first rule that returns a verdict decides.
     fn apply_rules(&mut self, readings: &Readings, reached: Option<&TetherAlarm>) {
         if matches!(self.known.phase, Phase::Waiting | Phase::Ended(_)) {
             return;
@@ -209,10 +210,10 @@ impl Mission {
         }
     }
 
-    /// Nothing stops the robot, or nothing lets a held one go on.
+    /// Updates the rules for a tick in which nothing stops a running robot or resumes a held one.
     fn go_on_or_help(&mut self) {
         match &self.known.phase {
-            // A robot that stands for its planner is kept from no corner.
+            // While the robot waits for its planner, the corner timer must not run.
             Phase::Running(_) if self.robot_waits() => {}
             Phase::Running(_) => self.known.task.wait(self.known.config.tick_s * self.known.briskness()),
             Phase::Held(hold) if hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. }) => {
@@ -222,7 +223,8 @@ impl Mission {
         }
     }
 
-    /// Whether the robot stands because it has no plan, or no planner, yet, or does not know whether to walk or to swim.
+    /// Whether the robot stands still because it has no plan or planner yet, or because the pressure sensor has not
+    /// decided yet.
     fn robot_waits(&self) -> bool {
         !self.known.knows_medium()
             || self.driving.worker.is_being_prepared()

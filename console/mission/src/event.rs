@@ -1,7 +1,7 @@
-//! Everything anyone may know about a run.
+//! The events of a run: everything that is known about it.
 //!
-//! Journal, recording, screen and report are folds over this one enum. Events are past tense, self-contained and
-//! carry neither wall-clock time nor anything else that would differ between two equal runs.
+//! Journal, recording, screen and report are all derived from this one enum. Events are in the past tense and
+//! self-contained. They carry no wall-clock time, nor anything else that would differ between two equal runs.
 
 mod effort;
 mod log_line;
@@ -34,103 +34,103 @@ use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
 use world::{CellRun, KindRun, Medium, Obstacle, ObstacleId, Point, Pose, StationId, World, Zone};
 
-/// Version of the journal's form; raised when an old reader could not read a new journal.
+/// Version of the journal format; raised when older readers cannot read new journals.
 pub const JOURNAL_VERSION: u32 = 5;
 
-/// One thing that happened.
+/// One event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// In which tick, from 0.
+    /// Number of the tick, from 0.
     pub tick: u64,
-    /// Mission time at the top of that tick, seconds.
+    /// Mission time at the start of that tick, seconds.
     pub t_s: f64,
-    /// What happened.
+    /// The event itself.
     #[serde(flatten)]
     pub kind: EventKind,
 }
 
-/// What happened.
+/// The kinds of event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "event")]
 pub enum EventKind {
-    /// First event of every run: everything needed to repeat it.
+    /// First event of every run: everything needed to repeat the run.
     RunOpened(Box<RunOpened>),
-    /// The operator gave an order and it was accepted.
+    /// An order of the operator was accepted.
     Ordered {
         /// The order.
         order: Order,
     },
-    /// The operator gave an order that cannot be followed now.
+    /// An order of the operator was refused.
     OrderRefused {
         /// The order.
         order: Order,
-        /// Why, and what would be right.
+        /// The reason, and what would be accepted.
         why: String,
     },
-    /// How the cable truly lay at the top of this tick; reported by the simulator, never known to the mission.
+    /// The true geometry of the cable at the start of this tick; reported by the simulator and unknown to the mission.
     TetherTruth {
-        /// Cable between anchor and robot, metres.
+        /// Length of cable between anchor and robot, metres.
         length_m: f64,
         /// Largest wrap on one obstacle, radians.
         wrap_max_rad: f64,
         /// Sum of all wraps, radians.
         wrap_total_rad: f64,
-        /// Cable that is out beyond the straight line from the anchor to the robot, metres.
+        /// Length of cable beyond the straight line from the anchor to the robot, metres.
         detour_m: f64,
     },
-    /// How the cable lies, by the estimated pose.
+    /// The geometry of the cable, from the estimated pose.
     Tethered {
-        /// Cable between anchor and robot as the map explains it, metres.
+        /// Length of cable between anchor and robot expected from the map, metres.
         length_m: f64,
-        /// What the reel has paid out by its encoder, metres; absent without one.
+        /// Length paid out by the reel, measured by its encoder, metres; absent without an encoder.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         paid_out_m: Option<f64>,
-        /// What is left on the reel, metres: the less by the two.
+        /// Length left on the reel, metres, computed from the larger of the two lengths above.
         free_m: f64,
-        /// Where it bears, from the anchor on.
+        /// Contacts with obstacles, from the anchor on.
         contacts: Vec<TetherContact>,
         /// Largest wrap on one obstacle, radians.
         wrap_max_rad: f64,
         /// Sum of all wraps, radians.
         wrap_total_rad: f64,
-        /// How many times harder the wraps make it to pull (capstan equation).
+        /// Factor by which the wraps multiply the force needed to pull the tether (capstan equation).
         pull_factor: f64,
-        /// Length of the way back along the cable, metres; absent if the hull does not fit.
+        /// Length of the return path along the cable, metres; absent if the hull does not fit.
         return_length_m: Option<f64>,
-        /// The points between the anchor and the robot at which the taut cable bends.
+        /// The bends of the taut cable between the anchor and the robot.
         bends: Vec<Point>,
     },
-    /// The cable comes near to a limit, or has reached it.
+    /// The cable is near a limit, or has reached it.
     TetherAlarmRaised {
-        /// Which limit.
+        /// The limit.
         alarm: TetherAlarm,
-        /// Whether it has been reached.
+        /// Whether the limit has been reached.
         reached: bool,
     },
     /// The cable is well within a limit again.
     TetherAlarmCleared {
-        /// Which limit.
+        /// The limit.
         alarm: TetherAlarm,
     },
     /// A plan was evaluated for the tether.
     Certified {
-        /// Whose plan.
+        /// Id of the planner.
         planner: String,
-        /// Whether it may not be flown.
+        /// Whether the plan is refused.
         refused: bool,
-        /// The judgement.
+        /// The certificate, or why there is none.
         certificate: Certificate,
     },
-    /// Where the robot truly was at the top of this tick; reported by the simulator, never known to the mission.
+    /// The robot's true pose at the start of this tick; reported by the simulator and unknown to the mission.
     Truth {
         /// True pose.
         pose: Pose,
-        /// Distance from the hull to the nearest solid thing, metres; negative in a collision.
+        /// Distance from the hull to the nearest solid object, metres; negative in a collision.
         clearance_m: f64,
-        /// Whether the hull touched something in this tick for the first time.
+        /// Whether a contact of the hull began in this tick.
         collided: bool,
     },
-    /// A ranging cycle ended: one aggregated range per station heard.
+    /// A ranging cycle ended, with one aggregated range per station heard.
     Ranged {
         /// The ranges.
         ranges: Vec<Ranging>,
@@ -142,24 +142,24 @@ pub enum EventKind {
     },
     /// The ranges gave no position.
     FixFailed {
-        /// Why.
+        /// The reason.
         error: FixError,
-        /// Whether the cycle before failed too; the log shows only the first of a row.
+        /// Whether the previous cycle failed too; the log shows only the first failure in a row.
         repeated: bool,
     },
-    /// A station was left out of a fix for the first time since it was used.
+    /// A station was left out of a fix, for the first time since it was last used.
     StationRejected {
-        /// Which station.
+        /// Id of the station.
         station: StationId,
-        /// Why.
+        /// The reason.
         reason: Exclusion,
     },
-    /// A station that had been left out is used again.
+    /// A station that had been left out is in use again.
     StationRestored {
-        /// Which station.
+        /// Id of the station.
         station: StationId,
     },
-    /// Where the robot believes it is.
+    /// The robot's estimated pose.
     Estimated {
         /// Pose and covariance.
         pose: PoseEstimate,
@@ -176,18 +176,18 @@ pub enum EventKind {
         /// Half width of the 95 % error, metres.
         error_m: f64,
     },
-    /// The ranges contradict each other, and leaving out a station does not resolve it.
+    /// The ranges contradict each other, and leaving out one station does not resolve it.
     RangesInconsistent {
         /// Sum of the squared residuals over their variances.
         chi2: f64,
-        /// Stations used minus two.
+        /// Number of stations used, minus two.
         degrees_of_freedom: u32,
     },
     /// The ranges agree again.
     RangesConsistent,
     /// An obstacle that is not on the drawing was seen for the first time.
     ObstacleFound {
-        /// Its outline as estimated, tank frame.
+        /// Its estimated outline, tank frame.
         obstacle: Obstacle,
     },
     /// The operator drew a zone that the robot must not enter.
@@ -195,60 +195,61 @@ pub enum EventKind {
         /// Its name and outline.
         zone: Zone,
     },
-    /// A found obstacle turned out to stand elsewhere than first thought.
+    /// The estimated place of a found obstacle changed.
     ObstacleMoved {
-        /// Which one.
+        /// Id of the obstacle.
         id: ObstacleId,
-        /// Its outline as estimated now.
+        /// Its new estimated outline.
         obstacle: Obstacle,
     },
-    /// A planner was opened that is to take over once it has a plan.
+    /// A planner was opened that will take over once it has a plan.
     PlannerPrepared {
-        /// Which ask this answers.
+        /// Id of the ask that this answers.
         ask: AskId,
-        /// Which, with its parameters.
+        /// The planner, with its parameters.
         choice: PlannerChoice,
-        /// Who it is.
+        /// Description of the planner.
         info: Box<PlannerInfo>,
     },
-    /// A planner that was to take over does not; the one before stays.
+    /// A planner that was to take over was rejected; the current one stays.
     PlannerRejected {
-        /// Which.
+        /// Id of the planner.
         planner: String,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
     /// A planner took over.
     PlannerChosen {
-        /// Which ask this answers; absent for one that was prepared before, and in journals up to version 2.
+        /// Id of the ask that this answers; absent for a planner that was prepared in advance, and in journals up to
+        /// version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// Which, with its parameters.
+        /// The planner, with its parameters.
         choice: PlannerChoice,
-        /// Who it is.
+        /// Description of the planner.
         info: Box<PlannerInfo>,
-        /// Which planner drove before.
+        /// Id of the planner that drove before.
         from: Option<String>,
     },
-    /// Parameters changed under way.
+    /// Parameters changed during the mission.
     ParametersChanged {
-        /// Which ask this answers; absent in journals up to version 2.
+        /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// The planner with its parameters as they are now.
+        /// The planner with its new parameters.
         choice: PlannerChoice,
     },
     /// A plan was made.
     Planned {
-        /// Which ask this answers; absent in journals up to version 2.
+        /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// How many points of a return path along the tether the mission put before the planner's path.
+        /// Number of points of the return path along the tether that the mission put before the planner's path.
         #[serde(default, skip_serializing_if = "is_zero")]
         return_path: usize,
-        /// By whom.
+        /// Id of the planner.
         planner: String,
-        /// Why.
+        /// The reason for the plan.
         reason: Reason,
         /// The path.
         path: Vec<Point>,
@@ -256,179 +257,183 @@ pub enum EventKind {
         length_m: f64,
         /// Whether it achieves the whole task.
         complete: bool,
-        /// What the stretches of the path are for, as far as the planner says.
+        /// The stretches of the path and their purpose, as far as the planner states it.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         legs: Vec<Leg>,
         /// Lines that the tethered robot never crosses.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
     },
-    /// The planner answered a step, and this is what the robot was sent.
+    /// The planner answered a step; this is the command that the robot was sent.
     Commanded {
-        /// Which ask this answers; absent in journals up to version 2.
+        /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// What was sent to the robot: the planner's command, within the robot's limits and so that it can stop.
+        /// The command sent to the robot: the planner's, within the robot's limits and limited so that the robot can
+        /// stop.
         command: Command,
-        /// What the planner asked for, where that would have been too fast to stop in time.
+        /// The planner's command, if it was too fast to stop in time.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         asked: Option<Command>,
     },
-    /// The robot has been driven more slowly than the planner asks for, for some time, so that it can stop; reported for the
-    /// first of a row.
+    /// For some time the robot has been driven more slowly than the planner requests, so that it can stop. Only the first
+    /// of several such periods in a row is reported.
     SpeedLimited {
-        /// The speed that the planner asks for, metres per second.
+        /// The speed requested by the planner, metres per second.
         asked_m_per_s: f64,
-        /// The speed that the robot is sent, metres per second.
+        /// The speed sent to the robot, metres per second.
         sent_m_per_s: f64,
-        /// What the robot would need to stop from the speed asked for, metres.
+        /// Distance that the robot would need to stop from the requested speed, metres.
         needs_m: f64,
     },
-    /// The robot stands until its pressure sensor has decided whether the floor under it is flooded; reported once.
+    /// The robot stands still until its pressure sensor has decided whether the floor under it is flooded; reported once.
     MediumAwaited,
-    /// The pressure sensor has decided whether the floor under the robot is flooded, for the first time or differently than before.
+    /// The pressure sensor has decided whether the floor under the robot is flooded, for the first time or with a new
+    /// result.
     MediumKnown {
-        /// What it has decided.
+        /// The result.
         medium: Medium,
-        /// The reading that decided, pascals.
+        /// The reading that led to it, pascals.
         pressure_pa: f64,
     },
-    /// The planner explained itself in drawings.
+    /// The planner drew something to explain its decisions.
     Drawn {
         /// The drawings.
         drawings: Vec<Drawing>,
     },
     /// The planner reported named figures.
     Scalars {
-        /// Name, value, unit.
+        /// Names, values and units.
         scalars: Vec<(String, f64, String)>,
     },
-    /// The planner said something.
+    /// The planner logged a message.
     PlannerLogged {
-        /// Which planner.
+        /// Id of the planner.
         planner: String,
-        /// How loud.
+        /// Level of the message.
         level: LogLevel,
-        /// What.
+        /// Text of the message.
         message: String,
     },
     /// A planner saved its private state, which the console keeps.
     Snapshotted {
-        /// Which ask this answers, and the name of the state.
+        /// Id of the ask that this answers, which also names the state.
         ask: AskId,
         /// Length of the state, bytes; 0 if there was none to save.
         bytes: u64,
     },
     /// A planner's answer came too late to be used.
     Discarded {
-        /// Which ask it answers.
+        /// Id of the ask that it answers.
         ask: AskId,
-        /// The plan, if it is kept to in the next one.
+        /// The plan, if the planner is asked to keep to it in the next one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         plan: Option<Box<EventKind>>,
     },
-    /// A planner answered a step only after the tick it was asked for; reported for the first of a row.
+    /// A planner answered a step after the tick for which it was asked; reported for the first of several late answers.
     PlannerLate {
-        /// Which planner.
+        /// Id of the planner.
         planner: String,
-        /// For how many ticks the robot stood still.
+        /// Number of ticks for which the robot stood still.
         ticks: u64,
     },
     /// The planner failed.
     PlannerFailed {
-        /// Which ask this answers; absent in journals up to version 2.
+        /// Id of the ask that this answers; absent in journals up to version 2.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         ask: Option<AskId>,
-        /// How.
+        /// Description of the fault.
         fault: Fault,
     },
     /// A planner was opened that flies in shadow from now on.
     ShadowBegan {
-        /// Which ask this answers.
+        /// Id of the ask that this answers.
         ask: AskId,
-        /// Which, with its parameters.
+        /// The planner, with its parameters.
         choice: PlannerChoice,
-        /// Who it is.
+        /// Description of the planner.
         info: Box<PlannerInfo>,
     },
-    /// The planner in shadow did something that moved nothing: it planned, drew, said, commanded or failed. A command is as
-    /// the planner gave it.
+    /// An action of the planner in shadow, without effect on the robot: it planned, drew, logged, commanded or failed. A
+    /// command is recorded as the planner gave it.
     Shadowed {
-        /// What would have happened had it driven.
+        /// The event that would have occurred if this planner had been the active one.
         of: Box<EventKind>,
     },
-    /// The planner in shadow answered a step after the tick that followed it; the answer counts for nothing.
+    /// The planner in shadow answered a step later than in the tick after the ask; the answer is not used.
     ShadowMissed {
-        /// Which ask it answers.
+        /// Id of the ask that it answers.
         ask: AskId,
-        /// So many ticks late.
+        /// Number of ticks by which the answer was late.
         ticks: u64,
     },
-    /// The planner in shadow was ordered to take over and is not let; it stays in shadow.
+    /// The planner in shadow was ordered to take over but cannot; it stays in shadow.
     PromotionRefused {
-        /// Which.
+        /// Id of the planner.
         planner: String,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
-    /// The planner in shadow took over in this tick; that it drives, its plan from here and the certificate of it follow.
+    /// The planner in shadow took over in this tick. The events that it drives, its plan from here, and the certificate
+    /// of that plan follow.
     Promoted {
-        /// Which.
+        /// Id of the planner.
         planner: String,
-        /// What it had done in shadow.
+        /// Its record in shadow.
         tally: ShadowTally,
     },
     /// No planner flies in shadow any more.
     ShadowEnded {
-        /// Which did.
+        /// Id of the planner that did.
         planner: String,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
-    /// A plan for all that is left was made in the background, after a repair, from a place ahead on the plan that is flown.
+    /// After a repair, a plan for all that is left was made in the background, beginning at a place ahead on the present
+    /// plan.
     BetterPlanned {
-        /// Which ask this answers.
+        /// Id of the ask that this answers.
         ask: AskId,
-        /// By whom.
+        /// Id of the planner.
         planner: String,
         /// The path.
         path: Vec<Point>,
         /// Whether it achieves the whole task.
         complete: bool,
-        /// What the stretches of the path are for, as far as the planner says.
+        /// The stretches of the path and their purpose, as far as the planner states it.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         legs: Vec<Leg>,
         /// Lines that the tethered robot never crosses.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         cuts: Vec<Vec<Point>>,
-        /// What the plan that is flown takes from there on.
+        /// The effort of the current plan from there on.
         flown: Effort,
-        /// What this one takes.
+        /// The effort of this plan.
         better: Effort,
-        /// Why it is not offered, as a sentence; absent if it is.
+        /// The reason why it is not offered, as a sentence; absent if it is.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objection: Option<String>,
     },
-    /// The better plan took the place of the one that was flown, in this tick; that its planner drives, the plan from here and
-    /// the certificate of it follow.
+    /// The better plan was taken in this tick. The events that its planner drives, the plan from here, and the
+    /// certificate of that plan follow.
     BetterPlanTaken {
-        /// By whom.
+        /// Id of the planner.
         planner: String,
-        /// What the plan before would have taken from here on.
+        /// The effort of the previous plan from here on.
         flown: Effort,
-        /// What this one takes.
+        /// The effort of this plan.
         better: Effort,
     },
-    /// No better plan is being made or offered any more.
+    /// The better plan was dropped, whether it was still being made or already offered.
     BetterPlanDropped {
-        /// By whom it was to be.
+        /// Id of its planner.
         planner: String,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
     /// Floor was scanned, by the estimated pose.
     Covered {
-        /// Cells of the coverage grid that are new.
+        /// Newly scanned cells of the coverage grid.
         runs: Vec<CellRun>,
     },
     /// The tool passed over floor, but the position was too uncertain for it to count as scanned.
@@ -436,44 +441,44 @@ pub enum EventKind {
         /// Cells of the coverage grid that were not scanned before.
         runs: Vec<CellRun>,
     },
-    /// An obstacle that was found changed which cells are floor and which of them the tool can reach.
+    /// A found obstacle changed which cells are floor, or which of them the tool can reach.
     FloorChanged {
-        /// The cells, and what they are now.
+        /// The changed cells and their new state.
         changes: Vec<KindRun>,
     },
-    /// How far the mission is.
+    /// Progress of the mission.
     Progressed {
-        /// Share of the task done, 0 to 1.
+        /// Share of the task that is done, 0 to 1.
         done: f64,
-        /// Way along the preset path, metres; absent without one.
+        /// Distance along the preset path, metres; absent without one.
         along_m: Option<f64>,
         /// Distance from the preset path, metres; absent without one.
         cross_track_m: Option<f64>,
-        /// Where the robot goes next.
+        /// The robot's next target.
         target: Point,
         /// Scanned share of the reachable floor, 0 to 1.
         covered_reachable: f64,
         /// Scanned share of the whole floor, 0 to 1.
         covered_whole: f64,
-        /// What the stretch of the plan under the robot is for; absent if the planner does not say.
+        /// Purpose of the stretch of the plan under the robot; absent if the planner does not state it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         leg: Option<LegTag>,
     },
     /// The robot was stopped.
     Held {
-        /// Why, as a sentence.
+        /// The reason.
         by: HoldReason,
-        /// Whether the hold ends by itself.
+        /// Whether the hold ends automatically.
         #[serde(default, skip_serializing_if = "Resumes::is_never")]
         resumes: Resumes,
     },
     /// The robot may move again.
     Resumed,
-    /// Last event of a run that ended by itself or was ended in good order.
+    /// Last event of a run that ended normally or by order.
     Ended {
-        /// How.
+        /// The outcome.
         outcome: Outcome,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         reason: String,
     },
 }
@@ -492,23 +497,23 @@ pub struct RunOpened {
     pub tankops_version: String,
     /// Name of the scenario.
     pub scenario: String,
-    /// The scenario file as it was read, with command line settings already put in.
+    /// The scenario file as read, with the settings of the command line already applied.
     pub scenario_toml: String,
-    /// Start of every random choice.
+    /// Seed of all random choices.
     pub seed: u64,
-    /// The tank as it truly is.
+    /// The true tank.
     pub world: World,
-    /// The mission.
+    /// Configuration of the mission.
     pub mission: MissionConfig,
-    /// The coverage grid: which cells are floor and which of them the tool can reach.
+    /// The coverage grid, with the cells that are floor and those that the tool can reach.
     pub floor: world::Floor,
-    /// How the plates of the floor lie, if the drawing shows them.
+    /// The layout of the floor plates, if the drawing shows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plates: Option<world::PlateLayout>,
-    /// What the operator ticks by hand before the start.
+    /// The checks that the operator ticks by hand before the start.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub checklist: Vec<String>,
-    /// What was measured by others and located afterwards; absent for a run that was flown.
+    /// Measurements made by others and located afterwards; absent for a run that was flown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
 }

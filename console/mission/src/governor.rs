@@ -1,35 +1,36 @@
-//! The one rule that limits every command, whoever asks for it: after this tick the robot can still brake to a stand, straight
-//! on, without touching anything on the chart and before the edge of what it sees.
+//! The one rule that limits every command, whatever its source: after this tick the robot must still be able to brake to
+//! a standstill, straight ahead, without touching anything on the chart and within the range of its sensors.
 //!
-//! A robot for which this holds can always brake, so it holds in the next tick, too, if the command of that tick is chosen
-//! so. A command that would end it is driven more slowly, in the last resort not at all: the robot brakes. The way is that of the
-//! robot's own acceleration and turn rate, over the length of a tick and from the speed that it has.
+//! If this is true in one tick, a command that keeps it true exists in the next. A command that would make it false is
+//! executed more slowly, or in the last resort not at all: the robot brakes. The path is computed for one tick with the
+//! robot's own acceleration and turn rate, from its current speed.
 
 use geometry::{Braking, Drive, Limits, Motion, motion::at_most};
 use world::{Point, Pose, Vector};
 
-/// Room that is left beside what is seen, metres: it is known where it stands, as seen from the robot.
+/// Room to keep beside obstacles in sight, metres: their position relative to the robot is known.
 const SEEN_ROOM_M: f64 = 0.01;
-/// Most room that the position error asks for beside what is only on the chart, metres: a robot that is lost shall still move.
+/// Maximum room to keep, because of the position error, beside obstacles that are only on the chart, metres: a robot that
+/// is lost must still be able to move.
 const CHART_ROOM_MOST_M: f64 = 0.15;
-/// Share of the room there is that the robot may use up where there is less than it should leave: along a wall that bends, it
-/// brakes straight on.
+/// Where there is less than the required room, the share of it that the robot may use up: along a curved wall, braking
+/// straight ahead comes closer.
 const ROOM_SHARE: f64 = 0.5;
-/// A hull that touches something may move by this much into it, metres: rounding.
+/// A hull in contact may move into the obstacle by this much, metres, to allow for rounding.
 const TOUCH_M: f64 = 1e-4;
-/// The robot's way is looked at in steps of at least this much, metres.
+/// Minimum step for checking the robot's path, metres.
 const LOOK_M: f64 = 0.01;
-/// An arc is looked at in pieces of at most this turn, radians.
+/// Maximum turn of one piece of an arc when it is checked, radians.
 const ARC_PIECE_RAD: f64 = 0.2;
-/// How often the interval in which the largest speed lies is halved.
+/// Number of bisection steps in the search for the highest safe speed.
 const HALVINGS: u32 = 6;
 
 /// Something that the hull must not touch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solid<'a> {
-    /// What stands there.
+    /// Its outline.
     pub outline: Outline<'a>,
-    /// Whether it is seen now; else it stands where the chart has it, seen from where the robot believes it is.
+    /// Whether it is in sight now; otherwise its place is the one on the chart, relative to the estimated pose.
     pub is_seen: bool,
 }
 
@@ -51,27 +52,27 @@ impl Outline<'_> {
     }
 }
 
-/// What the rule has to know of a tick.
+/// The inputs of the rule in one tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Here {
-    /// Where the robot believes it is.
+    /// The robot's estimated pose.
     pub pose: Pose,
     /// Half width of the 95 % position error, metres.
     pub error_m: f64,
-    /// What it can do here.
+    /// The robot's limits here.
     pub limits: Limits,
 }
 
-/// How fast the robot is, by the commands that it was sent.
+/// The robot's speed, computed from the commands sent to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Momentum {
-    /// Along the heading, metres per second; negative backward. Of a robot without a heading the speed.
+    /// Speed along the heading, metres per second; negative backward. For a robot without a heading, its speed.
     ahead_m_per_s: f64,
-    /// Of a robot without a heading, metres per second, tank frame.
+    /// Velocity of a robot without a heading, metres per second, tank frame.
     velocity: Vector,
 }
 
-/// What a command does in a tick, and how fast the robot is then.
+/// The effect of a command in one tick, and the speed after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Motions {
     /// The pose at the end of the tick.
@@ -79,12 +80,12 @@ struct Motions {
     /// Turn during the tick, radians.
     turn_rad: f64,
     after: Momentum,
-    /// Where the robot goes on to while it brakes, a unit vector.
+    /// Direction of travel while the robot brakes, a unit vector.
     onward: Vector,
 }
 
 impl Momentum {
-    /// At rest.
+    /// Standstill.
     pub(crate) const NONE: Self = Self { ahead_m_per_s: 0.0, velocity: Vector::new(0.0, 0.0) };
 
     /// The speed, metres per second; negative backward.
@@ -92,7 +93,7 @@ impl Momentum {
         self.ahead_m_per_s
     }
 
-    /// How fast the robot is after a tick of a drive.
+    /// The robot's speed after one tick of a drive.
     pub(crate) fn after(&self, drive: Drive, here: &Here) -> Self {
         self.motions(drive, here).after
     }
@@ -113,7 +114,7 @@ impl Momentum {
         }
         let (v, w) = match drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),
-            // A robot with a heading is sent twists.
+            // A robot with a heading receives only twists.
             Drive::Velocity(_) => (0.0, 0.0),
         };
         let wanted = v.clamp(-v_max_m_per_s, v_max_m_per_s);
@@ -124,8 +125,7 @@ impl Momentum {
         Motions { end, turn_rad, after, onward: end.direction() * ahead_m_per_s.signum() }
     }
 
-    /// The drives to fall back on, the one that keeps the most of a command first: slower on the same curve, then straight on as
-    /// the robot brakes.
+    /// The command at `share` of its speed, on the same curve: 1 is the full command, 0 the hardest braking.
     fn slower(&self, drive: Drive, share: f64, here: &Here) -> Drive {
         match drive {
             Drive::Velocity(velocity) => Drive::Velocity(velocity * share),
@@ -139,13 +139,13 @@ impl Momentum {
     }
 }
 
-/// What is in the way of a robot, and how near it may come to it.
+/// The obstacles near a robot, and the distance to keep from each.
 pub(crate) struct Surroundings<'a> {
     solids: Vec<(Outline<'a>, f64)>,
 }
 
 impl<'a> Surroundings<'a> {
-    /// What is in the way of a robot that is here.
+    /// The obstacles near a robot at this place.
     pub(crate) fn of(solids: &[Solid<'a>], here: &Here) -> Self {
         let at = here.pose.position;
         let to = |solid: &Solid<'a>| {
@@ -158,7 +158,7 @@ impl<'a> Surroundings<'a> {
         Self { solids: solids.iter().map(to).collect() }
     }
 
-    /// Room to spare for the middle of the hull at a place, metres; negative where it must not be.
+    /// Spare room for the hull's centre at a place, metres; negative where it must not be.
     fn spare_m(&self, at: Point) -> f64 {
         self.solids
             .iter()
@@ -166,7 +166,7 @@ impl<'a> Surroundings<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a straight way is clear.
+    /// Whether a straight path is clear.
     fn is_clear(&self, from: Point, to: Point) -> bool {
         let (way, length_m) = (to - from, (to - from).norm());
         let mut gone_m = 0.0;
@@ -183,7 +183,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Whether a robot that does this for a tick, and then brakes, touches nothing.
+    /// Whether a robot that executes this for a tick, and then brakes, touches nothing.
     fn allows(&self, motions: &Motions, here: &Here) -> bool {
         let start = &here.pose;
         let n = (motions.turn_rad.abs() / ARC_PIECE_RAD).ceil().max(1.0) as u32;
@@ -201,25 +201,26 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Room to leave beside what is only on the chart, metres.
+/// Room to keep beside obstacles that are only on the chart, metres.
 fn chart_room_m(error_m: f64) -> f64 {
     if error_m.is_finite() { error_m.clamp(SEEN_ROOM_M, CHART_ROOM_MOST_M) } else { CHART_ROOM_MOST_M }
 }
 
-/// How far from the middle of the hull things can matter to a command, metres.
+/// Distance from the hull's centre within which obstacles can affect a command, metres.
 pub(crate) fn reach_m(momentum: &Momentum, drive: Drive, here: &Here) -> f64 {
     let after = momentum.after(drive, here).ahead_m_per_s.abs();
     let fastest = after.max(momentum.ahead_m_per_s.abs());
     here.limits.radius_m + chart_room_m(here.error_m) + Braking::of(&here.limits).distance_m(fastest)
 }
 
-/// Whether a robot can stop within what it sees after a tick of a command, or does no more than before.
+/// Whether a robot can stop within its sensing range after a tick of a command.
 pub(crate) fn is_within_sight(momentum: &Momentum, drive: Drive, here: &Here) -> bool {
     let after = momentum.after(drive, here).ahead_m_per_s;
     Braking::of(&here.limits).distance_m(after) <= here.limits.sensing_range_m
 }
 
-/// The drive that is sent for a command: the command itself, if the robot can stop after it, else as much of it as it can.
+/// The drive that is sent for a command: the command itself if the robot can stop after it, otherwise as much of it as is
+/// safe.
 pub(crate) fn governed(momentum: &Momentum, drive: Drive, here: &Here, around: &Surroundings<'_>) -> Drive {
     let is_safe = |drive: Drive| {
         is_within_sight(momentum, drive, here) && around.allows(&momentum.motions(drive, here), here)

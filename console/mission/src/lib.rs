@@ -1,10 +1,11 @@
-//! The mission: one pure step from what is sensed to what the robot does, and everything worth knowing on the way.
+//! The mission: a pure function from sensor readings to the robot's motion, with events that report everything worth
+//! knowing.
 //!
-//! No clock, no file, no thread, no terminal: the same inputs give the same events. Whoever wants to know about a
-//! run reads [`Event`]s; nothing else leaves the engine but the commands to the robot.
+//! There is no clock, file, thread or terminal in this crate: the same inputs give the same events. The only outputs of
+//! the engine are [`Event`]s, asks to planners, and commands to the robot.
 //!
-//! Read in this order: [`engine`] (the tick), [`event`] (what leaves it), [`order`] and [`config`] (what enters),
-//! [`phase`] and [`standing`] (what the mission is doing, and which orders it accepts then), [`ask`] (the port to
+//! Suggested reading order: [`engine`] (the tick), [`event`] (its outputs), [`order`] and [`config`] (its inputs),
+//! [`phase`] and [`standing`] (what the mission is doing, and which orders it accepts then), [`ask`] (the interface to
 //! planners).
 
 pub mod ask;

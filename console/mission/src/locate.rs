@@ -1,4 +1,4 @@
-//! Where the robot believes it is, and whether that can be relied on.
+//! The robot's estimated position, and whether it is reliable.
 
 use crate::{config::MissionConfig, event::EventKind};
 use planner_api::PoseEstimate;
@@ -12,9 +12,9 @@ use std::{
 };
 use world::{Point, Pose, Readings, StationId, World};
 
-/// The positioner with its memory of which stations were used and whether the position was good.
+/// The positioner, together with the stations in use and the reliability of the position so far.
 ///
-/// A mission has one; so has whoever locates a robot by readings that were measured before.
+/// Used by each mission, and by the code that locates recorded readings.
 #[derive(Clone)]
 pub struct Locator {
     positioner: Positioner,
@@ -30,7 +30,7 @@ pub struct Locator {
 }
 
 impl Locator {
-    /// A locator at the surveyed start.
+    /// Creates a locator at the surveyed start.
     pub fn new(config: &MissionConfig, drawing: &World) -> Self {
         let locating = &config.locating;
         let normal = RangeNoise::Gaussian { sigma_ratio: config.range_sigma_ratio };
@@ -66,7 +66,7 @@ impl Locator {
         }
     }
 
-    /// Whether the ranges of a station are used from now on.
+    /// Sets whether the ranges of a station are used from now on.
     pub(crate) fn use_station(&mut self, station: StationId, used: bool) {
         if used {
             self.unused.remove(&station);
@@ -75,12 +75,12 @@ impl Locator {
         }
     }
 
-    /// Makes the pose less known by a motion that nothing measured, of at most so many metres and radians.
+    /// Increases the uncertainty of the pose after an unmeasured motion of at most the given metres and radians.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.positioner.wander(most_m, most_rad);
     }
 
-    /// Trusts the ranges of the next cycles less.
+    /// Reduces the weight of the ranges of the next cycles.
     pub fn doubt(&mut self, doubt: Doubt) {
         self.positioner.doubt(doubt);
     }
@@ -90,17 +90,17 @@ impl Locator {
         &self.impossible
     }
 
-    /// How far fixes and measured motion agreed so far.
+    /// How well fixes and measured motion have agreed so far.
     pub fn agreement(&self) -> Agreement {
         self.positioner.agreement()
     }
 
-    /// What decided between the last fix and its mirror image.
+    /// How the last fix was chosen over its mirror image.
     pub fn sides(&self) -> Sides {
         self.sides
     }
 
-    /// Takes what was sensed since the last tick; gives the resulting events.
+    /// Processes what was sensed since the last tick; returns the resulting events.
     pub fn take(&mut self, readings: &Readings) -> Vec<EventKind> {
         self.positioner.predict(&readings.odometry);
         let mut events = if readings.ranging_cycle { self.cycle(readings) } else { Vec::new() };
@@ -133,8 +133,8 @@ impl Locator {
         events
     }
 
-    /// Raises the alarm when ranges contradict each other beyond what leaving out a station mends, and ends it with
-    /// the next fix that holds together. A cycle without information changes nothing.
+    /// Raises the alarm when the ranges contradict each other and leaving out a station does not resolve it. The next
+    /// consistent fix clears it. A cycle without information changes nothing.
     fn heed(&mut self, fix: &Result<Fix, FixError>) -> Option<EventKind> {
         let contradiction = match fix {
             Ok(fix) if fix.integrity == Integrity::Alarm => Some((fix.chi2, fix.degrees_of_freedom)),
@@ -154,7 +154,7 @@ impl Locator {
 
     fn stations_changed(&mut self, fix: &Fix) -> Vec<EventKind> {
         let out: BTreeMap<StationId, Exclusion> = fix.excluded.iter().copied().collect();
-        // A new reason is news, a new number is not.
+        // A new reason is reported, a new number is not.
         let is_news = |(station, reason): &(&StationId, &Exclusion)| {
             self.left_out.get(station).is_none_or(|before| discriminant(before) != discriminant(*reason))
         };
@@ -179,7 +179,7 @@ impl Locator {
         })
     }
 
-    /// Whether the ranges contradict each other, so that nobody knows which to believe.
+    /// Whether the ranges contradict each other, so that it is unknown which of them are correct.
     pub(crate) fn is_alarmed(&self) -> bool {
         self.alarmed
     }
@@ -204,7 +204,7 @@ impl Locator {
         self.positioner.estimate().pose
     }
 
-    /// Estimated pose with its covariance, as planners read it.
+    /// Estimated pose with its covariance, in the form that planners receive.
     pub(crate) fn pose_estimate(&self) -> PoseEstimate {
         let estimate = self.positioner.estimate();
         PoseEstimate {

@@ -1,4 +1,4 @@
-//! The operator's orders; they enter at the top of the next tick.
+//! The operator's orders; they take effect at the start of the next tick.
 
 use crate::{
     phase::Outcome,
@@ -12,118 +12,119 @@ use world::{Point, StationId};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// While waiting: make the plan that the mission will begin with, once more if there is one. Nothing moves.
+    /// While waiting: make the plan that the mission will begin with, or make it again. Nothing moves.
     Plan,
-    /// Begin the mission with whatever plan is made: nobody looks at one before. Refused where a start names its plan
+    /// Begin the mission with whatever plan is made, without showing it first. Refused where a start names its plan
     /// ([`crate::MissionConfig::start_names_plan`]).
     Start,
     /// Begin the mission with the plan that the operator saw.
     StartPlan(PlanId),
-    /// While waiting: note what was checked before the start, by the console and by hand.
+    /// While waiting: record the checks made before the start, by the console and by hand.
     NoteChecks(Vec<Check>),
-    /// While held: note how the mission would go on with some planners, as it was forecast.
+    /// While held: record forecasts of how the mission would continue with some planners.
     NoteOutlooks(Vec<Outlook>),
-    /// Stand still.
+    /// Hold the robot.
     Hold,
-    /// Go on.
+    /// Resume.
     Resume,
     /// While held: move for one tick.
     Step,
     /// While held: move until something happens, then stand still again.
     StepTo(StepTo),
-    /// While held for a plan that was refused because of the tether: fly it, and later plans until one fails.
+    /// While held because a plan was refused for the tether: run that plan, and later ones until one fails.
     FlyUncertified,
-    /// End the mission here.
+    /// End the mission.
     Abort,
-    /// End the mission here: the process that runs it was asked to exit by a signal.
+    /// End the mission because its process received a signal to exit.
     Terminate,
-    /// While held or waiting: another planner takes over.
+    /// While held or waiting: change to a different planner.
     ChoosePlanner(PlannerChoice),
-    /// Fly a planner in shadow: it plans and commands beside the one that drives, and moves nothing.
+    /// Start a planner in shadow: it plans and commands in parallel with the active one, without effect on the robot.
     Shadow(PlannerChoice),
-    /// The planner in shadow takes over, without a hold.
+    /// Promote the planner in shadow, without a hold.
     Promote,
     /// End the shadow.
     DropShadow,
-    /// Fly the better plan that is offered, from the place on where it begins.
+    /// Take the better plan that is offered, at the place where it begins.
     TakePlan,
-    /// Change one parameter of the planner; while the mission runs only live ones.
+    /// Change one parameter of the planner; while the mission runs, only a live one.
     SetParameter {
-        /// Which parameter.
+        /// Key of the parameter.
         key: String,
         /// Its new value.
         value: ParamValue,
     },
-    /// The robot must not enter the floor between these corners (metres, tank frame) from now on: plans keep off it, and what lies
-    /// in it is not scanned. The mission gives the zone a name.
+    /// Close the floor between these corners (metres, tank frame) from now on: plans keep out of the zone, and it is not
+    /// scanned. The mission names the zone.
     DrawZone(Vec<Point>),
-    /// For training: a station of the simulation fails for a while. The mission only notes it, and locates without knowing.
+    /// For training: let a station of the simulation fail for a while. The mission records the order, but does not use it
+    /// for locating.
     Inject(Injection),
-    /// Whether the ranges of a station are used; without them the robot is located by the others.
+    /// Set whether the ranges of a station are used; the others still locate the robot.
     UseStation {
-        /// Which station.
+        /// Id of the station.
         station: StationId,
-        /// Whether they are.
+        /// Whether its ranges are used.
         used: bool,
-        /// Who ordered it, if the console knows.
+        /// The person who ordered it, if the console knows.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         by: Option<String>,
     },
-    /// Note what the operator did at the console; neither robot nor planner is concerned.
+    /// Record what the operator did at the console; this affects neither robot nor planner.
     Note(Note),
 }
 
-/// Something that the operator did at the console.
+/// An action of the operator at the console.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
-    /// What.
+    /// The action.
     pub what: Noted,
-    /// Who did it, if the console knows.
+    /// The person who did it, if the console knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
 
-/// What the operator did at the console. An alarm has a name that is the same in every run, and the words that the operator
-/// saw.
+/// The kinds of action at the console. An alarm is recorded by its name, which is the same in every run, and by the text
+/// that the operator saw.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Noted {
-    /// The operator has seen an alarm.
+    /// The operator acknowledged an alarm.
     Acknowledged {
         /// Its name.
         alarm: String,
-        /// Its words.
+        /// Its text.
         text: String,
     },
-    /// The operator has put an alarm aside.
+    /// The operator shelved an alarm.
     Shelved {
         /// Its name.
         alarm: String,
-        /// Its words.
+        /// Its text.
         text: String,
         /// For how long, seconds of mission time.
         for_s: f64,
-        /// Why, in the words of the operator.
+        /// The reason, in the operator's words.
         reason: String,
     },
-    /// The operator has taken back an alarm that was put aside.
+    /// The operator unshelved an alarm.
     Unshelved {
         /// Its name.
         alarm: String,
-        /// Its words.
+        /// Its text.
         text: String,
     },
-    /// The parameters of a preset were taken: the order that chooses them follows.
+    /// The parameters of a preset were taken; the order that sets them follows.
     PresetTaken {
-        /// The name of the preset.
+        /// Name of the preset.
         preset: String,
-        /// Whose parameters.
+        /// Id of the planner.
         planner: String,
     },
 }
 
 impl Order {
-    /// Whether it begins the mission.
+    /// Whether the order begins the mission.
     pub fn is_start(&self) -> bool {
         matches!(self, Self::Start | Self::StartPlan(_))
     }
@@ -132,80 +133,81 @@ impl Order {
 /// A fault of a simulated station, injected on purpose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Injection {
-    /// Which station.
+    /// Id of the station.
     pub station: StationId,
-    /// What is wrong with it.
+    /// The kind of fault.
     pub fault: RangeFault,
-    /// For how long, from the next tick on, seconds of mission time.
+    /// Duration, counted from the next tick, seconds of mission time.
     pub for_s: f64,
-    /// Who injected it, if the console knows.
+    /// The person who injected it, if the console knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
 
-/// What is wrong with a station.
+/// The kinds of fault of a station.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RangeFault {
-    /// It is silent.
+    /// The station is silent.
     Dead,
-    /// Its ranges are too long by so many metres.
+    /// The ranges of the station are too long by this many metres.
     Offset(f64),
 }
 
-/// What a robot moves to that is held and is let go for a while.
+/// The end of a step of a held robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepTo {
-    /// The end of the lane or connector under the robot; without lanes, a metre further.
+    /// The end of the current lane or connector; without lanes, one metre ahead.
     LaneEnd,
-    /// The next event of WATCH or above.
+    /// The next event of severity WATCH or above.
     Event,
 }
 
-/// Something that was checked before the start.
+/// A check made before the start.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Check {
-    /// What.
+    /// What was checked.
     pub what: String,
-    /// How it came out.
+    /// The result.
     pub outcome: CheckOutcome,
-    /// What was found, as a sentence; for a tick by hand by whom, or nothing.
+    /// The finding, as a sentence; for a check ticked by hand, the name of the person, or empty.
     pub found: String,
 }
 
-/// How a check came out.
+/// The result of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckOutcome {
-    /// All right.
+    /// Passed.
     Passed,
     /// Ticked by hand.
     Ticked,
-    /// Worth knowing; it does not block the start.
+    /// Worth knowing; does not block the start.
     Warning,
-    /// It blocks the start.
+    /// Blocks the start.
     Failed,
 }
 
-/// How a mission would go on with a planner from where it is held, as it was forecast from the estimate and the map alone.
+/// A forecast of how the mission would continue with a planner from where it is held, computed from the estimate and the
+/// map alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outlook {
     /// The planner, with its parameters.
     pub choice: PlannerChoice,
-    /// How it would end; absent if it would be held until an operator helps.
+    /// The outcome; absent if the robot would be held until an operator helps.
     pub outcome: Option<Outcome>,
-    /// Why, as a sentence.
+    /// The reason, as a sentence.
     pub reason: String,
-    /// Mission time until then, seconds.
+    /// Mission time until the end, seconds.
     pub after_s: f64,
-    /// Way until then, metres.
+    /// Distance to drive until the end, metres.
     pub length_m: f64,
     /// Scanned share of the reachable floor at the end, 0 to 1.
     pub reachable: f64,
-    /// Least distance from the hull to anything solid, metres.
+    /// Minimum distance from the hull to anything solid, metres.
     pub clearance_min_m: f64,
-    /// Most cable out, metres; absent without a tether.
+    /// Maximum length of cable out, metres; absent without a tether.
     pub tether_length_max_m: Option<f64>,
     /// Largest wrap on one obstacle, radians; absent without a tether.
     pub wrap_max_rad: Option<f64>,

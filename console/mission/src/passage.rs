@@ -1,22 +1,22 @@
-//! What counts as scanned.
+//! The rule for what counts as scanned.
 
 use crate::phase::Phase;
 
-/// What becomes of floor that the tool passes between two estimates of its pose.
+/// The status of floor that the tool passes between two estimates of its pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Passage {
-    /// Nothing: the mission has not been started.
+    /// Ignored: the mission has not been started.
     Idle,
-    /// It does not count: nobody knows well enough where it is.
+    /// Does not count: the position is not known well enough.
     Uncertain,
-    /// It counts as scanned.
+    /// Counts as scanned.
     Counts,
 }
 
 impl Passage {
-    /// The one rule for the mission and for everybody who finds out from its events where the tool passed: floor counts from the
-    /// start of the mission on, also while a held robot brakes, wherever the 95 % error of the position, metres, is within the
-    /// limit for scanning, metres.
+    /// The one rule for the mission and for all readers of its events: floor counts as scanned from the start of the
+    /// mission on, also while a held robot brakes, wherever the 95 % error of the position is within the limit for
+    /// scanning (both in metres).
     ///
     /// ```
     /// use mission::{Passage, Phase};

@@ -1,4 +1,4 @@
-//! What a mission is doing: whether the robot moves, why it stands, how the mission ended.
+//! The phase of a mission: whether the robot moves, why it stands still, how the mission ended.
 
 mod hold_reason;
 
@@ -7,17 +7,17 @@ pub use hold_reason::HoldReason;
 use crate::order::StepTo;
 use serde::{Deserialize, Serialize};
 
-/// What the mission is doing.
+/// The phase of a mission.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Phase {
-    /// Nothing has been started.
+    /// The mission has not been started.
     #[default]
     Waiting,
     /// The robot moves, or will as soon as its planner is ready.
     Running(Gait),
-    /// The robot stands still.
+    /// The robot is held.
     Held(Hold),
-    /// It is over.
+    /// The mission has ended.
     Ended(Outcome),
 }
 
@@ -32,27 +32,28 @@ impl Phase {
     }
 }
 
-/// For how long a running robot moves.
+/// How long a running robot moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Gait {
     /// Until something stops it.
     Steady,
-    /// Until one command was sent.
+    /// For one command.
     OneTick,
-    /// Until something happens.
+    /// Until the awaited event happens.
     To(StepTo),
 }
 
-/// Why the robot stands still, and whether that may end without an order.
+/// Why the robot is held, and whether the hold can end without an order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hold {
-    /// Why.
+    /// The reason.
     pub by: HoldReason,
-    /// Whether it ends by itself.
+    /// Whether the hold ends automatically.
     pub resumes: Resumes,
 }
 
-/// Whether a hold ends by itself. Whatever it says, [`Order::Hold`](crate::Order::Hold) makes it end by an order only.
+/// Whether a hold ends automatically. [`Order::Hold`](crate::Order::Hold) changes every hold to one that ends only by
+/// order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resumes {
@@ -72,26 +73,26 @@ impl Resumes {
     }
 }
 
-/// How a run ended.
+/// The outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The task is done.
     Complete,
-    /// No progress, or the planner sees no way on.
+    /// No progress, or the planner finds no path.
     Stuck,
     /// The robot touched something.
     Collision,
-    /// Time is up.
+    /// The time limit was reached.
     TimeLimit,
-    /// Back at the anchor with cable left out, or held by the cable with nobody there to help.
+    /// Back at the anchor with cable still out, or held by the cable in an unattended mission.
     Entangled,
-    /// Ended by the operator, or because nobody was there to help.
+    /// Ended by the operator, or by a hold in an unattended mission.
     Aborted,
 }
 
 impl Outcome {
-    /// The word that scripts and people read.
+    /// The word used in files and on the screen.
     pub fn word(self) -> &'static str {
         match self {
             Self::Complete => "complete",

@@ -1,17 +1,18 @@
-//! Whether a plan has anything to do with its tank.
+//! Rejects plans that are far too large for their tank.
 
 use planner_api::Plan;
 use world::{Boundary, Point, polyline};
 
-/// A path may be so many times as long as the lanes of the whole floor, and longer by so many times the size of the tank.
+/// Maximum length of a path: this multiple of the length of all lanes over the whole floor, plus this multiple of the
+/// size of the tank.
 const MOST_LANES: f64 = 20.0;
 const MOST_CROSSINGS: f64 = 1000.0;
 
-/// Refuses a plan that has nothing to do with this tank, whose lanes are so wide in metres: whoever samples its path would run out of time
-/// and memory.
+/// Refuses a plan that is far too large for this tank; `lane_m` is the width of a lane, metres. Sampling such a path
+/// would exhaust time and memory.
 ///
 /// # Errors
-/// What is wrong; the sentence reads on after the planner's name.
+/// What is wrong; the text continues after the planner's name.
 pub fn check_extent(plan: &Plan, boundary: &Boundary, lane_m: f64) -> Result<(), String> {
     let (low, high) = boundary.bounds();
     let size = high - low;
@@ -30,7 +31,7 @@ pub fn check_extent(plan: &Plan, boundary: &Boundary, lane_m: f64) -> Result<(),
     let limit_m = MOST_LANES * lanes_m + MOST_CROSSINGS * size.norm();
     let length_m = polyline::length_m(&plan.path);
     if length_m > limit_m {
-        return Err(format!("gave a path of {length_m:.0} m, in this tank the limit is {limit_m:.0} m"));
+        return Err(format!("gave a path of {length_m:.0} m; in this tank the limit is {limit_m:.0} m"));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Which plan: the hash by which an order to start names the plan that the operator saw.
+//! The hash by which a start order names the plan that the operator saw.
 
 use crate::planner::{ParamValue, PlannerChoice, PlannerInfo};
 use planner_api::Leg;
@@ -7,18 +7,18 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use world::Point;
 
-/// SHA-256 of a plan: of the planner, its build and its parameters, and of the path with its legs and cuts, to the last bit.
+/// SHA-256 of a plan: of the planner, its build and its parameters, and of the exact path with its legs and cuts.
 ///
-/// For a planner that only steps the path is empty, and what is left is the planner with its parameters.
+/// For a planner that only steps the path is empty, so the hash covers the planner with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PlanId([u8; 32]);
 
-/// A plan as it would be flown, after its return path: what the operator sees.
+/// A plan as it would be run, including its return path: the plan that the operator sees.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanSeen<'a> {
     /// The path, metres, tank frame.
     pub path: &'a [Point],
-    /// What its stretches are for.
+    /// The legs of the path and their purpose.
     pub legs: &'a [Leg],
     /// Lines that the tethered robot never crosses, metres, tank frame.
     pub cuts: &'a [Vec<Point>],
@@ -27,7 +27,7 @@ pub struct PlanSeen<'a> {
 }
 
 impl PlanId {
-    /// The hash of a plan of a planner.
+    /// Computes the hash of a planner's plan.
     pub fn of(choice: &PlannerChoice, info: &PlannerInfo, plan: PlanSeen<'_>) -> Self {
         let mut hash = Hash(Sha256::new());
         hash.text(&choice.id);
@@ -50,17 +50,17 @@ impl PlanId {
         Self(hash.0.finalize().into())
     }
 
-    /// Its first eight digits, hexadecimal, for people.
+    /// The first eight hexadecimal digits, for display.
     pub fn short(&self) -> String {
         let first = u32::from_be_bytes([self.0[0], self.0[1], self.0[2], self.0[3]]);
         format!("{first:08x}")
     }
 }
 
-/// All digits, hexadecimal.
+/// All hexadecimal digits.
 impl fmt::Display for PlanId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+        f.write_str(&hex::encode(self.0))
     }
 }
 
@@ -83,7 +83,8 @@ impl<'de> Deserialize<'de> for PlanId {
     }
 }
 
-/// Feeds values so that no two different plans feed the same bytes: whatever has a length is preceded by it.
+/// Feeds values so that different plans never feed the same bytes: everything of variable length is preceded by its
+/// length.
 struct Hash(Sha256);
 
 impl Hash {

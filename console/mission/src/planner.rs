@@ -1,4 +1,4 @@
-//! Planners as the mission knows them: who they are, what parameters they take, how they fail.
+//! Planners as the mission sees them: their identity, their parameters and their faults.
 
 mod sandbox;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The value of a parameter as scenarios, the command line and the screen have it.
+/// The value of a parameter in scenarios, on the command line and on the screen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ParamValue {
@@ -18,7 +18,7 @@ pub enum ParamValue {
     Int(i64),
     /// A real number.
     Float(f64),
-    /// One of the words of a choice.
+    /// One of a fixed set of words.
     Word(String),
 }
 
@@ -36,17 +36,17 @@ impl fmt::Display for ParamValue {
 /// Parameter values by key, in a fixed order.
 pub type Parameters = BTreeMap<String, ParamValue>;
 
-/// Which planner drives, with the parameters that differ from their defaults.
+/// A planner, with the parameters that differ from their defaults.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlannerChoice {
-    /// The planner's id.
+    /// Id of the planner.
     pub id: String,
-    /// Values set by hand; the others take their defaults.
+    /// Values set by hand; all other parameters have their defaults.
     #[serde(default)]
     pub parameters: Parameters,
 }
 
-/// What values a parameter takes; the owned form of [`planner_api::Kind`].
+/// The values that a parameter accepts; the owned form of [`planner_api::Kind`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum ParamKind {
@@ -56,7 +56,7 @@ pub enum ParamKind {
         min: f64,
         /// Largest value.
         max: f64,
-        /// Value when nothing is set.
+        /// Default value.
         default: f64,
     },
     /// A whole number.
@@ -65,19 +65,19 @@ pub enum ParamKind {
         min: i64,
         /// Largest value.
         max: i64,
-        /// Value when nothing is set.
+        /// Default value.
         default: i64,
     },
     /// On or off.
     Flag {
-        /// Value when nothing is set.
+        /// Default value.
         default: bool,
     },
-    /// One of some words.
+    /// One of a fixed set of words.
     Choice {
         /// The words.
         options: Vec<String>,
-        /// The word when nothing is set.
+        /// The default word.
         default: String,
     },
 }
@@ -91,18 +91,18 @@ pub struct ParamInfo {
     pub label: String,
     /// Unit; empty for a pure number.
     pub unit: String,
-    /// What it does.
+    /// Description.
     pub help: String,
     /// Heading under which the screen lists it.
     pub group: String,
-    /// What values it takes.
+    /// The values that it accepts.
     #[serde(flatten)]
     pub kind: ParamKind,
-    /// Whether it may change while the mission runs.
+    /// Whether it can be changed while the mission runs.
     pub live: bool,
 }
 
-/// A planner that was found, or that drives.
+/// Description of an installed planner or of the active one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannerInfo {
     /// Its id.
@@ -117,32 +117,32 @@ pub struct PlannerInfo {
     pub plugin: String,
     /// SHA-256 of the plugin file, hexadecimal.
     pub sha256: String,
-    /// Planner ABI it was built for, as `major.minor`.
+    /// Planner ABI for which it was built, as `major.minor`.
     pub abi: String,
-    /// Whether it covers floor.
+    /// Whether it can cover floor.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub covers: bool,
-    /// Whether it can save its private state and go on from it in a new process.
+    /// Whether it can save its private state and continue from it in a new process.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub snapshots: bool,
-    /// How far its process is closed off, on the machine where it was found or drives; absent in older journals.
+    /// Sandbox of its process on the machine where it was found or drives; absent in older journals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sandbox: Option<Sandbox>,
     /// Its parameters.
     pub parameters: Vec<ParamInfo>,
 }
 
-/// A plugin that was found and not accepted.
+/// A plugin file that was refused.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RefusedPlugin {
     /// File name of the plugin, without the folder.
     pub plugin: String,
-    /// Why, as a sentence.
+    /// The reason, as a sentence.
     pub reason: String,
 }
 
 impl RefusedPlugin {
-    /// Whether its file is called as one that holds the planner of this id usually is.
+    /// Whether the file name is the usual one for a plugin with the planner of this id.
     pub fn is_named_after(&self, id: &str) -> bool {
         let stem = self.plugin.split_once('.').map_or(&*self.plugin, |(stem, _)| stem);
         stem.split_once("planner_").is_some_and(|(_, name)| name.replace('_', "-") == id.replace('_', "-"))
@@ -150,28 +150,28 @@ impl RefusedPlugin {
 }
 
 impl PlannerInfo {
-    /// Why it cannot fly a mission over a whole floor, if it cannot; the sentence reads on after the planner's name.
+    /// Why it cannot do a mission over a whole floor; `None` if it can. The text continues after the planner's name.
     pub fn why_no_coverage(&self) -> Option<&'static str> {
         (!self.covers).then_some("does not support coverage missions")
     }
 
-    /// Whether it has this parameter and lets it change while the robot moves.
+    /// Whether it has this parameter and allows it to change while the robot moves.
     pub fn has_live(&self, key: &str) -> bool {
         self.parameters.iter().any(|param| param.key == key && param.live)
     }
 }
 
-/// During which call a planner failed.
+/// The call during which a planner failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum During {
     /// Finding and loading the plugin.
     Load,
-    /// Making the planner.
+    /// Creating the planner.
     Configure,
     /// Planning.
     Plan,
-    /// Deciding a step.
+    /// Computing a step.
     Step,
 }
 
@@ -186,39 +186,59 @@ impl fmt::Display for During {
     }
 }
 
-/// What kind of fault it was.
+/// The kind of fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// The planner itself said no, with this code; its process is well.
+    /// The planner itself returned this error code; its process still runs.
     Planner(planner_api::Code),
-    /// It panicked.
+    /// The planner panicked.
     Panic,
-    /// Its process ended: a signal, an abort, an exit.
+    /// The process ended: a signal, an abort, an exit.
     Died,
-    /// It did not answer although it had the processor to itself for the whole time allowed, or it was stopped; its
-    /// process was killed.
+    /// The planner did not answer although it had the processor to itself for the whole time allowed, or it was stopped;
+    /// its process was killed.
     Hung,
-    /// It answered only after it was asked to stop: too slow.
+    /// The planner answered only after it was asked to stop, so it is too slow.
     Late,
-    /// It hardly got the processor, for very long; its process was killed.
+    /// The planner was starved of CPU time for too long; its process was killed.
     Starved,
-    /// It answered with numbers that are not finite or beyond the robot's limits.
+    /// The planner answered with numbers that are not finite or exceed the robot's limits.
     BadOutput,
-    /// It tried to do something outside its process that no planner may do; its process was killed.
+    /// The planner attempted a forbidden call of the system; its process was killed.
     Forbidden,
-    /// It sent something that is not a valid answer.
+    /// The planner sent something that is not a valid answer.
     Protocol,
     /// The host refused to load or configure it.
     Refused,
-    /// It failed too often and may not drive again in this mission.
+    /// The planner failed too often and cannot drive again in this mission.
     Quarantined,
 }
 
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Planner(code) => return write!(f, "the planner reports: {code}"),
+            Self::Panic => "panic",
+            Self::Died => "process died",
+            Self::Hung => "no answer",
+            Self::Late => "answer too late",
+            Self::Starved => "starved of CPU time",
+            Self::BadOutput => "invalid numbers",
+            Self::Forbidden => "forbidden system call",
+            Self::Protocol => "invalid reply",
+            Self::Refused => "refused by the host",
+            Self::Quarantined => "quarantined",
+        })
+    }
+}
+
 impl Cause {
-    /// Whether the process failed from outside the planner's own logic, by the clock, by what the machine enforces, or by
-    /// something that reached the console unasked, as from a thread that outlived its call: computing the run again need not
-    /// show it again, or not in the same tick. After such a fault the process is gone.
+    /// Whether the failure came from outside the planner's own logic: from the clock, from limits enforced by the
+    /// machine, or from an unrequested message to the console, for example from a thread that outlived its call. When the
+    /// run is recomputed, the same failure need not occur, or not in the same tick. After such a failure the process is
+    /// gone.
     pub fn is_external(self) -> bool {
         matches!(
             self,
@@ -227,34 +247,61 @@ impl Cause {
     }
 }
 
-/// A planner's failure, worded so that an operator knows what happened.
+/// A planner's failure, in words from which an operator understands what happened.
 ///
-/// `message` names planner, cause and step, and carries no figure that differs between two equal runs (no
-/// milliseconds, no process ids): it goes into the journal, which must repeat byte for byte.
+/// `message` names planner, cause and step. It contains no figure that differs between two equal runs (no milliseconds,
+/// no process ids), because it goes into the journal, which must repeat byte for byte.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Fault {
     /// Id of the planner.
     pub planner: String,
-    /// During which call.
+    /// The call during which it failed.
     pub during: During,
-    /// What kind.
+    /// The kind of fault.
     pub cause: Cause,
-    /// One sentence.
+    /// The message, one sentence.
     pub message: String,
-    /// For a plan that got only part of the way: that part.
+    /// For a plan that got only part of the way: that part of the path.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub partial: Vec<world::Point>,
-    /// SHA-256 of the plugin's file, hexadecimal, as far as it is known by then.
+    /// SHA-256 of the plugin's file, hexadecimal, if it was known at the time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plugin_sha256: Option<String>,
 }
 
 impl Fault {
-    /// Whether it is the planner's answer that no way leads from the start to the goal, and so no failure of the planner.
+    /// Whether the planner answered that no path leads from the start to the goal, which is not a failure of the planner.
     pub fn is_no_way(&self) -> bool {
         use planner_api::Code::{GoalOccupied, GoalOutside, NoPath, StartOccupied, StartOutside};
         let says = |code| matches!(code, NoPath | GoalOccupied | GoalOutside | StartOccupied | StartOutside);
         matches!(self.cause, Cause::Planner(code) if says(code))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
+
+    #[test]
+    fn every_cause_has_a_word_of_its_own() {
+        let all: [Cause; Cause::COUNT] = [
+            Cause::Planner(planner_api::Code::NoPath),
+            Cause::Panic,
+            Cause::Died,
+            Cause::Hung,
+            Cause::Late,
+            Cause::Starved,
+            Cause::BadOutput,
+            Cause::Forbidden,
+            Cause::Protocol,
+            Cause::Refused,
+            Cause::Quarantined,
+        ];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

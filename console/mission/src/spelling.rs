@@ -1,8 +1,8 @@
-//! The name that was probably meant: for the hint in a message about an unknown one.
+//! Finds the name that was probably meant, for the hint in a message about an unknown one.
 
-/// The known name nearest to a misspelt one, if any is near: up to a third of its letters may be wrong, four at most.
+/// The known name nearest to a misspelt one; `None` if more than a third of its letters, or more than four, are wrong.
 ///
-/// Costs the product of the lengths for each known name.
+/// The cost is the product of the lengths, for each known name.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).clamp(1, 4);
     known

@@ -1,7 +1,7 @@
 //! Which orders a mission accepts now.
 //!
-//! There is one table, [`Standing::allows`]. The mission asks it for every order; the screen asks the same table to say
-//! which keys do something and why the others do not. It has no state and changes none.
+//! There is one table, [`Standing::allows`]. The mission consults it for every order; the screen consults it to show
+//! which keys are available and why the others are not. It has no state and changes none.
 
 mod folded;
 
@@ -17,13 +17,13 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How far the position can be relied on.
+/// How reliable the position is.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum PositionTrust {
     /// Within the limit.
     #[default]
     Good,
-    /// Its error is beyond the limit, or there are no fixes any more.
+    /// The position error is beyond the limit, or there are no more fixes.
     Lost {
         /// The limit of the 95 % error, metres.
         limit_m: f64,
@@ -32,75 +32,75 @@ pub enum PositionTrust {
     Alarmed,
 }
 
-/// What a start would begin with.
+/// The plan that a start would begin with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Readiness<'a> {
-    /// Nobody looks at a plan before the start: whatever plan is made is run.
+    /// Plans are not shown before the start: whatever plan is made is run.
     Unseen,
     /// There is no plan, and none is being made.
     NoPlan,
-    /// The planner is being opened or changed, or makes a plan.
+    /// The planner is being opened or changed, or is making a plan.
     Preparing,
-    /// The planner failed, or its plan may not be run: why, as a sentence.
+    /// The planner failed, or its plan cannot be run: the reason, as a sentence.
     Failed(&'a str),
     /// This plan is ready.
     Plan(PlanId),
 }
 
-/// Everything that decides whether an order is accepted. The mission and the screen both can compute it.
+/// Everything that decides whether an order is accepted. Both the mission and the screen can compute it.
 #[derive(Debug, Clone, Copy)]
 pub struct Standing<'a> {
-    /// What the mission is doing.
+    /// The phase of the mission.
     pub phase: &'a Phase,
-    /// How far the position can be relied on.
+    /// How reliable the position is.
     pub position: PositionTrust,
-    /// The planner that was opened last to drive.
+    /// The active planner, as last opened.
     pub planner: Option<&'a PlannerInfo>,
-    /// How the planner in shadow does; `None` without one.
+    /// The record of the planner in shadow; `None` without one.
     pub shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and not taken yet.
+    /// Whether a better plan is offered and not ordered yet.
     pub has_offer: bool,
-    /// What a start would begin with.
+    /// The plan that a start would begin with.
     pub readiness: Readiness<'a>,
 }
 
-/// Why an order is not accepted.
+/// Why an order is refused.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Refusal {
     /// The mission is over.
     Ended(Outcome),
     /// The mission has not been started.
     NotStarted,
-    /// The mission has been started before.
+    /// The mission has already been started.
     AlreadyStarted,
-    /// A plan or the planner is not ready yet.
+    /// The plan or the planner is not ready yet.
     Planning,
     /// There is no plan to start with.
     NoPlan,
-    /// The planner failed, or its plan may not be run.
+    /// The planner failed, or its plan cannot be run.
     PlanFailed {
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
-    /// The plan is not the one that the start names; `None` if it names none.
+    /// The plan is not the one that the start order names; `None` if the order names none.
     OtherPlan {
-        /// The one that was seen.
+        /// The plan that was seen.
         seen: Option<PlanId>,
-        /// The one that is ready.
+        /// The plan that is ready.
         ready: PlanId,
     },
     /// The mission is running.
     AlreadyMoving,
     /// A single step needs a robot that is held.
     StepNeedsHold,
-    /// Another planner needs a robot that is held.
+    /// A change of planner needs a robot that is held.
     SwapNeedsHold,
     /// The parameter cannot change while the mission runs.
     NotLive {
-        /// Which parameter.
+        /// Key of the parameter.
         key: String,
     },
-    /// The position error is beyond the limit, or there are no fixes any more.
+    /// The position error is beyond the limit, or there are no more fixes.
     PositionLost {
         /// The limit of the 95 % error, metres.
         limit_m: f64,
@@ -113,9 +113,9 @@ pub enum Refusal {
     NoOffer,
     /// No planner flies in shadow.
     NoShadow,
-    /// The planner in shadow has not proven itself yet.
+    /// The planner in shadow has not answered enough steps in a row yet.
     ShadowNotReady {
-        /// Steps that it has answered in a row.
+        /// Number of steps that it has answered in a row.
         in_row: u64,
     },
 }
@@ -128,13 +128,13 @@ impl fmt::Display for Refusal {
             Self::AlreadyStarted => f.write_str("the mission has already been started"),
             Self::Planning => f.write_str("the plan is not ready yet; start when it is"),
             Self::NoPlan => f.write_str("there is no plan to start with; make one first"),
-            Self::PlanFailed { why } => write!(f, "no plan may be run: {why}"),
+            Self::PlanFailed { why } => write!(f, "no plan can be run: {why}"),
             Self::OtherPlan { seen: None, ready } => {
                 write!(f, "a start must name the plan that was seen; plan {} is ready", ready.short())
             }
             Self::OtherPlan { seen: Some(seen), ready } => write!(
                 f,
-                "plan {} was seen, and plan {} is ready now; look at it and start again",
+                "plan {} was seen, but plan {} is ready now; check it and start again",
                 seen.short(),
                 ready.short()
             ),
@@ -155,7 +155,7 @@ impl fmt::Display for Refusal {
             Self::NoShadow => f.write_str("no planner flies in shadow"),
             Self::ShadowNotReady { in_row } => write!(
                 f,
-                "the planner in shadow has answered {in_row} steps in a row, taking over requires {READY_AFTER}"
+                "the planner in shadow has answered {in_row} steps in a row; taking over requires {READY_AFTER}"
             ),
         }
     }
@@ -164,10 +164,10 @@ impl fmt::Display for Refusal {
 impl Standing<'_> {
     /// Whether an order is accepted now.
     ///
-    /// [`Order::Hold`] is accepted whenever there is anything to hold: while the mission runs, and under every hold.
+    /// [`Order::Hold`] is accepted while the mission runs and under every hold.
     ///
     /// # Errors
-    /// Why it is not.
+    /// Why the order is refused.
     pub fn allows(&self, order: &Order) -> Result<(), Refusal> {
         match (order, self.phase) {
             (_, Phase::Ended(outcome)) => Err(Refusal::Ended(*outcome)),
@@ -225,7 +225,7 @@ impl Standing<'_> {
         }
     }
 
-    /// A start begins with the plan that was seen, and with no other.
+    /// Checks that a start names the plan that is ready.
     fn can_start(&self, seen: Option<PlanId>) -> Result<(), Refusal> {
         match self.readiness {
             Readiness::Unseen => Ok(()),
@@ -245,7 +245,7 @@ impl Standing<'_> {
         }
     }
 
-    /// The plan of the planner that takes over is certified from where the robot is.
+    /// The promoted planner's plan is certified from the robot's position.
     fn can_promote(&self) -> Result<(), Refusal> {
         match self.shadow {
             None => Err(Refusal::NoShadow),

@@ -1,4 +1,4 @@
-//! The task while it is being done: where to go, how far it is, whether it is done.
+//! The task in progress: the next target, the progress, and whether it is done.
 
 mod cover;
 mod rest;
@@ -15,7 +15,7 @@ use world::{CoverageGrid, ObstacleMap, Point, Shape};
 /// Distance that counts as progress, metres.
 const PROGRESS_M: f64 = 0.1;
 
-/// A task under way.
+/// A task in progress.
 #[derive(Clone)]
 pub(crate) enum Task {
     /// Reach a point.
@@ -24,7 +24,7 @@ pub(crate) enum Task {
     Follow {
         /// Progress along them.
         follower: PathFollower,
-        /// Distance at which the last one counts as reached, metres.
+        /// Distance at which the last point counts as reached, metres.
         tolerance_m: f64,
     },
     /// Scan the floor.
@@ -41,7 +41,7 @@ pub(crate) struct Goto {
 }
 
 impl Task {
-    /// The task at its beginning.
+    /// The task at its start.
     pub(crate) fn new(config: &TaskConfig, start: Point) -> Self {
         match config {
             TaskConfig::Goto { goal, tolerance_m } => {
@@ -57,7 +57,7 @@ impl Task {
         }
     }
 
-    /// The floor to be scanned; `None` unless the task is to cover.
+    /// The floor to scan; `None` unless the task is to cover floor.
     pub(crate) fn cover(&self) -> Option<&Cover> {
         match self {
             Self::Cover(cover) => Some(cover),
@@ -65,7 +65,8 @@ impl Task {
         }
     }
 
-    /// Takes the robot's position. `has_room` says where the robot may be: points of a preset path elsewhere are left out.
+    /// Updates the robot's position. `has_room` tells where the robot can be: points of a preset path elsewhere are
+    /// skipped.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap, has_room: impl Fn(Point) -> bool) {
         match self {
             Self::Goto(goto) => goto.position = position,
@@ -74,7 +75,7 @@ impl Task {
         }
     }
 
-    /// Where to go next.
+    /// The next target.
     pub(crate) fn target(&self) -> Point {
         match self {
             Self::Goto(goto) => goto.goal,
@@ -83,7 +84,7 @@ impl Task {
         }
     }
 
-    /// The targets from the next one on, a few metres of them.
+    /// The next targets, over a few metres.
     pub(crate) fn targets_ahead(&self, length_m: f64) -> &[Point] {
         match self {
             Self::Goto(goto) => std::slice::from_ref(&goto.goal),
@@ -92,67 +93,67 @@ impl Task {
         }
     }
 
-    /// Takes some time of moving.
+    /// Counts time during which the robot was free to move.
     pub(crate) fn wait(&mut self, passed_s: f64) {
         if let Self::Cover(cover) = self {
             cover.wait(passed_s);
         }
     }
 
-    /// Takes a plan that was made for what is left of the task.
+    /// Takes a plan for what is left of the task.
     pub(crate) fn take_plan(&mut self, plan: &api::Plan) {
         if let Self::Cover(cover) = self {
             cover.take_plan(plan);
         }
     }
 
-    /// What is left of the plan from the place that it leads to next; `None` unless it is for floor.
+    /// The rest of the plan from its current target on; `None` unless the task is to cover floor.
     pub(crate) fn under_way(&self) -> Option<api::Plan> {
         self.cover()?.under_way()
     }
 
-    /// Whether a plan is for the most part the one that is flown.
+    /// Whether a plan is mostly the same as the current one.
     pub(crate) fn keeps_to(&self, plan: &api::Plan) -> bool {
         self.cover().is_some_and(|cover| cover.keeps_to(plan))
     }
 
-    /// Reachable cells that are left to scan; none unless the task is to cover.
+    /// Reachable cells left to scan; empty unless the task is to cover floor.
     pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         self.cover().map_or_else(Vec::new, |cover| cover.floor_left(coverage))
     }
 
-    /// The areas to be scanned that hold no floor in reach; none unless the task is to cover some.
+    /// The requested areas without reachable floor; empty unless the task is to cover some.
     pub(crate) fn areas_out_of_reach(&self, coverage: &CoverageGrid) -> Vec<Vec<Point>> {
         self.cover().map_or_else(Vec::new, |cover| cover.regions_out_of_reach(coverage).collect())
     }
 
-    /// Whether only some of the floor is to be scanned.
+    /// Whether only a part of the floor is to be scanned.
     pub(crate) fn is_in_part(&self) -> bool {
         self.cover().is_some_and(Cover::is_in_part)
     }
 
-    /// What is left of the lanes, from the point nearest to the robot on; `None` unless there are any.
+    /// The rest of the lanes from the point nearest to the robot on; `None` without lanes.
     pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
         self.cover()?.lanes_left()
     }
 
-    /// Progress along the lanes; `None` unless there are any.
+    /// Progress along the lanes; `None` without lanes.
     pub(crate) fn lanes(&self) -> Option<&PathFollower> {
         self.cover()?.lanes()
     }
 
-    /// What the stretch of the plan under the robot is for, if the planner says.
+    /// Purpose of the stretch of the plan under the robot, if the planner states it.
     pub(crate) fn leg(&self) -> Option<api::LegTag> {
         self.cover()?.leg()
     }
 
-    /// Number of the stretch of the plan under the robot, if the planner says what its stretches are for.
+    /// Number of the stretch of the plan under the robot, if the planner lists its stretches.
     pub(crate) fn leg_index(&self) -> Option<usize> {
         self.cover()?.leg_index()
     }
 
-    /// Whether what is left of the task leads the robot's centre nearer than `room_m` to an outline. Planners that go
-    /// round obstacles by themselves always want to know of a new one.
+    /// Whether the rest of the task leads the robot's centre closer than `room_m` to an outline. Always true for tasks in
+    /// which planners find their own way round obstacles: they need to know of every new obstacle.
     pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
         match self {
             Self::Cover(cover) => cover.is_in_the_way(shape, room_m),
@@ -160,7 +161,7 @@ impl Task {
         }
     }
 
-    /// What is left of the task, as planners read it.
+    /// What is left of the task, in the form that planners receive.
     pub(crate) fn left(
         &self,
         coverage: &CoverageGrid,
@@ -176,7 +177,7 @@ impl Task {
         }
     }
 
-    /// Share of the task done, 0 to 1.
+    /// Share of the task that is done, 0 to 1.
     pub(crate) fn done(&self) -> f64 {
         match self {
             Self::Goto(goto) => (1.0 - goto.left_m() / goto.start_m).clamp(0.0, 1.0),
@@ -188,7 +189,7 @@ impl Task {
         }
     }
 
-    /// Way along the preset path, metres; `None` without one.
+    /// Distance along the preset path, metres; `None` without one.
     pub(crate) fn along_m(&self) -> Option<f64> {
         match self {
             Self::Goto(_) | Self::Cover(_) => None,
@@ -205,7 +206,7 @@ impl Task {
         }
     }
 
-    /// Whether the task is done, by the position that `advance` took last.
+    /// Whether the task is done, by the position last passed to `advance`.
     pub(crate) fn is_done(&self, position: Point) -> bool {
         match self {
             Self::Goto(goto) => goto.left_m() <= goto.tolerance_m,
@@ -214,7 +215,7 @@ impl Task {
         }
     }
 
-    /// A number that falls while the task advances, metres.
+    /// A number that falls as the task advances, metres.
     fn left_m(&self) -> f64 {
         match self {
             Self::Goto(goto) => goto.left_m(),
@@ -230,14 +231,14 @@ impl Goto {
     }
 }
 
-/// Notices when a moving robot gets nowhere.
+/// Detects a moving robot that makes no progress.
 ///
-/// Twice `patience_s` without coming nearer, or one `patience_s` on the same spot, is stuck. Nearer is what leaves less of the
-/// task or of the planner's path: in rooms a path may lead away from the goal for long.
+/// The robot counts as stuck after twice `patience_s` without progress, or after `patience_s` on the same spot. Progress
+/// is less left of the task or of the planner's path: between rooms a path may lead away from the goal for a long time.
 #[derive(Clone)]
 pub(crate) struct StuckWatch {
     patience_s: f64,
-    /// The least that was left of the task and of the planner's path, metres.
+    /// Minimum of what was left of the task and of the planner's path, metres.
     least_left_m: [f64; 2],
     since_progress_s: f64,
     spot: Option<Point>,
@@ -245,7 +246,7 @@ pub(crate) struct StuckWatch {
 }
 
 impl StuckWatch {
-    /// A watch of some patience.
+    /// Creates a watch with this patience.
     pub(crate) fn new(patience_s: f64) -> Self {
         Self {
             patience_s,
@@ -256,13 +257,13 @@ impl StuckWatch {
         }
     }
 
-    /// Forgets what it saw, for a new try.
+    /// Forgets the progress so far, for a new attempt.
     pub(crate) fn reset(&mut self) {
         *self = Self::new(self.patience_s);
     }
 
-    /// Takes one tick of moving, and what is left of the planner's path, metres, if there is one; gives whether the robot is
-    /// stuck.
+    /// Processes one tick in which the robot was free to move; `path_left_m` is the length left of the planner's path, if
+    /// any. Returns whether the robot is stuck.
     pub(crate) fn update(
         &mut self,
         task: &Task,

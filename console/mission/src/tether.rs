@@ -1,14 +1,13 @@
-//! The mission's own tether: the taut cable by the estimated pose, what it asks of the operator, and its judgement of
-//! plans.
+//! The mission's estimate of the tether: the taut cable at the estimated pose, its alarms, and the evaluation of plans.
 //!
-//! Why the scatter of the estimate winds nothing: a move of the estimate and its way back are undone by each other, and
-//! as long as the estimate strays from the truth by less than column plus hull, the straight line between the two
-//! never passes the middle of a column, so both ways pass every column on the same side (`world::tether`, module
-//! `sidestep`). Beyond that, or while the position counts as lost, the cable is not dragged at all: it takes one straight
-//! move when the position is regained.
+//! Scatter of the position estimate does not wind the cable. A move of the estimate and its way back cancel. As long as
+//! the estimate strays from the truth by less than column plus hull, the straight line between the two never passes the
+//! middle of a column, so both paths pass every column on the same side (`world::tether`, module `sidestep`). Beyond
+//! that, or while the position counts as lost, the cable is not moved at all: it takes one straight move when the
+//! position is recovered.
 //!
-//! An obstacle found later may lie across the taut line: on which side the cable passes it is then decided by the way
-//! driven, which is kept and driven again in thought among all obstacles known now.
+//! An obstacle found later may lie across the taut line. The path driven then decides on which side the cable passes it:
+//! the path is kept, and driven again in simulation among all obstacles known now.
 
 mod alarms;
 mod certifying;
@@ -33,24 +32,26 @@ use world::{
     tether::{Bearing, Cable, CableObstacles, Certificate, TetherError, capstan_factor},
 };
 
-/// Room that a return path may lack beside what is on the chart, metres: found obstacles are placed about this well.
+/// Room that a return path may lack beside obstacles on the chart, metres: found obstacles are placed with about this
+/// accuracy.
 const CHART_M: f64 = 0.05;
-/// The hull has to find no return path for this long before that is an alarm, seconds.
+/// Time without a return path before the alarm is raised, seconds.
 const NO_HOME_S: f64 = 3.0;
-/// Cable beyond the straight line to the robot that counts as left out at the end, metres.
+/// Length of cable beyond the straight line to the robot that counts as still out at the end, metres.
 const LEFT_M: f64 = 0.3;
 
-/// The tether under way.
+/// The tether during a mission.
 #[derive(Clone)]
 pub struct Tether {
     config: TetherConfig,
     hull_m: f64,
     cable: Cable,
-    /// The ground as the middle of the hull meets it on its return path.
+    /// The obstacles as the hull's centre meets them on a return path.
     roomy: Arc<CableObstacles>,
-    /// The taut line of the hull on that ground, dragged by the robot like the cable; `None` if the anchor is not a place for it.
+    /// The taut line that the hull leaves on that ground, moved by the robot like the cable; `None` if the hull does not
+    /// fit at the anchor.
     hull: Option<Cable>,
-    /// For how long there has been no return path, seconds.
+    /// How long there has been no return path, seconds.
     without_home_s: f64,
     payout: Payout,
     driven: Driven,
@@ -61,7 +62,7 @@ impl Tether {
     /// The cable from the anchor straight to the start.
     ///
     /// # Errors
-    /// The anchor lies in an obstacle of the drawing, or outside the wall.
+    /// The anchor is inside an obstacle of the drawing, or outside the wall.
     pub fn new(config: &TetherConfig, hull_m: f64, world: &World, start: Point) -> Result<Self, TetherError> {
         let shapes = shapes(world);
         let mut cable = Cable::new(config.anchor, &world.boundary, &shapes)?;
@@ -80,26 +81,26 @@ impl Tether {
         })
     }
 
-    /// Whether plans fly that cannot be certified.
+    /// Whether plans that cannot be certified are run.
     pub fn flies_uncertified(&self) -> bool {
         self.config.allow_uncertified
     }
 
-    /// From now on plans fly that cannot be certified, or do not: the operator says so.
+    /// Sets whether plans that cannot be certified are run, by order of the operator.
     pub fn allow_uncertified(&mut self, fly: bool) {
         self.config.allow_uncertified = fly;
     }
 
-    /// The cable as it is believed to lie.
+    /// The estimated geometry of the cable.
     pub(crate) fn cable(&self) -> &Cable {
         &self.cable
     }
 
-    /// Puts the cable among the obstacles known now, as the way driven leads.
+    /// Recomputes the cable among the obstacles known now, from the path driven.
     pub fn lay_again(&mut self, world: &World) {
         let shapes = shapes(world);
         let obstacles = Arc::new(CableObstacles::new(&world.boundary, &shapes));
-        // An obstacle on top of the anchor is an error of the estimate: the cable stays as it was.
+        // An obstacle on top of the anchor is an error of the estimate, so the cable is left unchanged.
         if let Ok(mut cable) = Cable::on(self.config.anchor, obstacles) {
             cable.drag_along(self.driven.points());
             cable.drag_to(self.cable.tip());
@@ -110,7 +111,7 @@ impl Tether {
         }
     }
 
-    /// Drags the cable to where the robot is believed to be.
+    /// Moves the cable to the robot's estimated position.
     pub fn drag_to(&mut self, here: Point) {
         self.driven.keep(here);
         self.cable.drag_to(here);
@@ -123,8 +124,8 @@ impl Tether {
         }
     }
 
-    /// The way home for the hull. Where the robot was believed to be in a place without room for it, its line may have come to lie
-    /// on a wrong side: then it is laid again along the cable.
+    /// Updates the hull's return path. If the estimate passed through a place without room for the hull, its line may be
+    /// on the wrong side of an obstacle; it is then laid along the cable again.
     fn home(&mut self, map: &ObstacleMap) -> Option<Vec<Point>> {
         let room_m = home_room_m(self.hull_m);
         let dragged = self.hull.as_ref().and_then(|hull| self.cable.return_path_of(hull, map, room_m));
@@ -136,22 +137,22 @@ impl Tether {
         })
     }
 
-    /// Takes in what the reel has paid out, metres, after some time; `error_m` is the error of the position by which the
-    /// cable lies, metres, `None` while that position is lost.
+    /// Records the measured length paid out, metres, after some time. `error_m` is the position error with which the
+    /// cable was laid, metres; `None` while the position is lost.
     pub fn measure(&mut self, paid_out_m: Option<f64>, error_m: Option<f64>, passed_s: f64) {
         let (length_m, points) = (self.cable.length_m(), self.driven.points().len());
         let explained = error_m.map(|error_m| Explained { length_m, error_m, points });
         self.payout.take(paid_out_m, explained, self.config.limits.reel_length_m, passed_s);
     }
 
-    /// Whether more cable is out than the map explains: it has caught on something unknown.
+    /// Whether more cable is out than expected from the map: it has caught on something unknown.
     pub fn is_snagged(&self) -> bool {
         self.payout.is_snagged()
     }
 
-    /// The way that frees a caught cable and reels it in, from the robot to the anchor: back the way driven to where
-    /// the map explained all cable, and from there home along it with some room for the middle of the hull, metres.
-    /// What the cable had caught on lies beside that second piece.
+    /// The path, from the robot to the anchor, that frees a caught cable and reels it in. It first goes back along the
+    /// path driven to the last place where the cable length was as expected; from there it goes home along the cable,
+    /// with `room_m` metres for the hull's centre. The obstacle that caught the cable is beside that second part.
     pub fn way_out(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let driven = self.driven.points();
         let first = self.payout.points_to_go_back_to(driven.len());
@@ -162,7 +163,7 @@ impl Tether {
         Some(way)
     }
 
-    /// How the cable lies after some time, and what is newly wrong or right again.
+    /// Updates the cable after some time; returns the alarms that were raised or cleared.
     pub fn update(&mut self, world: &World, map: &ObstacleMap, passed_s: f64) -> Vec<EventKind> {
         let return_length_m = self.home(map).map(|way| world::polyline::length_m(&way));
         self.without_home_s = if return_length_m.is_some() { 0.0 } else { self.without_home_s + passed_s };
@@ -186,12 +187,12 @@ impl Tether {
         events
     }
 
-    /// Whether there is a way back for the hull that reels the cable in.
+    /// Whether the hull has a return path that reels the cable in.
     pub fn can_go_home(&self) -> bool {
         self.without_home_s == 0.0
     }
 
-    /// What may be wrong, and how far it has gone as a share of its limit.
+    /// The alarms of the cable, with their levels as a share of the limit.
     fn alarms_with_shares(&self, world: &World) -> [(TetherAlarm, f64); 5] {
         let limits = self.config.limits;
         let contacts = self.cable.contacts();
@@ -206,7 +207,7 @@ impl Tether {
             (TetherAlarm::Wrap { on, wrap_rad, limit_rad: wrap_limit_rad }, wrap_rad / wrap_limit_rad),
             (TetherAlarm::WrapTotal { sum_rad, limit_rad: sum_limit_rad }, sum_rad / sum_limit_rad),
             (TetherAlarm::NoReturnPath, self.without_home_s / NO_HOME_S),
-            // There is no such thing as nearly caught.
+            // A snag has no intermediate levels.
             (TetherAlarm::Snag { paid_out_m: out_m, explained_m }, if self.is_snagged() { 2.0 } else { 0.0 }),
         ]
     }
@@ -221,12 +222,12 @@ impl Tether {
         contacts.collect()
     }
 
-    /// Where the cable is made fast.
+    /// The place where the cable is attached.
     pub fn anchor(&self) -> Point {
         self.config.anchor
     }
 
-    /// The way back along the cable with some room for the middle of the hull, metres, from the robot to the anchor.
+    /// The return path along the cable from the robot to the anchor, with some room for the hull's centre, metres.
     pub fn return_path(&self, world: &World, room_m: f64) -> Option<Vec<Point>> {
         let ground = Ground::new(world, room_m);
         ground.way_along(&self.cable).or_else(|| {
@@ -238,14 +239,15 @@ impl Tether {
         })
     }
 
-    /// Whether the rest of a plan still reels the cable in within its limits, now that more is known of the tank.
+    /// Whether the rest of a plan still reels the cable in within its limits, with the current knowledge of the tank.
     pub fn bears(&self, rest: &[Point], world: &World, returns: bool) -> bool {
         certified(&self.config, 0.0, Some(&self.cable), rest, &[], world, returns).certified
     }
 
-    /// Evaluates a plan from where the cable lies now; `returns` says whether it has to end with the cable reeled in.
+    /// Evaluates a plan from the current geometry of the cable; `returns` tells whether the cable must be reeled in at
+    /// its end.
     ///
-    /// The cuts of a plan that first goes home along the cable hold from there on.
+    /// For a plan that first goes home along the cable, its cuts apply from there on.
     pub fn certify(&self, plan: &Plan, world: &World, returns: bool) -> Certificate {
         let evaluate = |cable, path, cuts: &[Vec<Point>]| {
             certified(&self.config, self.hull_m, cable, path, cuts, world, returns)
@@ -263,14 +265,14 @@ impl Tether {
         whole
     }
 
-    /// Evaluates a plan from where the cable will lie after some way.
+    /// Evaluates a plan from the geometry that the cable will have after driving a path.
     pub fn certify_after(&self, way: &[Point], plan: &Plan, world: &World, returns: bool) -> Certificate {
         let mut there = self.clone();
         there.cable.drag_along(way);
         there.certify(plan, world, returns)
     }
 
-    /// What keeps the cable out although the robot is back, as a sentence; `None` if all is in.
+    /// Why cable is still out although the robot is back, as a sentence; `None` if it is all in.
     pub fn left_out(&self, world: &World) -> Option<String> {
         let mut cable = self.cable.clone();
         cable.drag_to(self.config.anchor);
@@ -281,13 +283,13 @@ impl Tether {
     }
 }
 
-/// The points of the taut cable between its ends.
+/// The bends of the taut cable between its ends.
 fn bends(cable: &Cable) -> Vec<Point> {
     let line = cable.taut_line();
     line[1..line.len() - 1].to_vec()
 }
 
-/// The floor as a hull meets it that needs some room.
+/// The obstacles as a hull meets them that needs this much room.
 struct Ground {
     roomy: Arc<CableObstacles>,
     map: ObstacleMap,
@@ -300,20 +302,20 @@ impl Ground {
         Self { roomy, map: ObstacleMap::new(&world.boundary, &world.obstacles), room_m }
     }
 
-    /// The way along a cable to its anchor.
+    /// The path along a cable to its anchor.
     fn way_along(&self, cable: &Cable) -> Option<Vec<Point>> {
         cable.return_path(&self.roomy, &self.map, self.room_m)
     }
 }
 
-/// The taut line of a hull that was dragged from the anchor along a way.
+/// The taut line of a hull that was moved from the anchor along a path.
 fn hull_dragged(anchor: Point, roomy: &Arc<CableObstacles>, way: &[Point]) -> Option<Cable> {
     let mut hull = Cable::hull_at(anchor, roomy)?;
     hull.drag_along(way);
     Some(hull)
 }
 
-/// Room for the middle of the hull on a return path, metres.
+/// Room for the hull's centre on a return path, metres.
 fn home_room_m(hull_m: f64) -> f64 {
     (hull_m - CHART_M).max(0.5 * hull_m)
 }

@@ -1,4 +1,4 @@
-//! A host for callers that wait: studies, previews, benches and tests.
+//! A host for callers that wait for every answer: studies, previews, benches and tests.
 
 use crate::discovery::PluginDirs;
 use crate::host::{Host, HostConfig, Opening, Wanted};
@@ -8,33 +8,33 @@ use mission::planner::{Cause, During, Fault, Parameters, PlannerInfo};
 use mission::{Answer, AskId, Given, Said, WorkerId};
 use planner_api::{Command, Drawing, LogLevel, Plan, PlanRequest, Sensed, Site};
 
-/// An answer with everything the planner drew and said on the way.
+/// An answer, with everything that the planner drew and logged during the call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply<T> {
     /// The answer.
     pub value: T,
-    /// What it drew.
+    /// The drawings.
     pub drawings: Vec<Drawing>,
     /// Named figures of this tick: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// What it said.
+    /// The log messages.
     pub logs: Vec<(LogLevel, String)>,
 }
 
-/// Runs one planner at a time, and waits for each of its answers. It saves no private state: every planner starts fresh.
+/// Runs one planner at a time and waits for each of its answers. It saves no private state: every planner starts fresh.
 pub struct BlockingHost {
     host: Host,
     /// The worker of the active planner.
     active: Option<WorkerId>,
     n_asks: u32,
-    /// What planners said during calls that have no reply to carry it.
+    /// Log messages from calls whose result cannot carry them.
     unheard: Vec<(LogLevel, String)>,
-    /// Calls without a planner.
+    /// The number of calls made while no planner was chosen.
     n_unanswered: u64,
 }
 
 impl BlockingHost {
-    /// A host that searches these folders when a planner is first chosen.
+    /// Creates a host that searches these folders when a planner is first chosen.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self { host: Host::new(dirs, config), active: None, n_asks: 0, unheard: Vec::new(), n_unanswered: 0 }
     }
@@ -44,17 +44,17 @@ impl BlockingHost {
         self.host.set_on_progress(on_progress);
     }
 
-    /// Calls, wall times and faults so far.
+    /// Returns the calls, wall times and faults so far.
     pub fn stats(&self) -> HostStats {
         let stats = self.host.stats();
         HostStats { faults: stats.faults + self.n_unanswered, ..stats }
     }
 
-    /// Opens a planner; it is active from the next call on, and the previous one is closed. On a fault the previous one
-    /// stays active.
+    /// Opens a planner. It is active from the next call on, and the previous one is closed. After a fault the previous
+    /// one stays active.
     ///
     /// # Errors
-    /// Not found, refused, or failed while loading or configuring.
+    /// The planner was not found, was refused, or failed while it was loaded or configured.
     pub fn choose(
         &mut self,
         id: &str,
@@ -65,7 +65,7 @@ impl BlockingHost {
         let ask = self.next_ask(worker);
         self.host.open(ask, Opening::new(id, parameters, site, None));
         let (Given::Opened(info), said) = self.answer().inspect_err(|_| self.host.close(worker))? else {
-            unreachable!("what is opened is answered so")
+            unreachable!("an open ask gets an opened answer")
         };
         self.unheard.extend(said.logs);
         if let Some(before) = self.active.replace(worker) {
@@ -74,10 +74,10 @@ impl BlockingHost {
         Ok(*info)
     }
 
-    /// Gives the planner new values of live parameters.
+    /// Passes new values of live parameters to the planner.
     ///
     /// # Errors
-    /// Out of range, unknown, not live, or the planner failed.
+    /// A value is out of range, a parameter is unknown or not live, or the planner failed.
     pub fn reconfigure(&mut self, parameters: &Parameters) -> Result<(), Fault> {
         let worker = self.active(During::Configure)?;
         let (_, said) = self.ask(worker, &Wanted::Reconfigure(parameters))?;
@@ -85,19 +85,19 @@ impl BlockingHost {
         Ok(())
     }
 
-    /// Asks for a plan.
+    /// Requests a plan.
     ///
     /// # Errors
-    /// The planner found none or failed.
+    /// The planner found no plan, or failed.
     pub fn plan(&mut self, request: &PlanRequest<'_>) -> Result<Reply<Plan>, Fault> {
         let worker = self.active(During::Plan)?;
         match self.ask(worker, &Wanted::Plan(request))? {
             (Given::Plan(plan), said) => Ok(self.reply(plan, said)),
-            _ => unreachable!("a plan is answered so"),
+            _ => unreachable!("a plan ask gets a plan answer"),
         }
     }
 
-    /// Asks for a command.
+    /// Requests a command.
     ///
     /// # Errors
     /// The planner failed.
@@ -105,7 +105,7 @@ impl BlockingHost {
         let worker = self.active(During::Step)?;
         match self.ask(worker, &Wanted::Step(sensed))? {
             (Given::Command(command), said) => Ok(self.reply(command, said)),
-            _ => unreachable!("a step is answered so"),
+            _ => unreachable!("a step ask gets a command answer"),
         }
     }
 
@@ -118,13 +118,13 @@ impl BlockingHost {
             planner: String::new(),
             during,
             cause: Cause::Refused,
-            message: "no planner was chosen yet".to_owned(),
+            message: "no planner has been chosen".to_owned(),
             partial: Vec::new(),
             plugin_sha256: None,
         })
     }
 
-    /// Asks, and waits for the answer.
+    /// Submits an ask and waits for its answer.
     fn ask(&mut self, worker: WorkerId, wanted: &Wanted<'_>) -> Result<(Given, Said), Fault> {
         let ask = self.next_ask(worker);
         self.host.begin(ask, wanted);
@@ -136,9 +136,9 @@ impl BlockingHost {
         AskId { worker, n: self.n_asks }
     }
 
-    /// Waits for the answer to what was asked.
+    /// Waits for the answer to the ask that was submitted.
     fn answer(&mut self) -> Result<(Given, Said), Fault> {
-        let Answer { result, said, .. } = self.host.next(None).expect("what is asked is answered once");
+        let Answer { result, said, .. } = self.host.next(None).expect("every ask is answered exactly once");
         Ok((result?, said))
     }
 

@@ -1,13 +1,14 @@
-//! What a planner answered, against what the robot can do; in [`limits`], against what a worker may send at all.
+//! Checks a planner's answers against the limits of the robot; [`limits`] checks them against the limits of what a
+//! worker may send at all.
 
 pub(crate) mod limits;
 
 use planner_api::{Command, Drive, Limits, Plan};
 
-/// Commands may exceed a limit by this much, for rounding.
+/// Rounding tolerance by which a command may exceed a limit.
 const SLACK: f64 = 1e-6;
 
-/// Checks a command; the sentence reads on after the planner's name.
+/// Checks a command; the error continues after the planner's name.
 pub(crate) fn command(command: &Command, limits: &Limits) -> Result<(), String> {
     let (v_max, w_max) = (limits.v_max_m_per_s, limits.w_max_rad_per_s);
     match command.drive {
@@ -24,12 +25,12 @@ fn within(what: &str, value: f64, limit: f64, unit: &str) -> Result<(), String> 
         return Err(format!("gave {what} that is not a number"));
     }
     if value > limit + SLACK {
-        return Err(format!("gave {what} of {value:?} {unit}, the robot's limit is {limit} {unit}"));
+        return Err(format!("gave {what} of {value:?} {unit}; the robot's limit is {limit} {unit}"));
     }
     Ok(())
 }
 
-/// Checks a plan; the sentence reads on after the planner's name.
+/// Checks a plan; the error continues after the planner's name.
 pub(crate) fn plan(plan: &Plan) -> Result<(), String> {
     plan.check()?;
     if !plan.cost.is_finite() {
@@ -59,7 +60,7 @@ mod tests {
     #[test]
     fn a_command_beyond_the_limits_names_value_and_limit() {
         let refused = command(&Command::twist(1e308, 0.0), &LIMITS);
-        assert_eq!(refused, Err("gave a speed of 1e308 m/s, the robot's limit is 0.3 m/s".into()));
+        assert_eq!(refused, Err("gave a speed of 1e308 m/s; the robot's limit is 0.3 m/s".into()));
         assert!(command(&Command::twist(0.0, -1.1), &LIMITS).is_err());
         assert!(command(&Command::velocity(Vector2::new(0.3, 0.3)), &LIMITS).is_err());
         assert!(command(&Command::velocity(Vector2::new(f64::NAN, 0.0)), &LIMITS).is_err());
@@ -81,10 +82,10 @@ mod tests {
             plan(&Plan { path: vec![Point2::origin(); 5], legs, ..Plan::default() })
         };
         assert_eq!(checked(&[(0, 2), (2, 2), (3, 4)]), Ok(()));
-        assert_eq!(checked(&[(0, 5)]), Err("gave leg 0 from point 0 to 5 of a path of 5 points".into()));
+        assert_eq!(checked(&[(0, 5)]), Err("gave leg 0 from point 0 to 5 in a path of 5 points".into()));
         assert_eq!(
             checked(&[(0, 3), (2, 4)]),
-            Err("gave leg 1 from point 2 on, within the leg before it".into())
+            Err("gave leg 1, whose first point 2 is inside the previous leg".into())
         );
         assert!(checked(&[(2, 1)]).is_err());
     }
@@ -94,7 +95,7 @@ mod tests {
         let path = |x| vec![Point2::origin(), Point2::new(x, 0.0)];
         let checked = |x| plan(&Plan { path: path(x), ..Plan::default() });
         assert_eq!(checked(1e6), Ok(()));
-        assert_eq!(checked(1e12), Err("gave a path of 1000000000000 m, the limit is 1000000 m".into()));
+        assert_eq!(checked(1e12), Err("gave a path of 1000000000000 m; the limit is 1000000 m".into()));
         assert!(checked(1e308).is_err());
     }
 

@@ -1,4 +1,4 @@
-//! Where plugins are looked for, and which files there are plugins.
+//! Finds the plugin files in the folders that may contain them.
 
 mod stamps;
 
@@ -17,27 +17,26 @@ use std::io::Read;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
-/// Folders with plugins, and on which condition these are loaded.
+/// The folders with plugins, and the conditions for loading them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginDirs {
-    /// The folders; the first that has a planner wins.
+    /// The folders; if several contain the same planner, the first one is used.
     pub folders: Vec<PathBuf>,
-    /// Whether a plugin is refused where its process cannot be closed off wholly.
+    /// Whether a plugin is refused if its process cannot be fully sandboxed.
     pub requires_sandbox: bool,
-    /// Folder that keeps what plugins were found to hold.
+    /// The folder that caches which planners each plugin contains.
     pub cache: Option<PathBuf>,
 }
 
 impl PluginDirs {
-    /// These folders; plugins are loaded also where their processes cannot be closed off wholly, and nothing is kept about
-    /// them.
+    /// Uses these folders, loads plugins even if their processes cannot be fully sandboxed, and caches nothing.
     pub fn of(folders: Vec<PathBuf>) -> Self {
         Self { folders, requires_sandbox: false, cache: None }
     }
 
-    /// The folders given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the program's own folder and
-    /// `deps` in it (where Cargo puts libraries), `../lib/tankops/plugins` seen from the program,
-    /// `$XDG_DATA_HOME/tankops/plugins`. What they hold is kept in `$XDG_CACHE_HOME/tankops/plugins`.
+    /// Uses the standard folders: those given by hand, `$TANKOPS_PLUGIN_PATH`, `plugins` beside the program, the
+    /// program's own folder and `deps` in it (where Cargo puts libraries), `../lib/tankops/plugins` relative to the
+    /// program, and `$XDG_DATA_HOME/tankops/plugins`. The contents are cached in `$XDG_CACHE_HOME/tankops/plugins`.
     pub fn standard(extra: &[PathBuf]) -> Self {
         let mut dirs = extra.to_vec();
         dirs.extend(env::var_os("TANKOPS_PLUGIN_PATH").iter().flat_map(env::split_paths));
@@ -51,20 +50,19 @@ impl PluginDirs {
         Self { cache: user_folder("XDG_CACHE_HOME", ".cache").map(plugins_in), ..Self::of(dirs) }
     }
 
-    /// SHA-256 of the first plugin file with this name, hexadecimal; `None` if it cannot be read. The file may have holes: linkers leave
-    /// them.
+    /// Returns the SHA-256 of the first plugin file with this name, hexadecimal; `None` if it cannot be read.
     pub fn sha256_of(&self, plugin: &str) -> Option<String> {
         let file = self.folders.iter().map(|dir| dir.join(plugin)).find(|file| file.is_file())?;
         read_bytes(&file).ok().map(|bytes| sha256_hex(&bytes))
     }
 
-    /// The paths of all files that are named like a plugin, folder by folder.
+    /// Returns the paths of all files that are named like a plugin, folder by folder.
     pub(crate) fn candidates(&self) -> Vec<PathBuf> {
         self.folders.iter().flat_map(|dir| named_like_plugins(dir)).collect()
     }
 
-    /// Every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
-    /// content as an earlier one is the same plugin and left out.
+    /// Returns every file that is named like a plugin: folder by folder, by name within a folder. A file with the same
+    /// content as an earlier one is the same plugin and is left out.
     pub fn plugins(&self) -> Vec<PluginFile> {
         let mut found: Vec<PluginFile> = Vec::new();
         let cache = Cache::new(self.cache.as_deref());
@@ -100,27 +98,27 @@ fn is_plugin_name(path: &Path) -> bool {
     }
 }
 
-/// A larger file is not a plugin, bytes.
+/// Maximum size of a plugin file, bytes.
 pub(crate) const MOST_BYTES: u64 = 128 << 20;
 
 /// A file that is named like a plugin, with what can be determined without loading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PluginFile {
-    /// Where it is.
+    /// The path of the file.
     pub path: PathBuf,
-    /// SHA-256 of its bytes, hexadecimal; empty when it cannot be read.
+    /// SHA-256 of the file, hexadecimal; empty when the file cannot be read.
     pub sha256: String,
-    /// ABI of its stamp, or why it is refused.
+    /// The ABI version in the file's stamp, or the reason why the file is refused.
     pub abi: Result<Abi, String>,
     pub(crate) words: Words,
 }
 
-/// Where the ids of a plugin's planners can be looked up.
+/// How to find out which planners a plugin contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Words {
-    /// These are all of them.
+    /// The complete list of their ids.
     Ids(Vec<String>),
-    /// Somewhere in the bytes of the file.
+    /// A file without a list of ids: they can be anywhere in these bytes.
     Bytes(Vec<u8>),
 }
 
@@ -145,13 +143,14 @@ impl PluginFile {
         }
     }
 
-    /// Name of the file without its folder.
+    /// Returns the name of the file without its folder.
     pub fn name(&self) -> String {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether it has this planner, as far as its file says: a Rust library names its ids, in others the bytes of the id have to
-    /// be there, so that nobody finds a planner that composes its id only when it is loaded. Nothing is in a refused file.
+    /// Whether the file may contain this planner. Rust libraries list their ids. Other libraries are searched for the
+    /// bytes of the id, so a planner that only composes its id at run time is not found. A refused file contains no
+    /// planners.
     pub fn may_have(&self, id: &str) -> bool {
         match &self.words {
             Words::Ids(ids) => ids.iter().any(|known| known == id),
@@ -162,15 +161,15 @@ impl PluginFile {
     }
 }
 
-/// The bytes of a plain file of sensible size, whatever becomes of its path meanwhile; a device or a pipe might never end.
+/// Reads a regular file of reasonable size, even if its path changes meanwhile. A device or a pipe might never end.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error: std::io::Error| format!("cannot be read: {error}");
-    // Opening a pipe would wait for somebody who writes.
+    // Opening a pipe without this flag would wait for a writer.
     let at_once = OFlags::NONBLOCK.bits().cast_signed();
     let file = File::options().read(true).custom_flags(at_once).open(path).map_err(unreadable)?;
     let about = file.metadata().map_err(unreadable)?;
     if !about.is_file() {
-        return Err("not a plain file".into());
+        return Err("not a regular file".into());
     }
     let too_large = |length: u64| format!("{length} bytes: no plugin is larger than {MOST_BYTES}");
     if about.len() > MOST_BYTES {
@@ -178,28 +177,25 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     }
     let mut bytes = Vec::with_capacity(about.len() as usize);
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    // It may have grown.
+    // The file may have grown since its length was checked.
     if bytes.len() as u64 > MOST_BYTES { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// Why this machine lets no process set aside a plugin, if it does not; a file that is too large to be a plugin has another reason.
+/// Returns why this machine prevents any process from making a private copy of a plugin; `None` if it does not, or if
+/// the file is too large to be a plugin.
 pub(crate) fn too_large_for_machine(path: &Path) -> Option<String> {
     let length = path.metadata().ok().filter(std::fs::Metadata::is_file)?.len();
     let limit = getrlimit(Resource::Fsize).current.filter(|limit| *limit < length && length <= MOST_BYTES)?;
     Some(format!(
-        "the system limits files to {limit} bytes, and {} has {length}: `ulimit -f {}`",
+        "the system limits files to {limit} bytes, but {} has {length}; try `ulimit -f {}`",
         path.display(),
         MOST_BYTES / 1024
     ))
 }
 
-/// SHA-256 in hexadecimal.
+/// Returns the SHA-256 in hexadecimal.
 pub(crate) fn sha256_hex(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hex::encode(Sha256::digest(bytes))
 }
 
 #[cfg(test)]
@@ -243,14 +239,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("dir");
         let place = |name: &str| folder.path().join(name);
         rustix::fs::mkfifoat(rustix::fs::CWD, place("pipe"), rustix::fs::Mode::RWXU).expect("a pipe");
-        assert_eq!(read_bytes(&place("pipe")), Err("not a plain file".into()));
-        assert_eq!(read_bytes(folder.path()), Err("not a plain file".into()));
+        assert_eq!(read_bytes(&place("pipe")), Err("not a regular file".into()));
+        assert_eq!(read_bytes(folder.path()), Err("not a regular file".into()));
         let sparse = File::create(place("sparse")).expect("a file");
         sparse.set_len(10 << 30).expect("a length");
         let why = read_bytes(&place("sparse")).expect_err("too large");
         assert_eq!(why, "10737418240 bytes: no plugin is larger than 134217728");
         std::os::unix::fs::symlink(place("pipe"), place("link")).expect("a link");
-        assert_eq!(read_bytes(&place("link")), Err("not a plain file".into()));
+        assert_eq!(read_bytes(&place("link")), Err("not a regular file".into()));
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! What several tests need.
+//! Fixtures shared by several tests.
 
 use mission::PlannerInfo;
 
-/// A planner `apf` without parameters.
+/// A planner with the id `apf` and no parameters.
 pub(crate) fn info() -> PlannerInfo {
     PlannerInfo {
         id: "apf".into(),

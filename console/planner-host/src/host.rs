@@ -1,4 +1,4 @@
-//! Answers the mission's asks: finds, starts, asks and ends planners, and waits only in [`Host::next`].
+//! Answers the mission's asks: finds planners, starts, asks and ends them, and waits only in [`Host::next`].
 
 mod config;
 pub(crate) mod fault;
@@ -34,11 +34,10 @@ use std::time::{Duration, Instant};
 
 /// Runs planners for missions, each in a worker process.
 ///
-/// [`Self::submit`] begins what is asked and returns at once; [`Self::next`] is where the answers come from, and the only
-/// place that waits. Every ask but [`What::Close`] is answered exactly once, unless its worker is closed before.
+/// [`Self::submit`] begins an ask and returns immediately. [`Self::next`] returns the answers and is the only function
+/// that waits. Every ask except [`What::Close`] is answered exactly once, unless its worker is closed first.
 ///
-/// After a fault caused by the clock or by something outside the planner, after a panic and after an invalid answer, the
-/// process has ended and the planner must be opened again.
+/// After a timeout, a crash, a panic or an invalid answer, the process has ended and the planner must be opened again.
 pub struct Host {
     config: HostConfig,
     catalog: Catalog,
@@ -46,7 +45,7 @@ pub struct Host {
     /// Retired workers that are still running.
     leaving: Vec<Leaving>,
     answers: VecDeque<Answer>,
-    /// What the last look found, kept for its memory.
+    /// The events of each worker from the last poll; kept only to reuse its memory.
     ready: Vec<Ready>,
     saved: SavedStates,
     spares: Spares,
@@ -56,14 +55,14 @@ pub struct Host {
     n_faults: u64,
     on_progress: Option<OnProgress>,
     kept: Kept,
-    /// Last requests and output of a worker that failed while its planner was being opened.
+    /// The last requests and output of a worker that failed while its planner was being opened.
     remains: Option<(Vec<u8>, String)>,
     #[cfg(target_os = "linux")]
     together: Option<together::Together>,
 }
 
 impl Host {
-    /// A host that searches these folders when a planner is first opened.
+    /// Creates a host that searches these folders when a planner is first opened.
     pub fn new(dirs: &PluginDirs, config: HostConfig) -> Self {
         Self {
             config,
@@ -86,8 +85,8 @@ impl Host {
         }
     }
 
-    /// From now on has a planner that is asked alone run on the processor of the thread that asks it for commands. For a thread
-    /// that waits for every command; it has to be the one that calls this.
+    /// From now on, runs a planner on the processor of the calling thread if it is the only one. Use it in a thread
+    /// that waits for every command, and call it from that thread.
     pub fn share_processor(&mut self) {
         #[cfg(target_os = "linux")]
         {
@@ -95,10 +94,10 @@ impl Host {
         }
     }
 
-    /// Puts a planner on the processor of this thread for a command, and away from it for everything else.
+    /// Moves a planner to the processor of this thread for a command, and away from it for everything else.
     #[cfg_attr(
         not(target_os = "linux"),
-        allow(unused_variables, clippy::unused_self, reason = "only Linux can")
+        allow(unused_variables, clippy::unused_self, reason = "only possible on Linux")
     )]
     fn place(&mut self, wanted: Option<&Wanted<'_>>) {
         #[cfg(target_os = "linux")]
@@ -115,37 +114,37 @@ impl Host {
         self.on_progress = Some(on_progress);
     }
 
-    /// What planners printed since the last time.
+    /// Returns what planners printed since the last call.
     pub fn take_printed(&mut self) -> Vec<Printed> {
         std::mem::take(&mut self.kept.printed)
     }
 
-    /// What is left of the planners that failed since the last time.
+    /// Returns what remains of the planners that failed since the last call.
     pub fn take_crashes(&mut self) -> Vec<Crash> {
         std::mem::take(&mut self.kept.crashes)
     }
 
-    /// Which planners ended badly since the last time.
+    /// Returns the planners that ended badly since the last call.
     pub fn take_bad_ends(&mut self) -> Vec<BadEnd> {
         std::mem::take(&mut self.kept.bad_ends)
     }
 
-    /// How long a plan may take.
+    /// Returns how long a plan may take.
     pub fn plan_budget(&self) -> Duration {
         self.config.plan_deadline
     }
 
-    /// Calls, wall times and faults so far.
+    /// Returns the calls, wall times and faults so far.
     pub fn stats(&self) -> HostStats {
         HostStats { plan: self.plan_times.stats(), step: self.step_times.stats(), faults: self.n_faults }
     }
 
-    /// Memory of a planner's process; none where it has ended, or the system does not say.
+    /// Returns the memory of a planner's process; `None` if it has ended or the system does not report it.
     pub fn memory(&self, id: WorkerId) -> Option<Memory> {
         self.planners.iter().find(|planner| planner.id == id)?.worker.as_ref()?.memory()
     }
 
-    /// Makes [`Self::next`] return from any thread.
+    /// Returns a waker that makes [`Self::next`] return from any thread.
     pub fn waker(&self) -> Waker {
         self.wake_ups.waker()
     }
@@ -155,8 +154,8 @@ impl Host {
         self.wake_ups.take();
     }
 
-    /// Ends a mission, so that the next one begins as with a new host, but for the processes: a planner that has answered all
-    /// it was asked is created again in the process that has loaded it, when it is next opened.
+    /// Ends a mission, so that the next one begins as with a new host. Only processes are reused: a planner that has
+    /// answered all its asks is created again in the process that loaded it, when it is next opened.
     pub fn end_mission(&mut self) {
         self.place(None);
         for planner in std::mem::take(&mut self.planners) {
@@ -177,7 +176,7 @@ impl Host {
         (self.plan_times, self.step_times, self.n_faults) = Default::default();
     }
 
-    /// Begins what is asked. A worker with an open ask takes no other one but [`What::Close`].
+    /// Begins an ask. A worker with an open ask accepts only [`What::Close`].
     pub fn submit(&mut self, ask: Ask) {
         let id = ask.id;
         match ask.what {
@@ -194,7 +193,7 @@ impl Host {
         }
     }
 
-    /// Begins what is wanted; what cannot be begun is answered at once.
+    /// Begins an ask of an opened planner; one that cannot begin is answered immediately.
     pub(crate) fn begin(&mut self, id: AskId, wanted: &Wanted<'_>) {
         if let Err(fault) = self.try_begin(id, wanted) {
             self.answer(id, Err(fault));
@@ -222,8 +221,9 @@ impl Host {
         }
     }
 
-    /// The next answer, as soon as there is one. None when the given time is reached, when the host was woken, or when no
-    /// ask is open; without a time it waits as long as it takes. What has already arrived is always processed.
+    /// Returns the next answer as soon as there is one. Returns `None` when the time limit is reached, when the host
+    /// was woken, or when no ask is open. Without a time limit it waits indefinitely. Messages that have already
+    /// arrived are always processed.
     pub fn next(&mut self, until: Option<Instant>) -> Option<Answer> {
         if self.answers.is_empty() && self.leaving.is_empty() && !self.is_asked() {
             self.clear_wake_ups();
@@ -247,7 +247,8 @@ impl Host {
         self.planners.iter().any(|planner| planner.asked.is_some())
     }
 
-    /// Waits until something happens, at most until the given time, and does what is due; whether the host was woken.
+    /// Waits until something happens or the time limit is reached, and does what is due. Returns whether the host was
+    /// woken.
     fn look(&mut self, until: Option<Instant>) -> bool {
         if self.is_answered_at_once() {
             return false;
@@ -259,8 +260,8 @@ impl Host {
         woken
     }
 
-    /// Whether a planner on the processor of this thread has answered, as it usually has by the time this thread runs again. Then
-    /// the system need not be asked what else has happened; that is done every millisecond.
+    /// Whether a planner on the processor of this thread has answered. Usually it has, by the time this thread runs
+    /// again. The system is then asked for other events only once a millisecond.
     fn is_answered_at_once(&mut self) -> bool {
         #[cfg(target_os = "linux")]
         if let (Some(together), [_], true) = (&mut self.together, &self.planners[..], self.leaving.is_empty())
@@ -298,7 +299,7 @@ impl Host {
         }
     }
 
-    /// Takes the outcome of what a worker was asked.
+    /// Processes the outcome of a worker's request.
     fn take(&mut self, id: WorkerId, outcome: Result<(), Failure>) {
         let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id) else { return };
         let Some(Asked { id, at, doing }) = planner.asked.take() else { return };
@@ -324,7 +325,7 @@ impl Host {
         self.answer(id, outcome);
     }
 
-    /// Puts an answer where [`Self::next`] finds it.
+    /// Queues an answer for [`Self::next`].
     fn answer(&mut self, ask: AskId, outcome: Outcome) {
         self.n_faults += u64::from(outcome.is_err());
         let (result, said) = match outcome {
@@ -338,7 +339,7 @@ impl Host {
         self.answers.push_back(Answer { ask, result, said });
     }
 
-    /// Keeps what is left of a planner whose author has to find out why it failed.
+    /// Keeps what remains of a planner whose author must find out why it failed.
     fn keep_remains(&mut self, id: WorkerId, fault: &Fault) {
         let planner = self.planners.iter_mut().find(|planner| planner.id == id);
         let of_worker = planner.and_then(|planner| planner.worker.as_mut()).map(Worker::remains);
@@ -350,7 +351,7 @@ impl Host {
 }
 
 impl Drop for Host {
-    /// Kills all workers at once, then reaps them.
+    /// Kills all workers together, then reaps them.
     fn drop(&mut self) {
         let asked = self.planners.iter_mut().filter_map(|planner| planner.worker.as_mut());
         let leaving = self.leaving.iter_mut().map(|leaving| &mut leaving.worker);

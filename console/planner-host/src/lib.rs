@@ -1,14 +1,15 @@
 //! Planner plugins: discovery, checks before loading, loader, worker process, supervisor.
 //!
-//! A plugin is a shared library of strangers. The console never loads one: it starts itself again as a worker
-//! process, which closes itself off, loads one plugin and answers requests over a socket. Whatever the plugin does there
-//! (crash, hang, eat memory, print, reach for files or other processes) ends as a [`mission::Fault`] with one sentence, within the budget of what it was asked.
+//! A plugin is a shared library from a third party. The console never loads one itself: it starts a copy of itself as a
+//! worker process, which enters a sandbox, loads one plugin and answers requests over a socket. Whatever the plugin
+//! does there (crash, hang, exhaust memory, print, try to reach files or other processes) becomes a [`mission::Fault`]
+//! with one sentence, within the budget of the request.
 //!
-//! [`Host`] answers what the mission asks and waits only where the caller requests it; [`BlockingHost`] is for callers with
-//! nothing else to do than wait; [`survey`] lists what was found; [`worker_main`] is what the hidden
-//! command `worker` runs. All of it needs a Unix system.
+//! [`Host`] answers the asks of a mission and waits only where the caller requests it. [`BlockingHost`] is for callers
+//! that have nothing to do but wait. [`survey`] lists the plugins found. [`worker_main`] is run by the hidden command
+//! `worker`. All of this needs a Unix system.
 //!
-//! Frames and units are those of `planner_api`.
+//! Coordinate frames and units are those of `planner_api`.
 
 #![deny(unsafe_code)]
 

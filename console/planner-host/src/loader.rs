@@ -1,5 +1,5 @@
-//! Loads a library and calls its planners. Most of the unsafe code of the console, and it runs only in a worker.
-#![expect(unsafe_code, reason = "libraries of strangers are loaded and called here")]
+//! Loads a library and calls its planners. Most of the console's unsafe code is here; it runs only in a worker.
+#![expect(unsafe_code, reason = "third-party libraries are loaded and called here")]
 
 mod instance;
 mod sink;
@@ -21,7 +21,7 @@ use planner_api::abi;
 use std::error::Error;
 use std::path::Path;
 
-/// One planner's table, checked.
+/// The checked function table of one planner.
 pub(crate) struct Table {
     pub(crate) id: String,
     name: String,
@@ -32,7 +32,7 @@ pub(crate) struct Table {
     raw: abi::Planner,
 }
 
-/// A plugin's file, checked and set aside; nothing of it has run.
+/// The checked private copy of a plugin's file; none of its code has run.
 pub(crate) struct File {
     name: String,
     pub(crate) sha256: String,
@@ -45,9 +45,9 @@ pub(crate) struct Loaded(abi::Entry);
 
 /// Why a file cannot be loaded.
 pub(crate) enum NotRead {
-    /// It is not a plugin that can be loaded.
+    /// The file is not a plugin that can be loaded.
     Refused(String),
-    /// This machine does not let it be loaded.
+    /// The machine prevents the file from being loaded.
     Machine(String),
 }
 
@@ -55,15 +55,16 @@ impl File {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// Why it is refused; reads on after "refused:".
+    /// Why the file is refused; the text continues after "refused:".
     pub(crate) fn read(path: &Path) -> Result<Self, NotRead> {
         let bytes = read_bytes(path).map_err(NotRead::Refused)?;
         let abi = stamp::read(&bytes).map_err(|error| NotRead::Refused(error.to_string()))?;
         if let Some(why) = too_large_for_machine(path) {
             return Err(NotRead::Machine(format!("cannot be loaded: {why}")));
         }
-        let staged = stage::stage(&bytes)
-            .map_err(|error| NotRead::Machine(no_worker("cannot set the plugin aside", &error)))?;
+        let staged = stage::stage(&bytes).map_err(|error| {
+            NotRead::Machine(no_worker("cannot make a private copy of the plugin", &error))
+        })?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Self { name, sha256: sha256_hex(&bytes), abi, staged })
     }
@@ -71,23 +72,24 @@ impl File {
     /// Loads exactly the bytes that were checked.
     ///
     /// # Errors
-    /// Why it is refused; reads on after "refused:". The same below.
+    /// Why the library is refused; the text continues after "refused:". The same applies below.
     pub(crate) fn load(self) -> Result<Loaded, String> {
         let staged = self.staged.path();
-        // All symbols are resolved now: a missing one is a refusal here and not the end of the process at its first use.
-        // SAFETY: runs the library's constructors, whatever they do; this process exists to bear that.
+        // All symbols are resolved now, so a missing one is a refusal here and does not end the process on first use.
+        // SAFETY: this runs the library's constructors, whatever they do; this process exists to contain that.
         let library = unsafe { Library::open(Some(staged), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| {
             let reason = error.source().map_or_else(|| error.to_string(), ToString::to_string);
             format!("the loader refused it: {}", reason.replace(&*staged.to_string_lossy(), &self.name))
         })?;
-        // SAFETY: the stamp promises that this symbol is an entry; its own magic is checked before anything else.
+        // SAFETY: the stamp promises that this symbol is an entry; the entry's own magic is checked before anything
+        // else.
         let entry = unsafe {
             let symbol = library.get::<*const abi::Entry>(abi::SYMBOL);
             let symbol = symbol.map_err(|_| format!("does not export `{}`", abi::SYMBOL))?;
             symbol.as_ref().ok_or_else(|| format!("exports a null `{}`", abi::SYMBOL))?
         };
         let entry = *entry;
-        // Code with thread-local destructors must not be unloaded; the end of the process unloads it.
+        // Code with thread-local destructors must not be unloaded; it is unloaded when the process ends.
         std::mem::forget(library);
         self.staged.keep();
         Ok(Loaded(entry))
@@ -95,7 +97,7 @@ impl File {
 }
 
 impl Loaded {
-    /// Checks its planners' tables.
+    /// Checks the function tables of all planners.
     pub(crate) fn tables(self) -> Result<Vec<Table>, String> {
         let Self(entry) = self;
         check_entry(&entry)?;
@@ -119,23 +121,24 @@ fn check_entry(entry: &abi::Entry) -> Result<(), String> {
     stamp::accept(theirs).map_err(|error| error.to_string())?;
     check_size("its entry", entry.size, size_of::<abi::Entry>())?;
     if !(1..=MOST_PLANNERS).contains(&(entry.n_planners as usize)) || entry.planners.is_null() {
-        return Err(format!("exports {} planners, 1 to {MOST_PLANNERS} are allowed", entry.n_planners));
+        return Err(format!("exports {} planners; 1 to {MOST_PLANNERS} are allowed", entry.n_planners));
     }
     Ok(())
 }
 
-/// The sizes of version 1.0 are the smallest; later ones only add.
+/// Checks a size. Version 1.0 has the smallest structs; later versions only add to them.
 fn check_size(what: &str, size: u32, needed: usize) -> Result<(), String> {
     if (size as usize) < needed {
         return Err(format!(
-            "{what} has {size} bytes, ABI {CONSOLE_ABI} needs {needed}: built with a broken header"
+            "{what} has {size} bytes, but ABI {CONSOLE_ABI} needs {needed}; it was built with a broken header"
         ));
     }
     Ok(())
 }
 
 fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
-    // SAFETY: the entry promises `n_planners` pointers to tables that live as long as the library, which stays.
+    // SAFETY: the entry promises `n_planners` pointers to tables that live as long as the library, which is never
+    // unloaded.
     let raw = unsafe {
         let table = *entry.planners.add(index);
         if table.is_null() {
@@ -148,7 +151,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
     let text = |raw| plain(raw, LONGEST_TEXT);
     let id = text(raw.id);
     if !planner_api::export::is_id(&id) {
-        return Err(format!("`{id}` is not a planner id; ids are 1 to 32 of a-z, 0-9, _ and -"));
+        return Err(format!("`{id}` is not a planner id; ids are 1 to 32 characters of a-z, 0-9, _ and -"));
     }
     let functions = [
         ("describe", raw.describe.is_some()),
@@ -160,7 +163,7 @@ fn read_table(entry: &abi::Entry, index: usize) -> Result<Table, String> {
     let missing: Vec<&str> =
         functions.into_iter().filter(|(_, is_there)| !is_there).map(|(name, _)| name).collect();
     if !missing.is_empty() {
-        return Err(format!("planner `{id}` lacks the function(s): {}", missing.join(", ")));
+        return Err(format!("planner `{id}` lacks required functions: {}", missing.join(", ")));
     }
     let [name, version, about] = [raw.name, raw.version, raw.about].map(text);
     Ok(Table { id, name, version, about, caps: raw.caps, state_version: raw.state_version, raw })
@@ -173,7 +176,7 @@ impl Table {
         // SAFETY: the services live through the call.
         let code = sink.during(|host| unsafe { describe(host) });
         if code != 0 {
-            return Err(format!("planner `{}` does not describe itself: {}", self.id, sink.take_error()));
+            return Err(format!("planner `{}` failed to describe itself: {}", self.id, sink.take_error()));
         }
         let parameters = std::mem::take(&mut sink.params);
         parameters::check(&parameters).map_err(|why| format!("planner `{}`: {why}", self.id))?;
@@ -189,7 +192,7 @@ impl Table {
         })
     }
 
-    /// Makes an instance.
+    /// Creates an instance.
     pub(crate) fn create(
         &self,
         site: &planner_api::Site<'_>,

@@ -1,4 +1,4 @@
-//! Parameter values against their declarations: unknown keys, wrong types, ranges.
+//! Checks parameter values against their declarations: unknown keys, wrong types, ranges.
 
 use mission::{ParamInfo, ParamKind, ParamValue, Parameters, PlannerInfo, spelling::nearest};
 
@@ -10,7 +10,7 @@ pub fn check_parameters(planner: &PlannerInfo, parameters: &Parameters) -> Resul
     parameter_problems(planner, parameters).into_iter().next().map_or(Ok(()), |(_, problem)| Err(problem))
 }
 
-/// Everything that is wrong with values set by hand: the key, and one sentence with what would be right.
+/// Returns everything that is wrong with values set by hand: the key, and one sentence with what would be right.
 pub fn parameter_problems(planner: &PlannerInfo, parameters: &Parameters) -> Vec<(String, String)> {
     let problem = |key: &String, value: &ParamValue| {
         find(planner, key).and_then(|param| number(&planner.id, param, value)).err()
@@ -18,12 +18,14 @@ pub fn parameter_problems(planner: &PlannerInfo, parameters: &Parameters) -> Vec
     parameters.iter().filter_map(|(key, value)| Some((key.clone(), problem(key, value)?))).collect()
 }
 
-/// Checks what a planner says of its parameters: keys, ranges, defaults.
+/// Checks a planner's declaration of its parameters: keys, ranges, defaults.
 pub(crate) fn check(parameters: &[ParamInfo]) -> Result<(), String> {
     for (index, param) in parameters.iter().enumerate() {
         let key = &param.key;
         if key.is_empty() || parameters[..index].iter().any(|earlier| earlier.key == *key) {
-            return Err(format!("parameter number {index} has the key `{key}`, which is empty or taken"));
+            return Err(format!(
+                "parameter number {index} has the key `{key}`, which is empty or a duplicate"
+            ));
         }
         let is_sound = match &param.kind {
             ParamKind::Float { min, max, default } => {
@@ -34,13 +36,13 @@ pub(crate) fn check(parameters: &[ParamInfo]) -> Result<(), String> {
             ParamKind::Choice { options, default } => options.contains(default),
         };
         if !is_sound {
-            return Err(format!("the default of parameter `{key}` lies outside its range"));
+            return Err(format!("the default of parameter `{key}` is outside its range"));
         }
     }
     Ok(())
 }
 
-/// All parameters of a planner as numbers: those set by hand, the others by their defaults.
+/// Returns all parameters of a planner as numbers: the values set by hand, and the defaults of the others.
 pub(crate) fn numbers(planner: &PlannerInfo, parameters: &Parameters) -> Result<Vec<(String, f64)>, String> {
     for key in parameters.keys() {
         find(planner, key)?;
@@ -55,13 +57,13 @@ pub(crate) fn numbers(planner: &PlannerInfo, parameters: &Parameters) -> Result<
         .collect()
 }
 
-/// The parameter of this name.
+/// Finds the parameter with this key.
 pub(crate) fn find<'a>(planner: &'a PlannerInfo, key: &str) -> Result<&'a ParamInfo, String> {
     planner.parameters.iter().find(|param| param.key == key).ok_or_else(|| {
         let keys = planner.parameters.iter().map(|param| param.key.as_str());
         let hint = nearest(key, keys).map(|known| format!("; did you mean `{known}`?"));
         let all = || match planner.parameters.as_slice() {
-            [] => "; it has none".to_owned(),
+            [] => "; it has no parameters".to_owned(),
             some => {
                 format!("; it has {}", some.iter().map(|p| p.key.as_str()).collect::<Vec<_>>().join(", "))
             }
@@ -92,7 +94,7 @@ fn number(planner: &str, param: &ParamInfo, value: &ParamValue) -> Result<f64, S
             in_range(planner, param, *n as f64, *min as f64, *max as f64)
         }
         (ParamKind::Flag { .. }, ParamValue::Flag(on)) => Ok(f64::from(u8::from(*on))),
-        // A word may look like something else: `true`, `1`.
+        // A word may look like a value of a different type: `true`, `1`.
         (ParamKind::Choice { options, .. }, value) => {
             let word = &value.to_string();
             if let Some(index) = options.iter().position(|known| known == word) {

@@ -1,5 +1,5 @@
-//! Progress of a plan while it is being computed. It is shown and not stored: it depends on wall-clock time, so it enters
-//! neither journal nor recording.
+//! Progress of a plan while it is being computed. It is displayed but not stored: it depends on wall-clock time, so it
+//! is kept out of both journal and recording.
 
 use crate::checks::limits;
 use mission::AskId;

@@ -1,5 +1,5 @@
-//! What planners leave besides their answers: what they print, and what is left of one that failed. It depends on the machine
-//! when it arrives, so it enters neither journal nor recording.
+//! What planners leave behind besides their answers: their printed output, and the remains of one that failed. When it
+//! arrives depends on the machine, so it is kept out of both journal and recording.
 
 use mission::{Cause, Fault};
 use std::fmt;
@@ -7,39 +7,40 @@ use std::fmt;
 /// A line that a planner printed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Printed {
-    /// Which planner; empty while its plugin is being loaded.
+    /// The planner's id; empty while its plugin is being loaded.
     pub planner: String,
     /// The line, without control characters.
     pub line: String,
 }
 
-/// What is left of a planner that failed: enough to ask its plugin the same again ([`crate::replay`]).
+/// The remains of a planner that failed: enough to repeat its last requests to the plugin ([`crate::replay`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crash {
-    /// How it failed.
+    /// The fault.
     pub fault: Fault,
-    /// The last requests, as they went to its worker.
+    /// The last requests, as they were sent to the worker.
     pub frames: Vec<u8>,
-    /// The end of what it printed.
+    /// The end of its printed output.
     pub output: String,
 }
 
 /// A planner that ended badly when it was no longer needed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadEnd {
-    /// Which.
+    /// The planner's id.
     pub planner: String,
-    /// How it ended; reads on after its name.
+    /// How the planner ended; continues after its id.
     pub how: String,
 }
 
 impl fmt::Display for BadEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "planner {} {} while it was destroyed", self.planner, self.how)
+        write!(f, "planner {} {} while being destroyed", self.planner, self.how)
     }
 }
 
-/// Whether an author has to find out why: the planner did not refuse by itself, and the console did not refuse it.
+/// Whether the author must find out why: neither did the planner refuse the request, nor did the console refuse the
+/// planner.
 pub(crate) fn is_crash(cause: Cause) -> bool {
     !matches!(cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved)
 }

@@ -1,4 +1,5 @@
-//! Asks a plugin again what it was asked before it failed, alone in a worker, and judges its answers as the console does.
+//! Repeats the requests that a plugin received before it failed, in a worker of its own, and checks its answers as the
+//! console does.
 
 mod judge;
 
@@ -17,26 +18,26 @@ use std::time::Duration;
 /// How a replay ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Replayed {
-    /// Every request was answered, and the console accepts each answer.
+    /// Every request was answered, and the console accepts every answer.
     ToTheEnd {
-        /// How many there were.
+        /// The number of requests.
         requests: usize,
     },
-    /// It failed again; how, as a sentence.
+    /// The plugin failed again; the text is a sentence that describes how.
     Failed(String),
 }
 
 /// Why nothing was replayed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotReplayed {
-    /// The requests are incomplete; reads on after the name of their file.
+    /// The requests are incomplete; the text continues after the name of their file.
     Damaged(String),
-    /// This machine lets no planner run.
+    /// This machine prevents planners from running.
     Machine(String),
 }
 
-/// Sends recorded requests to a worker, one after the other, and reports the outcome of each. With `patient` no deadline ends
-/// it, for a debugger.
+/// Sends recorded requests to a worker, one after the other, and reports the outcome of each. With `patient` there are
+/// no deadlines, so that a debugger can be used.
 ///
 /// # Errors
 /// The requests are incomplete, or no worker can be started.
@@ -48,7 +49,7 @@ pub fn replay(
 ) -> Result<Replayed, NotReplayed> {
     check_descriptors().map_err(NotReplayed::Machine)?;
     let requests = whole(frames).map_err(NotReplayed::Damaged)?;
-    // A debugger needs memory of its own.
+    // A debugger needs memory, too, so there is no limit.
     let limit = memory_limit_of(frames).filter(|_| !patient).unwrap_or(u64::MAX);
     let mut worker =
         Worker::spawn(worker, limit).map_err(|failure| NotReplayed::Machine(refusal_text(&failure)))?;
@@ -66,7 +67,7 @@ pub fn replay(
         let what = judge.name();
         match asked.and_then(|()| judge.answer(&mut worker)) {
             Ok(given) => say(&format!("{n:>4}  {what:<11} {given}")),
-            // Only gdb knows how.
+            // Only gdb can tell how the process ended.
             Err(_) if patient && !worker.is_idle() => {
                 let how = "its process ended in the debugger";
                 say(&format!("{n:>4}  {what:<11} {how}"));
@@ -85,18 +86,18 @@ pub fn replay(
     Ok(Replayed::ToTheEnd { requests })
 }
 
-/// SHA-256 of recorded requests, hexadecimal, by which a copy that was cut or changed is known.
+/// Returns the SHA-256 of recorded requests, hexadecimal; it reveals a copy that was truncated or changed.
 pub fn digest_of(frames: &[u8]) -> String {
     sha256_hex(frames)
 }
 
-/// Makes sure that recorded requests are complete, and counts them.
+/// Checks that recorded requests are complete, and counts them.
 ///
 /// # Errors
 /// What is wrong with them.
 fn whole(frames: &[u8]) -> Result<usize, String> {
     if frames.is_empty() {
-        return Err("is empty: no request was kept".to_owned());
+        return Err("is empty: no request was recorded".to_owned());
     }
     let (mut stream, mut incoming) = (frames, Incoming::default());
     for n in 1.. {
@@ -105,15 +106,17 @@ fn whole(frames: &[u8]) -> Result<usize, String> {
                 return Err("is damaged: its first request does not load a plugin".to_owned());
             }
             Received::Frame => {}
-            Received::Closed if incoming.has_more() => return Err(format!("is cut off within request {n}")),
+            Received::Closed if incoming.has_more() => {
+                return Err(format!("ends in the middle of request {n}"));
+            }
             Received::Closed => return Ok(n - 1),
             Received::Broken => return Err(format!("is damaged at request {n}")),
         }
     }
-    unreachable!("the bytes come to an end")
+    unreachable!("the input is finite")
 }
 
-/// The plugin's file that is named in recorded requests.
+/// Returns the plugin's file that is named in recorded requests.
 pub fn plugin_of(frames: &[u8]) -> Option<PathBuf> {
     loaded(frames, |load| load.path().to_owned())
 }
@@ -151,7 +154,7 @@ mod tests {
             let cut = whole(&both[..length]);
             let n = if length < load.len() { 1 } else { 2 };
             let expected =
-                if length == load.len() { Ok(1) } else { Err(format!("is cut off within request {n}")) };
+                if length == load.len() { Ok(1) } else { Err(format!("ends in the middle of request {n}")) };
             assert_eq!(cut, expected, "{length}");
         }
         assert!(whole(&step).is_err_and(|why| why.contains("does not load a plugin")));

@@ -1,10 +1,10 @@
-//! What a worker cannot reach, whatever its plugin does.
+//! Prevents a worker from reaching anything outside, whatever its plugin does.
 //!
-//! Two locks of the Linux kernel close the process before the first instruction of a plugin runs, for a probe as for a
-//! mission. *Landlock* takes files and network from it: while the plugin is loaded it may read libraries, afterwards
-//! nothing. *seccomp* allows the calls of the system that computing takes; every other call waits until the console has
-//! decided ([`verdict`]), which ends the process and names the call. The plugin has no part in that: the kernel itself
-//! reports the call, over a descriptor that the plugin never sees.
+//! Two mechanisms of the Linux kernel isolate the process before the first instruction of a plugin runs, in a probe as
+//! well as in a mission. *Landlock* removes access to files and network: while the plugin is loading, the process can
+//! read libraries, and afterwards nothing. *seccomp* allows the system calls that are needed for computing. Every other
+//! call waits for the console's decision ([`verdict`]); if it is forbidden, the console kills the process and names the
+//! call. The plugin cannot interfere: the kernel itself reports the call, over a descriptor that the plugin never sees.
 
 #[cfg(target_os = "linux")]
 mod about;
@@ -37,36 +37,37 @@ pub(crate) use {
 use mission::Sandbox;
 use std::os::fd::OwnedFd;
 
-/// The bytes of a worker's plugin are at this descriptor, above the numbers that careless plugins close.
+/// The descriptor of the worker's copy of the plugin. It is above the numbers that careless plugins close.
 #[cfg(target_os = "linux")]
 pub(crate) const PLUGIN_AT: i32 = 201;
-/// The same as a path; what it is opened for again are names of functions.
+/// The path of the same copy; it is opened again only to look up function names.
 #[cfg(target_os = "linux")]
 const PLUGIN: &str = "/proc/self/fd/201";
 
-/// How far a worker is with its plugin.
+/// The worker's progress in loading its plugin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stage {
-    /// Its libraries are being read.
+    /// The plugin's libraries are being read.
     Loading,
-    /// It is loaded.
+    /// The plugin is loaded.
     Loaded {
-        /// Landlock is in force.
+        /// Whether Landlock is in force.
         no_file_can_be_opened: bool,
     },
 }
 
-/// A process that was closed off.
+/// A process in its sandbox.
 pub(crate) struct ClosedOff {
-    /// How far.
+    /// The extent of the sandbox.
     pub(crate) sandbox: Sandbox,
-    /// Where the console learns what the process wants to do beyond computing.
+    /// The descriptor over which the console receives all system calls beyond computing.
     pub(crate) listener: Option<OwnedFd>,
-    /// Whether files are still to be closed, by [`close_files`], once the plugin is loaded.
+    /// Whether access to files must still be removed, with [`close_files`], once the plugin is loaded.
     pub(crate) reads_libraries: bool,
 }
 
-/// Closes this process off. It must have one thread: what others do would not be covered.
+/// Puts this process into the sandbox. The process must have only one thread, because other threads would not be
+/// covered.
 #[cfg(target_os = "linux")]
 pub(crate) fn seal() -> ClosedOff {
     let files = files::only_libraries();

@@ -1,4 +1,4 @@
-//! What a library says about itself before any of it runs.
+//! Reads what a library states about itself before any of its code runs.
 //!
 //! Loading a library runs its constructors, so the planner ABI is read from a section of the file first.
 
@@ -6,10 +6,10 @@ use object::{Architecture, BinaryFormat, File, Object, ObjectKind, ObjectSection
 use planner_api::abi;
 use std::fmt;
 
-/// The version of the planner ABI that a library was built for.
+/// The version of the planner ABI for which a library was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Abi {
-    /// Must be the console's own.
+    /// Must equal the console's.
     pub major: u32,
     /// May be newer or older than the console's.
     pub minor: u32,
@@ -24,35 +24,35 @@ impl fmt::Display for Abi {
 /// The ABI that this console uses.
 pub const CONSOLE_ABI: Abi = Abi { major: abi::MAJOR, minor: abi::MINOR };
 
-/// Why a file is not a plugin of this console; reads on after "refused:".
+/// Why a file is not a plugin for this console; the text continues after "refused:".
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StampError {
-    /// Neither ELF, Mach-O nor PE.
+    /// The file is neither ELF, Mach-O nor PE.
     #[error("not a shared library")]
     NotALibrary,
     /// The file ends too early, or its tables are wrong.
     #[error("truncated or damaged library ({0})")]
     Damaged(String),
-    /// A library for another kind of computer.
-    #[error("built for another system ({theirs}, this console runs on {ours})")]
+    /// The library is for a different operating system or processor.
+    #[error("built for a different system ({theirs}; this console runs on {ours})")]
     OtherSystem {
-        /// Format and processor of the file.
+        /// File format and processor of the library.
         theirs: String,
-        /// Those of the console.
+        /// File format and processor of the console.
         ours: String,
     },
-    /// A program or an object file.
+    /// The file is a program or an object file.
     #[error("not a shared library but {0}")]
     OtherKind(&'static str),
-    /// No section with the stamp, or something else in it.
+    /// The file has no section with a stamp, or the section contains something else.
     #[error(
         "a library, but not a planner plugin (no .tankplan stamp; Rust: export_planners!(..), C: TP_STAMP)"
     )]
     NoStamp,
-    /// Another major version of the ABI.
-    #[error("built for planner ABI {theirs}, this console uses {CONSOLE_ABI}: {advice}", advice = advice(*theirs))]
+    /// The library has a different major version of the ABI.
+    #[error("built for planner ABI {theirs}; this console uses {CONSOLE_ABI}: {advice}", advice = advice(*theirs))]
     OtherAbi {
-        /// Theirs.
+        /// The ABI version of the library.
         theirs: Abi,
     },
 }
@@ -61,10 +61,10 @@ fn advice(theirs: Abi) -> &'static str {
     if theirs.major < CONSOLE_ABI.major { "rebuild the plugin" } else { "update the console" }
 }
 
-/// Reads the stamp of a library and accepts it if this console can run it.
+/// Reads the stamp of a library and accepts it if this console can run the library.
 ///
 /// # Errors
-/// What the file is instead.
+/// Why the file is not a plugin for this console.
 pub fn read(bytes: &[u8]) -> Result<Abi, StampError> {
     let kind = object::FileKind::parse(bytes).map_err(|_| StampError::NotALibrary)?;
     if !is_library_format(kind) {
@@ -83,7 +83,7 @@ pub fn read(bytes: &[u8]) -> Result<Abi, StampError> {
     accept(parse(stamp).ok_or(StampError::NoStamp)?)
 }
 
-/// The ids of the planners of a library with a stamp, if it names them there.
+/// Returns the planner ids of a library, if its stamp lists them.
 pub fn ids(bytes: &[u8]) -> Option<Vec<String>> {
     let file = File::parse(bytes).ok()?;
     let section = abi::SECTIONS.iter().find_map(|name| file.section_by_name(name))?;
@@ -94,7 +94,7 @@ pub fn ids(bytes: &[u8]) -> Option<Vec<String>> {
     are_ids.then_some(ids)
 }
 
-/// Accepts every ABI of the console's own major version.
+/// Accepts every ABI with the console's own major version.
 ///
 /// # Errors
 /// [`StampError::OtherAbi`].
@@ -131,11 +131,31 @@ fn our_processor() -> Architecture {
     }
 }
 
+fn processor_name(processor: Architecture) -> &'static str {
+    match processor {
+        Architecture::X86_64 => "x86-64",
+        Architecture::I386 => "32-bit x86",
+        Architecture::Aarch64 => "AArch64",
+        Architecture::Arm => "32-bit ARM",
+        Architecture::Riscv64 => "64-bit RISC-V",
+        _ => "a different processor",
+    }
+}
+
+fn format_name(format: BinaryFormat) -> &'static str {
+    match format {
+        BinaryFormat::Elf => "ELF",
+        BinaryFormat::MachO => "Mach-O",
+        BinaryFormat::Pe => "PE",
+        _ => "a different format",
+    }
+}
+
 fn check_system(file: &File<'_>) -> Result<(), StampError> {
     let (theirs, ours) = ((file.format(), file.architecture()), (OUR_FORMAT, our_processor()));
-    // A processor that is not in the list above is left to the loader.
+    // A processor that is not in the list above is accepted here; the loader decides.
     let fits = theirs.0 == ours.0 && (ours.1 == Architecture::Unknown || theirs.1 == ours.1);
-    let text = |(format, processor)| format!("{format:?} {processor:?}");
+    let text = |(format, processor)| format!("{} for {}", format_name(format), processor_name(processor));
     if fits { Ok(()) } else { Err(StampError::OtherSystem { theirs: text(theirs), ours: text(ours) }) }
 }
 
@@ -161,9 +181,9 @@ mod tests {
     #[test]
     fn another_major_version_is_refused_with_what_to_do() {
         let newer = accept(Abi { major: 9, minor: 0 }).map_err(|error| error.to_string());
-        assert_eq!(newer, Err("built for planner ABI 9.0, this console uses 1.4: update the console".into()));
+        assert_eq!(newer, Err("built for planner ABI 9.0; this console uses 1.4: update the console".into()));
         let older = accept(Abi { major: 0, minor: 3 }).map_err(|error| error.to_string());
-        assert_eq!(older, Err("built for planner ABI 0.3, this console uses 1.4: rebuild the plugin".into()));
+        assert_eq!(older, Err("built for planner ABI 0.3; this console uses 1.4: rebuild the plugin".into()));
         assert!(accept(Abi { major: 1, minor: 99 }).is_ok(), "a newer minor version is accepted");
     }
 

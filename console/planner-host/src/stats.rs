@@ -1,41 +1,42 @@
-//! How often planners were called, and how long it took in wall-clock time.
+//! How often planners were called, and how much wall-clock time the calls took.
 
 use std::time::Duration;
 
 /// Calls of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct CallStats {
-    /// How many.
+    /// The number of calls.
     pub calls: u64,
-    /// Half of them took at most this long, microseconds; absent without calls.
+    /// Median duration, microseconds; absent without calls.
     pub p50_us: Option<f64>,
-    /// Ninety-nine of a hundred took at most this long, microseconds; absent without calls.
+    /// 99th percentile of the duration, microseconds; absent without calls.
     pub p99_us: Option<f64>,
 }
 
-/// What planners cost so far. Wall times differ from run to run: they belong in reports, never in the journal.
+/// The cost of planners so far. Wall times differ from run to run, so they belong in reports and never in the journal.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct HostStats {
     /// Requests for plans.
     pub plan: CallStats,
     /// Requests for commands.
     pub step: CallStats,
-    /// Faults of every kind, refusals to plan included.
+    /// Faults of all kinds, including refusals to plan.
     pub faults: u64,
 }
 
-/// Memory of a worker: what it has touched, including its libraries.
+/// Resident memory of a worker, including its libraries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
-    /// Now, bytes.
+    /// Current memory, bytes.
     pub now_bytes: u64,
-    /// Peak so far, bytes.
+    /// Peak memory so far, bytes.
     pub most_bytes: u64,
-    /// Threads that it has now, including its own two.
+    /// The current number of threads, including the worker's own two.
     pub threads: u32,
 }
 
-/// Wall times of the calls of one kind, microseconds: a million of them in four megabytes, each exact to a ten-millionth.
+/// Wall times of calls of one kind, microseconds. A million of them take four megabytes, each exact to one part in ten
+/// million.
 #[derive(Debug, Default)]
 pub(crate) struct Durations(Vec<f32>);
 

@@ -1,6 +1,6 @@
-//! The console's side of workers: starts them, asks them, and turns every way to fail into a [`Failure`].
+//! The console's side of workers: starts them, sends them requests, and turns every kind of failure into a [`Failure`].
 //!
-//! Nothing here waits but [`wait`], for all workers at once.
+//! Only [`wait`] waits, for all workers at the same time.
 
 mod clock;
 mod ending;
@@ -33,20 +33,20 @@ use std::time::Duration;
 pub struct WorkerCommand {
     /// The program.
     pub program: PathBuf,
-    /// Its command-line arguments.
+    /// The command-line arguments.
     pub arguments: Vec<OsString>,
 }
 
 impl WorkerCommand {
-    /// Runs another program with the argument `worker`.
+    /// Runs a different program with the argument `worker`.
     pub fn new(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into(), arguments: vec!["worker".into()] }
     }
 }
 
 impl Default for WorkerCommand {
-    /// This very program with the argument `worker`. On Linux the file that is running, even if another was put in
-    /// its place, so that console and worker are always the same build.
+    /// Runs this same program with the argument `worker`. On Linux this is the file that is running, even if it has
+    /// been replaced on disk, so that console and worker are always the same build.
     fn default() -> Self {
         let running = PathBuf::from("/proc/self/exe");
         let is_there = cfg!(target_os = "linux") && running.exists();
@@ -54,42 +54,42 @@ impl Default for WorkerCommand {
     }
 }
 
-/// The deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its time still
-/// answers before it is killed.
+/// Returns the deadline that a planner sees. It is earlier than the enforced one, so that a planner that watches its
+/// time can still answer before it is killed.
 fn soft(deadline: Duration) -> Duration {
     deadline * 9 / 10
 }
 
-/// Why there is no answer. All texts read on after the name of the planner or plugin.
+/// Why there is no answer. All texts continue after the name of the planner or plugin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Failure {
-    /// The planner said no.
+    /// The planner refused the request.
     Planner(Refusal),
-    /// The loader said no.
+    /// The loader refused the plugin.
     Refused(String),
-    /// The process ended; how.
+    /// The process ended.
     Died {
-        /// "was killed by ..." and the like.
+        /// How it ended, such as "was killed by ...".
         how: String,
         /// The last line that it printed; may be empty.
         last_output: String,
     },
-    /// It tried to do something that no planner may do; the process was killed.
+    /// The planner tried something that no planner may do; the process was killed.
     Forbidden {
-        /// What.
+        /// What the planner tried.
         call: String,
         /// The last line that it printed; may be empty.
         last_output: String,
     },
-    /// No answer within the budget and the grace period; the process was killed.
+    /// There was no answer within the budget and the grace period; the process was killed.
     Hung,
-    /// An answer, but only within the grace period; the process was killed.
+    /// The answer came only within the grace period; the process was killed.
     Late,
-    /// It was starved of CPU time for too long; the process was killed.
+    /// The worker was starved of CPU time for too long; the process was killed.
     Starved,
-    /// It exceeded this limit of memory, bytes; the process was killed.
+    /// The worker exceeded this memory limit, bytes; the process was killed.
     Overweight(u64),
-    /// An invalid answer; the process was killed.
+    /// The answer was invalid; the process was killed.
     Protocol,
     /// The process no longer exists.
     Gone,
@@ -97,24 +97,24 @@ pub(crate) enum Failure {
     Console(String),
 }
 
-/// What a process did that exceeded this limit of memory, bytes; reads on after the planner's name.
+/// Describes that a process exceeded this memory limit, bytes; continues after the planner's name.
 pub(crate) fn overweight(limit: u64) -> String {
-    format!("took more than its limit of {} MB of memory", limit >> 20)
+    format!("exceeded its memory limit of {} MB", limit >> 20)
 }
 
-/// Why a worker cannot run: what failed with its process, and what would help.
+/// Explains why a worker cannot run: what failed, and what would help.
 pub(crate) fn no_worker(cannot: &str, error: &io::Error) -> String {
-    // What fork and clone report at the limit of processes and threads.
+    // This is the error of fork and clone when the limit of processes and threads is reached.
     let limit = if error.kind() == io::ErrorKind::WouldBlock {
         "; `ulimit -u` limits processes and threads"
     } else {
         ""
     };
-    format!("cannot be run, its process {cannot}: {error}{limit}")
+    format!("cannot be run: its process {cannot}: {error}{limit}")
 }
 
 impl Failure {
-    /// Whether the process has ended as well, by itself or killed for what it did.
+    /// Whether the process has ended as well, on its own or killed because of the failure.
     pub(crate) fn has_ended_the_process(&self) -> bool {
         matches!(
             self,
@@ -128,18 +128,18 @@ impl Failure {
         )
     }
 
-    /// How the process ended; reads on after the planner's name.
+    /// Describes how the process ended; continues after the planner's name.
     pub(crate) fn how(&self) -> String {
         match self {
             Self::Died { how, .. } => how.clone(),
             Self::Forbidden { call, .. } => format!("tried {call}, which no planner may do,"),
             Self::Overweight(limit) => overweight(*limit),
             Self::Protocol => "sent an invalid reply".to_owned(),
-            _ => "did not end in time".to_owned(),
+            _ => "did not exit in time".to_owned(),
         }
     }
 
-    /// Whether the planner cannot be asked again after this, or ran out of time: then its process ends.
+    /// Whether the planner can no longer be asked after this refusal, or ran out of time; then its process is killed.
     fn ends_the_process(&self) -> bool {
         let Self::Planner(refusal) = self else { return false };
         match Code::from_number(refusal.code) {

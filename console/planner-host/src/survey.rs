@@ -1,4 +1,4 @@
-//! Everything that was found: plugins with their planners, and refused ones with the reason.
+//! Lists all plugins found: their planners, or the reason why a plugin is refused.
 
 mod cache;
 
@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A library that does not load and describe itself within this time is refused.
+/// How long a library may take to load and describe itself.
 pub(crate) const LOAD_WITHIN: Duration = Duration::from_secs(2);
-/// Memory of a planner in its worker unless something else is said, bytes.
+/// The default memory limit of a planner, bytes.
 pub(crate) const MEMORY_LIMIT: u64 = 256 << 20;
 
 /// Every plugin file, in the order in which they are searched.
@@ -32,27 +32,27 @@ pub struct Survey {
 /// One plugin file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SurveyedPlugin {
-    /// Where it is.
+    /// The path of the file.
     pub path: PathBuf,
-    /// Planner ABI it was built for, as `major.minor`; absent when it has no stamp.
+    /// The planner ABI for which it was built, as `major.minor`; absent when it has no stamp.
     pub abi: Option<String>,
     /// SHA-256 of the file, hexadecimal; empty when it cannot be read.
     pub sha256: String,
-    /// Its planners that can be chosen.
+    /// The planners that can be chosen from this plugin.
     pub planners: Vec<PlannerInfo>,
-    /// Ids of its planners that an earlier plugin has, too: they cannot be chosen from here.
+    /// Ids of planners that an earlier plugin contains, too; they cannot be chosen from this plugin.
     pub shadowed: Vec<String>,
-    /// Why it is refused, if it is.
+    /// Why the plugin is refused, if it is.
     pub refused: Option<String>,
 }
 
 impl Survey {
-    /// The planners that can be chosen.
+    /// Iterates over the planners that can be chosen.
     pub fn planners(&self) -> impl Iterator<Item = &PlannerInfo> {
         self.plugins.iter().flat_map(|plugin| &plugin.planners)
     }
 
-    /// The plugins that cannot be chosen.
+    /// Iterates over the plugins that are refused.
     pub fn refused(&self) -> impl Iterator<Item = RefusedPlugin> {
         self.plugins.iter().filter_map(|plugin| {
             let name = plugin.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -61,24 +61,25 @@ impl Survey {
     }
 }
 
-/// Looks at every plugin: one that is not known yet is loaded and described in a throw-away worker.
+/// Surveys every plugin. One that is not cached is loaded and described in a temporary worker.
 pub fn survey(dirs: &PluginDirs, worker: &WorkerCommand) -> Survey {
     Surveyor::new(dirs, worker).survey()
 }
 
-/// Looks at plugins, at each no more than once: one that does not load takes its time.
+/// Surveys plugins, each at most once, because one that does not load takes time.
 pub struct Surveyor<'a> {
     probing: Probing<'a>,
     plugins: Vec<PluginFile>,
 }
 
 impl<'a> Surveyor<'a> {
-    /// Nothing is loaded yet.
+    /// Creates a surveyor; nothing is loaded yet.
     pub fn new(dirs: &PluginDirs, worker: &'a WorkerCommand) -> Self {
         Self { probing: Probing::of(dirs, worker), plugins: dirs.plugins() }
     }
 
-    /// The planners with these ids, each from the first plugin that has it; no other plugin is looked at.
+    /// Returns the planners with these ids, each from the first plugin that contains it. Only plugins that may contain
+    /// one of them are loaded.
     pub fn find(&self, ids: &[&str]) -> Vec<PlannerInfo> {
         let find = |id: &&str| {
             let may_have = self.plugins.iter().filter(|plugin| plugin.may_have(id));
@@ -88,12 +89,13 @@ impl<'a> Surveyor<'a> {
         ids.iter().filter_map(find).collect()
     }
 
-    /// Why this machine lets no planner run, if a worker could not be run for a plugin that was looked at.
+    /// Returns why this machine prevents planners from running, if a worker could not be run for one of the plugins.
     pub fn no_worker(&self) -> Option<String> {
         self.probing.no_worker()
     }
 
-    /// The planners of these ids that more than one plugin has: each id, the plugin that is taken, and the first one that is not.
+    /// Returns which of these ids more than one plugin contains: the id, the plugin that is used, and the first one
+    /// that is not.
     pub fn shadowed(&self, ids: &[&str]) -> Vec<(String, PathBuf, PathBuf)> {
         let holders = |id: &&str| {
             let has_it = |plugin: &&PluginFile| {
@@ -109,7 +111,7 @@ impl<'a> Surveyor<'a> {
         ids.iter().filter_map(holders).collect()
     }
 
-    /// Every plugin.
+    /// Surveys every plugin.
     pub fn survey(&self) -> Survey {
         let mut known: Vec<String> = Vec::new();
         let plugins = self.plugins.iter().map(|plugin| look_at(plugin, &self.probing, &mut known)).collect();
@@ -117,10 +119,10 @@ impl<'a> Surveyor<'a> {
     }
 }
 
-/// Looks at one file, wherever it lies and whatever it is called; it is loaded also when it is known.
+/// Checks one file, whatever its folder and name; it is loaded even if it is cached.
 ///
 /// # Errors
-/// Why this machine lets no planner run: no fault of the plugin.
+/// Why this machine prevents planners from running, which is not the plugin's fault.
 pub fn check_plugin(
     file: &Path,
     worker: &WorkerCommand,
@@ -138,12 +140,12 @@ pub fn check_plugin(
     }
 }
 
-/// How plugins are looked at.
+/// Loads and describes plugins.
 struct Probing<'a> {
     worker: &'a WorkerCommand,
     requires_sandbox: bool,
     cache: Cache,
-    /// Plugins that could not be loaded, and why.
+    /// Plugins that could not be loaded, and the reasons.
     refused: RefCell<BTreeMap<PathBuf, Failure>>,
 }
 
@@ -219,7 +221,7 @@ fn finished(worker: &mut Worker) -> Result<(), Failure> {
     }
 }
 
-/// A planner as the mission knows it.
+/// Describes a planner in the form that the mission uses.
 pub(crate) fn info(planner: &Described, sealed: &Sealed, plugin: &str) -> PlannerInfo {
     PlannerInfo {
         id: planner.id.clone(),
@@ -236,25 +238,25 @@ pub(crate) fn info(planner: &Described, sealed: &Sealed, plugin: &str) -> Planne
     }
 }
 
-/// Why a library is refused that could not be loaded.
+/// Explains why a library that could not be loaded is refused.
 pub(crate) fn refusal_text(failure: &Failure) -> String {
     match failure {
         Failure::Refused(why) | Failure::Console(why) => why.clone(),
-        Failure::Died { how, last_output } if last_output.is_empty() => format!("{how} while it was loaded"),
+        Failure::Died { how, last_output } if last_output.is_empty() => format!("{how} while being loaded"),
         Failure::Died { how, last_output } => {
-            format!("{how} while it was loaded; last output: {last_output}")
+            format!("{how} while being loaded; last output: {last_output}")
         }
         Failure::Forbidden { call, .. } => {
-            format!("tried {call} while it was loaded, which no planner may do; its process was killed")
+            format!("tried {call} while being loaded, which no planner may do; its process was killed")
         }
         Failure::Overweight(limit) => {
-            format!("{} while it was loaded; its process was killed", overweight(*limit))
+            format!("{} while being loaded; its process was killed", overweight(*limit))
         }
         Failure::Hung | Failure::Late | Failure::Starved => {
             "did not load in time; its process was stopped".to_owned()
         }
         Failure::Planner(_) | Failure::Protocol | Failure::Gone => {
-            "sent an invalid reply while it was loaded".to_owned()
+            "sent an invalid reply while being loaded".to_owned()
         }
     }
 }

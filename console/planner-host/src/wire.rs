@@ -1,10 +1,10 @@
 //! The protocol between console and worker.
 //!
-//! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian; the length counts
-//! everything after itself, the soft deadline is in microseconds and zero for none. One request, one answer with the
-//! request's sequence number; a CANCEL may follow a request and is never answered. Any number of PROGRESS frames with the
-//! request's sequence number may come before the answer to a PLAN, and nowhere else; they are never answered either. One
-//! SEALED frame comes before the answer to a LOAD, and before anything of the plugin runs.
+//! A frame is `u32 length | u8 kind | u32 sequence | u32 soft deadline | body`, little-endian. The length counts
+//! everything after itself; the soft deadline is in microseconds, and zero means none. Every request gets one answer
+//! with the same sequence number. A CANCEL may follow a request and is never answered. Before the answer to a PLAN, and
+//! nowhere else, there may be any number of PROGRESS frames with the sequence number of the request; they are never
+//! answered. Before the answer to a LOAD there is one SEALED frame, sent before any code of the plugin runs.
 
 pub(crate) mod answer;
 pub(crate) mod body;
@@ -16,17 +16,17 @@ pub(crate) mod request;
 use rustix::process::Signal;
 use std::time::Duration;
 
-/// Raised whenever a frame changes its form: console and worker must be the same build.
+/// Raised whenever the form of a frame changes: console and worker must be the same build.
 pub(crate) const VERSION: u32 = 6;
-/// Longest frame, bytes.
+/// The maximum length of a frame, bytes.
 pub(crate) const LONGEST: usize = 16 << 20;
-/// The signal with which a worker ends itself when it can no longer talk to its console. No exit code: those are the planner's;
-/// and on Linux a signal that nothing uses.
+/// The signal with which a worker ends itself when it can no longer talk to its console. It is not an exit code,
+/// because exit codes are the planner's; on Linux it is a signal that nothing else uses.
 #[cfg(target_os = "linux")]
 pub(crate) const CHANNEL_LOST: Signal = Signal::STKFLT;
 #[cfg(not(target_os = "linux"))]
 pub(crate) const CHANNEL_LOST: Signal = Signal::USR2;
-/// A worker that is asked to shut down is given this long to drop its planner cleanly.
+/// How long a worker that is asked to shut down may take to destroy its planner cleanly.
 pub(crate) const SHUT_DOWN_WITHIN: Duration = Duration::from_millis(100);
 
 /// Kinds of frames.
@@ -45,10 +45,11 @@ pub(crate) mod kind {
     pub(crate) const FAILED: u8 = 0x81;
     /// The loader refused.
     pub(crate) const REFUSED: u8 = 0x82;
-    /// How far a plan is; the answer follows.
+    /// Progress of a plan; the answer follows.
     pub(crate) const PROGRESS: u8 = 0x83;
-    /// How far the worker is closed off, and for which file; the descriptor that reports its calls comes along.
+    /// The extent of the worker's sandbox, and the file to load. The descriptor that reports the worker's calls is sent
+    /// along.
     pub(crate) const SEALED: u8 = 0x84;
-    /// The machine does not let the worker run; this says nothing about the library.
+    /// The machine prevents the worker from running; the library is not to blame.
     pub(crate) const UNABLE: u8 = 0x85;
 }

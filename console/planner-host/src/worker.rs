@@ -1,4 +1,4 @@
-//! The worker process: one plugin, no way back into the console but one socket.
+//! The worker process: it loads one plugin, and its only connection to the console is one socket.
 
 mod confine;
 mod deadline;
@@ -18,10 +18,10 @@ use std::os::unix::net::UnixStream;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// The one descriptor of the socket, for all who use it.
+/// The one descriptor of the socket, shared by all its users.
 type Socket = Arc<UnixStream>;
 
-/// Runs a worker: takes the socket that it was given as standard input and answers until the console hangs up.
+/// Runs a worker: takes the socket that was passed as standard input and answers requests until the console hangs up.
 pub fn worker_main() -> ExitCode {
     if confine::take_socket().and_then(|socket| serve(&Arc::new(socket))).is_ok() {
         return ExitCode::SUCCESS;
@@ -30,8 +30,8 @@ pub fn worker_main() -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// Reads from a socket when something is there. A read that waits by itself is also woken when the other side has taken
-/// what was written: at every step, for nothing.
+/// Reads from a socket only when data is available. A blocking read would also be woken, in vain, whenever the other
+/// side reads what was written, which happens at every step.
 struct Patient<'a>(&'a UnixStream);
 
 impl Read for Patient<'_> {
@@ -75,7 +75,7 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
         Err(Trouble::Unable(why)) => {
             writer.begin(kind::UNABLE, sequence, 0).put(&why);
         }
-        // The console sent something that its own build does not send.
+        // The console sent something that no console of the same build sends.
         Err(Trouble::Malformed) => return Err(io::ErrorKind::InvalidData.into()),
     }
     Ok(())
@@ -83,7 +83,7 @@ fn answer(session: &mut Session<'_>, incoming: &Incoming, writer: &mut Writer) -
 
 fn finished(writer: &mut Writer, sequence: u32) -> &[u8] {
     if writer.finish().is_err() {
-        let message = "gave more than fits into an answer".to_owned();
+        let message = "gave an answer that is too large".to_owned();
         let refusal = Refusal { code: BAD_OUTPUT, message, partial: Vec::new() };
         writer.begin(kind::FAILED, sequence, 0).put(&refusal);
     }

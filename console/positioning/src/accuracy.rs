@@ -1,4 +1,4 @@
-//! How well a layout of stations will locate a robot, place by place, before anything moves.
+//! Forecasts how well a layout of stations will locate a robot, place by place, before the mission starts.
 
 pub mod adviser;
 
@@ -12,62 +12,64 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use world::{ObstacleMap, Point, Station, World};
 
-/// No station is nearer than this, metres: the direction is undefined this close.
+/// Distances to a station below this count as this, metres: the direction is undefined so close to it.
 const NEAREST_M: f64 = 0.05;
-/// Cells along the longer side that a map may have.
+/// The most cells of a map along its longer side.
 const MOST_CELLS: usize = 400;
-/// A ray that ends this near to a station has reached it, metres: stations may sit on a column.
+/// A ray that ends this close to a station has reached it, metres: stations may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
 
-/// What a forecast has to know.
+/// The inputs of a forecast.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
-    /// How single ranges scatter.
+    /// The scatter of single ranges.
     pub noise: RangeNoise,
-    /// How their times err besides.
+    /// The timing errors of ranges.
     #[serde(default)]
     pub timing: Timing,
-    /// Ranges per station and cycle.
+    /// The number of ranges per station and cycle.
     pub repetitions: u32,
-    /// Whether a station is of no use where an obstacle hides it.
+    /// Whether a station is unusable where an obstacle hides it.
     pub needs_line_of_sight: bool,
     /// Edge of a cell, metres.
     pub cell_m: f64,
 }
 
-/// What is forecast for one place.
+/// The forecast for one place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Longer half axis of the 95 % ellipse of a single fix, metres; `None` where there is no fix without help.
+    /// Longer half axis of the 95 % ellipse of a single fix, metres; `None` where the ranges alone give no fix.
     pub error_95_m: Option<f64>,
-    /// Geometric dilution of precision; `None` where there is no fix without help.
+    /// Geometric dilution of precision; `None` where the ranges alone give no fix.
     pub gdop: Option<f64>,
-    /// Stations heard.
+    /// The number of stations heard.
     pub heard: u32,
-    /// The place on the other side of stations on a line which their ranges do not tell from this one, metres.
+    /// The mirror image of the place if the stations are nearly on a line, metres: its ranges are practically the
+    /// same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Point>,
 }
 
-/// The forecast for every cell of the floor, row by row from the south west corner.
+/// The forecast for every cell of the floor, row by row from the south-west corner.
 ///
-/// It is the Cramér-Rao bound of a single cycle of normal noise: least squares reach it, filters do better under way.
+/// It is the Cramér-Rao bound of a single cycle with normal noise. Least squares reach this bound; filters do better
+/// during a mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AccuracyMap {
-    /// South west corner of cell 0, metres.
+    /// South-west corner of cell 0, metres.
     pub origin: Point,
     /// Edge of a cell, metres.
     pub cell_m: f64,
-    /// Cells from west to east.
+    /// The number of cells from west to east.
     pub width: usize,
-    /// Cells from south to north.
+    /// The number of cells from south to north.
     pub height: usize,
-    /// One for each cell; `None` where there is no floor.
+    /// The forecast for each cell; `None` where there is no floor.
     pub cells: Vec<Option<Accuracy>>,
 }
 
 impl AccuracyMap {
-    /// The forecast for a tank as drawn. Costs a ray for each cell and station.
+    /// Computes the forecast for a tank as drawn. Costs one ray for each cell and station.
     pub fn new(drawing: &World, forecast: &Forecast) -> Self {
         let grid = Grid::of(drawing, forecast.cell_m);
         let map = ObstacleMap::new(&drawing.boundary, &drawing.obstacles);
@@ -78,13 +80,13 @@ impl AccuracyMap {
         Self { origin: grid.origin, cell_m: grid.cell_m, width: grid.width, height: grid.height, cells }
     }
 
-    /// Middle of a cell, metres.
+    /// Returns the centre of a cell, metres.
     pub fn center(&self, index: usize) -> Point {
         let Self { origin, cell_m, width, height, .. } = *self;
         Grid { origin, cell_m, width, height }.center(index)
     }
 
-    /// The forecast for a place; `None` where there is no floor.
+    /// Returns the forecast for a place; `None` where there is no floor.
     pub fn at(&self, place: Point) -> Option<Accuracy> {
         let offset = (place - self.origin) / self.cell_m;
         let is_inside = offset.x >= 0.0 && offset.y >= 0.0 && offset.x < self.width as f64;
@@ -92,12 +94,12 @@ impl AccuracyMap {
         self.cells.get(index).copied().flatten().filter(|_| is_inside)
     }
 
-    /// Middles of the floor's cells with their forecasts.
+    /// Iterates over the centres of the floor cells, with their forecasts.
     pub fn floor(&self) -> impl Iterator<Item = (Point, Accuracy)> + '_ {
         self.cells.iter().enumerate().filter_map(|(index, cell)| Some((self.center(index), (*cell)?)))
     }
 
-    /// The places where the error exceeds a limit or there is no fix, the worst first.
+    /// Returns the places where the error exceeds a limit or there is no fix, the worst first.
     pub fn beyond(&self, limit_m: f64) -> Vec<(Point, Accuracy)> {
         let error_m = |cell: &Accuracy| cell.error_95_m.unwrap_or(f64::INFINITY);
         let mut places: Vec<_> = self.floor().filter(|(_, cell)| error_m(cell) > limit_m).collect();
@@ -107,7 +109,7 @@ impl AccuracyMap {
 }
 
 impl Forecast {
-    /// The forecast for one place.
+    /// Computes the forecast for one place.
     pub fn at(&self, place: Point, stations: &[Station], map: &ObstacleMap) -> Accuracy {
         let heard =
             || stations.iter().filter(|s| !self.needs_line_of_sight || is_in_sight(map, place, s.position));
@@ -135,7 +137,7 @@ impl Forecast {
         mirrored(&heard.map(expected).collect::<Vec<_>>(), stations, place)
     }
 
-    /// Standard deviation of the ranges of one station in a cycle, metres.
+    /// Returns the standard deviation of the aggregated range of one station in a cycle, metres.
     fn sigma_m(&self, distance_m: f64) -> f64 {
         let repetitions = f64::from(self.repetitions.max(1));
         let single_m = self.noise.sigma_ratio() * distance_m;
@@ -146,7 +148,7 @@ impl Forecast {
         share_m.hypot(self.timing.mean_sigma_m(single_m, repetitions))
     }
 
-    /// The information one station gives at a place.
+    /// Returns the information that one station provides at a place.
     fn seen(&self, place: Point, station: Point) -> Seen {
         let away = place - station;
         let distance_m = away.norm().max(NEAREST_M);
@@ -157,7 +159,7 @@ impl Forecast {
     }
 }
 
-/// The information several stations give at a place together.
+/// The combined information that several stations provide at a place.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     heard: u32,
@@ -172,7 +174,7 @@ impl Seen {
         self.information += other.information;
     }
 
-    /// Covariance of a fix; fewer than three stations leave a mirror position.
+    /// Returns the covariance of a fix; `None` for fewer than three stations, which leave a mirror image.
     fn covariance(&self) -> Option<Matrix2<f64>> {
         inverse_of(&self.information).filter(|covariance| self.heard >= 3 && covariance.trace().is_finite())
     }
@@ -189,7 +191,7 @@ fn is_in_sight(map: &ObstacleMap, from: Point, to: Point) -> bool {
         || map.ray_m(from, way / distance_m, distance_m).is_none_or(|hit_m| hit_m >= distance_m - REACHED_M)
 }
 
-/// Square cells over the box around a tank.
+/// Square cells over the bounding box of a tank.
 struct Grid {
     origin: Point,
     cell_m: f64,
@@ -198,12 +200,12 @@ struct Grid {
 }
 
 impl Grid {
-    /// Cells of this edge, or larger ones where there would be too many.
+    /// Creates cells with this edge, or with a longer one if there would be too many cells.
     fn of(world: &World, cell_m: f64) -> Self {
         let (low, high) = world.boundary.bounds();
         let span = high - low;
         let least_m = span.amax() / MOST_CELLS as f64;
-        // `max` also turns what is not a number into the least.
+        // `max` also replaces NaN by the minimum.
         let cell_m = cell_m.max(least_m).max(1e-6);
         let count = |span_m: f64| ((span_m / cell_m).ceil().max(1.0) as usize).min(MOST_CELLS + 1);
         Self { origin: low, cell_m, width: count(span.x), height: count(span.y) }

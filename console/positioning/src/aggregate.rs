@@ -1,4 +1,4 @@
-//! The repeated ranges of one station brought down to one.
+//! Combines the repeated ranges of one station into one.
 
 use crate::{
     fix::{FixError, Ranging},
@@ -7,22 +7,22 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use world::RangeSet;
 
-/// No aggregated range is trusted more than this, metres: stations are not surveyed any better.
+/// The least standard deviation of an aggregated range, metres: stations are not surveyed more accurately.
 pub const SIGMA_FLOOR_M: f64 = 1e-3;
 
-/// Shortest range that is taken for one, metres.
+/// The shortest valid range, metres.
 const SHORTEST_M: f64 = 1e-6;
-/// Longest range that is taken for one, metres.
+/// The longest valid range, metres.
 pub(crate) const RANGE_LIMIT_M: f64 = 1e6;
 
-/// Nodes of the numerical posterior of one distance.
+/// The number of nodes in the numerical posterior of one distance.
 const NODES: u32 = 48;
 /// Ranges this many sigmas from the median are trimmed.
 const TRIM_SIGMAS: f64 = 3.0;
 /// Standard deviation of a normal distribution per median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;
 
-/// How repetitions become one range.
+/// The method that combines repetitions into one range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aggregation {
@@ -31,26 +31,26 @@ pub enum Aggregation {
     Mean,
     /// The root of the mean square.
     ///
-    /// The linear solution is linear in the squared ranges, so this gives exactly the mean of the positions of the
-    /// single repetitions, which is what Wang et al. 2023 average.
+    /// The linear solution is linear in the squared ranges. This method therefore gives exactly the mean of the
+    /// positions of the single repetitions, which is what Wang et al. 2023 average.
     RootMeanSquare,
-    /// Half way between the shortest and the longest range: far better than the mean if the noise really is uniform,
-    /// worse than it otherwise.
+    /// The midpoint between the shortest and the longest range: far better than the mean if the noise really is
+    /// uniform, and worse for any other noise.
     Midrange,
-    /// The mean of the ranges within three sigmas of the median: for pings that are off now and then.
+    /// The mean of the ranges within three sigmas of the median, for occasional outliers.
     TrimmedMean,
-    /// The mean of the distance given the ranges and their distribution; falls back to [`Self::TrimmedMean`] if no
-    /// distance explains all ranges.
+    /// The posterior mean of the distance, given the ranges and their distribution; falls back to
+    /// [`Self::TrimmedMean`] if no distance is consistent with all ranges.
     Posterior,
 }
 
 impl Aggregation {
-    /// One range per station that was heard, in the order given; stations without a single range are left out.
+    /// Returns one range per station heard, in the order of `sets`; stations without ranges are left out.
     ///
-    /// `noise` is how single ranges scatter; repetitions count as independent.
+    /// `noise` is the scatter of single ranges; repetitions are taken as independent.
     ///
     /// # Errors
-    /// [`FixError::BadRange`] if a range is not a number between a micrometre and a million metres.
+    /// [`FixError::BadRange`] if a range is not between a micrometre and a million metres, or is not a number.
     pub fn aggregate(self, sets: &[RangeSet], noise: &RangeNoise) -> Result<Vec<Ranging>, FixError> {
         sets.iter().filter(|set| !set.ranges_m.is_empty()).map(|set| self.one(set, noise)).collect()
     }
@@ -81,7 +81,7 @@ impl Aggregation {
             }),
         };
         let repetitions = u32::try_from(ranges_m.len()).unwrap_or(u32::MAX);
-        // `max` also turns what is not a number into the floor.
+        // `max` also replaces NaN by the floor.
         let at_least_m = sigma_m.max(SIGMA_FLOOR_M);
         let sigma_m = at_least_m.min(RANGE_LIMIT_M);
         let station = set.station;
@@ -89,9 +89,9 @@ impl Aggregation {
     }
 }
 
-/// Mean of the ranges near the median, and how many they are.
+/// Returns the mean of the ranges near the median, and their number.
 ///
-/// The gate is that of the declared scatter, or wider if most ranges scatter more than declared.
+/// The gate follows the declared scatter; it is wider if most ranges scatter more than declared.
 fn trimmed_mean(ranges_m: &[f64], sigma_ratio: f64) -> (f64, f64) {
     let middle = median(ranges_m.to_vec());
     let mad = median(ranges_m.iter().map(|r| (r - middle).abs()).collect());
@@ -109,8 +109,8 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     if is_even { f64::midpoint(below.iter().copied().fold(0.0, f64::max), middle) } else { middle }
 }
 
-/// Mean and standard deviation of a distance, flat beforehand, after ranges with `p(r | l) = f(r / l - 1) / l`; `None`
-/// if no distance explains all of them.
+/// Returns the posterior mean and standard deviation of a distance with a flat prior, given ranges with the density
+/// `p(r | l) = f(r / l - 1) / l`; `None` if no distance is consistent with all of them.
 fn posterior(ranges_m: &[f64], (least_m, most_m): (f64, f64), noise: &RangeNoise) -> Option<(f64, f64)> {
     let n = ranges_m.len() as f64;
     let (low, high) = match (noise, noise.bound_ratio()) {
@@ -130,7 +130,7 @@ fn posterior(ranges_m: &[f64], (least_m, most_m): (f64, f64), noise: &RangeNoise
     }
     let width = (high - low) / f64::from(NODES);
     let weight = |l: f64| {
-        // The powers of the distance are taken relative to the upper end, so that they neither vanish nor overflow.
+        // The powers of the distance are relative to the upper end, so that they neither underflow nor overflow.
         let shrink = high / l;
         if matches!(noise, RangeNoise::Uniform { .. }) {
             return shrink.powi(ranges_m.len() as i32);
@@ -150,7 +150,7 @@ fn posterior(ranges_m: &[f64], (least_m, most_m): (f64, f64), noise: &RangeNoise
     sound.then(|| (low + mean, variance.max(0.0).sqrt()))
 }
 
-/// Whether a number can be a range.
+/// Whether a number is a valid range.
 pub(crate) fn is_usable(range_m: f64) -> bool {
     (SHORTEST_M..=RANGE_LIMIT_M).contains(&range_m)
 }

@@ -1,4 +1,4 @@
-//! Ranges tied to the places of their stations, checked once for all solvers.
+//! Joins ranges with the positions of their stations, checked once for all solvers.
 
 use crate::{
     aggregate::{RANGE_LIMIT_M, is_usable},
@@ -8,14 +8,14 @@ use nalgebra::Rotation2;
 use std::f64::consts::TAU;
 use world::{Point, Station, StationId, Vector};
 
-/// Distances below this count as this, metres: the direction is undefined this close to a station.
+/// Distances below this count as this, metres: the direction is undefined so close to a station.
 const NEAREST_M: f64 = 1e-3;
 /// A range is short if it is less than this share of the longest one.
 const SHORT_RANGE: f64 = 0.2;
-/// Starts tried around a station that is close by.
+/// The number of starts tried around a station that is close by.
 const CIRCLE_STARTS: u32 = 36;
 
-/// A range and where it was measured from.
+/// A range with the position of its station.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Anchor {
     pub station: StationId,
@@ -26,7 +26,7 @@ pub(crate) struct Anchor {
     pub timing_sigma_m: f64,
 }
 
-/// A station as seen from a position that is tried.
+/// A station as seen from a trial position.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     /// Distance to the station, metres.
@@ -35,29 +35,29 @@ pub(crate) struct View {
     pub direction: Vector,
     /// Measured minus computed range, metres.
     pub residual_m: f64,
-    /// Standard deviation expected of the residual, metres.
+    /// Expected standard deviation of the residual, metres.
     pub sigma_m: f64,
-    /// Metres over which it would grow by itself.
+    /// The increase in distance over which `sigma_m` would double at its present rate, metres.
     pub growth_m: f64,
 }
 
 impl View {
-    /// Residual in its own sigmas.
+    /// Returns the residual in units of its sigma.
     pub(crate) fn sigmas(&self) -> f64 {
         self.residual_m / self.sigma_m
     }
 
-    /// Squared residual in its own sigmas.
+    /// Returns the squared residual in units of its variance.
     pub(crate) fn squared_error(&self) -> f64 {
         (self.residual_m / self.sigma_m).powi(2)
     }
 }
 
 impl Anchor {
-    /// The station as seen from `position`.
+    /// Returns the station as seen from `position`.
     ///
-    /// The scatter of a range, but for that of its time, is a share of the true distance, so its sigma is taken to the computed
-    /// distance.
+    /// Except for timing errors, the scatter of a range is a share of the true distance, so its sigma is scaled to
+    /// the computed distance.
     pub(crate) fn view_from(&self, position: Point) -> View {
         let away = position - self.at;
         let distance_m = away.norm().max(NEAREST_M);
@@ -72,7 +72,7 @@ impl Anchor {
         View { distance_m, direction: away / distance_m, residual_m, sigma_m, growth_m }
     }
 
-    /// By how much the residual in its own sigmas falls, for each metre that the distance grows.
+    /// Returns the decrease of the residual, in units of its sigma, for each metre that the distance grows.
     pub(crate) fn steepness(&self, view: &View) -> f64 {
         if self.timing_sigma_m > 0.0 {
             1.0 / view.sigma_m + view.sigmas() / view.growth_m
@@ -82,7 +82,7 @@ impl Anchor {
         }
     }
 
-    /// The range with the same error at another distance.
+    /// Returns the range with the same error model at a different distance.
     pub(crate) fn at_range(&self, range_m: f64) -> Self {
         let sigma_m = if self.timing_sigma_m > 0.0 {
             share_sigma_m(self.sigma_m, self.timing_sigma_m, range_m / self.range_m)
@@ -94,7 +94,7 @@ impl Anchor {
     }
 }
 
-/// The ranges with the places of their stations, sorted by station.
+/// Joins the ranges with the positions of their stations, sorted by station.
 pub(crate) fn anchored(ranges: &[Ranging], stations: &[Station]) -> Result<Vec<Anchor>, FixError> {
     let mut anchors = ranges.iter().map(|r| anchor(r, stations)).collect::<Result<Vec<_>, _>>()?;
     anchors.sort_by_key(|a| a.station);
@@ -111,14 +111,14 @@ fn anchor(ranging: &Ranging, stations: &[Station]) -> Result<Anchor, FixError> {
     }
     let surveyed = stations.iter().find(|s| s.id == station && s.position.coords.amax() <= RANGE_LIMIT_M);
     let at = surveyed.ok_or(FixError::UnknownStation { station })?.position;
-    // `amax` skips what is not a number.
+    // `amax` skips NaN.
     if at.coords.iter().any(|c| c.is_nan()) {
         return Err(FixError::UnknownStation { station });
     }
     Ok(Anchor { station, at, range_m, sigma_m, timing_sigma_m })
 }
 
-/// Places on the range circle of a station that is close by; none if there is no such station.
+/// Returns places on the range circle of a station that is close by; nothing if there is no such station.
 pub(crate) fn on_near_circle(anchors: &[Anchor]) -> impl Iterator<Item = Point> {
     let longest_m = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
     let nearest = anchors.iter().min_by(|a, b| a.range_m.total_cmp(&b.range_m)).copied();

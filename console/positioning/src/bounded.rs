@@ -13,24 +13,26 @@ use nalgebra::Matrix2;
 use region::{Annulus, Region};
 use world::{Point, Station};
 
-/// Shorter than this no bound is worth having, metres.
+/// The least width of a bound, metres.
 const THINNEST_M: f64 = 1e-6;
 
-/// The mean of all positions that explain every single range with an error of at most `ratio` of the distance.
+/// Computes the mean of all positions that are consistent with every single range, with an error of at most `ratio`
+/// of the distance.
 ///
-/// Each station leaves an annulus about itself, from its longest range over `1 + ratio` to its shortest over
-/// `1 - ratio`; the positions left are where all annuli overlap. Uniform noise makes a position `prod l_i^-n_i` times
-/// as likely as its neighbour, so the weighted centroid is the exact mean of the posterior. With uniform noise its
-/// error falls with the number of repetitions, not with their root.
+/// Each station allows an annulus around it, from its longest range over `1 + ratio` to its shortest over
+/// `1 - ratio`; the possible positions are where all annuli overlap. With uniform noise, the likelihood of a position
+/// is proportional to `prod l_i^-n_i`, so the weighted centroid is the exact mean of the posterior. Its error then
+/// falls with the number of repetitions, not with their square root.
 ///
-/// The covariance is that of the same posterior. Its 95 % ellipse holds more than 95 %, because nothing is outside the
-/// set: no point of a convex set is further than `sqrt(8)` standard deviations from the mean, 1.16 of the longer half axis.
+/// The covariance is that of the same posterior. Its 95 % ellipse holds more than 95 %, because nothing lies outside
+/// the set: no point of a convex set is farther than `sqrt(8)` standard deviations from the mean, which is 1.16 times
+/// the longer half axis.
 ///
-/// To be used only where the bound is known to hold: with any other noise the set is soon empty, which
+/// Use this solver only if the bound is known to hold: with any other noise the set soon becomes empty, which
 /// [`FixError::EmptySet`] reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounded {
-    /// Largest error of a single range as a share of the distance, below 1.
+    /// Largest error of a single range as a share of the distance; below 1.
     pub ratio: f64,
 }
 
@@ -40,7 +42,8 @@ impl PositionSolver for Bounded {
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
         let empty = FixError::EmptySet { ratio: self.reported_ratio() };
         let annuli = annuli.ok_or(empty.clone())?;
-        // The middle of each annulus is the best single range; their fit knows whether there is a mirror.
+        // The middle of each annulus is the best single range; a fit to the middles shows whether there is a mirror
+        // image.
         let middles: Vec<Anchor> = anchors
             .iter()
             .zip(&annuli)
@@ -51,7 +54,7 @@ impl PositionSolver for Bounded {
             })
             .collect();
         let near = match solve_anchors(&middles, prior) {
-            // A fit that does not converge shows no mirror; the set is there all the same.
+            // A fit that does not converge shows no mirror image, but the set may still exist.
             Err(FixError::NotConverged { .. }) => None,
             fit => Some(fit?),
         };
@@ -69,19 +72,19 @@ impl PositionSolver for Bounded {
     }
 }
 
-/// How likely positions are by bounded ranges.
+/// The likelihood of positions, given bounded ranges.
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood(Vec<Annulus>);
 
 impl Likelihood {
-    /// Likelihood of a position up to a factor; 0 where some range cannot be.
+    /// Returns the likelihood of a position up to a factor; 0 where a range is out of bounds.
     pub(crate) fn at(&self, position: Point) -> f64 {
         region::weight_at(&self.0, position)
     }
 }
 
 impl Bounded {
-    /// The likelihood of these ranges.
+    /// Returns the likelihood function of these ranges.
     pub(crate) fn likelihood(self, ranges: &[Ranging], stations: &[Station]) -> Result<Likelihood, FixError> {
         let anchors = anchored(ranges, stations)?;
         let annuli = anchors.iter().map(|a| self.annulus(a, ranges)).collect::<Option<Vec<_>>>();
@@ -95,7 +98,7 @@ impl Bounded {
     fn annulus(self, anchor: &Anchor, ranges: &[Ranging]) -> Option<Annulus> {
         let ranging = ranges.iter().find(|r| r.station == anchor.station)?;
         let is_usable = (0.0..1.0).contains(&self.ratio);
-        // A range outside its own extremes has been tampered with; the extremes are what counts.
+        // A range outside its own extremes is inconsistent input, so only the extremes are used.
         let (least_m, most_m) = (ranging.least_m, ranging.most_m);
         let annulus = Annulus {
             at: anchor.at,

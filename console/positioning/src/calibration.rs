@@ -1,4 +1,4 @@
-//! What a whole session reveals about the speed of sound, the offset of the clocks and the positions of the stations.
+//! Estimates the speed of sound, the clock offset and the positions of the stations from a whole session.
 
 use crate::{
     anchor::{Anchor, anchored},
@@ -10,34 +10,35 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 use world::{Point, Station};
 
-/// Largest error of the assumed sound speed that is believed, as a share.
+/// The largest error of the assumed speed of sound that is accepted, as a share.
 pub(crate) const MOST_SCALE: f64 = 0.3;
-/// Largest share of a scale error that cannot be distinguished from zero.
+/// The largest scale error that counts as zero, as a share.
 const LEAST_SCALE: f64 = 1e-6;
-/// Rounds of fitting the position together with what is common to the ranges of a cycle.
+/// The number of iterations that fit the position together with the common errors of a cycle.
 const ROUNDS: usize = 6;
 
-/// What is to be found out, by how much it may be off.
+/// The quantities to estimate, each with its prior uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Unknowns {
     /// Standard deviation of the error of the assumed speed of sound, as a share.
     pub sound_sigma_ratio: f64,
-    /// Standard deviation of the surveyed places in x and in y, metres; 0: they are right.
+    /// Standard deviation of the surveyed station positions in x and in y, metres; 0 if they are exact.
     pub survey_sigma_m: f64,
-    /// Standard deviation of the length by which all ranges are too long because clocks differ, metres; 0: they agree.
+    /// Standard deviation of the length by which all ranges are too long because of a clock offset, metres; 0 if the
+    /// clocks agree.
     #[serde(default)]
     pub offset_sigma_m: f64,
 }
 
 impl Default for Unknowns {
-    /// A speed of sound known to 2 %, stations where the survey says, and clocks that agree.
+    /// A speed of sound known to 2 %, exact station positions, and clocks that agree.
     fn default() -> Self {
         Self { sound_sigma_ratio: 0.02, survey_sigma_m: 0.0, offset_sigma_m: 0.0 }
     }
 }
 
 impl Unknowns {
-    /// Whether the speed of sound is sought; a scale error of a millionth cannot be distinguished from zero.
+    /// Whether the speed of sound is estimated; a scale error of a millionth counts as zero.
     fn has_scale(&self) -> bool {
         self.sound_sigma_ratio > LEAST_SCALE
     }
@@ -55,12 +56,13 @@ fn is_positive(sigma: f64) -> bool {
     sigma > 0.0 && sigma.is_finite()
 }
 
-/// Pools the cycles of a session: each alone says little about the scale of all ranges, together they say it exactly.
+/// Pools the cycles of a session: a single cycle reveals little about the scale of all ranges, but together they
+/// determine it exactly.
 ///
-/// Every cycle is fitted with its position free; what is left over of its information goes into one system of linear
-/// equations (a Schur complement), so a session costs the same memory however long it is. Cycles that contradict
-/// themselves even with their scale free, as those with a wrong station do, are left out. Four stations are needed to
-/// separate a scale or an offset from a position, five for both; the survey also needs a robot that moves about.
+/// Every cycle is fitted with a free position. The rest of its information goes into one system of linear equations
+/// (a Schur complement), so memory does not grow with the length of a session. Cycles that contradict themselves even
+/// with a free scale, such as those with a wrong station, are left out. It takes four stations to separate a scale or
+/// an offset from a position, five for both. Estimating the station positions also needs a robot that moves about.
 #[derive(Debug, Clone)]
 pub struct Calibration {
     stations: Vec<Station>,
@@ -74,11 +76,11 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// A calibration of these stations that knows nothing yet.
+    /// Creates a calibration of these stations without any data.
     pub fn new(stations: &[Station], unknowns: Unknowns) -> Self {
         let surveyed = if unknowns.has_survey() { 2 * stations.len() } else { 0 };
         let n = 1 + surveyed + usize::from(unknowns.has_offset());
-        // `max` also turns what is not a number into the least.
+        // `max` also replaces NaN by the minimum.
         let at_least = unknowns.sound_sigma_ratio.max(LEAST_SCALE);
         let sound = at_least.min(1.0);
         let mut information = DMatrix::from_diagonal_element(n, n, unknowns.survey_sigma_m.powi(-2));
@@ -98,30 +100,30 @@ impl Calibration {
         }
     }
 
-    /// By how much too long all ranges are, as a share, and its standard deviation.
+    /// The share by which all ranges are too long, and its standard deviation.
     pub fn scale(&self) -> (f64, f64) {
         (self.estimate[0], self.scale_sigma)
     }
 
-    /// By how much too long all ranges are, metres, and its standard deviation.
+    /// The length by which all ranges are too long, and its standard deviation, metres.
     pub fn offset_m(&self) -> (f64, f64) {
         (self.common().offset_m, self.offset_sigma_m)
     }
 
-    /// A calibration that starts again where this one came to: cycles are linear about what is believed while they are taken, so
-    /// that taking a session again mends what the first ones were off.
+    /// Returns a calibration without data that starts from the estimate of this one. Cycles are linearised about the
+    /// estimate at the time, so a second pass over the session removes the errors of the first.
     #[must_use]
     pub fn again(&self) -> Self {
         Self { estimate: self.estimate.clone(), ..Self::new(&self.stations, self.unknowns) }
     }
 
-    /// What is common to all ranges, as far as it is known.
+    /// Returns the current estimate of the common errors.
     fn common(&self) -> Common {
         let offset_m = if self.unknowns.has_offset() { self.estimate[self.estimate.len() - 1] } else { 0.0 };
         Common { scale: self.estimate[0], offset_m }
     }
 
-    /// The stations where the session says they are.
+    /// The stations at their estimated positions.
     pub fn stations(&self) -> Vec<Station> {
         let moved = |(i, station): (usize, &Station)| {
             let mut station = station.clone();
@@ -135,17 +137,17 @@ impl Calibration {
         self.stations.iter().enumerate().map(moved).collect()
     }
 
-    /// How many cycles went into it.
+    /// The number of cycles used.
     pub fn cycles(&self) -> u64 {
         self.cycles
     }
 
-    /// What is being found out.
+    /// The quantities being estimated.
     pub fn unknowns(&self) -> Unknowns {
         self.unknowns
     }
 
-    /// The ranges with their common error taken out; what is left of it widens their sigmas.
+    /// Returns the ranges with their common error removed; its remaining uncertainty widens their sigmas.
     pub fn corrected(&self, ranges: &[Ranging]) -> Vec<Ranging> {
         let Common { scale, offset_m } = self.common();
         let by = 1.0 / (1.0 + scale);
@@ -160,7 +162,7 @@ impl Calibration {
         ranges.iter().map(one).collect()
     }
 
-    /// Takes in the uncorrected ranges of one cycle; whether they could be used.
+    /// Adds the uncorrected ranges of one cycle; returns whether they could be used.
     ///
     /// # Errors
     /// See [`FixError`]: a cycle without a position contributes nothing.
@@ -197,7 +199,8 @@ impl Calibration {
         }
         let mut right = nalgebra::Vector2::zeros();
         for (row, by_unknown) in cycle.rows.iter().zip(&rows) {
-            // As seen from unknowns of zero, so that cycles taken at different estimates add up.
+            // Relative to zero values of the unknowns, so that cycles linearised at different estimates can be
+            // summed.
             let error = row.error + by_unknown.dot(&self.estimate);
             self.information += by_unknown * by_unknown.transpose() * row.weight;
             self.weighted += by_unknown * (row.weight * error);
@@ -226,14 +229,14 @@ impl Calibration {
     }
 }
 
-/// What all ranges have in common: `range = distance * (1 + scale) + offset`.
+/// The common errors of all ranges: `range = distance * (1 + scale) + offset`.
 #[derive(Debug, Clone, Copy)]
 struct Common {
     scale: f64,
     offset_m: f64,
 }
 
-/// What a cycle may choose for itself when it is asked whether it contradicts itself.
+/// The quantities that are free when a cycle is checked for contradictions.
 #[derive(Debug, Clone, Copy)]
 struct Free {
     scale: bool,
@@ -251,7 +254,7 @@ impl Free {
     }
 }
 
-/// One range of a cycle, linear about the fit.
+/// One range of a cycle, linearised about the fit.
 struct Row {
     anchor: usize,
     by_position: nalgebra::Vector2<f64>,
@@ -260,14 +263,14 @@ struct Row {
     weight: f64,
 }
 
-/// A cycle about its own best position.
+/// A cycle, linearised about its own best position.
 struct Cycle {
     rows: Vec<Row>,
     position_inverse: Matrix2<f64>,
 }
 
 impl Cycle {
-    /// The cycle at what is common; `None` if it contradicts itself even with that free.
+    /// Fits the cycle with the common errors given; `None` if it contradicts itself even with those free.
     fn fitted(
         anchors: &[Anchor],
         common: Common,
@@ -312,11 +315,11 @@ fn row(index: usize, anchor: &Anchor, position: Point, common: Common) -> Row {
     }
 }
 
-/// Sum of the squared residuals of a cycle with everything free that may be.
+/// Returns the sum of the squared residuals of a cycle, with all permitted quantities free.
 fn own_chi2(anchors: &[Anchor], mut position: Point, mut common: Common, free: Free) -> Option<f64> {
     for _ in 0..ROUNDS {
         let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        // What is not free has a column of zeros; one on the diagonal keeps it where it is.
+        // A fixed quantity has a column of zeros; a 1 on the diagonal keeps its value.
         normal[(2, 2)] = f64::from(u8::from(!free.scale));
         normal[(3, 3)] = f64::from(u8::from(!free.offset));
         for row in anchors.iter().map(|a| row(0, a, position, common)) {

@@ -8,38 +8,39 @@ use crate::{
 };
 use world::{Point, Station};
 
-/// A residual of more sigmas than this speaks for a wrong range.
+/// A residual of more sigmas than this indicates a wrong range.
 const CUT_SIGMAS: f64 = 3.0;
-/// Newton steps on a subset of three; the linear start is near.
+/// The number of Newton steps on a subset of three; the linear start is already close.
 const SUBSET_STEPS: usize = 2;
-/// Subsets looked at before some are skipped: all of up to ten stations.
+/// The most subsets tried before some are skipped: all subsets of up to ten stations.
 const MOST_SUBSETS: usize = 120;
-/// Best groups of agreeing stations that are refined.
+/// The number of best groups of agreeing stations that are refined.
 const REFINED: usize = 8;
-/// Iterations of reselecting the agreeing stations.
+/// The most iterations of reselecting the agreeing stations.
 const ROUNDS: usize = 6;
-/// A second answer whose cost is larger by less than this is as good as the first.
+/// A second answer is as good as the first if its cost is higher by less than this.
 const MARGIN: f64 = 16.0;
-/// Fewer agreeing stations than this cannot show that they agree.
+/// Fewer agreeing stations than this prove nothing.
 const NEEDED: usize = 4;
 
-/// Which way wrong ranges are wrong.
+/// The sign of the error of wrong ranges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WrongRanges {
-    /// Always too long, as sound that takes a detour: a range that is too short is believed.
+    /// Always too long, as for sound that takes a detour; a range that is too short is accepted.
     #[default]
     Late,
-    /// Either way.
+    /// Too long or too short.
     Any,
 }
 
-/// Fits all subsets of three stations, keeps the position that leaves the fewest stations in disagreement, and fits
-/// again to those that agree.
+/// Fits all subsets of three stations, keeps the position with which the fewest stations disagree, and fits again to
+/// those that agree.
 ///
-/// With fewer than four stations it is [`crate::Nls`]. Six to eight stations bear one in five hidden behind something.
+/// With fewer than four stations, it behaves like [`crate::Nls`]. With six to eight stations, it tolerates one in
+/// five hidden behind an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Consensus {
-    /// Which ranges are doubted.
+    /// The kind of errors to expect.
     pub wrong: WrongRanges,
 }
 
@@ -65,7 +66,7 @@ struct Answer {
 }
 
 impl Answer {
-    /// Whether another answer is nearly as good and not where this one lies by its own account.
+    /// Whether a different answer is nearly as good, but farther away than the 95 % error of this one.
     fn is_contested_by(&self, other: &Self) -> bool {
         let apart_m = (self.fix.position - other.fix.position).norm();
         other.cost < self.cost + MARGIN && apart_m > self.fix.ellipse_95().0
@@ -73,7 +74,7 @@ impl Answer {
 }
 
 impl Consensus {
-    /// The best answers, the best first.
+    /// Returns the best answers, best first.
     fn answers(self, anchors: &[Anchor], prior: Option<Prior>) -> Vec<Answer> {
         let mut tries: Vec<(f64, Point)> = subsets(anchors.len())
             .filter_map(|[i, j, k]| fit_three(&[anchors[i], anchors[j], anchors[k]]))
@@ -94,7 +95,7 @@ impl Consensus {
         answers
     }
 
-    /// Fits to the agreeing stations until they no longer change.
+    /// Fits to the agreeing stations until the selection no longer changes.
     fn refined(self, anchors: &[Anchor], start: Point, prior: Option<Prior>) -> Option<Answer> {
         let mut agreeing = self.agreeing(anchors, start);
         let mut answer = None;
@@ -123,14 +124,14 @@ impl Consensus {
         sigmas > CUT_SIGMAS || (self.wrong == WrongRanges::Any && sigmas < -CUT_SIGMAS)
     }
 
-    /// Squared residuals, cut off for what may be wrong.
+    /// Returns the sum of the squared residuals, capped for ranges that may be wrong.
     fn cost_at(self, anchors: &[Anchor], position: Point) -> f64 {
         let cost = |sigmas: f64| if self.is_wrong(sigmas) { CUT_SIGMAS.powi(2) } else { sigmas * sigmas };
         anchors.iter().map(|a| cost(a.view_from(position).sigmas())).sum()
     }
 }
 
-/// The fix with the excluded stations, and its integrity lowered where the rest do not confirm it.
+/// Adds the excluded stations to the fix, and lowers its integrity if the other stations do not confirm it.
 fn with_exclusions(mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> Fix {
     for anchor in anchors.iter().filter(|a| !fix.used.contains(&a.station)) {
         let view = anchor.view_from(fix.position);
@@ -147,14 +148,14 @@ fn with_exclusions(mut fix: Fix, anchors: &[Anchor], rival: Option<&Answer>) -> 
     fix
 }
 
-/// Subsets of three out of `n`, at most about [`MOST_SUBSETS`] of them, evenly over all.
+/// Iterates over subsets of three out of `n`, at most about [`MOST_SUBSETS`] of them, evenly spread.
 fn subsets(n: usize) -> impl Iterator<Item = [usize; 3]> {
     let all = n * n.saturating_sub(1) * n.saturating_sub(2) / 6;
     let every = (all / MOST_SUBSETS).max(1);
     (0..n).flat_map(move |i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k]))).step_by(every)
 }
 
-/// The position of three stations, if they are not on a line.
+/// Returns the position from three stations that are not on a line.
 fn fit_three(three: &[Anchor; 3]) -> Option<Point> {
     let mut position = solve_linear(three).ok()?.position;
     for _ in 0..SUBSET_STEPS {

@@ -1,4 +1,4 @@
-//! Positions from arrivals whose time of emission nobody knows: only the differences count.
+//! Computes positions from arrivals with unknown emission times: only the differences count.
 
 use crate::{
     anchor::{Anchor, anchored},
@@ -9,18 +9,20 @@ use crate::{
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use world::{Point, Station};
 
-/// Stations needed: two for the position, one for the time of emission, one to tell mirror positions apart.
+/// The number of stations needed: two for the position, one for the emission time, one to exclude mirror images.
 const NEEDED: usize = 4;
-/// Steps tried before giving up; six are usual.
+/// The most steps before giving up; six are usual.
 const MAX_ITERATIONS: usize = 60;
 /// The search ends when a step is shorter than this, metres.
 const SETTLED_M: f64 = 1e-9;
 
-/// Least squares on ranges that are all too long by one length that nobody knows, as arrival times without the time of
-/// emission are: position and length are free, and the covariance of the position contains the doubt about the length.
+/// Least squares on ranges that are all too long by one unknown length, such as arrival times without the emission
+/// time. Position and length are both free, and the covariance of the position includes the uncertainty of the
+/// length.
 ///
-/// The scatter of a range is its sigma as a share of the range as given, taken to the true distance. Several starts are tried,
-/// because differences of distances have valleys behind the stations; the best one wins, and a prior is only one of them.
+/// The scatter of a range is the given share of the range, scaled to the true distance. Differences of distances have
+/// valleys behind the stations, so several starts are tried; the best result is used. A prior is only one of the
+/// starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Differences;
 
@@ -45,14 +47,14 @@ impl PositionSolver for Differences {
         let covariance = found.covariance.fixed_view::<2, 2>(0, 0).into_owned();
         let mut fix = assess(&ranges, found.position, covariance, conditioning(&ranges), None)?;
         fix.degrees_of_freedom -= 1;
-        // Leaving a station out also frees the length; the bound for known ranges does not hold.
+        // Leaving out a station also frees the length, so the bound for known ranges does not hold.
         fix.protection_level_m = None;
         fix.integrity = integrity_of(fix.chi2, fix.degrees_of_freedom);
         Ok(fix)
     }
 }
 
-/// By how much all ranges behind a fix of [`Differences`] are too long, metres.
+/// Returns the length by which all ranges behind a fix of [`Differences`] are too long, metres.
 pub(crate) fn common_excess_m(fix: &Fix, ranges: &[Ranging], stations: &[Station]) -> Option<f64> {
     let residual = fix.residuals.first()?;
     let range = ranges.iter().find(|range| range.station == residual.station)?;
@@ -60,7 +62,7 @@ pub(crate) fn common_excess_m(fix: &Fix, ranges: &[Ranging], stations: &[Station
     Some(range.range_m - residual.residual_m - (fix.position - station.position).norm())
 }
 
-/// A minimum: position, common excess of the ranges, and the covariance of both.
+/// A minimum: position, common excess of the ranges, and their covariance.
 struct Minimum {
     position: Point,
     excess_m: f64,
@@ -68,7 +70,8 @@ struct Minimum {
     covariance: Matrix3<f64>,
 }
 
-/// Where to begin: the solution of the squared equations, what is believed, and the middle between the stations and round it.
+/// Returns the starts: the solution of the squared equations, the prior, the centre of the stations, and points
+/// around it.
 fn starts(anchors: &[Anchor], prior: Option<Prior>) -> impl Iterator<Item = Point> {
     let n = anchors.len() as f64;
     let middle = Point::from(anchors.iter().map(|a| a.at.coords).sum::<world::Vector>() / n);
@@ -77,7 +80,7 @@ fn starts(anchors: &[Anchor], prior: Option<Prior>) -> impl Iterator<Item = Poin
     squared(anchors).into_iter().chain(believed).chain([middle]).chain(round.collect::<Vec<_>>())
 }
 
-/// The solution that is linear in place, excess, and the difference of their squares.
+/// Solves the equations that are linear in the position, the excess, and the difference of their squares.
 fn squared(anchors: &[Anchor]) -> Option<Point> {
     let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
     for anchor in anchors {
@@ -89,7 +92,7 @@ fn squared(anchors: &[Anchor]) -> Option<Point> {
     Some(Point::new(solved.x, solved.y)).filter(|at| at.iter().all(|c| c.is_finite()))
 }
 
-/// Goes down from a place by Gauss and Newton's steps under Levenberg and Marquardt's damping.
+/// Descends from a place by Gauss-Newton steps with Levenberg-Marquardt damping.
 fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
     let mut state = Vector3::new(start.x, start.y, 0.0);
     state.z = best_excess_m(anchors, start);
@@ -117,7 +120,7 @@ fn descend(anchors: &[Anchor], start: Point) -> Option<Minimum> {
     None
 }
 
-/// The excess that fits a place best.
+/// Returns the excess that fits a place best.
 fn best_excess_m(anchors: &[Anchor], at: Point) -> f64 {
     anchors.iter().map(|a| a.range_m - (at - a.at).norm()).sum::<f64>() / anchors.len() as f64
 }
@@ -134,7 +137,7 @@ fn slope(anchors: &[Anchor], state: &Vector3<f64>) -> Slope {
         let view = anchor.view_from(Point::new(state.x, state.y));
         let error = (view.residual_m - state.z) / view.sigma_m;
         let by = Vector3::new(view.direction.x, view.direction.y, 1.0) / view.sigma_m;
-        // The sigma grows with the distance, too.
+        // The sigma grows with the distance as well.
         let by = by + Vector3::new(view.direction.x, view.direction.y, 0.0) * (error / view.growth_m);
         slope.cost += error * error;
         slope.gradient -= by * error;

@@ -8,7 +8,7 @@ use world::{Point, RangeSet, Station, StationId};
 /// Radius of the paper's tank, metres.
 pub(crate) const RADIUS_M: f64 = 10.0;
 
-/// Stations at these places, numbered from 1.
+/// Returns stations at these places, numbered from 1.
 pub(crate) fn stations(places: &[(f64, f64)]) -> Vec<Station> {
     (1..)
         .zip(places)
@@ -20,17 +20,17 @@ pub(crate) fn stations(places: &[(f64, f64)]) -> Vec<Station> {
         .collect()
 }
 
-/// The layout of Wang et al. 2023; its circumcentre is the origin.
+/// Returns the layout of Wang et al. 2023; its circumcentre is the origin.
 pub(crate) fn paper_stations() -> Vec<Station> {
     stations(&[(7.5, 0.0), (-7.5, 0.0), (0.0, 7.5)])
 }
 
-/// A layout without any symmetry.
+/// Returns a layout without any symmetry.
 pub(crate) fn skew_stations() -> Vec<Station> {
     stations(&[(8.1, -1.2), (-5.3, 3.9), (1.7, 6.6)])
 }
 
-/// Stations evenly on a ring.
+/// Returns stations evenly spaced on a ring.
 pub(crate) fn ring(n: u32, radius_m: f64) -> Vec<Station> {
     let places: Vec<(f64, f64)> = (0..n)
         .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(n))
@@ -49,22 +49,22 @@ pub(crate) struct Draws {
 }
 
 impl Draws {
-    /// Noise from a seed.
+    /// Creates noise from a seed.
     pub(crate) fn new(ratio: f64, repetitions: usize, seed: u64) -> Self {
         Self { ratio, repetitions, rng: Pcg64::seed_from_u64(seed) }
     }
 
-    /// A number evenly between -1 and 1.
+    /// Returns a number uniformly distributed between -1 and 1.
     pub(crate) fn even(&mut self) -> f64 {
         self.rng.random_range(-1.0..1.0)
     }
 
-    /// A number with mean 0 and variance 1, nearly normal.
+    /// Returns an approximately normal number with mean 0 and variance 1.
     pub(crate) fn bell(&mut self) -> f64 {
         (0..12).map(|_| self.even() / 2.0).sum()
     }
 
-    /// A point evenly on the floor of the paper's tank.
+    /// Returns a point uniformly distributed on the floor of the paper's tank.
     pub(crate) fn on_disc(&mut self) -> Point {
         loop {
             let point = Point::new(self.even(), self.even()) * RADIUS_M;
@@ -74,7 +74,7 @@ impl Draws {
         }
     }
 
-    /// One ranging cycle.
+    /// Returns one ranging cycle.
     pub(crate) fn cycle(&mut self, stations: &[Station], truth: Point) -> Vec<RangeSet> {
         let set = |station: &Station| {
             let distance = (truth - station.position).norm();
@@ -85,14 +85,14 @@ impl Draws {
         stations.iter().map(set).collect()
     }
 
-    /// One ranging cycle, aggregated.
+    /// Returns one ranging cycle, aggregated.
     pub(crate) fn rangings(&mut self, stations: &[Station], truth: Point, how: Aggregation) -> Vec<Ranging> {
         let noise = RangeNoise::Uniform { ratio: self.ratio };
         how.aggregate(&self.cycle(stations, truth), &noise).expect("true distances give usable ranges")
     }
 }
 
-/// Ranges without error and with a sigma of 3 cm.
+/// Returns ranges without error and with a sigma of 3 cm.
 pub(crate) fn exact(stations: &[Station], truth: Point) -> Vec<Ranging> {
     stations.iter().map(|s| Ranging::single(s.id, (truth - s.position).norm(), 0.03)).collect()
 }

@@ -9,39 +9,40 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use world::{Point, Pose, geometry::wrap_angle_rad};
 
-/// No position is less known than this, metres; keeps the numbers finite.
+/// Upper limit for the standard deviation of the position, metres; keeps the numbers finite.
 const SIGMA_LIMIT_M: f64 = 1e4;
-/// No variance is smaller than this.
+/// Lower limit for every variance.
 const VARIANCE_FLOOR: f64 = 1e-14;
-/// Squared distance in sigmas per degree of freedom beyond which a measurement is refused: one honest one in 10 000.
+/// Normalised squared error beyond which a measurement of one or two values is refused: one correct measurement in 10
+/// 000.
 const GATE: [f64; 2] = [15.14, 18.42];
 
-/// Position, heading, share of the way lost to slip, error of the measured turn per tick.
+/// Position, heading, share of the distance lost to slip, error of the measured turn per tick.
 pub(crate) type State = SVector<f64, 5>;
 pub(crate) type Covariance = SMatrix<f64, 5, 5>;
 
-/// Where in the state the slip stands.
+/// The index of the slip in the state.
 const SLIP: usize = 3;
-/// Where in the state the error of the turn stands.
+/// The index of the turn error in the state.
 const TURN_BIAS: usize = 4;
-/// Standard deviations beyond which nothing is less known; they keep the numbers finite.
+/// Upper limits for the standard deviations; they keep the numbers finite.
 const SIGMA_LIMITS: [f64; 5] = [SIGMA_LIMIT_M, SIGMA_LIMIT_M, PI, 1.0, 0.1];
 
-/// How odometry errs.
+/// The errors of odometry.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MotionNoise {
-    /// Standard deviation of the position after one metre without a fix, metres; mostly slip, so it grows in
-    /// proportion to the way until fixes show how large the slip is.
+    /// Standard deviation of the position after one metre without a fix, metres. Most of it is slip, so it grows in
+    /// proportion to the distance until fixes show how large the slip is.
     pub sigma_per_m: f64,
-    /// Standard deviation of a single motion as a share of it, fresh in every motion.
+    /// Standard deviation of a single motion as a share of it, independent for every motion.
     #[serde(default)]
     pub way_sigma_ratio: f64,
     /// Standard deviation of a turn as a share of the turn.
     pub turn_sigma_ratio: f64,
-    /// Standard deviation of the turn that a robot at rest measures in a tick, radians; mostly the gyro's bias times
-    /// the tick, so it adds up until fixes show how large it is.
+    /// Standard deviation of the turn that a robot at rest measures in a tick, radians. Most of it is the gyro's bias
+    /// times the tick, so it adds up until fixes show how large the bias is.
     pub heading_sigma_per_tick_rad: f64,
-    /// Chance that the tracks slip through in a motion and it is mostly lost, 0 to 1.
+    /// Probability that the tracks spin in a motion, which is then mostly lost, 0 to 1.
     #[serde(default)]
     pub slip_chance: f64,
 }
@@ -59,14 +60,14 @@ impl Default for MotionNoise {
     }
 }
 
-/// What became of a measurement.
+/// The outcome of an update with a measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Update {
-    /// Squared difference to the expectation in its own sigmas.
+    /// Squared difference between measured and expected value, in units of its variance.
     pub nis: f64,
-    /// Whether the filter took it.
+    /// Whether the filter accepted the measurement.
     pub accepted: bool,
-    /// How likely the tracks slipped through in the motion before, 0 to 1.
+    /// The probability that the tracks spun in the previous motion, 0 to 1.
     pub slipped: f64,
 }
 
@@ -78,11 +79,11 @@ impl Update {
     }
 }
 
-/// The filter: pose with covariance, moved by odometry, corrected by fixes or single ranges.
+/// A filter for the pose and its covariance, moved by odometry and corrected by fixes or single ranges.
 ///
-/// Besides the pose it estimates the slip and the gyro's bias, because both last. Ranges say nothing about the heading
-/// by themselves; it becomes known through the correlation that motion makes between heading and position. Input that
-/// is not a number is refused, so the state always is finite.
+/// Besides the pose it estimates the slip and the gyro's bias, because both persist. Ranges alone contain no
+/// information about the heading; it becomes known because motion correlates heading and position. Input that is not
+/// a number is refused, so the state is always finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ekf {
     state: State,
@@ -93,7 +94,7 @@ pub struct Ekf {
 }
 
 impl Ekf {
-    /// A filter that believes in `start` with the given standard deviations, metres and radians.
+    /// Creates a filter at `start` with the given standard deviations, metres and radians.
     pub fn new(start: Pose, sigma_m: f64, heading_sigma_rad: f64, noise: MotionNoise) -> Self {
         let Pose { position, heading_rad } = start;
         let sigma = State::new(
@@ -105,7 +106,7 @@ impl Ekf {
         );
         let mut filter = Self {
             state: State::new(position.x, position.y, heading_rad, 0.0, 0.0),
-            // `min` also turns what is not a number into the limit.
+            // `min` also replaces NaN by the limit.
             covariance: Covariance::from_diagonal(
                 &sigma.zip_map(&State::from(SIGMA_LIMITS), |s, limit| s.abs().min(limit).powi(2)),
             ),
@@ -116,7 +117,7 @@ impl Ekf {
         filter
     }
 
-    /// Where the robot is believed to be.
+    /// The estimated pose.
     pub fn pose(&self) -> Pose {
         Pose::new(self.state.x, self.state.y, self.state.z)
     }
@@ -136,17 +137,17 @@ impl Ekf {
         ellipse_95(&self.position_covariance()).0
     }
 
-    /// Corrects by a position with its covariance, unless it is too far off to be true.
+    /// Corrects the estimate by a position with its covariance, unless the position is implausibly far off.
     pub fn update_position(&mut self, position: Point, covariance: &Matrix2<f64>) -> Update {
         let by_state = SMatrix::<f64, 2, 5>::identity();
         self.update(position - self.pose().position, by_state, *covariance)
     }
 
-    /// Corrects by the range from one station, unless it is too far off to be true.
+    /// Corrects the estimate by the range from one station, unless the range is implausibly far off.
     pub fn update_range(&mut self, station: Point, range_m: f64, sigma_m: f64) -> Update {
         let away = self.pose().position - station;
         let distance_m = away.norm();
-        // From this near the direction, and with it the correction, is anyone's guess.
+        // So close to the station, the direction and with it the correction are undefined.
         if distance_m < sigma_m {
             return Update::REFUSED;
         }
@@ -163,8 +164,8 @@ impl Ekf {
         &self.covariance
     }
 
-    /// Puts the position where a fix says it is, whatever was believed, turns the heading by what is known to be wrong with it, and
-    /// doubts it by a standard deviation more, radians.
+    /// Sets the position and its covariance to those of a fix, whatever the previous estimate. Turns the heading by
+    /// its known error, and adds a standard deviation to its uncertainty, radians.
     pub fn restart_at(
         &mut self,
         position: Point,
@@ -188,19 +189,19 @@ impl Ekf {
         let expected = by_state * self.covariance * by_state.transpose() + noise;
         let Some(inverse) = expected.try_inverse() else { return Update::REFUSED };
         let nis = (innovation.transpose() * inverse * innovation)[(0, 0)];
-        // The comparison also refuses what is not a number.
+        // The comparison also refuses NaN.
         if !(0.0..=GATE[N - 1]).contains(&nis) {
             return Update::refused(nis);
         }
         let gain = self.covariance * by_state.transpose() * inverse;
-        // Joseph's form stays positive where the short form may not.
+        // The Joseph form stays positive where the short form may not.
         let rest = Covariance::identity() - gain * by_state;
         let covariance = rest * self.covariance * rest.transpose() + gain * noise * gain.transpose();
         let updated = Self { state: self.state + gain * innovation, covariance, ..self.clone() };
         Update { nis, accepted: self.adopt(updated), slipped: 0.0 }
     }
 
-    /// Takes a new state if it is sound.
+    /// Adopts a new state if it is valid; returns whether it is.
     fn adopt(&mut self, mut new: Self) -> bool {
         let is_sound = new.covariance.iter().chain(new.state.iter()).all(|number| number.abs() < 1e100);
         if is_sound {
@@ -210,7 +211,8 @@ impl Ekf {
         is_sound
     }
 
-    /// Covariance symmetric, not negative, not endless; the heading within one turn, the slip short of standing still.
+    /// Keeps the covariance symmetric, non-negative and bounded, the heading within one turn, and the slip below
+    /// standstill.
     fn keep_sound(&mut self) {
         self.state[2] = wrap_angle_rad(self.state[2]);
         self.state[SLIP] = self.state[SLIP].clamp(-0.5, 0.9);

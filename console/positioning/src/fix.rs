@@ -1,42 +1,42 @@
-//! What a position fix is, and why there may be none.
+//! Defines position fixes, and the reasons why there may be none.
 
 use nalgebra::{Matrix2, Matrix3};
 use serde::{Deserialize, Serialize};
 use world::{Boundary, Point, Station, StationId};
 
-/// The ranges of one station in one cycle, brought down to one number.
+/// The ranges of one station in one cycle, combined into one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ranging {
-    /// Which station.
+    /// The station.
     pub station: StationId,
     /// Range, metres.
     pub range_m: f64,
     /// Standard deviation of `range_m`, metres.
     pub sigma_m: f64,
-    /// How many repetitions are behind it.
+    /// The number of repetitions combined.
     pub repetitions: u32,
     /// The shortest repetition, metres.
     pub least_m: f64,
     /// The longest repetition, metres.
     pub most_m: f64,
-    /// The part of `sigma_m` that is the same at every distance, metres; the rest is a share of the distance.
+    /// The part of `sigma_m` that does not depend on the distance, metres; the rest is a share of the distance.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub timing_sigma_m: f64,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde requires")]
 fn is_zero(number: &f64) -> bool {
     *number <= 0.0
 }
 
 impl Ranging {
-    /// A range of a single repetition.
+    /// Creates a range from a single repetition.
     pub fn single(station: StationId, range_m: f64, sigma_m: f64) -> Self {
         let (least_m, most_m) = (range_m, range_m);
         Self { station, range_m, sigma_m, repetitions: 1, least_m, most_m, timing_sigma_m: 0.0 }
     }
 
-    /// The standard deviation that the error has at a distance, metres.
+    /// Returns the standard deviation of the error at a given distance, metres.
     pub fn sigma_at_m(&self, distance_m: f64) -> f64 {
         if self.timing_sigma_m > 0.0 {
             share_sigma_m(self.sigma_m, self.timing_sigma_m, distance_m / self.range_m)
@@ -47,42 +47,42 @@ impl Ranging {
     }
 }
 
-/// The part of a standard deviation that is a share of the distance, at so many times the distance, metres.
+/// Returns the part of a standard deviation that is a share of the distance, scaled to `times` the distance, metres.
 pub(crate) fn share_sigma_m(sigma_m: f64, timing_sigma_m: f64, times: f64) -> f64 {
     (sigma_m * sigma_m - timing_sigma_m * timing_sigma_m).max(0.0).sqrt() * times
 }
 
-/// How well a station fits the fix.
+/// The deviation of a station's range from the fix.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Residual {
-    /// Which station.
+    /// The station.
     pub station: StationId,
     /// Measured minus computed range, metres.
     pub residual_m: f64,
-    /// Standard deviation expected of it, metres.
+    /// Expected standard deviation of the residual, metres.
     pub sigma_m: f64,
 }
 
-/// Why a station was left out.
+/// The reason why a station was left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Exclusion {
-    /// It was not heard.
+    /// The station was not heard.
     Silent,
-    /// Its residual is too large.
+    /// The residual is too large.
     Residual {
         /// Measured minus computed range, metres.
         residual_m: f64,
-        /// Largest one accepted, metres.
+        /// The largest residual accepted, metres.
         gate_m: f64,
     },
-    /// The operator excluded it.
+    /// The operator excluded the station.
     ByOrder,
-    /// None of its ranges can be: no place in the tank explains one.
+    /// All ranges of the station are impossible: no place in the tank explains them.
     Impossible {
-        /// One of them, metres.
+        /// One of the ranges, metres.
         range_m: f64,
-        /// The longest one that can be, metres.
+        /// The longest possible range, metres.
         most_m: f64,
     },
 }
@@ -93,16 +93,16 @@ pub enum Exclusion {
 pub enum Integrity {
     /// The residuals fit the noise.
     Ok,
-    /// They fit badly.
+    /// The residuals fit the noise badly.
     Suspect,
-    /// There is no range to spare: an error could not be seen.
+    /// There is no redundant range, so an error would not be noticed.
     Untestable,
-    /// They contradict each other.
+    /// The residuals contradict each other.
     Alarm,
 }
 
 impl Integrity {
-    /// The one that is trusted less.
+    /// Returns the less trusted of two ratings.
     #[must_use]
     pub fn min_trust(self, other: Self) -> Self {
         let doubt = |integrity| match integrity {
@@ -123,11 +123,11 @@ pub struct Fix {
     /// Covariance of the position, square metres.
     #[serde(with = "geometry::symmetric")]
     pub covariance: Matrix2<f64>,
-    /// One per station used.
+    /// The residuals of the stations used.
     pub residuals: Vec<Residual>,
-    /// Stations used, in order.
+    /// The stations used, sorted.
     pub used: Vec<StationId>,
-    /// Stations left out, with the reason.
+    /// The stations left out, with the reason.
     pub excluded: Vec<(StationId, Exclusion)>,
     /// Sum of the squared residuals over their variances.
     pub chi2: f64,
@@ -137,35 +137,35 @@ pub struct Fix {
     pub gdop: f64,
     /// Condition number of the geometry.
     pub conditioning: f64,
-    /// The other position that fits nearly as well, if there is one.
+    /// The second position that fits nearly as well, if there is one.
     pub mirror: Option<Point>,
-    /// Radius that holds the truth even if any single station used is wrong without showing it, metres; `None` if
-    /// the others alone would give no position.
+    /// Radius that contains the true position even if any single station is wrong without showing it, metres; `None`
+    /// if the other stations alone would give no position.
     pub protection_level_m: Option<f64>,
-    /// How far to trust it.
+    /// How far the fix can be trusted.
     pub integrity: Integrity,
 }
 
 impl Fix {
-    /// Half axes of the 95 % ellipse, metres, and the direction of the longer one, radians.
+    /// Returns the half axes of the 95 % ellipse, metres, and the direction of the longer one, radians.
     pub fn ellipse_95(&self) -> (f64, f64, f64) {
         ellipse_95(&self.covariance)
     }
 
-    /// Whether the position can lie in the tank.
+    /// Checks that the position can lie in the tank.
     ///
     /// # Errors
-    /// [`FixError::OutsideTank`] if it is further outside than the longer half axis of its 95 % ellipse.
+    /// [`FixError::OutsideTank`] if the position is farther outside than the longer half axis of its 95 % ellipse.
     pub fn check_inside(&self, boundary: &Boundary) -> Result<(), FixError> {
         let by_m = -boundary.wall_distance_m(self.position);
         if by_m > self.ellipse_95().0 { Err(FixError::OutsideTank { by_m }) } else { Ok(()) }
     }
 }
 
-/// Squared distance in standard deviations up to which 95 % of a normal distribution in the plane lie: -2 ln 0.05.
+/// The normalised squared distance within which 95 % of a two-dimensional normal distribution lies: -2 ln 0.05.
 pub const ELLIPSE_95: f64 = 5.991_464_547_107_982;
 
-/// Half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
+/// Returns the half axes of the 95 % ellipse of a covariance, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
     let scale = ELLIPSE_95;
     let (a, b, c) = (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]);
@@ -174,7 +174,7 @@ pub fn ellipse_95(covariance: &Matrix2<f64>) -> (f64, f64, f64) {
     (half(middle + spread), half(middle - spread), 0.5 * (2.0 * b).atan2(a - c))
 }
 
-/// Half width of the 95 % ellipse of a covariance across a heading, metres.
+/// Returns the half width of the 95 % ellipse of a covariance across a heading, metres.
 ///
 /// ```
 /// use positioning::fix::{across_95_m, ellipse_95};
@@ -189,7 +189,7 @@ pub fn across_95_m(covariance: &Matrix2<f64>, heading_rad: f64) -> f64 {
     (ELLIPSE_95 * (a * sin * sin - 2.0 * b * sin * cos + c * cos * cos).max(0.0)).sqrt()
 }
 
-/// The part of the covariance of a pose that is about the position, square metres.
+/// Returns the position part of the covariance of a pose, square metres.
 pub fn position_covariance(pose: &Matrix3<f64>) -> Matrix2<f64> {
     pose.fixed_view::<2, 2>(0, 0).into_owned()
 }
@@ -201,57 +201,55 @@ pub enum FixError {
     /// Fewer stations answered than the solver needs.
     #[error("a position fix needs {need} stations, {have} answered")]
     TooFewStations {
-        /// How many answered.
+        /// The number of stations that answered.
         have: usize,
-        /// How many it takes.
+        /// The number of stations needed.
         need: usize,
     },
-    /// The stations stand on one line.
-    #[error(
-        "the stations stand too nearly on one line (condition number {conditioning:.0}, limit {limit:.0})"
-    )]
+    /// The stations are on one line.
+    #[error("the stations are too nearly on one line (condition number {conditioning:.0}, limit {limit:.0})")]
     Collinear {
         /// Condition number of the geometry.
         conditioning: f64,
-        /// Largest one accepted.
+        /// The largest condition number accepted.
         limit: f64,
     },
-    /// A range, or its sigma, is not a positive number that can be a distance in a tank.
+    /// A range or its sigma is not a valid positive number.
     #[error("the range of station {} is not a positive number of metres", station.0)]
     BadRange {
-        /// Which station.
+        /// The station.
         station: StationId,
     },
-    /// Two ranges claim the same station.
+    /// Two ranges name the same station.
     #[error("station {} appears twice", station.0)]
     DuplicateStation {
-        /// Which station.
+        /// The station.
         station: StationId,
     },
-    /// A range names a station that the tank does not have, or whose place is not finite.
+    /// A range names a station that the tank does not have, or whose position is not finite.
     #[error("there is no station {}", station.0)]
     UnknownStation {
-        /// Which station.
+        /// The station.
         station: StationId,
     },
-    /// The iteration did not settle.
-    #[error("the solution did not settle within {iterations} iterations")]
+    /// The iteration did not converge.
+    #[error("the solution did not converge within {iterations} iterations")]
     NotConverged {
-        /// How many were tried.
+        /// The number of iterations.
         iterations: usize,
     },
-    /// No place in the tank is within the bounds of all ranges: the noise is not what it was said to be.
+    /// No place in the tank is within the bounds of all ranges: the real noise is larger than declared.
     #[error(
         "no position is within {:.1} % of all ranges: the bound is too small, or a range is wrong", ratio * 100.0
     )]
     EmptySet {
-        /// Largest error that was granted, as a share of the distance.
+        /// The bound on the error, as a share of the distance.
         ratio: f64,
     },
     /// The solution lies outside the tank by more than its own uncertainty.
     #[error("the solution lies {by_m:.2} m outside the tank")]
     OutsideTank {
-        /// By how much, metres.
+        /// The distance from the tank, metres.
         by_m: f64,
     },
     /// The ranges contradict each other.
@@ -266,19 +264,20 @@ pub enum FixError {
     },
 }
 
-/// A position that is already believed, metres, with its covariance, square metres.
+/// A prior position, metres, with its covariance, square metres.
 pub type Prior = (Point, Matrix2<f64>);
 
-/// A way from ranges to a fix.
+/// A method that computes a fix from ranges.
 pub trait PositionSolver {
-    /// By how much all ranges behind a fix are too long, metres, where the solver finds that out.
+    /// Returns the length by which all ranges behind a fix are too long, metres; 0 for solvers that do not estimate
+    /// it.
     fn excess_m(&self, _fix: &Fix, _ranges: &[Ranging], _stations: &[Station]) -> f64 {
         0.0
     }
 
     /// Computes the position from the ranges.
     ///
-    /// Solvers use the prior to choose between mirror solutions, and with fewer than three stations need it.
+    /// Solvers use the prior to choose between mirror images, and may need it for fewer than three stations.
     ///
     /// # Errors
     /// See [`FixError`]; never panics and never returns a number that is not finite.

@@ -1,4 +1,4 @@
-//! Where the robot was a little while ago, as known now.
+//! Estimates where the robot was a short time ago, given all data up to now.
 
 use crate::{
     ekf::{Covariance, Ekf, State},
@@ -8,10 +8,10 @@ use nalgebra::Matrix2;
 use std::collections::VecDeque;
 use world::{Odometry, Point, Pose, Station, geometry::wrap_angle_rad};
 
-/// An [`Ekf`] that remembers its last motions and looks back over them (Rauch, Tung and Striebel).
+/// An [`Ekf`] that remembers its last motions and smooths them backwards (Rauch, Tung and Striebel).
 ///
-/// Ranges taken after a motion also constrain where it began. Ten motions back the error is a third below that of the
-/// filter; the present is no better known. For maps and reports, not for driving.
+/// Ranges taken after a motion also constrain where it began. Ten motions back, the error is a third less than that
+/// of the filter; the estimate of the present does not improve. Useful for maps and reports, not for driving.
 #[derive(Debug, Clone)]
 pub struct FixedLag {
     filter: Ekf,
@@ -19,7 +19,7 @@ pub struct FixedLag {
     past: VecDeque<Past>,
 }
 
-/// The belief before a motion, and what the motion made of it.
+/// The estimate before a motion, and the prediction after it.
 #[derive(Debug, Clone)]
 struct Past {
     state: State,
@@ -29,10 +29,10 @@ struct Past {
     expected_covariance: Covariance,
 }
 
-/// A pose as known by looking back.
+/// A smoothed pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Smoothed {
-    /// How many motions ago.
+    /// The number of motions since the pose.
     pub lag: usize,
     /// Most likely pose.
     pub pose: Pose,
@@ -48,19 +48,19 @@ impl Smoothed {
 }
 
 impl FixedLag {
-    /// A smoother that looks back over `lag` motions.
+    /// Creates a smoother that looks back over `lag` motions.
     pub fn new(filter: Ekf, lag: usize) -> Self {
         Self { filter, lag, past: VecDeque::with_capacity(lag + 1) }
     }
 
-    /// The filter of the present.
+    /// The filter for the present.
     pub fn filter(&self) -> &Ekf {
         &self.filter
     }
 
-    /// Corrects the present by the ranges of a cycle; whether they were taken.
+    /// Corrects the present by the ranges of a cycle; returns whether they were accepted.
     ///
-    /// A motion in which the tracks slipped through says little about where it began.
+    /// A motion in which the tracks spun reveals little about where it began.
     pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> bool {
         let before = self.filter.clone();
         let update = self.filter.update_ranges(ranges, stations);
@@ -70,13 +70,15 @@ impl FixedLag {
         update.accepted
     }
 
-    /// Makes the position as uncertain as if the tracks had slipped all the way; see [`Ekf::doubt_motion`].
+    /// Makes the position as uncertain as if the tracks had spun during the whole last motion; see
+    /// [`Ekf::doubt_motion`].
     pub fn doubt_motion(&mut self, odometry: &Odometry) {
         self.filter.doubt_motion(odometry);
         self.expect(&self.filter.clone());
     }
 
-    /// Puts the present where a fix says it is; see [`Ekf::restart_at`]. The past carries no information about it.
+    /// Sets the present position to that of a fix; see [`Ekf::restart_at`]. The past is dropped, because it contains
+    /// no information about the new position.
     pub fn restart_at(&mut self, position: Point, covariance: &Matrix2<f64>, heading_sigma_rad: f64) {
         self.filter.restart_at(position, covariance, 0.0, heading_sigma_rad);
         self.past.clear();
@@ -89,7 +91,7 @@ impl FixedLag {
         }
     }
 
-    /// Moves the present by what the odometry says.
+    /// Moves the present by the odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
         let (state, covariance) = (*self.filter.state(), *self.filter.state_covariance());
         let by_state = self.filter.moved_by(odometry);
@@ -105,7 +107,7 @@ impl FixedLag {
         }
     }
 
-    /// Every pose remembered, the oldest first, the present last.
+    /// Returns all remembered poses, the oldest first, the present last.
     pub fn smoothed(&self) -> Vec<Smoothed> {
         let (mut state, mut covariance) = (*self.filter.state(), *self.filter.state_covariance());
         let mut found = vec![smoothed_pose(0, &state, &covariance)];
@@ -125,7 +127,7 @@ impl FixedLag {
         found
     }
 
-    /// The oldest pose remembered.
+    /// Returns the oldest remembered pose.
     pub fn oldest(&self) -> Smoothed {
         let smoothed = self.smoothed();
         smoothed

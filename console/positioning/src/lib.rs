@@ -1,7 +1,7 @@
-//! Where the robot is: acoustic-emission ranges to a fix, fixes and odometry to a pose.
+//! Locates the robot: turns acoustic-emission ranges into fixes, and fixes and odometry into a pose.
 //!
-//! Nothing here knows the truth, a clock or a file. Frame and units as in [`world`].
-//! Cost: a fix takes a few microseconds, a step of the filter less than one.
+//! Nothing here uses the truth, a clock or a file. Frame and units as in [`world`]. Cost: a few microseconds for a
+//! fix, less than one for a filter step.
 
 pub mod fix;
 pub mod noise;

@@ -8,16 +8,16 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
-/// Largest condition number that is accepted; at 37 the mean error already is a quarter of the tank's radius.
+/// The largest condition number accepted; at 37, the mean error is already a quarter of the tank's radius.
 pub const MAX_CONDITIONING: f64 = 50.0;
 
 /// Stands for an infinite condition number, so that every number stays finite.
 const SINGULAR: f64 = 1e12;
 
-/// The method of the paper: subtracting the squared range of the last station leaves linear equations.
+/// The method of the paper: subtracting the squared range of the last station makes the equations linear.
 ///
-/// For three stations these are two equations with two unknowns, so nothing is left to average and half of the
-/// information is lost; see [`crate::Nls`] for a solver that uses all of it.
+/// With three stations there are two equations with two unknowns, so nothing is averaged and half of the information
+/// is lost. [`crate::Nls`] uses all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LinearLs;
 
@@ -41,7 +41,7 @@ pub(crate) struct Linear {
     pub conditioning: f64,
 }
 
-/// Solves `2 d_i . q = r_ref^2 - r_i^2 + |d_i|^2` for `q`, the position as seen from the last station.
+/// Solves `2 d_i . q = r_ref^2 - r_i^2 + |d_i|^2` for `q`, the position relative to the last station.
 pub(crate) fn solve_linear(anchors: &[Anchor]) -> Result<Linear, FixError> {
     let Some((reference, others)) = anchors.split_last().filter(|(_, others)| others.len() >= 2) else {
         return Err(FixError::TooFewStations { have: anchors.len(), need: 3 });
@@ -66,12 +66,12 @@ pub(crate) fn solve_linear(anchors: &[Anchor]) -> Result<Linear, FixError> {
     Ok(Linear { position, covariance, conditioning })
 }
 
-/// Condition number of the linear equations of these stations, at most 1e12.
+/// Returns the condition number of the linear equations of these stations, at most 1e12.
 pub(crate) fn conditioning(anchors: &[Anchor]) -> f64 {
     if anchors.len() < 3 { SINGULAR } else { Factors::of(anchors).conditioning() }
 }
 
-/// QR factors of the rows `d_i` (places of the stations as seen from the last one), the longer column first.
+/// QR factors of the rows `d_i` (station positions relative to the last station), with the longer column first.
 struct Factors {
     swapped: bool,
     r11: f64,
@@ -96,20 +96,20 @@ impl Factors {
         if self.swapped { (row.y, row.x) } else { (row.x, row.y) }
     }
 
-    /// What is left of a row's second entry once the first column is taken out.
+    /// Returns the part of a row's second entry that is orthogonal to the first column.
     fn second_column(&self, row: Vector) -> f64 {
         let (a, b) = self.ordered(row);
         b - a * (self.r12 / self.r11)
     }
 
-    /// The column of the pseudo-inverse that belongs to a row.
+    /// Returns the column of the pseudo-inverse for a row.
     fn pseudo_inverse_column(&self, row: Vector) -> Vector {
         let second = self.second_column(row) / (self.r22 * self.r22);
         let first = (self.ordered(row).0 / self.r11 - self.r12 * second) / self.r11;
         if self.swapped { Vector::new(second, first) } else { Vector::new(first, second) }
     }
 
-    /// Ratio of the singular values of the triangular factor.
+    /// Returns the ratio of the singular values of the triangular factor.
     fn conditioning(&self) -> f64 {
         let squares = self.r11.powi(2) + self.r12.powi(2) + self.r22.powi(2);
         let product = self.r11 * self.r22;

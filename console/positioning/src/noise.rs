@@ -1,4 +1,4 @@
-//! How single ranges scatter, as far as the estimator knows.
+//! Models the scatter of single ranges for the estimator.
 
 use crate::fix::Ranging;
 use serde::{Deserialize, Serialize};
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Degrees of freedom of [`RangeNoise::HeavyTailed`].
 pub(crate) const TAIL_FREEDOM: f64 = 3.0;
 
-/// Harmonics of the error of rounding that are added up; the rest is a fortieth of the whole at most.
+/// The number of harmonics of the rounding error that are summed; the rest is at most a fortieth of the whole.
 const HARMONICS: u32 = 24;
-/// Standard deviations that no normal error exceeds,
+/// The number of standard deviations that no normal error exceeds.
 const NORMAL_EXTREME: f64 = 6.0;
-/// and no error of [`RangeNoise::HeavyTailed`], but for one in some ten thousand.
+/// The same for [`RangeNoise::HeavyTailed`], except for about one error in ten thousand.
 const TAIL_EXTREME: f64 = 30.0;
 
 /// The distribution of the error of a range as a share of the true distance.
@@ -22,7 +22,7 @@ pub enum RangeNoise {
         /// Largest error as a share of the distance.
         ratio: f64,
     },
-    /// Triangular between `-ratio` and `ratio`, as the mean of two uniform errors.
+    /// Triangular between `-ratio` and `ratio`, like the mean of two uniform errors.
     Triangular {
         /// Largest error as a share of the distance.
         ratio: f64,
@@ -49,7 +49,7 @@ impl RangeNoise {
         }
     }
 
-    /// Largest error as a share of the distance, if there is one that distances can be bounded with.
+    /// The largest error as a share of the distance, if it is bounded and usable.
     pub fn bound_ratio(&self) -> Option<f64> {
         match *self {
             Self::Uniform { ratio } | Self::Triangular { ratio } => Some(ratio),
@@ -58,7 +58,7 @@ impl RangeNoise {
         .filter(|ratio| (1e-9..1.0).contains(ratio))
     }
 
-    /// Largest error as a share of the distance: the bound, or what one error in a hundred million exceeds.
+    /// The largest error as a share of the distance: the bound, or a limit that errors practically never exceed.
     pub(crate) fn extreme_ratio(&self) -> f64 {
         match *self {
             Self::Uniform { ratio } | Self::Triangular { ratio } => ratio,
@@ -68,7 +68,7 @@ impl RangeNoise {
         .abs()
     }
 
-    /// Standard deviation of the midrange of `n` errors as a share of the distance.
+    /// Returns the standard deviation of the midrange of `n` errors as a share of the distance.
     pub fn midrange_sigma_ratio(&self, n: f64) -> f64 {
         match *self {
             Self::Uniform { ratio } => ratio * (2.0 / ((n + 1.0) * (n + 2.0))).sqrt(),
@@ -81,12 +81,12 @@ impl RangeNoise {
                 sigma_ratio
                     * (1.0 / n.min(2.0).sqrt()).min(std::f64::consts::PI / (24.0 * n.ln().max(0.1)).sqrt())
             }
-            // The extremes of heavy tails do not settle.
+            // The extremes of a heavy-tailed distribution do not converge.
             Self::HeavyTailed { sigma_ratio } => sigma_ratio,
         }
     }
 
-    /// Density of an error up to a factor, between 0 and 1.
+    /// Returns the density of an error up to a factor, between 0 and 1.
     pub(crate) fn relative_density(&self, error_ratio: f64) -> f64 {
         match *self {
             Self::Uniform { ratio } => f64::from(u8::from(error_ratio.abs() <= ratio)),
@@ -101,26 +101,29 @@ impl RangeNoise {
     }
 }
 
-/// Errors of ranges that are the same at every distance: those of the times that the ranges are computed from.
+/// Range errors that do not depend on the distance: timing errors.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Timing {
     /// Standard deviation of a single range, metres: the jitter of a time of flight times the speed of sound.
     pub jitter_m: f64,
-    /// Ranges are whole multiples of this, metres: a sampling period times the speed of sound; 0: they are not.
+    /// Ranges are whole multiples of this, metres: a sampling period times the speed of sound; 0 if they are not
+    /// rounded.
     pub resolution_m: f64,
 }
 
 impl Timing {
-    /// Whether there are no such errors.
+    /// Whether there are no timing errors.
     pub fn is_none(&self) -> bool {
         !(self.jitter_m > 0.0 || self.resolution_m > 0.0)
     }
 
-    /// Standard deviation of the mean of `n` ranges, metres, whose other errors have the standard deviation `share_sigma_m` each.
+    /// Returns the standard deviation of the mean of `n` ranges due to timing, metres. `share_sigma_m` is the
+    /// standard deviation of the other errors of each range.
     ///
-    /// Rounding errs by a twelfth of the squared step. As far as the other errors spread ranges over several steps it is fresh in every
-    /// range; what is left repeats (the Fourier series of the error of rounding, averaged over the distance).
+    /// Rounding has a variance of a twelfth of the squared step. If the other errors spread the ranges over several
+    /// steps, the rounding error is independent in every range; otherwise a part of it repeats (computed by the
+    /// Fourier series of the rounding error, averaged over the distance).
     pub fn mean_sigma_m(&self, share_sigma_m: f64, n: f64) -> f64 {
         let step_m = self.resolution_m;
         let mut repeats_m2 = 0.0;
@@ -137,13 +140,13 @@ impl Timing {
         (repeats_m2 + fresh_m2.max(0.0) / n.max(1.0)).sqrt()
     }
 
-    /// The largest error of a range, metres.
+    /// Returns the largest timing error of a range, metres.
     pub(crate) fn extreme_m(&self) -> f64 {
         NORMAL_EXTREME * self.jitter_m + self.resolution_m
     }
 
-    /// Adds these errors to those of ranges that were brought down to one of each station; `excess_m`: by how much all of them are
-    /// longer than the distances.
+    /// Adds timing errors to ranges that were aggregated to one per station. `excess_m` is the length by which they
+    /// are all longer than the distances.
     pub fn apply(&self, rangings: &mut [Ranging], noise: &RangeNoise, excess_m: f64) {
         if self.is_none() {
             return;
@@ -152,7 +155,8 @@ impl Timing {
             let single_m = noise.sigma_ratio() * ranging.range_m;
             let spread_m = noise.sigma_ratio() * (ranging.range_m - excess_m).max(0.0);
             let timing_m = self.mean_sigma_m(spread_m, f64::from(ranging.repetitions));
-            // A range that is all but 0 by chance has no error of its own that could be taken to other distances.
+            // A range that is nearly 0 by chance has no distance-dependent error that could be scaled to other
+            // distances.
             ranging.sigma_m = ranging.sigma_m.min(single_m).hypot(timing_m);
             ranging.timing_sigma_m = timing_m;
         }

@@ -11,22 +11,22 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
-/// Steps tried before giving up; five are usual.
+/// The most steps before giving up; five are usual.
 const MAX_ITERATIONS: usize = 60;
 /// The search ends when a step is shorter than this share of the longest range.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// A second position fits nearly as well if its chi-squared is worse by less than this.
+/// A second position fits nearly as well if its chi-squared is higher by less than this.
 const MIRROR_MARGIN: f64 = 9.0;
 
 /// Least squares on relative range errors, `sum ((r_i - l_i) / (s_i l_i))^2` with `s_i` the relative sigma of a range.
 ///
-/// Starts at the linear solution (starting at the tank's centre ends in a false minimum for 5 % of a round tank) and
-/// goes on with Newton steps under Levenberg-Marquardt damping; plain Gauss-Newton steps zigzag on the small range
-/// circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
+/// Starts at the linear solution and continues with Newton steps under Levenberg-Marquardt damping. (Starting at the
+/// tank's centre ends in a false minimum for 5 % of the places in a round tank.) Plain Gauss-Newton steps zigzag on
+/// the small range circle of a station close by. Reaches the Cramér-Rao bound of normal noise.
 ///
-/// Stations on one line need a prior: there is a mirror solution, and the prior chooses. Two stations give both
-/// crossings of their circles, one as position and the other as mirror; a prior chooses there too. It has no other
-/// influence on the fix.
+/// Stations on one line need a prior to choose between the position and its mirror image. Two stations give both
+/// crossings of their circles, one as position and the other as mirror image; here, too, a prior chooses. It has no
+/// other influence on the fix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nls;
 
@@ -36,7 +36,8 @@ impl PositionSolver for Nls {
     }
 }
 
-/// The least squares fit to anchors; two of them leave both crossings of their circles, and a prior chooses.
+/// Returns the least squares fit to the anchors. Two anchors give both crossings of their circles, and a prior
+/// chooses.
 pub(crate) fn solve_anchors(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError> {
     let prior = prior.filter(|(at, covariance)| at.iter().chain(covariance.iter()).all(|c| c.is_finite()));
     match anchors {
@@ -61,9 +62,10 @@ fn solve_many(anchors: &[Anchor], prior: Option<Prior>) -> Result<Fix, FixError>
     assess(anchors, best.position, covariance, conditioning, mirror)
 }
 
-/// A better start close to a station, where the start can be on the wrong side: the best place on its range circle.
+/// Returns a better start close to a station, where the original start can be on the wrong side: the best place on
+/// the station's range circle.
 ///
-/// The valley of such a small circle is narrow and bent, and a descent along it takes hundreds of steps.
+/// The valley of such a small circle is narrow and curved, so a descent along it would take hundreds of steps.
 fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
     let cost = |position: Point| anchors.iter().map(|a| a.view_from(position).squared_error()).sum::<f64>();
     std::iter::once(start)
@@ -72,7 +74,7 @@ fn around_the_nearest(anchors: &[Anchor], start: Point) -> Point {
         .unwrap_or(start)
 }
 
-/// Where a descent ended.
+/// The end of a descent.
 #[derive(Debug, Clone, Copy)]
 struct Minimum {
     position: Point,
@@ -81,7 +83,7 @@ struct Minimum {
     iterations: usize,
 }
 
-/// Looks for a second minimum behind the line of the stations; the better one first.
+/// Looks for a second minimum on the other side of the line of stations; returns the better one first.
 fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Minimum, Option<Point>) {
     let Ok(other) = descend(anchors, reflected(anchors, found.position)) else {
         return (found, None);
@@ -101,8 +103,8 @@ fn choose_side(anchors: &[Anchor], found: Minimum, prior: Option<Prior>) -> (Min
     }
 }
 
-/// The place on the other side of the stations that fits nearly as well as a place that fits; none if there is no such place, or the two
-/// are one within their error.
+/// Returns the mirror image of a place that fits, if it fits nearly as well; `None` if there is no such place, or
+/// both are the same within their error.
 pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
     let cost = Slope::at(anchors, at).cost;
     let other = descend(anchors, reflected(anchors, at)).ok()?;
@@ -111,21 +113,21 @@ pub(crate) fn mirror_of(anchors: &[Anchor], at: Point) -> Option<Point> {
     (is_other && other.cost < cost + MIRROR_MARGIN).then_some(other.position)
 }
 
-/// Squared distance from a prior in its own sigmas; metres squared if it has no usable covariance.
+/// Returns the normalised squared distance from a prior; in square metres if its covariance is unusable.
 fn surprise_to((near, covariance): Prior, position: Point) -> f64 {
     let away = position - near;
     let inverse = inverse_of(&covariance).unwrap_or_else(Matrix2::identity);
     away.dot(&(inverse * away))
 }
 
-/// The position behind the line that the stations stand on most nearly.
+/// Returns the position reflected in the line that fits the stations best.
 fn reflected(anchors: &[Anchor], position: Point) -> Point {
     let (middle, along) = line_of(anchors);
     let across = Vector::new(-along.y, along.x);
     position - across * (2.0 * across.dot(&(position - middle)))
 }
 
-/// The middle of the stations and the direction in which they lie most nearly on a line.
+/// Returns the centre of the stations and the direction of the line that fits them best.
 fn line_of(anchors: &[Anchor]) -> (Point, Vector) {
     let n = anchors.len() as f64;
     let middle = Point::from(anchors.iter().map(|a| a.at.coords).sum::<Vector>() / n);
@@ -134,16 +136,16 @@ fn line_of(anchors: &[Anchor]) -> (Point, Vector) {
     (middle, Vector::new(angle.cos(), angle.sin()))
 }
 
-/// The place that the squared ranges give beside stations on a line, on the side of a place.
+/// Returns the place that the squared ranges give for stations on a line, on the same side as `near`.
 ///
-/// Do not start the descent at `near` itself: the cost has a saddle on the line, where the descent does not settle.
+/// Do not start the descent at `near` itself: the cost has a saddle on the line, where the descent does not converge.
 fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
     /// Least distance from the line, as a share of the longest range.
     const OFF_THE_SADDLE: f64 = 1e-3;
     let (middle, along) = line_of(anchors);
     let across = Vector::new(-along.y, along.x);
     let stations = || anchors.iter().map(|a| (along.dot(&(a.at - middle)), a.range_m));
-    // r^2 - s^2 = (x^2 + y^2) - 2 s x, where the places s of the stations along the line have the mean 0.
+    // r^2 - s^2 = (x^2 + y^2) - 2 s x, where the positions s of the stations along the line have the mean 0.
     let spread: f64 = stations().map(|(s, _)| s * s).sum();
     let x = -stations().map(|(s, r)| s * (r * r - s * s)).sum::<f64>() / (2.0 * spread);
     let squared = stations().map(|(s, r)| r * r - s * s).sum::<f64>() / anchors.len() as f64;
@@ -152,7 +154,7 @@ fn beside_the_line(anchors: &[Anchor], near: Point) -> Point {
     middle + along * x + across * y.copysign(across.dot(&(near - middle)))
 }
 
-/// Goes down from `start` until the steps are negligible.
+/// Descends from `start` until the steps are negligible.
 fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
     let scale = anchors.iter().map(|a| a.range_m).fold(0.0, f64::max);
     let (mut position, mut damping) = (start, 1e-9);
@@ -178,9 +180,9 @@ fn descend(anchors: &[Anchor], start: Point) -> Result<Minimum, FixError> {
 pub(crate) struct Slope {
     pub cost: f64,
     pub gradient: Vector,
-    /// Second derivatives as far as Gauss and Newton take them.
+    /// The second derivatives in the Gauss-Newton approximation.
     pub curvature: Matrix2<f64>,
-    /// What they leave out: the bend of the range circles, which matters close to a station.
+    /// The rest of the second derivatives: the curvature of the range circles, which matters close to a station.
     bend: Matrix2<f64>,
 }
 
@@ -205,9 +207,9 @@ impl Slope {
         slope
     }
 
-    /// The damped Newton step downhill; none if the numbers have run away.
+    /// Returns the damped Newton step downhill; `None` if the numbers have overflowed.
     ///
-    /// Damping by the trace also holds where the stations see the position from one direction only.
+    /// Damping by the trace also works if all stations see the position from the same direction.
     pub(crate) fn step(&self, damping: f64) -> Option<Vector> {
         let least = Matrix2::identity() * (damping * self.curvature.trace());
         let inverse = inverse_of(&(made_positive(self.curvature + self.bend) + least))?;
@@ -215,7 +217,7 @@ impl Slope {
     }
 }
 
-/// The symmetric matrix with the same axes and the eigenvalues without their signs: turns a saddle into a valley.
+/// Returns the symmetric matrix with the same axes and the absolute eigenvalues; this turns a saddle into a valley.
 fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
     let (trace, determinant) = (matrix.trace(), matrix.determinant());
     if determinant >= 0.0 {
@@ -225,7 +227,7 @@ fn made_positive(matrix: Matrix2<f64>) -> Matrix2<f64> {
     matrix * (trace / gap) - Matrix2::identity() * (2.0 * determinant / gap)
 }
 
-/// Inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
+/// Returns the inverse of the covariance: `sum u_i u_i^T / sigma_i^2` with `u_i` the directions from the stations.
 pub(crate) fn information_at(anchors: &[Anchor], position: Point) -> Matrix2<f64> {
     anchors
         .iter()

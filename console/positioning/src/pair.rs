@@ -9,13 +9,14 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Vector};
 
-/// Circles that miss each other by more than this many sigmas contradict each other.
+/// Circles whose gap exceeds this many sigmas contradict each other.
 const GAP_SIGMAS: f64 = 3.0;
 
-/// The crossing of two range circles that is nearer to `near`, or any one; the other one is reported as mirror.
+/// Returns the crossing of two range circles on the side of `near`, or either crossing without it. The other crossing
+/// is reported as the mirror image.
 ///
-/// Where the circles touch or just miss each other the position is on the line between the stations, and its
-/// uncertainty across that line is the half chord that the range errors can open.
+/// Where the circles touch or just miss each other, the position is on the line between the stations. Its uncertainty
+/// across that line is the half chord that the range errors can open.
 pub(crate) fn solve_pair(first: &Anchor, second: &Anchor, near: Option<Point>) -> Result<Fix, FixError> {
     let baseline = second.at - first.at;
     let d = baseline.norm();

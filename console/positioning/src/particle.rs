@@ -1,4 +1,4 @@
-//! Many guesses at the pose, kept as far as they explain the ranges.
+//! Tracks many guesses at the pose, and keeps those that explain the ranges.
 
 use crate::{
     bounded::Bounded,
@@ -12,33 +12,33 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use world::{Odometry, Point, Pose, Station, Vector, geometry::wrap_angle_rad};
 
-/// Fewer surviving guesses than this share are too few to go on with.
+/// A smaller share of effective guesses than this is too few to continue with.
 const TOO_FEW: f64 = 0.02;
-/// Copies of a survivor are spread by this share of the spread of all survivors.
+/// Copies of a survivor are scattered by this share of the spread of all survivors.
 const JITTER: f64 = 0.25;
-/// Tries to find a place within the bounds for a new guess.
+/// The number of attempts to place a new guess within the bounds.
 const TRIES: u32 = 20;
-/// Odometry of one tick beyond this is not the motion of a robot, metres or radians.
+/// Odometry beyond this in one tick is not the motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
 
-/// What a particle filter has to know beforehand.
+/// The configuration of a particle filter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ParticlesConfig {
-    /// How many guesses; 2000 are usual.
+    /// The number of guesses; 2000 are usual.
     pub count: usize,
     /// Largest error of a single range as a share of the distance.
     pub ratio: f64,
-    /// How odometry errs.
+    /// The errors of odometry.
     pub odometry: MotionNoise,
-    /// Chance that tracks slip through in a motion, 0 to 1.
+    /// Probability that the tracks spin in a motion, 0 to 1.
     pub slip_chance: f64,
-    /// Start of all chance.
+    /// The seed of all random numbers.
     pub seed: u64,
 }
 
 /// A particle filter with the likelihood of bounded ranges: a guess outside any station's bounds is dropped.
 ///
-/// Where the noise is uniform its memory makes it better than any fix of a single cycle. Equal seeds give equal
+/// Where the noise is uniform, its memory makes it better than any fix of a single cycle. Equal seeds give equal
 /// estimates on every machine.
 #[derive(Debug, Clone)]
 pub struct Particles {
@@ -56,7 +56,7 @@ struct Guess {
 }
 
 impl Particles {
-    /// Guesses around a start with the given standard deviations, metres and radians.
+    /// Creates guesses around a start with the given standard deviations, metres and radians.
     pub fn new(start: Pose, sigma_m: f64, heading_sigma_rad: f64, config: ParticlesConfig) -> Self {
         let mut rng = Pcg64::seed_from_u64(config.seed);
         let count = config.count.clamp(1, 1_000_000);
@@ -75,7 +75,7 @@ impl Particles {
         Self { config, guesses, rng }
     }
 
-    /// Mean pose with the covariance of x, y (square metres) and heading (square radians).
+    /// Returns the mean pose with the covariance of x, y (square metres) and heading (square radians).
     pub fn estimate(&self) -> (Pose, Matrix3<f64>) {
         let mass: f64 = self.guesses.iter().map(|g| g.weight).sum();
         let share = |g: &Guess| g.weight / mass;
@@ -113,12 +113,13 @@ impl Particles {
         }
     }
 
-    /// Drops every guess that does not explain the ranges, and makes new ones of those that are left.
+    /// Drops every guess that does not explain the ranges. Call [`Self::renew`] to replace the dropped guesses.
     ///
-    /// If hardly any is left, as after tracks slipped through, the ranges alone say where the robot is.
+    /// If hardly any guess survives, for example after the tracks spun, all guesses are placed according to the
+    /// ranges alone.
     ///
     /// # Errors
-    /// See [`FixError`]; the guesses then are as before.
+    /// See [`FixError`]; the guesses are then unchanged.
     pub fn update(&mut self, ranges: &[Ranging], stations: &[Station]) -> Result<(), FixError> {
         let solver = Bounded { ratio: self.config.ratio };
         let prior = self.estimate();
@@ -135,9 +136,10 @@ impl Particles {
         Ok(())
     }
 
-    /// Makes equal guesses of weighted ones: the likely are copied, each copy a little aside within the bounds.
+    /// Replaces weighted guesses by equally weighted ones: likely guesses are copied, and each copy is moved slightly
+    /// within the bounds.
     ///
-    /// To be called after the estimate of a step has been read.
+    /// Call this after reading the estimate of the step.
     pub fn renew(&mut self, ranges: &[Ranging], stations: &[Station]) {
         let weights: Vec<f64> = self.guesses.iter().map(|g| g.weight).collect();
         let n = self.guesses.len();
@@ -147,7 +149,7 @@ impl Particles {
         let Ok(bounds) = (Bounded { ratio: self.config.ratio }).likelihood(ranges, stations) else { return };
         let spread = self.spread();
         let mass: f64 = weights.iter().sum();
-        // Systematic resampling: one draw, evenly spaced picks.
+        // Systematic resampling: one random number, evenly spaced picks.
         let step = mass / n as f64;
         let mut pick = self.rng.random::<f64>() * step;
         let (mut reached, mut at) = (weights[0], 0);
@@ -166,7 +168,7 @@ impl Particles {
         self.guesses = chosen;
     }
 
-    /// Square roots of the covariance of the position and standard deviations of the rest.
+    /// Returns the square root of the position covariance, and the standard deviations of the other values.
     fn spread(&self) -> Spread {
         let mass: f64 = self.guesses.iter().map(|g| g.weight).sum();
         let (pose, covariance) = self.estimate();
@@ -201,7 +203,7 @@ impl Particles {
     }
 }
 
-/// How far guesses lie apart.
+/// The spread of the guesses.
 struct Spread {
     position: Matrix2<f64>,
     heading_rad: f64,
@@ -223,13 +225,13 @@ fn jitter(guess: &mut Guess, spread: &Spread, rng: &mut Pcg64, is_within: impl F
     guess.turn_bias_rad += JITTER * spread.turn_bias_rad * bell(rng);
 }
 
-/// How many equal guesses would say as much.
+/// Returns the number of equally weighted guesses with the same information.
 fn effective(weights: &[f64]) -> f64 {
     let squares: f64 = weights.iter().map(|w| w * w).sum();
     if squares > 0.0 { weights.iter().sum::<f64>().powi(2) / squares } else { 0.0 }
 }
 
-/// Cholesky factor of a covariance, or as much of it as there is.
+/// Returns the Cholesky factor of a covariance, as far as it exists.
 fn root(covariance: &Matrix2<f64>) -> Matrix2<f64> {
     let a = covariance[(0, 0)].max(1e-12).sqrt();
     let b = covariance[(0, 1)] / a;
@@ -240,7 +242,7 @@ fn bell(rng: &mut Pcg64) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// A deviation that keeps numbers finite; nothing for what is not a number.
+/// Limits a standard deviation so that numbers stay finite; 0 for NaN.
 fn bounded(sigma: f64) -> f64 {
     if sigma.is_nan() { 0.0 } else { sigma.abs().min(MOTION_LIMIT) }
 }

@@ -1,4 +1,4 @@
-//! The estimate that a mission keeps: odometry every tick, ranges every cycle.
+//! Maintains the position estimate of a mission: odometry every tick, ranges every cycle.
 
 mod config;
 
@@ -17,32 +17,33 @@ use crate::{
 use nalgebra::{Matrix2, Matrix3};
 use world::{Odometry, Point, Pose, RangeSet, Station, StationId};
 
-/// So many sound fixes in a row that contradict the filter prove the filter wrong.
+/// This many consecutive sound fixes that contradict the filter prove it wrong.
 const PATIENCE: u32 = 3;
-/// Standard deviation of a position that is to be preferred to its mirror image, metres.
+/// Standard deviation of the prior that selects a mirror image, metres.
 const MIRROR_SIGMA_M: f64 = 0.01;
-/// A range that cannot be is shown up to this length, metres.
+/// The largest magnitude at which an impossible range is shown, metres.
 const MOST_SHOWN_M: f64 = 1e9;
 
-/// A range as it is shown: always a number within bounds.
+/// Returns a range for display: always a finite number within bounds.
 fn shown_m(range_m: f64) -> f64 {
     if range_m.is_nan() { -MOST_SHOWN_M } else { range_m.clamp(-MOST_SHOWN_M, MOST_SHOWN_M) }
 }
-/// Doubt about the heading after the filter was proved wrong, radians.
+/// Standard deviation that is added to the heading after the filter was proved wrong, radians.
 const RESTART_HEADING_SIGMA_RAD: f64 = 0.3;
 
-/// Why ranges are trusted less than their noise says: fixes of them are suspect, and wider.
+/// Reasons to trust ranges less than their noise suggests: they make fixes suspect and wider.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Doubt {
-    /// What may be wrong with all ranges, as a share of the distance.
+    /// A suspected error of all ranges, as a share of the distance.
     pub ratio: f64,
-    /// What all ranges are likely to be wrong by, as a standard deviation: fixes are wider, but not suspect.
+    /// Likely errors of all ranges, as standard deviations: they make fixes wider, but not suspect.
     pub likely_errors: [CommonError; 2],
-    /// By how much a position is likely to be off in any direction, metres, as a standard deviation: fixes are wider, but not suspect.
+    /// Likely error of a position in any direction, metres, as a standard deviation: it makes fixes wider, but not
+    /// suspect.
     pub likely_m: f64,
-    /// What may be wrong with all ranges, metres.
+    /// A suspected error of all ranges, metres.
     pub sigma_m: f64,
-    /// Whether fixes are suspect even if nothing is known about how wrong they are.
+    /// Whether fixes are suspect even if the size of the error is unknown.
     pub is_suspect: bool,
 }
 
@@ -52,7 +53,7 @@ impl Doubt {
     }
 }
 
-/// Where the robot is believed to be.
+/// The estimated pose of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Most likely pose.
@@ -61,47 +62,47 @@ pub struct Estimate {
     pub covariance: Matrix3<f64>,
 }
 
-/// How far fixes and measured motion agree.
+/// How well fixes and measured motion agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Agreement {
-    /// Fixes that can be tested and passed.
+    /// The number of fixes that could be tested and passed.
     pub sound: u64,
-    /// Those among them that contradict where motion has brought the robot since the ones before.
+    /// The number of those fixes that contradict the motion since the previous fixes.
     pub contradicting: u64,
 }
 
-/// What a ranging cycle brought.
+/// The results of a ranging cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleResult {
-    /// One range per station heard; empty if one of the ranges was not valid.
+    /// One range per station heard; empty if any range was invalid.
     pub rangings: Vec<Ranging>,
     /// The fix of this cycle alone.
     pub fix: Result<Fix, FixError>,
-    /// Whether the fix, or what single ranges there were, went into the estimate.
+    /// Whether the estimate accepted the fix, or the single ranges if there is no fix.
     pub accepted: bool,
-    /// Ranges that cannot be, which were left out.
+    /// The impossible ranges, which were left out.
     pub impossible: Vec<Impossible>,
-    /// What decides between the fix and its mirror image.
+    /// The criterion that decides between the fix and its mirror image.
     pub sides: Sides,
 }
 
-/// Ranges and odometry in, pose with covariance out.
+/// Turns ranges and odometry into a pose with covariance.
 #[derive(Debug, Clone)]
 pub struct Positioner {
     config: PositionerConfig,
-    /// What ranges can be in the tank, if its wall is known.
+    /// The bounds of possible ranges in the tank, if its wall is known.
     possible: Option<Possible>,
     filter: Ekf,
     sound: Calibration,
     doubt: Doubt,
     /// Whether some motion was not measured, so that the heading may be lost.
     has_wandered: bool,
-    /// Whether any fix has confirmed where the robot was put down,
+    /// Whether any fix has confirmed the start.
     is_confirmed: bool,
-    /// and whether the estimate knows the side of stations on a line.
+    /// Whether the estimate is on a known side of stations on a line.
     knows_side: bool,
     refused_in_a_row: u32,
-    /// The first of the refused fixes in a row, and where the filter was then.
+    /// The first of several consecutive refused fixes, and the filter's pose at that time.
     first_refused: Option<(Fix, Pose)>,
     agreement: Agreement,
     /// Covariance of the error that all fixes share, square metres; averaging over fixes does not reduce it.
@@ -109,7 +110,7 @@ pub struct Positioner {
 }
 
 impl Positioner {
-    /// A positioner at the surveyed start.
+    /// Creates a positioner at the surveyed start.
     pub fn new(config: PositionerConfig) -> Self {
         let filter = Ekf::new(config.start, config.start_sigma_m, config.heading_sigma_rad, config.odometry);
         let sound = Calibration::new(&config.stations, Unknowns::default());
@@ -142,16 +143,17 @@ impl Positioner {
         }
     }
 
-    /// Makes the pose less known by a motion that nothing measured; see [`Ekf::wander`].
+    /// Widens the pose for an unmeasured motion; see [`Ekf::wander`].
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         self.filter.wander(most_m, most_rad);
         self.has_wandered = true;
     }
 
-    /// Takes in a ranging cycle: ranges to a fix, the fix into the estimate unless its residuals raise an alarm.
+    /// Processes a ranging cycle: computes a fix from the ranges, and updates the estimate with it unless its
+    /// residuals raise an alarm.
     ///
-    /// With one or two stations there is no fix to be had without help: with two the estimate chooses the mirror, with
-    /// one the range itself goes into the estimate.
+    /// One or two stations give no unambiguous fix by themselves: with two, the estimate chooses between the mirror
+    /// images; with one, the range itself updates the estimate.
     pub fn cycle(&mut self, sets: &[RangeSet]) -> CycleResult {
         let (sets, impossible) = match &self.possible {
             Some(possible) if self.are_distances() => possible.ranges(sets),
@@ -173,7 +175,7 @@ impl Positioner {
         self.config.timing.apply(&mut rangings, &self.config.noise, excess_m);
         if self.config.calibrate_sound_speed {
             let prior = (self.filter.pose().position, self.filter.position_covariance());
-            // A cycle without a position contributes nothing; the fix states why there is none.
+            // A cycle without a position contributes nothing; the fix states the reason.
             let _ = self.sound.take(&rangings, Some(prior));
             rangings = self.sound.corrected(&rangings);
         }
@@ -200,8 +202,8 @@ impl Positioner {
         CycleResult { rangings, ..result }
     }
 
-    /// By how much ranges are longer than the distances from where the robot is believed to be, on average; 0 where they are
-    /// distances.
+    /// Returns the mean length by which ranges exceed the distances from the estimated position, metres; 0 if the
+    /// ranges are distances.
     fn excess_m(&self, rangings: &[Ranging]) -> f64 {
         if self.config.solver != SolverKind::Differences || rangings.is_empty() {
             return 0.0;
@@ -215,7 +217,7 @@ impl Positioner {
         too_long / rangings.len() as f64
     }
 
-    /// Widens ranges by what they may all be wrong by.
+    /// Widens ranges by their possible common errors.
     fn widen(&self, rangings: &mut [Ranging]) {
         let Doubt { ratio, sigma_m, .. } = self.doubt;
         let share = self.config.scale_sigma_ratio.hypot(ratio);
@@ -227,8 +229,8 @@ impl Positioner {
         }
     }
 
-    /// The part of the error of a fix that it has in common with the fixes after it, as a covariance, square metres: what is wrong
-    /// with the scale of all ranges, and with all of them.
+    /// Returns the part of a fix's error that later fixes share, as a covariance, square metres: errors of the scale,
+    /// and errors of all ranges.
     fn in_common(&self, fix: &Fix) -> Matrix2<f64> {
         let Doubt { ratio, likely_errors, likely_m, sigma_m, .. } = self.doubt;
         let share = CommonError::Share(self.config.scale_sigma_ratio.hypot(ratio));
@@ -236,7 +238,8 @@ impl Positioner {
         everywhere + self.spread_by(&[share], fix) + self.spread_by(&likely_errors, fix)
     }
 
-    /// What errors of all ranges, as standard deviations, add to the covariance of a fix, square metres.
+    /// Returns the contribution of common range errors, given as standard deviations, to the covariance of a fix,
+    /// square metres.
     fn spread_by(&self, errors: &[CommonError], fix: &Fix) -> Matrix2<f64> {
         let is_emission_free = self.config.solver == SolverKind::Differences;
         let present = errors.iter().filter(|error| error.size() > 0.0);
@@ -245,24 +248,25 @@ impl Positioner {
         shifts.map(|shift| shift * shift.transpose()).sum()
     }
 
-    /// Widens a fix by what is likely: along the lines on which it moves with the likely errors of all ranges, and in every direction.
+    /// Widens a fix by the likely errors: along the directions in which common range errors would move it, and
+    /// equally in every direction.
     fn allow_for_likely(&self, fix: &mut Fix) {
         let Doubt { likely_errors, likely_m, .. } = self.doubt;
         fix.covariance += self.spread_by(&likely_errors, fix);
         fix.covariance += Matrix2::identity() * likely_m.powi(2);
     }
 
-    /// How far fixes and measured motion agreed so far; of fixes that are not in doubt for another reason.
+    /// Returns how well fixes and measured motion have agreed so far; only fixes without other doubts count.
     pub fn agreement(&self) -> Agreement {
         self.agreement
     }
 
-    /// Trusts the ranges of the next cycles less.
+    /// Reduces the trust in the ranges of the following cycles.
     pub fn doubt(&mut self, doubt: Doubt) {
         self.doubt = doubt;
     }
 
-    /// Where the robot is believed to be.
+    /// Returns the estimated pose of the robot.
     pub fn estimate(&self) -> Estimate {
         let mut covariance = self.filter.covariance();
         let mut position = covariance.fixed_view_mut::<2, 2>(0, 0);
@@ -302,7 +306,8 @@ impl Positioner {
         Ok(fix)
     }
 
-    /// What decides between a fix and its mirror image; a fix of which that is open is suspect.
+    /// Returns the criterion that decides between a fix and its mirror image. If nothing decides, the fix becomes
+    /// suspect.
     fn sides(&self, fix: &mut Fix) -> Sides {
         if !matches!(fix.integrity, Integrity::Ok | Integrity::Untestable) {
             return Sides::One;
@@ -315,12 +320,12 @@ impl Positioner {
         sides
     }
 
-    /// Whether single ranges are distances; otherwise only all of them together say anything.
+    /// Whether single ranges are distances; if not, only their differences contain information.
     fn are_distances(&self) -> bool {
         self.config.solver != SolverKind::Differences
     }
 
-    /// Hands a fix to the filter; a fix that contradicts the filter is suspect.
+    /// Passes a fix to the filter; a fix that contradicts the filter becomes suspect.
     fn take_fix(&mut self, fix: &mut Fix, rangings: &[Ranging], sides: Sides) -> bool {
         if fix.integrity == Integrity::Alarm {
             return false;
@@ -336,7 +341,7 @@ impl Positioner {
             (self.is_confirmed, self.knows_side) = (true, true);
             return true;
         }
-        // A fix that can be tested and passed speaks against the filter; others do not.
+        // Only a fix that was tested and passed counts against the filter.
         self.agreement.contradicting += counts;
         fix.integrity = Integrity::Suspect;
         if !is_sound {
@@ -354,9 +359,10 @@ impl Positioner {
         true
     }
 
-    /// Takes in a fix of which nobody knows the side: the estimate holds both sides from then on, if it contradicts both or is worse.
+    /// Processes a fix on an unknown side of the stations. The estimate then covers both sides if it contradicts both
+    /// or is less accurate.
     ///
-    /// Nothing is merged, because two such fixes together know the side no better than one.
+    /// Nothing is merged, because two such fixes together do not determine the side any better than one.
     fn take_both(&mut self, fix: &Fix, other: Point, contradicts: bool) -> bool {
         self.refused_in_a_row = if contradicts { self.refused_in_a_row + 1 } else { 0 };
         let is_disproved = contradicts && (!self.is_confirmed || self.refused_in_a_row >= PATIENCE);
@@ -369,9 +375,9 @@ impl Positioner {
         false
     }
 
-    /// By how much the heading was wrong while fixes were refused, radians, with the standard deviation: the angle between the
-    /// way from fix to fix and the way that odometry gives. `None` if the two are not of one length, because the robot slipped or
-    /// was carried, or too short to say.
+    /// Returns the heading error while fixes were refused, with its standard deviation, radians: the angle between
+    /// the line from fix to fix and the line that odometry gives. `None` if their lengths differ, because the robot
+    /// slipped or was carried, or if they are too short.
     fn turned(&self, (first, then): &(Fix, Pose), last: &Fix) -> Option<(f64, f64)> {
         let by_fixes = last.position - first.position;
         let by_odometry = self.filter.pose().position - then.position;
@@ -382,10 +388,10 @@ impl Positioner {
         is_known.then(|| (by_odometry.perp(&by_fixes).atan2(by_odometry.dot(&by_fixes)), sigma_rad))
     }
 
-    /// Corrects the filter where the geometry is better known.
+    /// Corrects the filter by the fix or by its ranges, whichever suits the geometry.
     ///
-    /// Close to a station the error of a fix is bent like the range circle and no ellipse holds it; a filter that is
-    /// surer than the fix takes the ranges instead, as seen from where it believes it is.
+    /// Close to a station, the error of a fix is curved like the range circle and does not form an ellipse. A filter
+    /// that is more accurate than the fix therefore takes the ranges instead, linearised at its own position.
     fn filter_accepts(&mut self, fix: &Fix, rangings: &[Ranging]) -> bool {
         if self.are_distances() && self.filter.error_95_m() < fix.ellipse_95().0 {
             let used: Vec<Ranging> =
@@ -396,7 +402,7 @@ impl Positioner {
         }
     }
 
-    /// Corrects the filter by single ranges, by all or by none; whether it took them.
+    /// Corrects the filter by all single ranges or by none; returns whether it accepted them.
     fn take_ranges(&mut self, rangings: &[Ranging]) -> bool {
         let mut filter = self.filter.clone();
         let fits = |ranging: &Ranging| {
@@ -415,7 +421,7 @@ impl Positioner {
     }
 }
 
-/// Takes out by how much all ranges are too long, as the fix says.
+/// Subtracts the excess length that the fix gives for all ranges.
 fn take_excess_out(fix: &Fix, rangings: &mut [Ranging], stations: &[Station]) {
     let Some(excess_m) = common_excess_m(fix, rangings, stations) else { return };
     for ranging in rangings {

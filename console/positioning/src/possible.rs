@@ -1,4 +1,5 @@
-//! Ranges that no place in the tank explains: words of an instrument for "nothing heard", readings in another unit.
+//! Finds ranges that no place in the tank explains, such as an instrument's codes for "nothing heard", or readings in
+//! a wrong unit.
 
 use crate::{
     aggregate::is_usable,
@@ -7,27 +8,27 @@ use crate::{
 use std::borrow::Cow;
 use world::{Boundary, Point, RangeSet, Station, StationId};
 
-/// How far stations may lie behind the wall, metres.
+/// The farthest that a station may lie behind the wall, metres.
 const BEHIND_WALL_M: f64 = 0.01;
 
-/// A range that cannot be.
+/// An impossible range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impossible {
-    /// Which station.
+    /// The station.
     pub station: StationId,
     /// The range, metres.
     pub range_m: f64,
-    /// The longest one that can be, metres.
+    /// The longest possible range, metres.
     pub most_m: f64,
 }
 
-/// What ranges can be in a tank: no longer than the way to its farthest place, with the largest error that noise makes.
+/// The bounds of possible ranges in a tank: the distance to its farthest place, plus the largest error of the noise.
 #[derive(Debug, Clone)]
 pub struct Possible {
     stations: Vec<Reach>,
     /// Largest error as a share of the distance.
     share: f64,
-    /// Largest error at any distance, metres.
+    /// Largest error that does not depend on the distance, metres.
     fixed_m: f64,
 }
 
@@ -39,7 +40,8 @@ struct Reach {
 }
 
 impl Possible {
-    /// The bounds of a tank, for noise of ranges that may all be too long by a share, because sound is slower than assumed.
+    /// Computes the bounds for a tank and its noise. `too_long_ratio` is the share by which all ranges may be too
+    /// long because sound is slower than assumed.
     pub fn new(
         boundary: &Boundary,
         stations: &[Station],
@@ -58,7 +60,7 @@ impl Possible {
         }
     }
 
-    /// The ranges that can be, and those that cannot. A station that the tank does not have is left to the solver.
+    /// Separates possible from impossible ranges. Unknown stations are left to the solver.
     pub fn ranges<'a>(&self, sets: &'a [RangeSet]) -> (Cow<'a, [RangeSet]>, Vec<Impossible>) {
         let most_m = |set: &RangeSet| {
             let reach = self.stations.iter().find(|reach| reach.id == set.station);
@@ -71,8 +73,8 @@ impl Possible {
         })
     }
 
-    /// The same for ranges of which only the differences count: two of them differ by no more than their stations are apart.
-    /// What most others agree with is kept.
+    /// Separates possible from impossible ranges if only their differences count: two ranges may differ by no more
+    /// than the distance between their stations. Ranges that agree with most others are kept.
     pub fn differences<'a>(&self, sets: &'a [RangeSet]) -> (Cow<'a, [RangeSet]>, Vec<Impossible>) {
         let mut all: Vec<(Reach, f64)> = Vec::new();
         for set in sets {
@@ -104,14 +106,14 @@ impl Possible {
         (one_m - other_m).abs() <= self.apart_m(one, other)
     }
 
-    /// Largest difference of the ranges of two stations, metres.
+    /// Returns the largest possible difference between the ranges of two stations, metres.
     fn apart_m(&self, one: &Reach, other: &Reach) -> f64 {
         let error_m = self.share * (one.farthest_m + other.farthest_m) + 2.0 * self.fixed_m;
         (one.at - other.at).norm() + error_m
     }
 }
 
-/// Takes out what has a bound that it exceeds.
+/// Removes the ranges for which `bound_m` returns a bound, and returns them separately.
 fn sorted_out(
     sets: &[RangeSet],
     bound_m: impl Fn(&RangeSet, f64) -> Option<f64>,
@@ -136,7 +138,7 @@ fn sorted_out(
     (Cow::Owned(kept), refused)
 }
 
-/// Distance to the farthest place of a tank, metres.
+/// Returns the distance to the farthest place of a tank, metres.
 fn farthest_m(boundary: &Boundary, from: Point) -> f64 {
     match boundary {
         Boundary::Circle { radius_m } => from.coords.norm() + radius_m,

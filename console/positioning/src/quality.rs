@@ -1,4 +1,4 @@
-//! How good a position is: residuals, dilution, the chi-squared test.
+//! Rates the quality of a position: residuals, dilution, the chi-squared test.
 
 use crate::{
     anchor::{Anchor, on_near_circle},
@@ -7,25 +7,25 @@ use crate::{
 use nalgebra::Matrix2;
 use world::Point;
 
-/// Normal quantile beyond which residuals are suspect: one honest fix in 100.
+/// Normal quantile beyond which residuals are suspect: one correct fix in 100.
 const SUSPECT_Z: f64 = 2.326_347_874;
-/// Normal quantile beyond which residuals raise an alarm: one honest fix in 1000.
+/// Normal quantile beyond which residuals raise an alarm: one correct fix in 1000.
 pub(crate) const ALARM_Z: f64 = 3.090_232_306;
 
-/// Normal quantile beyond which readings do not scatter as their noise: one honest set in 10 000.
+/// Normal quantile beyond which the scatter of readings exceeds their noise: one correct set in 10 000.
 const SCATTER_Z: f64 = 3.719_016_485;
 
-/// Standard deviations that a protection level grants to chance: one position in 3000 lies further off.
+/// The standard deviations that a protection level allows for chance: one position in 3000 lies farther off.
 const PROTECTION_SIGMAS: f64 = 4.0;
-/// Where a place this many standard deviations off is not ruled out, errors do not form an ellipse.
+/// If a place this many standard deviations away cannot be ruled out, the errors do not form an ellipse.
 const BENT_SIGMAS: f64 = 5.0;
-/// A range whose residual keeps a smaller share of its variance than this cannot be checked by the others.
+/// A range whose residual keeps less than this share of its variance cannot be checked by the other ranges.
 const LEAST_SPARED: f64 = 1e-6;
 
 /// Stands for an infinite dilution, so that every number stays finite.
 pub(crate) const NO_GEOMETRY: f64 = 1e9;
 
-/// Assembles a fix and rates its integrity by its residuals.
+/// Assembles a fix, and rates its integrity by its residuals.
 pub(crate) fn assess(
     anchors: &[Anchor],
     position: Point,
@@ -63,8 +63,8 @@ pub(crate) fn assess(
     })
 }
 
-/// Whether a place on the range circle of a station close by fits nearly as well and is further off than any ellipse
-/// says: there errors are bent like the circle.
+/// Whether a place on the range circle of a station close by fits nearly as well and lies beyond the error ellipse.
+/// There, errors are curved like the circle.
 fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>, chi2: f64) -> bool {
     let reach_m = BENT_SIGMAS * largest_sigma_m(covariance);
     let cost = |at: Point| anchors.iter().map(|a| a.view_from(at).squared_error()).sum::<f64>();
@@ -72,8 +72,9 @@ fn has_rival_on_circle(anchors: &[Anchor], position: Point, covariance: &Matrix2
         .any(|at| (at - position).norm() > reach_m && cost(at) < chi2 + PROTECTION_SIGMAS.powi(2))
 }
 
-/// Radius that holds the truth even if any one of the ranges is wrong: for each station the distance to the position
-/// of the others and their own uncertainty (solution separation). `None` if some station cannot be spared.
+/// Returns the radius that contains the true position even if any one range is wrong: for each station, the distance
+/// to the position from the other stations plus the uncertainty of that position (solution separation). `None` if any
+/// station is indispensable.
 fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<f64>) -> Option<f64> {
     let reach_m = |covariance: &Matrix2<f64>| PROTECTION_SIGMAS * largest_sigma_m(covariance);
     if anchors.len() < 3 {
@@ -81,7 +82,7 @@ fn protection_level_m(anchors: &[Anchor], position: Point, covariance: &Matrix2<
     }
     let mut level_m = reach_m(covariance);
     for view in anchors.iter().map(|a| a.view_from(position)) {
-        // Taking one range out of a least squares fit (Sherman and Morrison).
+        // Removes one range from a least squares fit (Sherman and Morrison).
         let pull = covariance * view.direction;
         let spared = view.sigma_m.powi(2) - view.direction.dot(&pull);
         let without = covariance + pull * pull.transpose() / spared;
@@ -100,7 +101,7 @@ fn largest_sigma_m(covariance: &Matrix2<f64>) -> f64 {
     (f64::midpoint(a, c) + ((a - c) / 2.0).hypot(b)).max(0.0).sqrt()
 }
 
-/// The integrity that follows from a sum of squared normalised residuals.
+/// Returns the integrity for a sum of squared normalised residuals.
 pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     if degrees_of_freedom == 0 {
         Integrity::Untestable
@@ -113,29 +114,31 @@ pub(crate) fn integrity_of(chi2: f64, degrees_of_freedom: u32) -> Integrity {
     }
 }
 
-/// Sum of squared normalised differences beyond which readings do not scatter as their noise: one honest sum in 10 000.
+/// Returns the sum of squared normalised differences beyond which the scatter of readings exceeds their noise: one
+/// correct sum in 10 000.
 pub fn scatter_limit(degrees_of_freedom: u32) -> f64 {
     chi_squared_quantile(SCATTER_Z, degrees_of_freedom)
 }
 
-/// Sum of squared normalised residuals beyond which ranges contradict each other.
+/// Returns the sum of squared normalised residuals beyond which ranges contradict each other.
 pub fn alarm_limit(degrees_of_freedom: u32) -> f64 {
     chi_squared_quantile(ALARM_Z, degrees_of_freedom)
 }
 
-/// Residual beyond which one station of a fix is called wrong, metres.
+/// Returns the residual beyond which one station of a fix counts as wrong, metres.
 pub(crate) fn residual_gate_m(sigma_m: f64) -> f64 {
     ALARM_Z * sigma_m
 }
 
-/// Quantile of the chi-squared distribution, by Wilson and Hilferty's cube; within 3 % for the tails used here.
+/// Returns a quantile of the chi-squared distribution, by the cube formula of Wilson and Hilferty; within 3 % for the
+/// tails used here.
 pub(crate) fn chi_squared_quantile(z: f64, degrees_of_freedom: u32) -> f64 {
     let k = f64::from(degrees_of_freedom);
     let spread = 2.0 / (9.0 * k);
     k * (1.0 - spread + z * spread.sqrt()).powi(3)
 }
 
-/// Position sigma per range sigma if all ranges were equally good.
+/// Returns position sigma per range sigma, as if all ranges were equally good.
 fn gdop(anchors: &[Anchor], position: Point) -> f64 {
     let information: Matrix2<f64> = anchors
         .iter()
@@ -145,7 +148,7 @@ fn gdop(anchors: &[Anchor], position: Point) -> f64 {
     inverse_of(&information).map_or(NO_GEOMETRY, |inverse| inverse.trace().max(0.0).sqrt().min(NO_GEOMETRY))
 }
 
-/// The inverse of a symmetric matrix without negative eigenvalues, unless it is all but singular.
+/// Returns the inverse of a symmetric matrix without negative eigenvalues; `None` if it is nearly singular.
 pub(crate) fn inverse_of(information: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     let (a, b, c) = (information[(0, 0)], information[(0, 1)], information[(1, 1)]);
     let determinant = a * c - b * b;

@@ -1,4 +1,4 @@
-//! A solver with an eye on its residuals: leaves out the one station that contradicts all others.
+//! A solver that checks its residuals, and leaves out the one station that contradicts all others.
 
 use crate::{
     fix::{Exclusion, Fix, FixError, Integrity, PositionSolver, Prior, Ranging},
@@ -6,13 +6,13 @@ use crate::{
 };
 use world::Station;
 
-/// Stations needed to find out which one is wrong.
+/// The number of stations needed to identify a wrong one.
 const NEEDED_TO_EXCLUDE: usize = 5;
 
 /// Solves; if the residuals raise an alarm, looks for the one station without which the others agree.
 ///
-/// If two such stations could be meant and the two answers lie apart, the fix is suspect. If there is none the alarm
-/// stays: two stations that are wrong together are a case for [`crate::Consensus`].
+/// If two stations qualify and their answers are far apart, the fix is suspect. If none qualifies, the alarm stays:
+/// two stations that are wrong together need [`crate::Consensus`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Screened<S>(pub S);
 
@@ -39,7 +39,7 @@ impl<S: PositionSolver> PositionSolver for Screened<S> {
 }
 
 impl<S: PositionSolver> Screened<S> {
-    /// The fix of the others, if they agree and the one left out contradicts them.
+    /// Returns the fix without one station, if the other stations agree and the station left out contradicts them.
     fn without(
         &self,
         left_out: &Ranging,

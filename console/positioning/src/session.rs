@@ -1,9 +1,10 @@
-//! What the residuals of a whole session say about the speed of sound and about single stations.
+//! Detects errors of the speed of sound and of single stations from the residuals of a whole session.
 //!
-//! One fix hides most of such an error in its position; what it leaves in the residuals adds up over fixes. For each error that may be
-//! there (all ranges too long by a share, or by a length; one station's ranges too long by a length) the score and its information are
-//! summed over the fixes, with the position of each, and its time of emission if that is unknown, free (score test; Baarda 1968 for
-//! single readings).
+//! A single fix absorbs most of such an error in its position; the part left in the residuals adds up over many
+//! fixes. The possible errors are: all ranges too long by a share, all ranges too long by a length, or the ranges of
+//! one station too long by a length. For each of them, the score and its information are summed over the fixes. The
+//! position of each fix is free, and so is its emission time if that is unknown (score test; Baarda 1968 for single
+//! readings).
 
 use crate::{
     fix::{Fix, Residual},
@@ -12,32 +13,34 @@ use crate::{
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 use world::{Station, StationId};
 
-/// An error of more standard deviations than this is significant. Fixes allow for a smaller one ([`Wrong::likely`]). Of twice 200 sets
-/// with a wrong speed of sound and no time of emission, 93.1 and 94.0 % of truths lie in the ellipses of the fixes that are ok. With 4
-/// it would be 92.2 %, because chance hides the errors that remain.
+/// An error of more standard deviations than this is significant. Fixes allow for smaller errors ([`Wrong::likely`]).
+/// In two series of 200 sets with a wrong speed of sound and no emission times, 93.1 and 94.0 % of the true positions
+/// lie in the ellipses of the fixes rated ok. With 4, it would be 92.2 %, because chance hides the remaining errors.
 const SIGNIFICANT: f64 = 5.0;
-/// An error that moves fixes by less than this, squared and in their own standard deviations, does no harm: 93.5 % of truths still lie in
-/// the 95 % ellipse.
+/// An error does no harm if the squared shift of the fixes, in units of their variance, is below this: 93.5 % of the
+/// true positions still lie in the 95 % ellipse.
 const HARMLESS: f64 = 0.2;
-/// An offset of fewer standard deviations than this is taken for chance: most sessions have none.
+/// An offset of fewer standard deviations than this is attributed to chance: most sessions have no offset.
 const BEYOND_CHANCE: f64 = 2.0;
-/// Least information of an error, as a share of what it would have if positions were known: below it cannot be seen.
+/// The least information about an error, as a share of the information with known positions; with less, the error
+/// cannot be seen.
 const LEAST_SEEN: f64 = 1e-6;
 
-/// The error of all ranges by a share; those of the stations follow, and that of all ranges by a length.
+/// The index of the scale error of all ranges; the errors of the stations follow, and then the common length of all
+/// ranges.
 const SCALE: usize = 0;
 
 /// The sums over a session.
 #[derive(Debug, Clone)]
 pub struct Session {
     stations: Vec<Station>,
-    /// Whether the time of each emission is unknown, so that all ranges of a fix are too long by one length.
+    /// Whether the time of each emission is unknown, so that all ranges of a fix are too long by one common length.
     is_emission_free: bool,
     score: DVector<f64>,
     information: DMatrix<f64>,
-    /// The information if positions were known.
+    /// The information if the positions were known.
     whole: DVector<f64>,
-    /// Sum over fixes of the squared shift that an error of 1 makes, in standard deviations of the fix.
+    /// Sum over the fixes of the squared shift that an error of 1 causes, in units of the variance of the fix.
     shift: DVector<f64>,
     fixes: u64,
 }
@@ -45,39 +48,39 @@ pub struct Session {
 /// An error with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wrong {
-    /// By how much ranges are too long: a share, or metres for a station.
+    /// The amount by which ranges are too long: a share, or a length in metres.
     pub value: f64,
-    /// Standard deviation of that.
+    /// Standard deviation of the amount.
     pub sigma: f64,
-    /// Whether it is more than chance, and more than the stated errors of the fixes allow for.
+    /// Whether the error is more than chance, and more than the stated errors of the fixes allow for.
     pub is_proven: bool,
 }
 
-/// An error that all ranges have in common.
+/// An error that all ranges share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CommonError {
-    /// They are too long by this share.
+    /// The ranges are too long by this share.
     Share(f64),
-    /// They are too long by this length, metres.
+    /// The ranges are too long by this length, metres.
     Length(f64),
 }
 
 impl Default for CommonError {
-    /// None.
+    /// No error.
     fn default() -> Self {
         Self::Length(0.0)
     }
 }
 
 impl CommonError {
-    /// How large it is, as a share or in metres.
+    /// Returns the size of the error, as a share or in metres.
     pub(crate) fn size(self) -> f64 {
         match self {
             Self::Share(size) | Self::Length(size) => size.abs(),
         }
     }
 
-    /// By how much it makes the range over a distance longer, metres.
+    /// Returns the length by which the error extends the range over a distance, metres.
     fn longer_m(self, distance_m: f64) -> f64 {
         match self {
             Self::Share(share) => share * distance_m,
@@ -86,22 +89,24 @@ impl CommonError {
     }
 }
 
-/// What a session says.
+/// The findings about a session.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// Fixes that it is from.
+    /// The number of fixes evaluated.
     pub fixes: u64,
-    /// By which share all ranges are too long; `None` if that cannot be seen.
+    /// The share by which all ranges are too long; `None` if it cannot be seen.
     pub scale: Option<Wrong>,
-    /// By how many metres all ranges are too long; `None` if that cannot be seen, as without the time of emission.
+    /// The length by which all ranges are too long, metres; `None` if it cannot be seen, for example without emission
+    /// times.
     pub offset_m: Option<Wrong>,
-    /// By how many metres the ranges of each station are too long; without those for which that cannot be seen.
+    /// The length by which the ranges of each station are too long, metres; stations for which it cannot be seen are
+    /// left out.
     pub stations: Vec<(StationId, Wrong)>,
 }
 
 impl Wrong {
-    /// How large the error is likely to be, as a standard deviation: what was found beyond chance, or all of that where the time of
-    /// emission is unknown, because chance then hides as much of an error as it shows.
+    /// Returns the likely size of the error, as a standard deviation: the part of the finding beyond chance. If the
+    /// emission times are unknown, it is the whole finding, because chance then hides as much of an error as it adds.
     pub fn likely(&self, is_emission_free: bool) -> f64 {
         let by_chance = if is_emission_free { 0.0 } else { self.sigma };
         (self.value.powi(2) - by_chance.powi(2)).max(0.0).sqrt()
@@ -109,14 +114,14 @@ impl Wrong {
 }
 
 impl Verdict {
-    /// Whether an error is proven.
+    /// Whether any error is proven.
     pub fn is_wrong(&self) -> bool {
         let common = [self.scale, self.offset_m];
         common.into_iter().flatten().any(|wrong| wrong.is_proven)
             || self.stations.iter().any(|(_, wrong)| wrong.is_proven)
     }
 
-    /// The errors of all ranges that are not proven, but likely, as standard deviations.
+    /// Returns the unproven but likely errors of all ranges, as standard deviations.
     pub fn likely_errors(&self, is_emission_free: bool) -> [CommonError; 2] {
         let likely = |wrong: Option<Wrong>| {
             let unproven = wrong.filter(|wrong| !wrong.is_proven);
@@ -128,7 +133,7 @@ impl Verdict {
 }
 
 impl Session {
-    /// A session without fixes.
+    /// Creates a session without fixes.
     pub fn new(stations: &[Station], is_emission_free: bool) -> Self {
         let n = stations.len() + 2;
         Self {
@@ -142,7 +147,7 @@ impl Session {
         }
     }
 
-    /// Takes in a fix, by the residuals that it left.
+    /// Adds a fix with its residuals.
     pub fn take(&mut self, fix: &Fix) {
         let seen = seen(fix, &self.stations, self.is_emission_free);
         let Some(free) = Free::of(&seen, self.is_emission_free) else { return };
@@ -170,17 +175,17 @@ impl Session {
         }
     }
 
-    /// By how much each error of 1 that concerns a range makes it longer, metres.
+    /// Returns the lengths by which unit errors extend a range, metres: one for each error that affects this range.
     fn longer(&self, range: &Seen) -> [(usize, f64); 3] {
         [(SCALE, range.distance_m), (range.error, 1.0), (self.offset(), 1.0)]
     }
 
-    /// The error of all ranges by a length: the last one.
+    /// Returns the index of the common length of all ranges: the last one.
     fn offset(&self) -> usize {
         self.stations.len() + 1
     }
 
-    /// By which share all ranges are too long, and its standard deviation, if that can be seen.
+    /// Returns the share by which all ranges are too long and its standard deviation, if it can be seen.
     pub fn scale(&self) -> Option<(f64, f64)> {
         self.alone(SCALE)
     }
@@ -191,7 +196,7 @@ impl Session {
         is_seen.then(|| (self.score[error] / information, information.sqrt().recip()))
     }
 
-    /// An error if another one is there, too.
+    /// Estimates an error together with a second error.
     fn beside(&self, error: usize, other: usize) -> Option<(f64, f64)> {
         let by = self.information[(error, other)] / self.information[(other, other)];
         let information = self.information[(error, error)] - by * self.information[(other, error)];
@@ -205,7 +210,7 @@ impl Session {
         value.abs() > SIGNIFICANT * sigma && shift > HARMLESS
     }
 
-    /// What the session says: the error that explains most, and others only if they are there beside it.
+    /// Returns the findings: the error that explains most, and others only if they are proven beside it.
     pub fn verdict(&self) -> Verdict {
         let explained =
             |error: usize| self.alone(error).map_or(0.0, |(value, sigma)| (value / sigma).powi(2));
@@ -238,7 +243,7 @@ impl Session {
     }
 }
 
-/// By how much an error that all ranges have in common moves a fix, metres. `None` if the fix leaves nothing to choose.
+/// Returns the shift of a fix caused by a common error of all ranges, metres. `None` if the fix has no free position.
 pub(crate) fn shift_by(
     error: CommonError,
     fix: &Fix,
@@ -250,7 +255,7 @@ pub(crate) fn shift_by(
     Some((Free::of(&seen, is_emission_free)?.inverse * pull).xy())
 }
 
-/// The ranges of a fix.
+/// Collects the ranges of a fix.
 fn seen(fix: &Fix, stations: &[Station], is_emission_free: bool) -> Vec<Seen> {
     let seen = |residual: &Residual| {
         let index = stations.iter().position(|station| station.id == residual.station)?;
@@ -272,13 +277,13 @@ fn seen(fix: &Fix, stations: &[Station], is_emission_free: bool) -> Vec<Seen> {
 struct Seen {
     error: usize,
     distance_m: f64,
-    /// Change of the range with the place, and with the common length.
+    /// Derivative of the range with respect to position and common length.
     by: Vector3<f64>,
     residual_m: f64,
     weight: f64,
 }
 
-/// What a fix chose for itself.
+/// The quantities that are free in a fix.
 struct Free {
     inverse: Matrix3<f64>,
     position_inverse: Matrix2<f64>,
@@ -311,7 +316,7 @@ mod tests {
         fix::PositionSolver,
     };
 
-    /// What is wrong with the ranges of a session: all too long by a share and by a length, those of station 3 by a length.
+    /// The errors of the ranges in a session: a share and a length for all stations, and a length for station 3.
     #[derive(Clone, Copy, Default)]
     struct Errors {
         scale: f64,
@@ -353,7 +358,7 @@ mod tests {
         for (is_free, scale) in [(false, 0.01), (true, 0.01), (true, -0.02), (true, 0.05)] {
             let verdict = verdict(400, Errors { scale, ..Errors::default() }, is_free, 3);
             let found = verdict.scale.unwrap();
-            // With ranges that err by a share, stations all round hold a fix in its place.
+            // If ranges err by a share, stations on all sides keep a fix in place.
             assert!(found.is_proven || !is_free, "{verdict:?}");
             assert!(found.value.abs() > SIGNIFICANT * found.sigma, "{verdict:?}");
             assert!(
@@ -373,7 +378,7 @@ mod tests {
         assert!(late.is_wrong() && late.stations.iter().all(|(_, wrong)| !wrong.is_proven), "{late:?}");
         let sound = with_offset(0.0);
         assert!(!sound.is_wrong() && !sound.offset_m.unwrap().is_proven, "{sound:?}");
-        // Without the time of emission every fix takes such a length out.
+        // Without emission times, every fix absorbs such a length.
         let free = verdict(100, Errors { offset_m: 0.4, ..Errors::default() }, true, 5);
         assert!(free.offset_m.is_none() && !free.is_wrong(), "{free:?}");
     }

@@ -1,4 +1,4 @@
-//! The two positions that stations on a line leave: which of them, and what decides.
+//! Chooses between the two positions that stations on a line allow.
 
 use crate::{
     anchor::{Anchor, anchored},
@@ -10,34 +10,34 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Boundary, Point, Station};
 
-/// A position further from what is believed than this, as a squared distance in standard deviations, contradicts it: one honest one in
-/// 10 000.
+/// The normalised squared distance beyond which a position contradicts the estimate: one correct position in 10 000.
 const CONTRADICTS: f64 = 18.42;
-/// By how much more the other position has to contradict it: one wrong choice in 1000.
+/// The lead in normalised squared distance that decides between the two positions: one wrong choice in 1000.
 const DECIDES: f64 = 13.82;
-/// Stations nearer to a line than this condition number can leave a second position.
+/// Stations with a condition number above this are nearly on a line, and can allow a second position.
 pub(crate) const MIRROR_CONDITIONING: f64 = 5.0;
 
-/// What is known about the side of the stations on which a fix lies.
+/// The criterion that decides on which side of the stations a fix lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sides {
-    /// There is one position only, or both are one within the error.
+    /// There is only one position, or both are the same within the error.
     One,
     /// The other position lies behind the wall.
     ByWalls,
-    /// The other position is too far from where the robot was believed to be.
+    /// The other position is too far from the robot's estimated position.
     ByBelief,
-    /// Nothing decides. The belief may contradict both.
+    /// Nothing decides. The estimate may contradict both positions.
     Open {
         /// The other position.
         other: Point,
-        /// Whether both are too far from where the robot was believed to be.
+        /// Whether both are too far from the robot's estimated position.
         contradicts: bool,
     },
 }
 
 impl Sides {
-    /// What decides between a fix and its mirror image; `prior` is what is believed, if that can be relied on.
+    /// Finds the criterion that decides between a fix and its mirror image; `prior` is the estimate, if it is
+    /// reliable.
     pub(crate) fn of(fix: &Fix, boundary: Option<&Boundary>, prior: Option<Prior>) -> Self {
         let Some(other) = fix.mirror else { return Self::One };
         let is_one = inverse_of(&fix.covariance)
@@ -60,18 +60,20 @@ impl Sides {
     }
 }
 
-/// Whether a position lies further behind the wall than its error.
+/// Whether a position lies behind the wall by more than its error.
 pub(crate) fn is_behind(boundary: &Boundary, at: Point, covariance: &Matrix2<f64>) -> bool {
     -boundary.wall_distance_m(at) > crate::fix::ellipse_95(covariance).0
 }
 
-/// One position with a covariance that holds both sides: the middle of both, and half their distance as a standard deviation.
+/// Returns one position with a covariance that covers both sides: their midpoint, and half their distance as a
+/// standard deviation.
 pub(crate) fn both(fix: &Fix, other: Point) -> (Point, Matrix2<f64>) {
     let half = (other - fix.position) / 2.0;
     (fix.position + half, fix.covariance + half * half.transpose())
 }
 
-/// The other place from which all stations have nearly the same ranges, if the stations are so nearly on a line that there is one.
+/// Returns the mirror image of a place, with nearly the same ranges from all stations, if the stations are nearly
+/// enough on a line.
 pub fn mirrored(ranges: &[Ranging], stations: &[Station], at: Point) -> Option<Point> {
     let anchors: Vec<Anchor> = anchored(ranges, stations).ok()?;
     (anchors.len() >= 3 && conditioning(&anchors) > MIRROR_CONDITIONING).then(|| mirror_of(&anchors, at))?

@@ -1,4 +1,4 @@
-//! Which solver turns ranges into fixes.
+//! The choice of the solver that turns ranges into fixes.
 
 use crate::{
     bounded::Bounded,
@@ -14,7 +14,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use world::Station;
 
-/// Which solver turns ranges into fixes.
+/// The solver that turns ranges into fixes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolverKind {
@@ -25,10 +25,10 @@ pub enum SolverKind {
     /// [`Nls`].
     #[default]
     Nls,
-    /// [`Bounded`] by the bound of the noise; [`Nls`] where the noise has none, and, with the fix suspect, where no
-    /// position is left.
+    /// [`Bounded`] with the bound of the noise; [`Nls`] if the noise has no bound. If no position is possible,
+    /// [`Nls`] with a suspect fix.
     Bounded,
-    /// [`Consensus`] among late ranges.
+    /// [`Consensus`], for ranges of which some are too long.
     Consensus,
     /// [`Differences`]: all ranges of a cycle are too long by one unknown length.
     Differences,

@@ -9,11 +9,11 @@ use crate::{
 use nalgebra::Matrix2;
 use world::{Point, Station, Vector};
 
-/// The linear method with the weights of Gauss and Markov, for more than three stations.
+/// The linear method with Gauss-Markov weights, for more than three stations.
 ///
 /// Differences of squared ranges share the reference station, so their errors are correlated. Fitting
-/// `r_i^2 - |s_i|^2 = c - 2 s_i . p` with weights `1 / (2 r_i sigma_i)^2` and `c` free is the same without choosing a
-/// reference. With three stations nothing is left to weigh and the answer is that of [`crate::LinearLs`].
+/// `r_i^2 - |s_i|^2 = c - 2 s_i . p` with weights `1 / (2 r_i sigma_i)^2` and a free `c` is equivalent, but needs no
+/// reference. With three stations nothing can be weighted, and the answer is that of [`crate::LinearLs`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WeightedLinear;
 
@@ -39,7 +39,8 @@ impl PositionSolver for WeightedLinear {
 }
 
 fn solve_weighted(anchors: &[Anchor]) -> Option<(Point, Matrix2<f64>)> {
-    // Weights relative to the largest and places relative to the first station keep the numbers tame.
+    // Weights are relative to the largest and places are relative to the first station, to keep the numbers well
+    // scaled.
     let origin = anchors.first()?.at;
     let spread = |a: &Anchor| 2.0 * a.range_m * a.sigma_m;
     let least = anchors.iter().map(spread).fold(f64::INFINITY, f64::min);

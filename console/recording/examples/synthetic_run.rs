@@ -1,4 +1,4 @@
-//! Writes a made-up run into a folder, to look at it in the viewer: `synthetic_run FOLDER [TICKS]`.
+//! Writes a synthetic run into a folder for inspection in the viewer: `synthetic_run FOLDER [TICKS]`.
 
 #[path = "../tests/recording/synthetic.rs"]
 mod synthetic;

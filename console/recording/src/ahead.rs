@@ -1,21 +1,21 @@
-//! A queue between who reads ahead and who takes, limited by what its items weigh and not by how many they are: a journal may hold
-//! small events by the million, and a few that are large.
+//! A queue between a thread that reads ahead and its consumer. It is limited by the weight of its items, not by their
+//! number: a journal may contain millions of small events, and a few large ones.
 
 use std::{
     collections::VecDeque,
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
 };
 
-/// A queue that holds items of this weight at most, or one that is heavier.
+/// Creates a queue that holds items up to this total weight, or a single item that is heavier.
 pub fn queue<T>(most: u64) -> (Giver<T>, Taker<T>) {
     let shared = Arc::new(Shared { state: Mutex::default(), changed: Condvar::new(), most });
     (Giver(Arc::clone(&shared)), Taker(shared))
 }
 
-/// Puts items into a queue.
+/// Adds items to a queue.
 pub struct Giver<T>(Arc<Shared<T>>);
 
-/// Takes items from a queue, in their order, until the giver is gone.
+/// Takes items from a queue in order, until the sender is dropped.
 pub struct Taker<T>(Arc<Shared<T>>);
 
 struct Shared<T> {
@@ -52,7 +52,7 @@ impl<T> Shared<T> {
 }
 
 impl<T> Giver<T> {
-    /// Waits for room and puts an item in; `false` if nobody takes any more.
+    /// Waits for space and adds an item; returns `false` if the receiver is gone.
     pub fn give(&self, item: T, weight: u64) -> bool {
         let mut state = self.0.state();
         while !state.is_closed && state.weight > 0 && state.weight + weight > self.0.most {

@@ -1,23 +1,23 @@
-//! Bytes for a file that may have no room for them now.
+//! Buffers bytes for a file that may temporarily have no space for them.
 
 use std::io::{self, ErrorKind, Write};
 
-/// Memory that stays reserved for waiting bytes after a long stall, bytes.
+/// Memory that stays allocated for waiting bytes after a long stall, bytes.
 const KEPT_CAPACITY: usize = 1 << 20;
 
-/// How writing goes.
+/// State of the writing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum State {
     Fine,
-    /// The last attempt failed; nothing is lost.
+    /// The last attempt failed; no data is lost.
     Stalled(String),
-    /// More waited than is kept; bytes are lost and nothing is written any more.
+    /// The backlog exceeded its limit; bytes are lost, and no more are written.
     Ended(String),
 }
 
-/// A writer that keeps what could not be written, up to a limit, until it can be.
+/// A writer that keeps bytes that could not be written, up to a limit, until they can be.
 ///
-/// What reaches the writer is always a beginning of what was put in, without a gap.
+/// The writer always receives a gapless prefix of the bytes that were added.
 pub(crate) struct Backlog {
     out: Box<dyn Write + Send>,
     waiting: Vec<u8>,
@@ -27,27 +27,27 @@ pub(crate) struct Backlog {
 }
 
 impl Backlog {
-    /// `limit`: bytes that are kept after a failed attempt.
+    /// `limit`: maximum number of bytes kept after a failed attempt.
     pub(crate) fn new(out: Box<dyn Write + Send>, limit: usize) -> Self {
         Self { out, waiting: Vec::new(), written: 0, limit, state: State::Fine }
     }
 
-    /// Where to put bytes; they are written by [`Backlog::drain`].
+    /// The buffer to add bytes to; [`Backlog::drain`] writes them.
     pub(crate) fn waiting(&mut self) -> &mut Vec<u8> {
         &mut self.waiting
     }
 
-    /// Bytes that wait.
+    /// Number of waiting bytes.
     pub(crate) fn waiting_bytes(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Bytes that the system has.
+    /// Number of bytes handed to the system.
     pub(crate) fn written_bytes(&self) -> u64 {
         self.written
     }
 
-    /// Why the last attempt failed, in the words of the system; none when it succeeded.
+    /// The system's error for the last attempt; `None` if it succeeded.
     pub(crate) fn trouble(&self) -> Option<&str> {
         match &self.state {
             State::Fine => None,
@@ -55,12 +55,12 @@ impl Backlog {
         }
     }
 
-    /// Whether bytes are lost, so that nothing is written any more.
+    /// Whether bytes are lost, so that no more are written.
     pub(crate) fn has_ended(&self) -> bool {
         matches!(self.state, State::Ended(_))
     }
 
-    /// Writes what waits, as far as it can be written.
+    /// Writes as many of the waiting bytes as possible.
     pub(crate) fn drain(&mut self) {
         if self.has_ended() {
             self.waiting.clear();
@@ -82,7 +82,7 @@ impl Backlog {
     }
 }
 
-/// Writes until everything is written or an attempt fails; how many bytes were written, and how it ended.
+/// Writes until no bytes are left or an attempt fails; returns the number of bytes written, and the result.
 fn write_what_fits(out: &mut dyn Write, bytes: &[u8]) -> (usize, io::Result<()>) {
     let mut done = 0;
     while done < bytes.len() {

@@ -4,13 +4,14 @@ use crate::{error::RecordingError, identity::Identity, journal::JournalReader, r
 use account::Fold;
 use std::{path::Path, time::Instant};
 
-/// Regenerates the recording of a run from its journal, equal in content to the one that was made while it ran.
+/// Regenerates the recording of a run from its journal, with the same content as the one made during the run.
 ///
-/// The recording is that of the run to which the journal belongs (the name of its folder), wherever it is put. A
-/// journal that is cut off gives a recording up to there; what is missing is returned.
+/// The recording belongs to the run of the journal (the name of its folder), wherever the recording is stored. A
+/// journal that is cut off gives a recording up to that point; the missing part is returned as text.
 ///
 /// # Errors
-/// No journal, a damaged one, or the recording cannot be written; an existing recording is never written over.
+/// There is no journal, it is damaged, or the recording cannot be written; an existing recording is never
+/// overwritten.
 pub fn export(journal: &Path, recording: &Path) -> Result<Option<String>, RecordingError> {
     let now = Instant::now();
     let mut reader = JournalReader::open(journal)?;

@@ -1,9 +1,8 @@
-//! Files of a run: read, hashed, and whether the path of one that is being written still shows it.
+//! The files of a run: reading, hashing, and checking that the path of an open file still leads to it.
 //!
-//! A file that is deleted, replaced or truncated while it is open takes every further write without an error; only a
-//! comparison with what the path shows finds it.
+//! A file that is deleted, replaced or truncated while it is open accepts every further write without an error. Only
+//! a comparison with the file at the path detects this.
 
-use crate::identity::hexadecimal;
 use foreign::open_regular;
 use sha2::{Digest, Sha256};
 use std::{
@@ -16,83 +15,83 @@ use std::{
 /// SHA-256 of a file, hexadecimal.
 ///
 /// # Errors
-/// It is not a regular file, or cannot be read.
+/// The file is not a regular file, or cannot be read.
 pub fn sha256(path: &Path) -> io::Result<String> {
     sha256_while(path, |_| true)
 }
 
-/// [`sha256`], given up as soon as `goes_on` says so, which hears how many bytes were read.
+/// Like [`sha256`], but stops as soon as `goes_on` returns `false`; `goes_on` receives the number of bytes read.
 ///
 /// # Errors
-/// As [`sha256`]; [`io::ErrorKind::Interrupted`] if it was given up.
+/// As [`sha256`]; [`io::ErrorKind::Interrupted`] if it was stopped.
 pub fn sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     digest(&mut open_regular(path)?, goes_on)
 }
 
-/// SHA-256 of everything that a reader gives, hexadecimal.
+/// SHA-256 of all bytes of a reader, hexadecimal.
 pub(crate) fn digest(from: &mut dyn Read, mut goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     let (mut hasher, mut chunk, mut bytes) = (Sha256::new(), vec![0; 1 << 18], 0);
     while goes_on(bytes) {
         match from.read(&mut chunk)? {
-            0 => return Ok(hexadecimal(&hasher.finalize())),
+            0 => return Ok(hex::encode(hasher.finalize())),
             length => {
                 hasher.update(&chunk[..length]);
                 bytes += length as u64;
             }
         }
     }
-    Err(io::Error::new(io::ErrorKind::Interrupted, "given up"))
+    Err(io::Error::new(io::ErrorKind::Interrupted, "stopped"))
 }
 
-/// SHA-256 of some bytes, hexadecimal.
+/// SHA-256 of a byte slice, hexadecimal.
 pub fn sha256_of(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
+    hex::encode(Sha256::digest(bytes))
 }
 
-/// How a file on disk differs from the one that was opened and written.
+/// The difference between a file on disk and the one that was opened and written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileChange {
-    /// There is nothing at the path any more.
+    /// There is no file at the path any more.
     #[error("the file was deleted: {}", path.display())]
     Deleted {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// The path leads to another file.
-    #[error("the file was replaced by another one: {}", path.display())]
+    /// The path leads to a different file.
+    #[error("the file was replaced by a different one: {}", path.display())]
     Replaced {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// The file has another length than what was written to it.
+    /// The length of the file differs from what was written to it.
     #[error("the file has {found} bytes, but {written} were written: {}", path.display())]
     Length {
         /// Length on disk, bytes.
         found: u64,
-        /// What was written, bytes.
+        /// Number of bytes written.
         written: u64,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// The file has the length of what was written to it, and other content.
-    #[error("the file was changed by somebody else: {}", path.display())]
+    /// The file has the length of what was written to it, but different content.
+    #[error("the file was changed by another program: {}", path.display())]
     Content {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// The system does not say what is there.
+    /// The system cannot examine the file.
     #[error("the file cannot be examined ({why}): {}", path.display())]
     Unknown {
-        /// What the system says.
+        /// The error of the system.
         why: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
 }
 
-/// The identity of an open file, to compare with what its path shows.
+/// The identity of an open file, for comparison with the file at its path.
 ///
-/// The system gives the inode to no other file as long as this one is open.
+/// The system does not reuse the inode while this file is open.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FileWatch {
     path: PathBuf,
@@ -101,33 +100,33 @@ pub(crate) struct FileWatch {
 }
 
 impl FileWatch {
-    /// Creates a file where there is none.
+    /// Creates a file; fails if it exists.
     ///
-    /// Every write goes to its end, so that a file that is truncated stays shorter than what was written.
+    /// Every write goes to the end of the file, so a file that others truncate stays shorter than what was written.
     pub(crate) fn create(path: &Path) -> io::Result<(File, Self)> {
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
         let opened = file.metadata()?;
-        // The working directory may change, the file does not move with it.
+        // The working directory may change, but the file stays in its place.
         let path = std::path::absolute(path)?;
         Ok((file, Self { path, device: opened.dev(), inode: opened.ino() }))
     }
 
-    /// Its path, absolute.
+    /// The absolute path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether the path shows the file with at least so many bytes; more may be on their way.
+    /// Checks that the file at the path is this one and has at least this length; more bytes may be on their way.
     pub(crate) fn check(&self, written: u64) -> Result<(), FileChange> {
         self.check_length(written, |found| found >= written)
     }
 
-    /// Whether the path shows the file with exactly so many bytes.
+    /// Checks that the file at the path is this one and has exactly this length.
     pub(crate) fn check_closed(&self, written: u64) -> Result<(), FileChange> {
         self.check_length(written, |found| found == written)
     }
 
-    /// Whether the path shows the file with exactly so many bytes, and with this hash.
+    /// Checks that the file at the path is this one and has exactly this length and hash.
     pub(crate) fn check_content(&self, written: u64, expected: &str) -> Result<(), FileChange> {
         self.check_closed(written)?;
         let path = || self.path.clone();

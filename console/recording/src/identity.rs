@@ -1,63 +1,52 @@
-//! What a recording is called, so that the viewer keeps two runs apart.
+//! Name and id of a recording, by which the viewer keeps two runs apart.
 
+use jiff::{civil::DateTime, tz::TimeZone};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Name and id of a recording.
 ///
-/// The viewer merges files that carry the same id, and keeps files with different ones apart. The id is a hash of
-/// the name of the run's folder, so a recording regenerated from the journal is the same recording.
+/// The viewer merges files with the same id and keeps files with different ids apart. The id is a hash of the name of
+/// the run's folder, so a recording regenerated from the journal is the same recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// Unique per run, the same every time it is asked for.
+    /// The id: unique per run, and always the same for a run.
     pub recording_id: String,
-    /// What people read: the name of the run's folder.
+    /// The name for people: the name of the run's folder.
     pub name: String,
-    /// When the run began by its name (`20261122T040132Z-...`), UTC, nanoseconds since 1970; absent if that does not say.
+    /// Start of the run from its name (`20261122T040132Z-...`), UTC, nanoseconds since 1970; absent if the name does
+    /// not contain it.
     pub began_ns: Option<i64>,
 }
 
 impl Identity {
-    /// The identity of the run in a folder of this name.
+    /// The identity of the run in a folder with this name.
     pub fn of_run(folder_name: &str) -> Self {
         let digest = Sha256::digest(folder_name.as_bytes());
         Self {
-            recording_id: hexadecimal(&digest[..16]),
+            recording_id: hex::encode(&digest[..16]),
             name: folder_name.to_owned(),
             began_ns: began_ns(folder_name),
         }
     }
 
-    /// The identity of the run that this folder holds.
+    /// The identity of the run in this folder.
     pub fn of_folder(folder: &Path) -> Self {
         let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let name = whole.file_name().map(|name| name.to_string_lossy().into_owned());
         Self::of_run(name.as_deref().unwrap_or("run"))
     }
 
-    /// The identity of the run that this file (journal or recording) belongs to.
+    /// The identity of the run to which this file (journal or recording) belongs.
     pub fn of_file(file: &Path) -> Self {
         Self::of_folder(file.parent().unwrap_or(Path::new("")))
     }
 }
 
-/// The time with which a name begins, nanoseconds since 1970.
+/// The time with which a run's name begins, nanoseconds since 1970.
 fn began_ns(name: &str) -> Option<i64> {
-    let stamp = name.get(..16).filter(|stamp| stamp.as_bytes()[8] == b'T' && stamp.ends_with('Z'))?;
-    let number = |digits: std::ops::Range<usize>| -> Option<i64> {
-        stamp.get(digits).filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()))?.parse().ok()
-    };
-    let (year, month, day) = (number(0..4)?, number(4..6)?, number(6..8)?);
-    // Years begin in March, so that the leap day is the last one.
-    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
-    let days = 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day - 1 - 719_468;
-    let seconds = 3600 * number(9..11)? + 60 * number(11..13)? + number(13..15)?;
-    Some((86_400 * days + seconds) * 1_000_000_000)
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |text, byte| text + &format!("{byte:02x}"))
+    let began = DateTime::strptime("%Y%m%dT%H%M%SZ", name.get(..16)?).ok()?.to_zoned(TimeZone::UTC).ok()?;
+    began.timestamp().as_nanosecond().try_into().ok()
 }
 
 #[cfg(test)]

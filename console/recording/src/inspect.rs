@@ -1,4 +1,4 @@
-//! What a recording holds.
+//! Reads the content of a recording.
 
 use crate::{
     error::RecordingError,
@@ -7,12 +7,12 @@ use crate::{
 };
 use std::{collections::BTreeMap, fs::File, io::BufReader, path::Path};
 
-/// What a recording holds, as far as it can be read.
+/// The content of a recording, as far as it can be read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Summary {
-    /// The application that the viewer keeps the layout by.
+    /// The application id by which the viewer keeps the layout.
     pub application: String,
-    /// Id by which the viewer keeps recordings apart.
+    /// The id by which the viewer keeps recordings apart.
     pub recording_id: String,
     /// Name for people.
     pub name: Option<String>,
@@ -24,26 +24,26 @@ pub struct Summary {
     pub ticks: Option<(i64, i64)>,
     /// Last recorded share of the reachable floor, percent.
     pub last_coverage_percent: Option<f64>,
-    /// Lines of the event log.
+    /// Number of lines of the event log.
     pub log_lines: u64,
-    /// How the run ended; absent if the run was killed or is still going on.
+    /// How the run ended; absent if the run was killed or is still in progress.
     pub outcome: Option<String>,
-    /// The figures of the run by name, in the units that their names say.
+    /// The figures of the run by name, in the units in their names.
     pub figures: BTreeMap<String, f64>,
     /// Whether a layout is embedded.
     pub has_layout: bool,
-    /// What could not be read, if something could not.
+    /// The error that stopped the reading, if any.
     pub damage: Option<String>,
 }
 
 impl Summary {
-    /// Whether the recording holds the run up to its end.
+    /// Whether the recording contains the run to its end.
     pub fn is_complete(&self) -> bool {
         self.outcome.is_some() && self.damage.is_none()
     }
 }
 
-/// Reads what a recording holds; one that is cut off is read up to there.
+/// Reads the content of a recording; one that is cut off is read up to that point.
 ///
 /// # Errors
 /// [`RecordingError::Read`] if there is no such file.
@@ -111,7 +111,7 @@ fn last_number(chunk: &rr::Chunk) -> Option<f64> {
     chunk.iter_slices::<f64>(component).last().and_then(|row| row.first().copied())
 }
 
-/// The numbers that a chunk has, by the names of its components.
+/// The numbers in a chunk, by the names of its components.
 fn numbers(chunk: &rr::Chunk) -> BTreeMap<String, f64> {
     let number = |component: rr::ComponentIdentifier| {
         let float = chunk.iter_slices::<f64>(component).last().and_then(|row| row.first().copied());

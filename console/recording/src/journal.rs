@@ -1,7 +1,7 @@
-//! The journal of a run: every event, one JSON object a line, in the order in which they happened; the lines are compressed.
+//! The journal of a run: every event in order, one JSON object per line, compressed.
 //!
-//! It carries no wall-clock time, so equal runs have equal lines, byte for byte. It is the record from which
-//! everything else (recording, report, replay) can be made again, and it does not change with the recording SDK.
+//! It contains no wall-clock time, so equal runs have equal lines, byte for byte. Recording, report and replay can be
+//! regenerated from the journal, and its format does not depend on the recording SDK.
 
 mod ending;
 mod fast;
@@ -26,70 +26,71 @@ use std::path::{Path, PathBuf};
 
 /// Name of the journal in the folder of a run.
 pub const JOURNAL_FILE: &str = "events.jsonl.zst";
-/// Its name where somebody has uncompressed it.
+/// Name of an uncompressed journal.
 pub const PLAIN_JOURNAL_FILE: &str = "events.jsonl";
 
-/// The journal in the folder of a run, compressed or not; where there is none, the path that it would have.
+/// The path of the journal in the folder of a run, compressed or not. If there is none, the path that it would have.
 pub fn journal_of(folder: &Path) -> PathBuf {
     let (packed, plain) = (folder.join(JOURNAL_FILE), folder.join(PLAIN_JOURNAL_FILE));
     if !packed.exists() && plain.exists() { plain } else { packed }
 }
 
-/// Why a journal cannot be written or read.
+/// The reason why a journal cannot be written or read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum JournalError {
-    /// The file could not be made; a journal that exists already is never written over.
-    #[error("cannot make the journal ({why}): {}", path.display())]
+    /// The file could not be created; an existing journal is never overwritten.
+    #[error("cannot create the journal ({why}): {}", path.display())]
     Create {
-        /// What the system says.
+        /// The error of the system.
         why: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// Writing failed; events are kept in memory and written when that is possible again.
+    /// Writing failed; events are kept in memory until they can be written.
     #[error(
-        "the journal cannot be written beyond {bytes} bytes ({why}); events are kept in memory until it can"
+        "the journal cannot be written beyond {bytes} bytes ({why}); events are kept in memory until \
+         writing succeeds"
     )]
     Stalled {
-        /// How much was written.
+        /// Number of bytes written.
         bytes: u64,
-        /// What the system says.
+        /// The error of the system.
         why: String,
     },
-    /// Writing failed for good; what was written before it stays.
+    /// Writing failed for good; the part written before stays.
     #[error("the journal stopped after {bytes} bytes: {why}")]
     Write {
-        /// How much was written.
+        /// Number of bytes written.
         bytes: u64,
-        /// What the system says.
+        /// The error of the system.
         why: String,
     },
     /// The file on disk is not the one that was written.
-    #[error("the journal is not on disk as it was written: {0}")]
+    #[error("the journal on disk is not as it was written: {0}")]
     Changed(#[from] FileChange),
     /// The file could not be read.
     #[error("cannot read the journal ({why}): {}", path.display())]
     Read {
-        /// What the system says.
+        /// The error of the system.
         why: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
     /// The first line is not a `run_opened` event.
     #[error("this is not a journal: line 1 is not the event run_opened ({why}): {}", path.display())]
     NotAJournal {
-        /// What is wrong with it.
+        /// The fault of the line.
         why: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// It holds nothing, not even how the run was opened.
-    #[error("the journal is empty or cut off before the opening of the run was written: {}", path.display())]
+    /// The journal is empty, or is cut off within its first line.
+    #[error("the journal is empty or cut off before the run was opened: {}", path.display())]
     NotOpened {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// It was written by a tankops whose journals have another version.
+    /// It was written by a tankops with a different journal version.
     #[error(
         "the journal has version {theirs}, and this tankops reads version {ours}; use the tankops that wrote it: {}",
         path.display()
@@ -99,19 +100,19 @@ pub enum JournalError {
         theirs: u32,
         /// Version that this tankops reads.
         ours: u32,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
-    /// A line that is complete cannot be understood.
+    /// A complete line is not a valid event.
     #[error("the journal is damaged at line {line}, column {column} ({why}): {}", path.display())]
     Damaged {
-        /// Which line, from 1.
+        /// The line, from 1.
         line: usize,
-        /// Which column, from 1.
+        /// The column, from 1.
         column: usize,
-        /// What is wrong with it.
+        /// The fault of the line.
         why: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
 }

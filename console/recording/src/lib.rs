@@ -1,12 +1,12 @@
-//! Events to a rerun recording and to the journal, and back.
+//! Writes events to a rerun recording and to the journal, and reads them back.
 //!
-//! The journal (`events.jsonl.zst`) is ours: every event, one line each, versioned, the same lines for the same run. The
-//! recording (`recording.rrd`) is a view of it for the rerun viewer and can be regenerated from the journal at any
-//! time. Both are written by one thread behind a bounded queue ([`RunRecorder`]). What cannot be written is kept in
-//! memory up to a limit; a disk error, or a file that is deleted or changed by others, shows in [`Health`] within a
-//! second, and the mission goes on.
+//! The journal (`events.jsonl.zst`) has our own format: every event, one line each, versioned, with the same lines
+//! for the same run. The recording (`recording.rrd`) is a view of the journal for the rerun viewer and can be
+//! regenerated from it at any time. One thread behind a bounded queue writes both ([`RunRecorder`]). Data that cannot
+//! be written is kept in memory up to a limit. A disk error, or a file that others delete or change, appears in
+//! [`Health`] within a second, and the mission continues.
 //!
-//! Nothing here prints: what the recording SDK has to say goes to `tracing`.
+//! This crate prints nothing: messages of the recording SDK go to `tracing`.
 
 pub mod ahead;
 mod backlog;

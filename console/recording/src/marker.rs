@@ -1,7 +1,8 @@
-//! A small file in the folder of a run that says that journal or recording failed.
+//! A small file in the folder of a run that reports a failure of the journal or recording.
 //!
-//! A process that is killed later, or a report that cannot be written, leaves no other sign of it. The file's space is
-//! taken when the run starts and the file is renamed when it is needed, because a full disk has no room for a new one.
+//! If the process is killed later, or a report cannot be written, this file is the only sign of the failure. A full
+//! disk has no space for a new file, so the space is reserved when the run starts, and the file is renamed when it is
+//! needed.
 
 use std::{
     fs::{self, File},
@@ -10,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Name of the file in the folder of a run whose journal or recording failed; its text says why.
+/// Name of the file in the folder of a run whose journal or recording failed; its text states the reason.
 pub const FAILURE_FILE: &str = "recording-failed.txt";
 const RESERVE_FILE: &str = ".recording-failed.reserve";
 /// Size of the file, bytes: one block on common file systems.
@@ -25,9 +26,9 @@ pub(crate) struct FailureMarker {
 }
 
 impl FailureMarker {
-    /// Takes the space for the file in the folder of a run.
+    /// Reserves the space for the file in the folder of a run.
     pub(crate) fn reserve(folder: &Path) -> io::Result<Self> {
-        // The folder is found again if the working directory changes.
+        // The folder can be found again after a change of the working directory.
         let folder = std::path::absolute(folder)?;
         let (reserve, marker) = (folder.join(RESERVE_FILE), folder.join(FAILURE_FILE));
         let file = File::create_new(&reserve)?;
@@ -35,9 +36,9 @@ impl FailureMarker {
         Ok(Self { file, reserve, marker, shown: None })
     }
 
-    /// Shows why recording fails, or, with `None`, that it does not any more.
+    /// Shows the reason why recording fails or, with `None`, removes the report of a past failure.
     ///
-    /// Errors are dropped: this is the last thing that can be said, and a folder that is gone takes no message.
+    /// Errors are dropped: this is the last way to report anything, and a deleted folder accepts no message.
     pub(crate) fn show(&mut self, failure: Option<&str>) {
         if self.shown.as_deref() == failure {
             return;
@@ -55,20 +56,20 @@ impl FailureMarker {
 
 impl Drop for FailureMarker {
     fn drop(&mut self) {
-        // Only the reserve: what is shown stays for those who look at the run later.
+        // Removes only the reserve: a visible report stays for later readers of the run.
         let _ = fs::remove_file(&self.reserve);
     }
 }
 
-/// Removes what a writer that was killed had taken for the file; not a file that says why something failed.
+/// Removes the reserve of a writer that was killed, but not a file that reports a failure.
 pub fn remove_reserve(folder: &Path) {
     let _ = fs::remove_file(folder.join(RESERVE_FILE));
 }
 
-/// Why journal or recording of the run in a folder failed, if they did.
+/// The reason why the journal or recording of the run in a folder failed, if it did.
 pub fn recorded_failure(folder: &Path) -> Option<String> {
     let mut text = Vec::new();
-    // What is longer is not ours, and its beginning says enough.
+    // A longer file is not ours, and its first part is enough.
     foreign::open_regular(&folder.join(FAILURE_FILE))
         .ok()?
         .take(LENGTH as u64)
@@ -77,7 +78,7 @@ pub fn recorded_failure(folder: &Path) -> Option<String> {
     Some(String::from_utf8_lossy(&text).trim().to_owned())
 }
 
-/// A text of the file's length, whatever it says, so that writing it never needs space.
+/// A text padded to the length of the file, so that writing it never needs space.
 fn padded(text: &str) -> Vec<u8> {
     let mut bytes: Vec<u8> = text.bytes().take(LENGTH - 1).collect();
     bytes.resize(LENGTH - 1, b' ');

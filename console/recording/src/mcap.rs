@@ -1,17 +1,17 @@
-//! A run as MCAP with messages of ROS 2, for Foxglove and the tools of that world.
+//! A run as MCAP with ROS 2 messages, for Foxglove and similar tools.
 //!
 //! | topic | message | when |
 //! |---|---|---|
-//! | `/map` | `nav_msgs/OccupancyGrid` | once: floor 0, what is solid or outside 100 |
+//! | `/map` | `nav_msgs/OccupancyGrid` | once: floor 0, solid or outside 100 |
 //! | `/coverage` | `nav_msgs/OccupancyGrid` | while floor is scanned: to do 0, scanned 100, no floor -1 |
 //! | `/plan` | `nav_msgs/Path` | with every plan |
 //! | `/pose` | `geometry_msgs/PoseWithCovarianceStamped` | every tick: the estimate |
 //! | `/fix` | `geometry_msgs/PoseWithCovarianceStamped` | every position from ranges |
 //! | `/truth` | `geometry_msgs/PoseStamped` | every tick of a simulated run |
 //! | `/track` | `nav_msgs/Path` | at the end: all estimates |
-//! | `/log` | `rcl_interfaces/Log` | what the log says |
+//! | `/log` | `rcl_interfaces/Log` | every line of the log |
 //!
-//! Everything is in the frame `tank`; time is mission time.
+//! All messages use the frame `tank`; time is mission time.
 
 mod cdr;
 mod ros;
@@ -30,15 +30,16 @@ use std::{
 };
 use world::{Cell, CoverageGrid, Floor, FloorClass, Point, Pose, Station};
 
-/// A picture of what is scanned is written this often, seconds.
+/// Time between two pictures of the scanned floor, seconds.
 const COVERAGE_S: f64 = 5.0;
-/// Points of the track nearer to the one before are left out, metres.
+/// Minimum distance between two points of the track, metres.
 const TRACK_M: f64 = 0.01;
 
-/// Writes the run of a journal; a journal that is cut off gives a file up to there, and what is missing is returned.
+/// Writes the run of a journal as MCAP. A journal that is cut off gives a file up to that point, and the missing part
+/// is returned as text.
 ///
 /// # Errors
-/// No journal, a damaged one, or the file cannot be written; an existing file is never written over.
+/// There is no journal, it is damaged, or the file cannot be written; an existing file is never overwritten.
 pub fn export_mcap(journal: &Path, file: &Path) -> Result<Option<String>, RecordingError> {
     let mut reader = JournalReader::open(journal)?;
     let create =
@@ -67,11 +68,11 @@ struct Export {
     run: Option<Run>,
 }
 
-/// What is known of a run that has been opened.
+/// State of a run that has been opened.
 struct Run {
     stations: Vec<Station>,
     coverage: CoverageGrid,
-    /// When the scanned floor was written last; none if nothing new has been scanned since.
+    /// Time of the last picture of the scanned floor; `None` if nothing was scanned since then.
     changed_since_s: Option<f64>,
     track: Vec<(f64, Pose)>,
     now_s: f64,
@@ -233,7 +234,7 @@ impl Export {
     }
 }
 
-/// A covariance of x and y with nothing known of the heading.
+/// A covariance of x and y; the heading is unknown.
 fn position_only(covariance: &Matrix2<f64>) -> Matrix3<f64> {
     let mut whole = Matrix3::zeros();
     whole.fixed_view_mut::<2, 2>(0, 0).copy_from(covariance);
@@ -241,7 +242,7 @@ fn position_only(covariance: &Matrix2<f64>) -> Matrix3<f64> {
     whole
 }
 
-/// The points of a path, each headed to the next.
+/// The points of a path, each heading to the next.
 fn headed(path: &[Point]) -> impl Iterator<Item = Pose> {
     path.iter().enumerate().map(|(index, point)| {
         let (from, to) = match path.get(index + 1) {

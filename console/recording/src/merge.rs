@@ -1,7 +1,7 @@
-//! The chunks of a recording that is closed, merged into few large ones: the viewer opens it several times as fast.
+//! Merges the chunks of a closed recording into a few large ones: the viewer then opens it several times as fast.
 //!
-//! While a run lasts, what happened is in the file within seconds, so its chunks are small. A file that was cut off by a kill
-//! keeps them; it says the same.
+//! During a run every event must be in the file within seconds, so the chunks are small. A file that was cut off by a
+//! kill keeps them; it has the same content.
 
 use crate::{error::RecordingError, recorder::paths, rr};
 use std::{
@@ -12,22 +12,23 @@ use std::{
     time::Instant,
 };
 
-/// No chunk is made larger than this.
+/// The largest size of a merged chunk.
 const MOST_ROWS: usize = 1 << 15;
 const MOST_CHUNK_BYTES: usize = 4 << 20;
-/// Ending of the file that takes the place of the recording when it is whole.
+/// Extension of the file that replaces the recording when it is complete.
 const ENDING: &str = "merging";
 
-/// Merges the chunks of a recording, about 60 MB of them in a second; gives up when `until` has come, if it is given.
+/// Merges the chunks of a recording, about 60 MB per second; gives up at the time `until`, if there is one.
 ///
 /// # Errors
-/// It cannot be read, its successor cannot be written, or the time is over; the recording stays as it was.
+/// The recording cannot be read, its replacement cannot be written, or the time is over; the recording stays as it
+/// was.
 pub(crate) fn merge(path: &Path, until: Option<Instant>) -> Result<(), RecordingError> {
     let successor = with_ending(path);
     let done = write(path, &successor, until)
         .and_then(|()| fs::rename(&successor, path).map_err(|error| error.to_string()));
     if done.is_err() {
-        // Nothing more can be done about a file that cannot be removed.
+        // If the file cannot be removed, nothing more can be done.
         let _ = fs::remove_file(&successor);
     }
     done.map_err(|why| RecordingError::Merge { why, path: path.to_owned() })
@@ -66,10 +67,10 @@ fn write(from: &Path, to: &Path, until: Option<Instant>) -> Result<(), String> {
 /// Chunks of one kind, entity and set of columns.
 type Key = (Kind, String, Vec<String>);
 
-/// In this order they are written: a recording that is cut off must not say that it has an end.
+/// The order of writing: a recording that is cut off must not appear to be complete.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// It holds for the whole recording; only the last counts.
+    /// Data for the whole recording; only the last value counts.
     Static,
     Temporal,
     End,
@@ -85,7 +86,7 @@ impl Kind {
     }
 }
 
-/// Chunks that wait for others like them.
+/// Chunks that wait for others of the same group.
 #[derive(Default)]
 struct Merger {
     store: Option<rr::StoreId>,
@@ -93,7 +94,7 @@ struct Merger {
 }
 
 impl Merger {
-    /// Takes the next message of a recording; returns those that go on.
+    /// Adds the next message of a recording; returns the messages to be written now.
     fn take(&mut self, message: rr::LogMsg) -> Result<Vec<rr::LogMsg>, String> {
         let rr::LogMsg::ArrowMsg(store, arrow) = &message else { return Ok(vec![message]) };
         if store.kind() != rr::StoreKind::Recording {
@@ -117,7 +118,7 @@ impl Merger {
         self.merged(full)
     }
 
-    /// What still waits.
+    /// Returns all chunks that still wait.
     fn rest(&mut self) -> Result<Vec<rr::LogMsg>, String> {
         let waiting = std::mem::take(&mut self.waiting);
         waiting
@@ -137,7 +138,7 @@ impl Merger {
     }
 }
 
-/// Whether chunks that wait and another one are too much for one chunk.
+/// Whether the waiting chunks and another one are too large for one chunk.
 fn is_full(waiting: &[rr::Chunk], next: &rr::Chunk) -> bool {
     let chunks = || waiting.iter().chain([next]);
     let bytes = |chunk: &rr::Chunk| {
@@ -147,7 +148,7 @@ fn is_full(waiting: &[rr::Chunk], next: &rr::Chunk) -> bool {
         || chunks().map(bytes).sum::<usize>() > MOST_CHUNK_BYTES
 }
 
-/// Joins the last two chunks as long as they are to be joined: those of about one size, so that each row is copied rarely.
+/// Joins the last two chunks while they are of about the same size, so that each row is copied only a few times.
 fn shrink(
     chunks: &mut Vec<rr::Chunk>,
     are_to_join: impl Fn(&rr::Chunk, &rr::Chunk) -> bool,

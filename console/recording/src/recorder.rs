@@ -1,4 +1,4 @@
-//! Events to a recording for the rerun viewer.
+//! Writes events to a recording for the rerun viewer.
 
 mod document;
 mod drawings;
@@ -40,18 +40,18 @@ use stream::Stream;
 
 /// Name of the recording in the folder of a run.
 pub const RECORDING_FILE: &str = "recording.rrd";
-/// Rows are sent to the file after this many ticks,
+/// Rows are sent to the file after this many ticks
 const SEND_TICKS: u32 = 16_384;
-/// or after this many drawings of planners, of which a tick may have thousands,
+/// or after this many drawings of planners, of which a tick may have thousands
 const SEND_DRAWINGS: usize = 1 << 19;
 /// or after this time, whichever comes first.
 const SEND_AFTER: Duration = Duration::from_secs(5);
 
 /// Folds events into a recording.
 ///
-/// What the recording holds depends on the events alone; time decides only how early it reaches the file. What cannot
-/// be written, because the disk is full, is kept up to 32 MB and written when that is possible. An error of
-/// [`Recorder::push`] or [`Recorder::idle`] ends the recording; events after it are not recorded.
+/// The content of the recording depends on the events alone; time determines only how soon it reaches the file. Data
+/// that cannot be written, for example because the disk is full, is kept up to 32 MB and written when possible. An
+/// error of [`Recorder::push`] or [`Recorder::idle`] ends the recording; later events are not recorded.
 pub struct Recorder {
     fold: Fold,
     stream: Option<Stream>,
@@ -63,16 +63,16 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Makes a recording where there is none.
+    /// Creates a recording.
     ///
     /// # Errors
-    /// [`RecordingError::Create`] if the file exists or cannot be made.
+    /// [`RecordingError::Create`] if the file exists or cannot be created.
     pub fn create(path: &Path, identity: &Identity, now: Instant) -> Result<Self, RecordingError> {
         let (sink, watch) = SafeSink::create(path)?;
         Ok(Self { watch: Some(watch), ..Self::open(sink, identity, now)? })
     }
 
-    /// A recording that goes to any writer.
+    /// A recording that is written to any writer.
     ///
     /// # Errors
     /// [`RecordingError::Sdk`] if the recording SDK does not start.
@@ -99,12 +99,12 @@ impl Recorder {
         })
     }
 
-    /// How the file is doing; stays readable after the recorder is gone.
+    /// State of the file; can still be read after the recorder is dropped.
     pub fn health(&self) -> Arc<SinkHealth> {
         Arc::clone(&self.health)
     }
 
-    /// Why the recording is not being written now; none if it is.
+    /// The reason why the recording is not being written at present; `None` if it is.
     pub fn trouble(&self) -> Option<RecordingError> {
         let why = self.health.error()?;
         Some(if self.health.has_ended() {
@@ -114,18 +114,18 @@ impl Recorder {
         })
     }
 
-    /// Whether the path still shows the file that is being written.
+    /// Checks that the path still leads to the file that is being written.
     ///
     /// # Errors
-    /// How it differs.
+    /// The difference.
     pub fn check_file(&self) -> Result<(), FileChange> {
         self.watch.as_ref().map_or(Ok(()), |watch| watch.check(self.health.bytes()))
     }
 
-    /// Takes in the next event; does nothing after an error. `account` is that of the events before it.
+    /// Adds the next event; does nothing after an error. `account` is that of the events before it.
     ///
     /// # Errors
-    /// The first error with which data is lost, once.
+    /// The first error that loses data, once.
     pub fn push(
         &mut self,
         event: &Event,
@@ -141,12 +141,12 @@ impl Recorder {
             self.drawings_waiting += drawings.len();
         }
         let is_much = self.ticks_waiting >= SEND_TICKS || self.drawings_waiting >= SEND_DRAWINGS;
-        // Whoever looks at a robot that stands still wants to see how it came to that.
+        // When the robot stops, the user wants to see the events that led to it.
         let held = matches!(event.kind, EventKind::Held { .. });
         if held || is_much { self.send(now) } else { self.idle(now) }
     }
 
-    /// Sends waiting rows if it is time; to be called now and then while nothing happens.
+    /// Sends waiting rows if they are due; call it regularly while there are no events.
     ///
     /// # Errors
     /// As [`Recorder::push`].
@@ -154,12 +154,14 @@ impl Recorder {
         if now.saturating_duration_since(self.sent_at) >= SEND_AFTER { self.send(now) } else { Ok(()) }
     }
 
-    /// Writes everything and closes the recording of a run, of which the summary is given. Then its chunks are merged
-    /// into larger ones, unless that takes until the moment given. Returns the SHA-256 of the file, hexadecimal, if it is known.
+    /// Writes all data with the given summary and closes the recording. Then merges its chunks into larger ones,
+    /// unless that would take longer than the given time. Returns the SHA-256 of the file, hexadecimal, if it is
+    /// known.
     ///
     /// # Errors
-    /// The first error, also if it has been reported before: the recording is not whole.
-    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or has another length or content.
+    /// The first error, even if it has been reported before: the recording is not complete.
+    /// [`RecordingError::Changed`] if the file on disk is not the one that was written, or differs in length or
+    /// content.
     pub fn finish(
         mut self,
         summary: &Summary,
@@ -177,9 +179,9 @@ impl Recorder {
         let Some(watch) = &self.watch else { return Ok(None) };
         let sha256 = self.health.sha256();
         watch.check_content(self.health.bytes(), &sha256)?;
-        // Also where everything was sent at once: only what is merged has the table of contents of the format.
+        // Needed even if all rows were sent in one piece: only a merged file has the table of contents of the format.
         if let Err(error) = merge::merge(watch.path(), until) {
-            // The recording is whole, only slower to open.
+            // The recording is complete, but slower to open.
             tracing::warn!("{error}");
             return Ok(Some(sha256));
         }
@@ -206,7 +208,7 @@ impl Recorder {
     }
 }
 
-/// Makes sure that the recording SDK can say when it began.
+/// Checks that the clock is valid for the recording SDK, which records its start time.
 fn check_clock(now: SystemTime) -> Result<(), RecordingError> {
     if now < SystemTime::UNIX_EPOCH { Err(RecordingError::Clock) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! Every name of the recording SDK that this crate uses, so that the SDK can be exchanged in one place.
+//! Every name of the recording SDK that this crate uses, so that the SDK can be replaced in one place.
 
 pub(crate) use re_build_info::CrateVersion;
 pub(crate) use re_log_encoding::{DecoderApp, Encoder, EncodingOptions};

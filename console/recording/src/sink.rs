@@ -1,10 +1,10 @@
-//! A file sink that reports how it is.
+//! A file sink that reports its state.
 //!
-//! The SDK's own file sink truncates existing files, loses the first write error with its thread, and can hang when
-//! the stream is dropped afterwards. This one never writes over a file, never blocks the SDK after an error, keeps
-//! what could not be written, and counts the bytes that reached the system.
+//! The SDK's own file sink truncates existing files, loses the first write error together with its thread, and can
+//! hang when the stream is dropped afterwards. This sink never overwrites a file, never blocks the SDK after an
+//! error, keeps data that could not be written, and counts the bytes handed to the system.
 
-use crate::{backlog::Backlog, error::RecordingError, file::FileWatch, identity::hexadecimal, rr};
+use crate::{backlog::Backlog, error::RecordingError, file::FileWatch, rr};
 use sha2::{Digest, Sha256};
 use std::{
     io::{self, Write},
@@ -16,38 +16,38 @@ use std::{
     time::Duration,
 };
 
-/// Data that is kept while the file cannot be written, bytes: more than an hour of mission time.
+/// Limit of the data that is kept while the file cannot be written, bytes: more than an hour of mission time.
 const MOST_WAITING_BYTES: usize = 32 << 20;
 
-/// How the file of a recording is doing; can be read at any time without waiting.
+/// State of the file of a recording; can be read at any time without waiting.
 #[derive(Debug, Default)]
 pub struct SinkHealth {
     bytes: AtomicU64,
     has_ended: AtomicBool,
     error: Mutex<Option<String>>,
-    /// Of everything that was to be written.
+    /// Digest of all data, written or not.
     hasher: Mutex<Sha256>,
 }
 
 impl SinkHealth {
-    /// How many bytes the system has got.
+    /// Number of bytes handed to the system.
     pub fn bytes(&self) -> u64 {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// Why the file cannot be written now, in the words of the system; none if it can.
+    /// The reason why the file cannot be written at present, in the words of the system; `None` if it can.
     pub fn error(&self) -> Option<String> {
         self.lock().clone()
     }
 
-    /// Whether data is lost, so that nothing is written any more.
+    /// Whether data is lost, so that no more is written.
     pub fn has_ended(&self) -> bool {
         self.has_ended.load(Ordering::Relaxed)
     }
 
-    /// SHA-256 of what was written, if all of it was, hexadecimal.
+    /// SHA-256 of the written data, hexadecimal; `None` unless all of it was written.
     pub(crate) fn sha256(&self) -> String {
-        hexadecimal(&self.hasher().clone().finalize())
+        hex::encode(self.hasher().clone().finalize())
     }
 
     fn hasher(&self) -> MutexGuard<'_, Sha256> {
@@ -67,7 +67,7 @@ impl SinkHealth {
         self.has_ended.store(backlog.has_ended(), Ordering::Relaxed);
     }
 
-    /// The end, for another reason than the file. Only the first one says what happened.
+    /// Stops the writing for a reason other than a file error. Only the first reason is kept.
     fn fail(&self, error: &impl ToString) {
         if !self.has_ended.swap(true, Ordering::Relaxed) {
             *self.lock() = Some(error.to_string());
@@ -106,14 +106,14 @@ impl Write for Guarded {
     }
 }
 
-/// The sink; encodes on the SDK's thread.
+/// The sink; encodes data on the SDK's thread.
 pub(crate) struct SafeSink {
     encoder: Mutex<rr::Encoder<Guarded>>,
     health: Arc<SinkHealth>,
 }
 
 impl SafeSink {
-    /// Makes a file where there is none, and writes the head of the format to it.
+    /// Creates a file and writes the header of the format to it.
     pub(crate) fn create(path: &Path) -> Result<(Self, FileWatch), RecordingError> {
         let failed = |why| RecordingError::Create { why, path: path.to_owned() };
         let (file, watch) = FileWatch::create(path).map_err(|error| failed(error.to_string()))?;
@@ -124,7 +124,7 @@ impl SafeSink {
         }
     }
 
-    /// A sink over any writer.
+    /// A sink that writes to any writer.
     pub(crate) fn writing_to(out: Box<dyn Write + Send>) -> Result<Self, RecordingError> {
         let health = Arc::new(SinkHealth::default());
         let backlog = Backlog::new(out, MOST_WAITING_BYTES);
@@ -132,13 +132,13 @@ impl SafeSink {
         let options = rr::EncodingOptions::PROTOBUF_COMPRESSED;
         let mut encoder = rr::Encoder::new_eager(rr::CrateVersion::LOCAL, options, guarded)
             .map_err(|error| RecordingError::sdk(&error))?;
-        // The table of contents would be kept in memory until the end: 80 MB for a run of seven hours. Readers do without
-        // it, as with a recording that was cut off; merging adds it where the file is small.
+        // The table of contents would be kept in memory until the end: 80 MB for a run of seven hours. Readers work
+        // without it, as with a recording that was cut off; merging adds it where the file is small.
         encoder.do_not_emit_footer();
         Ok(Self { encoder: Mutex::new(encoder), health })
     }
 
-    /// How the file is doing, also after the sink is gone.
+    /// State of the file, even after the sink is dropped.
     pub(crate) fn health(&self) -> Arc<SinkHealth> {
         Arc::clone(&self.health)
     }
@@ -162,7 +162,7 @@ impl rr::LogSink for SafeSink {
         if let Err(error) = self.encoder().flush_blocking() {
             self.health.fail(&error);
         }
-        // What only waits for space is not a failure to the SDK: nothing is lost.
+        // Data that only waits for space is not a failure to the SDK: nothing is lost.
         let lost = self.health.error().filter(|_| self.health.has_ended());
         lost.map_or(Ok(()), |error| Err(rr::SinkFlushError::failed(error)))
     }

@@ -1,4 +1,4 @@
-//! The thread that writes journal and recording while the mission goes on.
+//! The thread that writes journal and recording while the mission continues.
 
 mod shared;
 mod sync;
@@ -28,16 +28,16 @@ use std::{
 };
 use writer::{Ended, Writer};
 
-/// Batches of events that may wait; when so many do, the sender waits.
+/// Maximum number of batches of events in the queue; if it is full, the sender waits.
 const QUEUE: usize = 8192;
-/// How long a recorder that is dropped without being finished is waited for.
+/// Longest wait for a recorder that is dropped without being finished.
 const DROP_TIMEOUT: Duration = Duration::from_secs(2);
-/// What to write.
+/// The files to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Write the recording for the viewer.
+    /// Whether to write the recording for the viewer.
     pub rrd: bool,
-    /// Write the journal. Its hash is computed in any case.
+    /// Whether to write the journal. Its hash is computed in any case.
     pub journal: bool,
 }
 
@@ -47,62 +47,63 @@ impl Default for Options {
     }
 }
 
-/// How the recorder is doing.
+/// State of the recorder.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Health {
-    /// Bytes of the journal that the system has got.
+    /// Number of bytes of the journal handed to the system.
     pub journal_bytes: u64,
-    /// Bytes of the recording that the system has got.
+    /// Number of bytes of the recording handed to the system.
     pub rrd_bytes: u64,
-    /// Batches of events that wait to be written.
+    /// Number of batches of events waiting to be written.
     pub lag: u64,
-    /// Why journal or recording is not on disk as it should be, as a sentence. It goes away if everything could be
-    /// written in the end, or if a file that was moved is back in its place.
+    /// The problem with the journal or recording on disk, as a sentence. It is cleared once all data has been
+    /// written, or when a file that was moved is back in its place.
     pub error: Option<String>,
 }
 
-/// What a recorder leaves behind.
+/// The result of a recorder.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Finished {
-    /// What the run came to, from its events; absent if the recorder was not done in time.
+    /// Summary of the run from its events; absent if the recorder did not finish in time.
     pub summary: Option<Box<Summary>>,
-    /// SHA-256 of what was written to the journal, hexadecimal; absent if the journal is not whole, or its path does
-    /// not show the file that was written, at its length. The file is not read again: `verify` does that.
+    /// SHA-256 of the data written to the journal, hexadecimal; absent if the journal is not complete, or if the file
+    /// at its path is not the one that was written or has a different length. The file is not read again: `verify`
+    /// does that.
     pub events_sha256: Option<String>,
-    /// The journal, if one was begun.
+    /// Path of the journal, if one was started.
     pub journal: Option<PathBuf>,
-    /// The recording, if one was begun.
+    /// Path of the recording, if one was started.
     pub recording: Option<PathBuf>,
-    /// SHA-256 of the recording, hexadecimal; absent if it is not whole.
+    /// SHA-256 of the recording, hexadecimal; absent if it is not complete.
     pub recording_sha256: Option<String>,
-    /// Why journal or recording is not whole or not there, as a sentence. Absent, each is the file that was opened,
-    /// in its place, with every byte that was written to it.
+    /// The reason why journal or recording is incomplete or missing, as a sentence. If absent, each file is the one
+    /// that was opened, in its place, with every byte that was written to it.
     pub error: Option<String>,
 }
 
-/// Writes journal and recording of a run in a thread of its own.
+/// Writes journal and recording of a run in a separate thread.
 ///
-/// [`RunRecorder::send`] hands over events and returns at once, unless 8192 batches wait: then the simulation waits
-/// for the disk, and nothing is lost. An error concerns only the file that it hits and shows in
-/// [`RunRecorder::health`] within a second, as does a file that others delete, replace or truncate; everything else
-/// goes on. In the folder of the run [`crate::FAILURE_FILE`] says why, for those who look at it later.
+/// [`RunRecorder::send`] hands over events and returns immediately, unless 8192 batches are waiting. Then the
+/// simulation waits for the disk, and no data is lost. An error affects only its own file and appears in
+/// [`RunRecorder::health`] within a second, as does a file that others delete, replace or truncate; the other file
+/// and the mission continue. [`crate::FAILURE_FILE`] in the folder of the run states the reason for later readers.
 pub struct RunRecorder {
     sender: Option<SyncSender<Arc<[Event]>>>,
-    /// Behind a lock so that screens may ask for the health from other threads; only `close` takes it.
+    /// Behind a lock so that screens can read the health from other threads; only `close` takes the value out.
     ended: Mutex<Receiver<Ended>>,
     shared: Arc<Shared>,
     sink: Option<Arc<SinkHealth>>,
     journal: Option<PathBuf>,
     recording: Option<PathBuf>,
-    /// The journal's file, until somebody puts it on disk regularly.
+    /// The journal's file, until a thread is started that syncs it to disk.
     unsynced: Option<File>,
 }
 
 impl RunRecorder {
-    /// Begins journal and recording in the folder of a run, which must exist; its name is the name of the run.
+    /// Starts journal and recording in the folder of a run, which must exist; the folder name is the name of the run.
     ///
     /// # Errors
-    /// A file exists or cannot be made.
+    /// A file exists or cannot be created.
     pub fn start(folder: &Path, options: Options) -> Result<Self, RecordingError> {
         let now = Instant::now();
         let journal = options.journal.then(|| folder.join(JOURNAL_FILE));
@@ -122,10 +123,10 @@ impl RunRecorder {
         Ok(started)
     }
 
-    /// A recorder over a journal and a recording that were begun elsewhere.
+    /// A recorder with a journal and a recording that were started elsewhere.
     ///
     /// # Errors
-    /// [`RecordingError::Thread`] if the system gives no thread.
+    /// [`RecordingError::Thread`] if the system cannot start a thread.
     pub fn spawn(journal: JournalWriter, recorder: Option<Recorder>) -> Result<Self, RecordingError> {
         Self::spawn_with(journal, recorder, None)
     }
@@ -143,7 +144,7 @@ impl RunRecorder {
         let thread = thread::Builder::new().name("recorder".into());
         let handle = thread.spawn(move || {
             let end = writer.run(&batches);
-            // Nobody may be waiting any more.
+            // The receiver may be gone already.
             let _ = end_sender.send(end);
         });
         handle.map_err(|error| RecordingError::Thread { why: error.to_string() })?;
@@ -151,11 +152,11 @@ impl RunRecorder {
         Ok(Self { sender: Some(sender), ended, shared, sink, journal: None, recording: None, unsynced: None })
     }
 
-    /// From now on has the system put the journal on disk every second, so that a loss of power costs no more than that and what
-    /// the journal had not given to the system yet. A thread of its own waits for the disk, nobody else.
+    /// From now on syncs the journal to disk every second. A loss of power then costs no more than that second, plus
+    /// the data not yet handed to the system. Only a separate thread waits for the disk.
     ///
     /// # Errors
-    /// [`RecordingError::Thread`] if the system gives no thread.
+    /// [`RecordingError::Thread`] if the system cannot start a thread.
     pub fn sync(&mut self) -> Result<(), RecordingError> {
         let Some(file) = self.unsynced.take() else { return Ok(()) };
         let error = |error: std::io::Error| RecordingError::Thread { why: error.to_string() };
@@ -171,7 +172,7 @@ impl RunRecorder {
         }
     }
 
-    /// How the recorder is doing; never waits.
+    /// State of the recorder; never waits.
     pub fn health(&self) -> Health {
         Health {
             journal_bytes: self.shared.journal_bytes.load(Ordering::Relaxed),
@@ -181,20 +182,20 @@ impl RunRecorder {
         }
     }
 
-    /// Whether half of the queue is full, so that a sender that must not wait should send no more for now.
+    /// Whether half of the queue is full, so that a sender that must not wait should pause.
     pub fn is_behind(&self) -> bool {
         self.lag() > (QUEUE / 2) as u64
     }
 
-    /// Batches of events that wait to be written.
+    /// Number of batches of events waiting to be written.
     fn lag(&self) -> u64 {
         let sent = self.shared.sent.load(Ordering::Relaxed);
         sent.saturating_sub(self.shared.done.load(Ordering::Relaxed))
     }
 
-    /// Writes everything that waits, closes both files, and reports what is there.
+    /// Writes all waiting data, closes both files, and returns the result.
     ///
-    /// After `timeout` the files are left to the thread, and the error says so.
+    /// After `timeout` the thread keeps the files, and the error reports this.
     pub fn finish(mut self, timeout: Duration) -> Finished {
         let ended = self.close(timeout);
         let journal_end = ended.as_ref().and_then(|ended| ended.journal.clone());
@@ -211,7 +212,7 @@ impl RunRecorder {
 
     fn close(&mut self, timeout: Duration) -> Option<Ended> {
         let sender = self.sender.take()?;
-        // The other half is for what still waits to be written, and for slow disks.
+        // The other half is for data that still waits to be written, and for slow disks.
         self.shared.set_merge_until(Instant::now() + timeout / 2);
         drop(sender);
         let ended = self.ended.get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -224,8 +225,10 @@ impl RunRecorder {
                 None
             }
             Err(RecvTimeoutError::Disconnected) => {
-                self.shared
-                    .lose(&"the recorder's thread broke off; the ends of journal and recording are missing");
+                self.shared.lose(
+                    &"the recorder's thread stopped unexpectedly; the ends of journal and recording \
+                        are missing",
+                );
                 None
             }
         }

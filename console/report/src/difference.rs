@@ -1,20 +1,20 @@
-//! The first place in which two values differ.
+//! Finds the first place where two values differ.
 
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// Where two values differ, and both as text.
+/// The place where two values differ, with both values as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Difference {
-    /// The place, as `floor.missed.3.area_m2`.
+    /// The path of the value, such as `floor.missed.3.area_m2`.
     pub key: String,
-    /// What the one has there.
+    /// The first value.
     pub one: String,
-    /// What the other has.
+    /// The second value.
     pub other: String,
 }
 
-/// The first place in which two values differ; none if they are equal.
+/// Returns the first place where two values differ; `None` if they are equal.
 ///
 /// ```
 /// let [one, other] = [4, 5].map(|n| serde_json::json!({ "a": 1, "b": [2, n] }));

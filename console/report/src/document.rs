@@ -38,45 +38,45 @@ use serde::Serialize;
 use shapes::Shapes;
 use world::Point;
 
-/// What is known beside the journals.
+/// Input for a report in addition to the journals.
 #[derive(Debug, Default)]
 pub struct Context<'a> {
-    /// What only people know.
+    /// The facts that only people know.
     pub inspection: Inspection,
-    /// Indications, if there are: the name of their file, and its text as CSV.
+    /// Indications, if any: the file name and the text, as CSV.
     pub indications_csv: Option<(&'a str, &'a str)>,
     /// Version of the program that makes the report.
     pub version: &'a str,
-    /// Earlier signed reports on the same runs, in their order.
+    /// Earlier signed reports on the same runs, oldest first.
     pub revisions: Vec<Revision>,
-    /// Who signs, and when (UTC); none for a draft.
+    /// The name of the signer and the time (UTC); `None` for a draft.
     pub signature: Option<Signature>,
 }
 
-/// A report that was signed before; it is never changed.
+/// A report that was signed earlier; it is never changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Revision {
-    /// Number of the document.
+    /// The document number.
     #[serde(default)]
     pub number: String,
-    /// Its letter.
+    /// The letter of the revision.
     pub revision: String,
-    /// Who signed, and when.
+    /// The signer, and the time of signing.
     #[serde(flatten)]
     pub signature: Signature,
-    /// Name of its file.
+    /// The name of the report file.
     pub file: String,
-    /// SHA-256 of its file, hexadecimal.
+    /// SHA-256 of the report file, hexadecimal.
     pub sha256: String,
-    /// The runs that it is about.
+    /// The runs that the report covers.
     #[serde(default)]
     pub runs: Vec<SignedRun>,
 }
 
-/// A run as it was when a report on it was signed.
+/// The state of a run when a report on it was signed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct SignedRun {
-    /// Name of its folder when it was closed.
+    /// Name of the run's folder when the run was closed.
     pub run: String,
     /// SHA-256 of its journal, hexadecimal.
     pub journal_sha256: Option<String>,
@@ -85,13 +85,14 @@ pub struct SignedRun {
 }
 
 impl SignedRun {
-    /// A run as it is now.
+    /// The present state of a run.
     pub fn of(past: &PastRun) -> Self {
         let Files { journal_sha256, recording_sha256, closed_as, .. } = past.files.clone();
         Self { run: closed_as.unwrap_or_else(|| past.name.clone()), journal_sha256, recording_sha256 }
     }
 
-    /// A run as it is now under the name that it was closed with and under that of its folder, which another run may have taken.
+    /// Returns the run under the folder name that it had when it was closed, and under its present folder name.
+    /// Another run may have taken the first name since.
     pub fn names_of(past: &PastRun) -> [Self; 2] {
         let closed = Self::of(past);
         [Self { run: past.name.clone(), ..closed.clone() }, closed]
@@ -99,7 +100,7 @@ impl SignedRun {
 }
 
 impl Revision {
-    /// What speaks against a run that is there under the name of one of those that were signed.
+    /// Checks a run against the signed runs of the same name; returns the first mismatch as a sentence.
     pub fn doubt(&self, now: &SignedRun) -> Option<String> {
         let then = self.runs.iter().find(|then| then.run == now.run && *then != now)?;
         let (file, then, now) = if then.journal_sha256 == now.journal_sha256 {
@@ -109,7 +110,7 @@ impl Revision {
         };
         let digest = |sha256: &Option<String>| sha256.clone().unwrap_or_else(|| "none".into());
         Some(format!(
-            "signed revision {} is about another {file}: expected SHA-256 {}, found {}",
+            "signed revision {} covers a different {file}: expected SHA-256 {}, found {}",
             self.revision,
             digest(then),
             digest(now)
@@ -117,62 +118,64 @@ impl Revision {
     }
 }
 
-/// Who signs, and when.
+/// The signer, and the time of signing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Signature {
     /// Name of the inspector.
     pub by: String,
-    /// When, UTC, as `2026-11-22 04:01`.
+    /// Time of signing, UTC, as `2026-11-22 04:01`.
     pub at: String,
 }
 
-/// A report.
+/// A report on one or more runs of one floor.
 #[derive(Debug, Serialize)]
 pub struct Document {
-    /// Version of the form, `REPORT_VERSION`.
+    /// Version of the report format, `REPORT_VERSION`.
     pub report_version: u32,
-    /// Number of the document: when the first run began, and its seed.
+    /// The document number: start time and seed of the first run.
     pub number: String,
     /// Letter of the revision.
     pub revision: String,
-    /// Who signs it; absent for a draft.
+    /// The signature; absent for a draft.
     pub signature: Option<Signature>,
     /// Earlier signed reports on the same runs.
     pub revisions: Vec<Revision>,
-    /// What made it.
+    /// Name and version of the program that made the report.
     pub made_by: String,
-    /// Whether positions and passes were computed and no floor was inspected.
+    /// Whether the runs were simulated, so that no floor was inspected.
     pub is_simulation: bool,
     /// The readings that were located; absent for missions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub located: Option<Located>,
-    /// What only people know; `null` is missing.
+    /// The facts that only people know; a missing fact is `null`.
     pub inspection: Inspection,
-    /// Where that contradicts the scenario that was flown in what identifies the floor, as a sentence; absent if it does not.
+    /// A sentence on how the inspector's facts about the floor contradict the scenario of the run; absent if they
+    /// agree.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contradiction: Option<String>,
-    /// How much of the floor was scanned by all runs together.
+    /// The coverage of all runs together.
     pub coverage: Coverage,
-    /// The account of the floor over all runs; left out if they were not there to scan it.
+    /// The account of the floor over all runs; absent if scanning was not the task.
     #[serde(skip_serializing_if = "Account::is_of_no_scan")]
     pub floor: Account,
     /// The runs, in the order given.
     pub runs: Vec<RunPart>,
-    /// Indications of the instrument.
+    /// Indications of the scanning instrument.
     pub indications: Vec<Indication>,
-    /// What must be answered before the report can be signed.
+    /// The items that must be answered before the report can be signed.
     pub gate: Vec<GateItem>,
     #[serde(skip)]
     pub(crate) pictures: Pictures,
-    /// Name of the scenario, the first run's.
+    /// Name of the scenario of the first run.
     pub scenario: String,
-    /// Form and size of the tank.
+    /// Shape and size of the tank.
     pub size: String,
-    /// Whether the runs together were to scan the whole floor.
+    /// Whether the runs together had to scan the whole floor.
     pub is_whole_floor: bool,
-    /// Whether the runs were there to scan the floor; without that no floor was missed, and there is no account of it.
+    /// Whether scanning was the task of the runs. If not, no floor counts as missed and there is no account of the
+    /// floor.
     pub is_to_scan: bool,
-    /// What a run did that was not there to scan.
+    /// The task and its figures, for a run that had a task other than scanning.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub task: Option<TaskPart>,
     #[serde(skip)]
@@ -183,17 +186,18 @@ pub struct Document {
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
     pub(crate) coverage: Figure,
-    /// Numbers of missed areas that have a badge on it.
+    /// Numbers of the missed areas that have a badge on the map.
     pub(crate) badges: Vec<usize>,
     pub(crate) accuracy: Figure,
     pub(crate) guaranteed: Figure,
     pub(crate) zone: Figure,
-    /// Track, tether and record of each run.
+    /// Track, tether and incidents of each run.
     pub(crate) runs: Vec<[Option<Figure>; 3]>,
 }
 
 impl Pictures {
-    /// Draws the coverage map and what belongs to single runs in a thread of their own, which takes as long as the rest.
+    /// Draws the pictures. The coverage map and the pictures of single runs are drawn in a second thread; they take
+    /// as long as all others together.
     fn draw(layers: &Layers<'_>, floor: &Account, indications: &[Indication], past: &[PastRun]) -> Self {
         std::thread::scope(|scope| {
             let more = scope.spawn(|| {
@@ -214,10 +218,10 @@ impl Pictures {
 }
 
 impl Document {
-    /// The report on some runs on one floor.
+    /// Builds the report on one or more runs of one floor.
     ///
     /// # Errors
-    /// As [`crate::merged()`], or indications that cannot be placed.
+    /// As [`crate::merged()`]; also if indications cannot be placed.
     pub fn new(past: &[PastRun], context: Context<'_>) -> Result<Self, String> {
         let all = joined_or_located(past)?;
         let located = Located::of(past);
@@ -279,13 +283,13 @@ impl Document {
         Ok(document)
     }
 
-    /// The items of the gate that are open; a report is signed without any.
+    /// The open items of the gate; a report can be signed once there are none.
     pub fn open_items(&self) -> impl Iterator<Item = &GateItem> {
         self.gate.iter().filter(|item| !item.is_answered)
     }
 }
 
-/// A run on whose track indications can be placed.
+/// The runs on whose tracks indications can be placed.
 fn flown(past: &PastRun) -> Flown<'_> {
     let name = past.files.closed_as.as_deref().unwrap_or(&past.name);
     Flown {
@@ -314,7 +318,7 @@ pub(crate) fn is_marked(incident: &crate::record::Incident) -> bool {
     incident.needs_review() || matches!(incident.kind, "obstacle" | "zone" | "end")
 }
 
-/// Number of a document: the beginning of the first run's name, and its seed.
+/// Builds the document number from the start time in the first run's name and its seed.
 fn number(past: &[PastRun]) -> String {
     let first = past.first();
     let name = first.map(|past| past.files.closed_as.as_ref().unwrap_or(&past.name));
@@ -323,7 +327,7 @@ fn number(past: &[PastRun]) -> String {
     format!("{began}-{seed}")
 }
 
-/// Letter of the revision after so many: A, B, ... Z, AA, AB.
+/// The letter of the revision that follows this many earlier ones: A, B, ... Z, AA, AB.
 fn letter(index: usize) -> String {
     let last = char::from(b'A' + (index % 26) as u8);
     if index < 26 { last.to_string() } else { letter(index / 26 - 1) + &last.to_string() }

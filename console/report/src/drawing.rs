@@ -1,4 +1,4 @@
-//! Pictures of tanks for people: SVG in millimetres of paper, with the tank frame's x to the right and y up.
+//! Pictures of tanks: SVG in millimetres of paper, with the x axis of the tank frame to the right and y up.
 
 pub(crate) mod badges;
 pub mod curves;

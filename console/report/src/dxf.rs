@@ -6,7 +6,7 @@ use world::{Boundary, Point, Shape};
 /// Height of letters, metres.
 const LETTERS_M: f64 = 0.15;
 
-/// A drawing that is being written: pairs of a group code and a value, one a line.
+/// A drawing under construction: pairs of a group code and a value, each on its own line.
 pub(crate) struct Drawing(String);
 
 impl Drawing {
@@ -15,7 +15,7 @@ impl Drawing {
         let _ = writeln!(self.0, "{code}\n{value}");
     }
 
-    /// A drawing with these layers, each with its colour by the number of the format.
+    /// A drawing with these layers, each with its DXF colour number.
     pub(crate) fn new(layers: &[(&str, u8)]) -> Self {
         let mut drawing = Self(String::new());
         let count = layers.len().to_string();
@@ -50,7 +50,7 @@ impl Drawing {
         drawing
     }
 
-    /// The whole drawing.
+    /// The complete drawing.
     pub(crate) fn finish(mut self) -> String {
         self.pair(0, "ENDSEC");
         self.pair(0, "EOF");
@@ -93,7 +93,7 @@ impl Drawing {
         self.line(layer, points, is_closed, None);
     }
 
-    /// A line of some width, metres.
+    /// A line with a width in metres.
     pub(crate) fn wide(&mut self, layer: &str, points: &[Point], width_m: f64) {
         self.line(layer, points, false, Some(width_m));
     }

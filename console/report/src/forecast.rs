@@ -1,4 +1,4 @@
-//! How well the stations will locate the robot, place by place, and where they should stand: for scripts and people, and
+//! A forecast of the accuracy of fixes, place by place, with advised station positions: for scripts and people, and
 //! as a picture.
 
 mod mirror;
@@ -12,15 +12,16 @@ use serde::Serialize;
 use std::fmt::Write;
 use world::{Point, World};
 
-/// The largest error of a whole scan, fixes and odometry filtered, as a share of a single fix's 95 % error; as measured in
-/// flights.
+/// Largest error during a scan, with fixes and odometry filtered, as a share of the 95 % error of a single fix;
+/// measured in simulated missions.
 const FILTERED: f64 = 0.65;
-/// A robot that sees no farther than this from its hull knows what is near by its position alone, metres.
+/// A robot whose sensing range beyond the hull is shorter than this detects nearby objects too late and relies on its
+/// position alone, metres.
 const SHORT_SIGHTED_M: f64 = 0.5;
-/// Places beyond the limit that people are shown.
+/// Maximum number of places beyond the limit listed.
 const MOST_SHOWN: usize = 12;
 
-/// A forecast as scripts read it.
+/// A forecast for scripts.
 #[derive(Debug, Serialize)]
 pub struct ForecastReport<'a> {
     scenario: &'a str,
@@ -32,10 +33,10 @@ pub struct ForecastReport<'a> {
     blind_share: f64,
     beyond_limit_share: f64,
     beyond_limit_area_m2: f64,
-    /// Floor with a mirror image that the ranges do not tell from it; absent if there is none.
+    /// Floor with a mirror image that the ranges cannot distinguish from it; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     mirror: Option<Mirrored>,
-    /// The worst first.
+    /// Places beyond the limit, the worst first.
     beyond_limit: Vec<Place>,
     map: &'a AccuracyMap,
     advice: Option<Advice>,
@@ -55,7 +56,7 @@ struct Place {
 }
 
 impl<'a> ForecastReport<'a> {
-    /// The forecast of a scenario of this name over a map of its drawing.
+    /// Computes the forecast of a scenario with this name over a map of its drawing.
     pub fn new(
         scenario: &'a str,
         mission: &MissionConfig,
@@ -91,19 +92,19 @@ impl<'a> ForecastReport<'a> {
         }
     }
 
-    /// The forecast as a picture, an SVG document; advised places are rings.
+    /// The forecast as an SVG document; rings mark the advised stations.
     pub fn svg(&self, drawing: &World) -> String {
         let places = self.advice.as_ref().map_or(&[][..], |advice| &advice.places);
         svg(drawing, self.map, self.limit_m, places)
     }
 
-    /// The forecast for people.
+    /// The forecast as text.
     pub fn human(&self) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail.
         let metres = |value: Option<f64>| value.map_or("none".into(), |m| format!("{m:.3} m"));
         let percent = |share: f64| share * 100.0;
-        let _ = writeln!(text, "95 % error of a single fix, by the scatter of the ranges");
+        let _ = writeln!(text, "95 % error of a single fix, from the scatter of the ranges");
         let _ = writeln!(text, "mean      {}", metres(self.mean_error_95_m));
         let _ = writeln!(text, "p95       {}", metres(self.p95_error_95_m));
         let _ = writeln!(text, "worst     {}", metres(self.worst_error_95_m));
@@ -148,10 +149,11 @@ impl<'a> ForecastReport<'a> {
     }
 }
 
-/// Warns of so little clearance that the position error may use it up: of a scan, because the robot sees how far off columns are, but
-/// not walls, and of any mission of a robot that hardly sees farther than its hull.
+/// Warns if the clearance is so small that the position error may use it up. This concerns scans, because the robot
+/// senses its distance from columns but not from walls, and any mission of a robot that senses little beyond its
+/// hull.
 ///
-/// Costs as much as the map: one forecast for each of some thousand places.
+/// Takes as long as the map: one forecast for each of some thousand places.
 pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
     let (clearance_m, sensed_m) = (mission.clearance_m, mission.limits.sensing_range_m);
     let knows_by_position = matches!(mission.task, TaskConfig::Cover { .. }) || sensed_m < SHORT_SIGHTED_M;
@@ -162,16 +164,18 @@ pub fn clearance_warning(mission: &MissionConfig, drawing: &World) -> Option<Str
     let expected_m = FILTERED * ForecastReport::new("", mission, drawing, &map, None).p95_error_95_m?;
     (clearance_m < expected_m).then(|| {
         format!(
-            "the hull keeps {clearance_m:.2} m from solids (mission.clearance_m; at least 0.08 m where ranges are noisy), but the \
-             position will be off by up to about {expected_m:.2} m, so that it may touch what it does not sense; give more clearance or better \
-             stations (`tankops accuracy`)"
+            "the hull keeps {clearance_m:.2} m from solid objects (mission.clearance_m; at least 0.08 m \
+             where ranges are noisy), but the position error will be up to about {expected_m:.2} m, so the \
+             robot may touch objects that it does not sense; increase the clearance or improve the stations \
+             (`tankops accuracy`)"
         )
     })
 }
 
-/// Warns of stations so nearly on a line that the ranges leave two places, and says what decides between them.
+/// Warns if the stations are so nearly on a line that the ranges fit two positions, and states what decides between
+/// the two.
 ///
-/// Costs as much as the map.
+/// Takes as long as the map.
 pub fn mirror_warning(mission: &MissionConfig, drawing: &World) -> Option<String> {
     let map = AccuracyMap::new(drawing, &forecast(mission, drawing));
     let [first, second] = Mirrored::of(mission, drawing, &map)?.sentences();

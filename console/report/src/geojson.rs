@@ -1,21 +1,21 @@
-//! Places and shapes as `GeoJSON`.
+//! Positions and shapes as `GeoJSON`.
 
 use crate::drawing::polygons::Polygon;
 use account::Inspection;
 use serde_json::{Value, json};
 use world::{Boundary, Point, Shape};
 
-/// Where the tank frame lies in a system of coordinates; without a datum it is its own.
+/// The tank frame in a coordinate system; without a datum it is a system of its own.
 pub(crate) struct Datum<'a> {
     east_m: f64,
     north_m: f64,
     turn_rad: f64,
-    /// What the system is called; `None` for the tank frame.
+    /// Name of the coordinate system; `None` for the tank frame.
     crs: Option<&'a str>,
 }
 
 impl<'a> Datum<'a> {
-    /// The datum that an inspection states.
+    /// The datum of an inspection.
     pub(crate) fn of(facts: &'a Inspection) -> Self {
         let [east_m, north_m] = facts.datum_m.unwrap_or([0.0, 0.0]);
         let unnamed = "system not named (inspection.datum_crs)";
@@ -23,8 +23,9 @@ impl<'a> Datum<'a> {
         Self { east_m, north_m, turn_rad: -facts.datum_north_deg.unwrap_or(0.0).to_radians(), crs }
     }
 
-    /// The member that names the system. Programs take coordinates for degrees of longitude and latitude unless this
-    /// member has a name that they know, so one that they may not know is written as a local system in WKT.
+    /// The member that names the coordinate system. Programs read coordinates as degrees of longitude and latitude
+    /// unless they know the name in this member. A name that they may not know is therefore written as a local system
+    /// in WKT.
     pub(crate) fn crs(&self) -> Value {
         let name = match self.crs {
             Some(name) if is_known(name) => name.to_owned(),
@@ -34,7 +35,7 @@ impl<'a> Datum<'a> {
         json!({ "type": "name", "properties": { "name": name } })
     }
 
-    /// What the coordinates are, for people.
+    /// A description of the coordinates, for people.
     pub(crate) fn words(&self) -> String {
         match self.crs {
             Some(name) => format!("{name}, metres"),
@@ -42,7 +43,7 @@ impl<'a> Datum<'a> {
         }
     }
 
-    /// A place, to a tenth of a millimetre.
+    /// A position, rounded to a tenth of a millimetre.
     pub(crate) fn at(&self, p: Point) -> Value {
         let (sin, cos) = self.turn_rad.sin_cos();
         json!([rounded(self.east_m + p.x * cos - p.y * sin), rounded(self.north_m + p.x * sin + p.y * cos)])
@@ -65,7 +66,7 @@ impl<'a> Datum<'a> {
         json!({ "type": "Point", "coordinates": self.at(at) })
     }
 
-    /// The geometry of a shape: a polygon, or the middle line of a pipe.
+    /// The geometry of a shape: a polygon, or the centre line of a pipe.
     pub(crate) fn shape(&self, shape: &Shape) -> Value {
         match shape {
             Shape::Polyline { points, .. } => self.line(points),
@@ -77,7 +78,7 @@ impl<'a> Datum<'a> {
         points.iter().chain(points.first()).map(|p| self.at(*p)).collect()
     }
 
-    /// A polygon; its ring is closed here.
+    /// A polygon; this function closes its ring.
     pub(crate) fn polygon(&self, points: &[Point]) -> Value {
         json!({ "type": "Polygon", "coordinates": [self.ring(points)] })
     }
@@ -89,7 +90,7 @@ impl<'a> Datum<'a> {
     }
 }
 
-/// Whether programs know a name of a system: a code of EPSG, or its definition in WKT.
+/// Whether programs know the name of a system: an EPSG code, or its definition in WKT.
 fn is_known(name: &str) -> bool {
     let is_code = |code: &str| !code.is_empty() && code.bytes().all(|byte| byte.is_ascii_digit());
     let lower = name.trim().to_ascii_lowercase();
@@ -97,15 +98,15 @@ fn is_known(name: &str) -> bool {
     code.is_some_and(is_code) || (lower.contains("crs[") || lower.contains("cs[")) && lower.ends_with(']')
 }
 
-/// A local system in metres as WKT, version 1: what all programs on GDAL read, and none of them transforms.
+/// A local system in metres as WKT 1: all programs based on GDAL read it, and none transforms it.
 fn local(name: &str) -> String {
     let name: String = name.chars().map(|c| if matches!(c, '"' | '[' | ']') { ' ' } else { c }).collect();
     format!(r#"LOCAL_CS["{name}",UNIT["metre",1]]"#)
 }
 
-/// A number to four decimals: a tenth of a millimetre, or a square centimetre.
+/// Rounds a number to four decimals: a tenth of a millimetre, or a square centimetre.
 pub(crate) fn rounded(value: f64) -> f64 {
-    // A number near zero has no sign.
+    // A number that rounds to zero has no sign.
     (10_000.0 * value).round() / 10_000.0 + 0.0
 }
 

@@ -1,4 +1,4 @@
-//! The summary that a person reads when a run is over.
+//! The summary for people at the end of a run.
 
 pub(crate) mod floor;
 pub(crate) mod text;
@@ -9,8 +9,8 @@ use account::{
 use mission::{Check, CheckOutcome, Outcome, Sandbox};
 use text::{Text, counted, percent};
 
-/// The summary as text: warnings first, then one labelled line for each figure, with units; every percentage names
-/// what it is a share of.
+/// The summary as text: warnings first, then one labelled line for each figure, with units; every percentage states
+/// what it refers to.
 pub fn human(run: &Summary) -> String {
     let mut text = Text::new(&title(run));
     let warnings = warnings(run);
@@ -43,7 +43,7 @@ pub fn human(run: &Summary) -> String {
     text.0
 }
 
-/// What was checked before the start: how much passed, every warning, and every point that was ticked by hand.
+/// The checks before the start: the number passed, every warning, and every point that the operator ticked.
 pub(crate) fn pre_flight(checks: &[Check]) -> Option<String> {
     let of = |outcome| checks.iter().filter(move |check| check.outcome == outcome);
     let passed = of(CheckOutcome::Passed).count();
@@ -68,17 +68,17 @@ fn title(run: &Summary) -> String {
     format!("{}, planner {}{version}, seed {seed}", or_unknown(&run.scenario), or_unknown(&run.planner))
 }
 
-/// What a person should know first.
+/// The warnings that a reader must see first.
 fn warnings(run: &Summary) -> Vec<String> {
     let mut found = Vec::new();
     match run.outcome {
         None if is_open(run) => found.push(
-            "run in progress: the figures end where its journal ended when it was read, and are not checked against [expect]"
+            "run in progress: figures up to the part of the journal that was read, not checked against \
+             [expect]"
                 .to_owned(),
         ),
         None => found.push(
-            "run cut off: the figures end where the journal ends and are not checked against [expect]"
-                .to_owned(),
+            "run cut off: figures up to the end of the journal, not checked against [expect]".to_owned(),
         ),
         Some(Outcome::Complete) => {}
         Some(other) => found.push(format!("mission not complete: {}", other.word())),
@@ -94,7 +94,7 @@ fn warnings(run: &Summary) -> Vec<String> {
         run.sandbox
             .as_ref()
             .filter(|sandbox| **sandbox != Sandbox::Full)
-            .map(|sandbox| format!("planners were not wholly closed off: sandbox {sandbox}")),
+            .map(|sandbox| format!("planners were not fully sandboxed: sandbox {sandbox}")),
     );
     if let Some(position_lost_s) =
         run.positioning.map(|p| p.position_lost_s).filter(|position_lost_s| *position_lost_s > 0.0)
@@ -121,16 +121,19 @@ fn warnings(run: &Summary) -> Vec<String> {
     found
 }
 
-/// That floor was not planned because the cable does not lead there.
+/// The warning that floor was not planned because it is beyond the reel.
 fn beyond_reel(floor: &Account) -> Option<String> {
     let is_beyond = floor.missed.iter().any(|area| area.reason == MissReason::BeyondReel);
     let (scanned, area_m2) = (floor.reachable.percent.scanned, floor.reachable.area_m2);
     is_beyond.then(|| {
-        format!("only {scanned:.1} % of {area_m2:.1} m² reachable floor scanned: some is beyond the reel")
+        format!(
+            "only {scanned:.1} % of {area_m2:.1} m² reachable floor scanned: some of it is beyond the \
+            reel"
+        )
     })
 }
 
-/// Whether somebody is still writing the run.
+/// Whether the run is still being written.
 fn is_open(run: &Summary) -> bool {
     run.logs.as_ref().is_some_and(|logs| logs.is_open)
 }
@@ -171,7 +174,7 @@ fn coverage(coverage: &Coverage) -> Vec<String> {
         let guaranteed =
             guaranteed.map(|share| format!(", {} of the floor claimed as guaranteed", percent(share)));
         let (scanned, guaranteed) = (percent(scanned), guaranteed.unwrap_or_default());
-        format!("by truth {scanned} of the floor claimed as scanned{guaranteed} was scanned")
+        format!("by true position, {scanned} of the floor claimed as scanned{guaranteed} was scanned")
     }));
     lines.extend(coverage.overlap.map(|share| format!("overlap {}", text::overlap(share))));
     lines
@@ -192,8 +195,8 @@ fn accuracy(accuracy: &Accuracy) -> Vec<String> {
     let Accuracy { mean_m, p95_m, max_m, limit_m, over_limit, fixes, stations_mean, stations_min } = accuracy;
     let over = percent(*over_limit);
     let mut lines = vec![format!(
-        "95 % error by covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the limit of {limit_m} m \
-         on {over} of the way"
+        "95 % error by covariance {mean_m:.3} m mean, {p95_m:.3} m p95, {max_m:.3} m maximum, above the \
+         limit of {limit_m} m on {over} of the path"
     )];
     lines.extend(stations_mean.zip(*stations_min).map(|(mean, least)| {
         format!(
@@ -212,7 +215,8 @@ fn positioning(positioning: &Positioning) -> Vec<String> {
             "error {mean_error_m:.3} m mean, {p50_m:.3} m median, {p95_m:.3} m p95, {max_m:.3} m maximum"
         ),
         format!(
-            "true position inside the 95 % ellipse in {inside} of ticks, lost for {position_lost_s:.1} s"
+            "true position inside the 95 % ellipse in {inside} of ticks, position lost for \
+             {position_lost_s:.1} s"
         ),
     ]
 }

@@ -1,4 +1,4 @@
-//! What makes the floor of a run the one that it is, so that no report counts two floors as one.
+//! The identity of the floor of a run, so that no report mixes two floors.
 
 use crate::{difference::first_difference, joined::PastRun};
 use account::Inspection;
@@ -7,28 +7,28 @@ use planner_api::Motion;
 use serde::{Deserialize, Serialize};
 use world::{Boundary, PlateLayout, Shape, Zone};
 
-/// What a scenario says beside the mission.
+/// The parts of a scenario outside the mission.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct Stated {
-    /// What only people know.
+    /// The facts that only people know.
     pub(crate) inspection: Inspection,
-    /// SHA-256 of the journals of the runs that a re-scan continues, hexadecimal; empty for any other run.
+    /// SHA-256 of the journals of the runs that this re-scan continues, hexadecimal; empty for any other run.
     pub(crate) continues_sha256: Vec<String>,
 }
 
 impl Stated {
-    /// What the scenario of a run says.
+    /// Reads these parts from the scenario of a run.
     ///
     /// # Errors
-    /// It is not TOML: its journal was changed.
+    /// The scenario is not valid TOML: the journal was changed.
     pub(crate) fn by(run: &RunOpened) -> Result<Self, String> {
         toml::from_str(&run.scenario_toml)
             .map_err(|error| format!("the scenario in its journal cannot be read: {}", error.message()))
     }
 }
 
-/// The facts that say which floor it is; every difference counts.
+/// The facts that identify the floor; any difference counts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub(crate) struct FloorFacts {
     tank_id: Option<String>,
@@ -54,7 +54,7 @@ impl FloorFacts {
         }
     }
 
-    /// The same, with what is not stated here as others state it.
+    /// The same, with missing facts filled in from other facts.
     fn or(self, others: &Self) -> Self {
         let others = others.clone();
         Self {
@@ -69,17 +69,17 @@ impl FloorFacts {
     }
 }
 
-/// Where facts of people say something else about the floor than the scenario that was flown, as a sentence; what only one of
-/// them states is not a contradiction.
+/// Compares an inspector's facts with the scenario of the run; returns a sentence for the first contradiction about
+/// the floor. A fact that only one of them states is not a contradiction.
 pub(crate) fn contradiction(facts: &Inspection, flown: &Inspection) -> Option<String> {
     let (facts, flown) = (FloorFacts::of(facts), FloorFacts::of(flown));
     let flown = flown.or(&facts);
     let [facts, flown] = [facts.or(&flown), flown].map(|side| serde_json::to_value(side).ok());
     let found = first_difference(&facts?, &flown?)?;
-    Some(format!("{} is {}, in the scenario of the run {}", found.key, found.one, found.other))
+    Some(format!("{} is {}, but {} in the scenario of the run", found.key, found.one, found.other))
 }
 
-/// Everything that identifies a floor and what counts as scanned on it, as messages name it.
+/// Everything that identifies a floor and determines what counts as scanned on it, with the names used in messages.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Identity {
     inspection: FloorFacts,
@@ -89,7 +89,7 @@ struct Identity {
     plates: Option<PlateLayout>,
     #[serde(rename = "mission.cell_m")]
     cell_m: f64,
-    // What a page states once for all of its runs.
+    // The facts that a page states once for all of its runs.
     #[serde(rename = "mission.swath_m")]
     swath_m: f64,
     #[serde(rename = "robot.motion")]
@@ -100,7 +100,7 @@ struct Identity {
     clearance_m: f64,
 }
 
-/// An obstacle, whether the robot knew it or had to find it.
+/// An obstacle, whether drawn or still to be found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Outline {
     name: String,
@@ -127,7 +127,7 @@ impl Identity {
         }
     }
 
-    /// Where another floor differs, as a sentence about the runs of these names.
+    /// The first difference from another floor, as a sentence about the runs with these names.
     fn difference(&self, name: &str, other: &Self, other_name: &str) -> Option<String> {
         let [one, two] = [self, other].map(|side| serde_json::to_value(side).ok());
         let found = first_difference(&one?, &two?)?;
@@ -135,7 +135,7 @@ impl Identity {
     }
 }
 
-/// A run among others.
+/// A run to be combined with others.
 struct Candidate<'a> {
     name: &'a str,
     scenario: &'a str,
@@ -161,7 +161,7 @@ impl<'a> Candidate<'a> {
         other.journal_sha256.is_some_and(|sha256| self.stated.continues_sha256.iter().any(|of| of == sha256))
     }
 
-    /// Whether one run says of the other that it is of the same floor: it continues it, or both fly one scenario.
+    /// Whether two runs are known to be of the same floor: one continues the other, or both have the same scenario.
     fn is_linked(&self, other: &Self) -> bool {
         let is_same =
             self.scenario == other.scenario && self.stated.continues_sha256 == other.stated.continues_sha256;
@@ -169,14 +169,15 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// Refuses runs that are not all of one floor, or by which not the same counts as scanned: the first thing that differs, with both values. A run of another scenario
-/// must be a re-scan that names the journal of one of the others.
+/// Refuses runs that are not all of one floor, or that count floor as scanned by different rules; the error names the
+/// first difference and both values. A run of a different scenario must be a re-scan that names the journal of one of
+/// the other runs.
 pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     let all: Vec<Candidate<'_>> =
         runs.iter().map(Candidate::of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let Some((first, others)) = all.split_first() else { return Ok(()) };
     let refused = |other: &Candidate<'_>, why: &str| {
-        format!("runs {} and {} are not of one floor: {why}", first.name, other.name)
+        format!("runs {} and {} are not of the same floor: {why}", first.name, other.name)
     };
     for other in others {
         if let Some(why) = first.identity.difference(first.name, &other.identity, other.name) {
@@ -189,7 +190,7 @@ pub(crate) fn require_one_floor(runs: &[PastRun]) -> Result<(), String> {
     }
 }
 
-/// The first run that nothing links to the others.
+/// The first run that is not linked to the others.
 fn unlinked<'a, 'b>(all: &'b [Candidate<'a>]) -> Option<&'b Candidate<'a>> {
     let (mut linked, mut rest): (Vec<&Candidate<'_>>, Vec<&Candidate<'_>>) =
         (all.iter().take(1).collect(), all.iter().skip(1).collect());
@@ -204,7 +205,7 @@ fn unlinked<'a, 'b>(all: &'b [Candidate<'a>]) -> Option<&'b Candidate<'a>> {
     }
 }
 
-/// Why nothing links two runs.
+/// The reason why two runs are not linked.
 fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
     let digest = |run: &Candidate<'_>| run.journal_sha256.unwrap_or("no digest").to_owned();
     let continuing = [first, other].into_iter().find(|run| !run.stated.continues_sha256.is_empty());
@@ -212,7 +213,8 @@ fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
         Some(run) => {
             let beside = if std::ptr::eq(run, first) { other } else { first };
             format!(
-                "continues_sha256 of {} is {}, and the journal of {} has the SHA-256 {}; give the run that it continues as well",
+                "continues_sha256 of {} is {}, but the journal of {} has the SHA-256 {}; also give the run \
+                 that it continues",
                 run.name,
                 run.stated.continues_sha256.join(" and "),
                 beside.name,
@@ -220,8 +222,8 @@ fn no_link(first: &Candidate<'_>, other: &Candidate<'_>) -> String {
             )
         }
         None => format!(
-            "name is {} in {} and {} in {}, and neither is a re-scan that names the journal of the other (continues_sha256, \
-             which `tankops rescan` writes)",
+            "name is {} in {} and {} in {}, and neither is a re-scan that names the journal of the other \
+             (continues_sha256, which `tankops rescan` writes)",
             first.scenario, first.name, other.scenario, other.name
         ),
     }

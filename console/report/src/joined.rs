@@ -1,4 +1,4 @@
-//! Several runs on one floor as if they were one.
+//! Several runs on one floor, combined into one.
 
 use crate::{document::Files, identity::require_one_floor, record::Record};
 use account::{Account, Evidence, Fold, Logs, Scanned, Summary, account, updated_floor};
@@ -6,14 +6,14 @@ use mission::{TaskConfig, event::RunOpened};
 use std::{borrow::Cow, collections::BTreeSet};
 use world::ObstacleId;
 
-/// A past run: its name, its files and what is known of it.
+/// A past run: its name, its files and their contents.
 #[derive(Debug)]
 pub struct PastRun {
     /// Name of its folder.
     pub name: String,
     /// Its files.
     pub logs: Logs,
-    /// When it began, UTC, as `2026-11-22 04:01`, if its name says so.
+    /// Start time, UTC, as `2026-11-22 04:01`, if the folder name contains it.
     pub began: Option<String>,
     /// Digests and lengths of its files.
     pub files: Files,
@@ -21,18 +21,18 @@ pub struct PastRun {
     pub fold: Fold,
     /// The figures of its events, with the account of the floor.
     pub summary: Summary,
-    /// What it did over time and place.
+    /// Its record over time and place.
     pub record: Record,
 }
 
 impl PastRun {
-    /// Whether it was located from readings and not flown.
+    /// Whether the run is one of located readings, not a mission.
     pub(crate) fn is_located(&self) -> bool {
         self.fold.run().is_some_and(|run| run.measured.is_some())
     }
 }
 
-/// What several runs on one floor scanned together.
+/// The combined scan of several runs on one floor.
 pub(crate) struct Joined<'a> {
     /// The last of the runs, as it was opened.
     pub(crate) run: &'a RunOpened,
@@ -41,8 +41,8 @@ pub(crate) struct Joined<'a> {
 }
 
 impl Joined<'_> {
-    /// The account of the floor over all of the runs. What counted in any of them counts: the loosest limit of the position error is
-    /// the one that holds for all of it.
+    /// The account of the floor over all of the runs. Floor that counts as scanned in any of them counts here, so the
+    /// largest of their limits of the position error holds for the whole account.
     pub(crate) fn account(&self, runs: &[PastRun]) -> Account {
         let limits = runs.iter().filter_map(|past| Some(past.fold.run()?.mission.scan_limit_m()));
         let position_limit_m = limits.fold(0.0, f64::max);
@@ -50,37 +50,37 @@ impl Joined<'_> {
     }
 }
 
-/// Refuses a run that was not there to scan the floor: nothing of it was missed.
+/// Refuses a run whose task was not to scan the floor: it has no missed floor.
 pub(crate) fn require_scans(runs: &[PastRun]) -> Result<(), String> {
     let Some(other) = runs.iter().find(|past| !past.fold.has_floor_to_scan()) else { return Ok(()) };
     let task = match other.fold.run().map(|run| &run.mission.task) {
         Some(TaskConfig::Follow { .. }) => "its task is to follow a preset path",
         Some(TaskConfig::Goto { .. }) => "its task is to reach a goal",
-        _ => "its journal does not say what it was to do",
+        _ => "its journal contains no task",
     };
     Err(format!("run {} scans no floor: {task}", other.name))
 }
 
-/// What several runs scanned together, on the floor as all of them found it.
+/// Combines the scans of several runs, on the floor with the obstacles found by any of them.
 ///
 /// # Errors
-/// No run; one twice; one that was not to scan; runs of different floors.
+/// There is no run; a run is given twice or was not to scan; the runs are of different floors.
 pub(crate) fn joined(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     match runs.iter().find(|past| past.is_located()) {
         Some(past) => Err(format!(
-            "run {} scans no floor: it was located from readings; report it with -o FILE",
+            "run {} scans no floor: it consists of located readings; report it with -o FILE",
             past.name
         )),
         None => joined_or_located(runs),
     }
 }
 
-/// [`joined`], also of runs that were all located from readings.
+/// Like [`joined`], but also accepts runs that were all located from readings.
 pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> {
     require_one_kind(runs)?;
     let (last, before) = runs.split_last().ok_or("no run to report")?;
     if let Some(other) = runs.iter().find(|past| !before.is_empty() && !past.fold.has_floor_to_scan()) {
-        return Err(format!("run {} was not a scan; it needs a report of its own", other.name));
+        return Err(format!("run {} was not a scan; make a separate report for it", other.name));
     }
     let mut all = alone(last)?;
     require_different(runs)?;
@@ -99,7 +99,7 @@ pub(crate) fn joined_or_located(runs: &[PastRun]) -> Result<Joined<'_>, String> 
         all.evidence.to_mut().join(&evidence);
     }
     if all.evidence.found().any(|(id, _)| !known.contains(&id)) {
-        // What only the other runs found is not floor either.
+        // Floor blocked by an obstacle that only another run found is excluded, too.
         let grid = all.scanned.believed().floor();
         let updated = updated_floor(all.run, grid, &all.evidence, all.run.mission.swath_m);
         let changes = updated.into_floor().kinds();
@@ -119,7 +119,8 @@ fn require_different(runs: &[PastRun]) -> Result<(), String> {
         let is_copy = |other: &&PastRun| digest.is_some() && other.files.journal_sha256 == *digest;
         if let Some(other) = others.iter().find(is_copy) {
             return Err(format!(
-                "runs {} and {} have the same journal: one is a copy of the other, or both are one mission with one seed",
+                "runs {} and {} have the same journal: one is a copy of the other, or both ran the same \
+                 mission with the same seed",
                 past.name, other.name
             ));
         }
@@ -127,12 +128,12 @@ fn require_different(runs: &[PastRun]) -> Result<(), String> {
     Ok(())
 }
 
-/// The name of an object found in one of several runs, each of which counts from 1.
+/// The name of an object that was found in one of several runs, each of which numbers its objects from 1.
 pub(crate) fn found_name(name: &str, run: usize, runs: usize) -> String {
     if runs > 1 { format!("{name} of run {}", run + 1) } else { name.to_owned() }
 }
 
-/// What one run scanned.
+/// Computes what one run scanned.
 fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
     let PastRun { name, fold, .. } = past;
     let found = fold.scanned().zip(fold.evidence()).zip(fold.run());
@@ -145,19 +146,19 @@ fn alone(past: &PastRun) -> Result<Joined<'_>, String> {
         .ok_or_else(|| format!("run {name} scans no floor: its task is to reach a goal"))
 }
 
-/// Refuses runs of which some were flown and others located.
+/// Refuses a mix of missions and located readings.
 fn require_one_kind(runs: &[PastRun]) -> Result<(), String> {
     let located = runs.iter().find(|past| past.is_located());
     match located.zip(runs.iter().find(|past| !past.is_located())) {
         Some((located, flown)) => Err(format!(
-            "run {} was located from readings, and run {} was flown; report them apart",
+            "run {} consists of located readings, and run {} is a mission; report them separately",
             located.name, flown.name
         )),
         None => Ok(()),
     }
 }
 
-/// Refuses runs whose cells do not lie on each other.
+/// Refuses runs whose cell grids differ.
 fn require_aligned(
     (name, other): (&str, &Joined<'_>),
     (last_name, all): (&str, &Joined<'_>),
@@ -165,5 +166,5 @@ fn require_aligned(
     if all.scanned.believed().floor().is_aligned_with(other.scanned.believed().floor()) {
         return Ok(());
     }
-    Err(format!("runs {name} and {last_name} have other cells; run both with the same mission.cell_m"))
+    Err(format!("runs {name} and {last_name} have different cells; run both with the same mission.cell_m"))
 }

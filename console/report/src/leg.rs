@@ -1,12 +1,12 @@
-//! The stretches of a plan.
+//! The legs of a plan.
 
 use planner_api::Plan;
 use serde::Serialize;
 
-/// Some points of the path that serve one purpose: index of the first and of the last.
+/// A stretch of the path with one purpose.
 #[derive(Debug, Serialize)]
 pub struct Leg {
-    /// What the stretch is for.
+    /// The purpose of the stretch.
     pub tag: &'static str,
     /// Index of its first point.
     pub first: usize,
@@ -14,7 +14,7 @@ pub struct Leg {
     pub last: usize,
 }
 
-/// The legs as reported by the planner; a plan without legs has a single one.
+/// The legs as reported by the planner; a plan without legs becomes a single leg.
 pub fn legs(plan: &Plan) -> Vec<Leg> {
     let reported = plan.legs.iter().map(|leg| Leg { tag: leg.tag.word(), first: leg.first, last: leg.last });
     match plan.path.len() {

@@ -1,7 +1,7 @@
-//! What people and scripts read: of a run, of several together, of a plan, of a forecast of the accuracy.
+//! Reports for people and scripts: on a run, on several runs together, on a plan, and on a forecast of the accuracy.
 //!
-//! The figures come from [`account`]; here they are put into words ([`human()`]), pages ([`document`]) and pictures ([`drawing`]),
-//! those of plans ([`plan`]) and forecasts ([`forecast`]), too.
+//! The figures come from [`account`]. This crate turns them into text ([`human()`]), pages ([`document`]) and
+//! pictures ([`drawing`]), and does the same for plans ([`plan`]) and forecasts ([`forecast`]).
 
 mod difference;
 pub mod document;

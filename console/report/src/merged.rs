@@ -1,4 +1,4 @@
-//! The result of several runs on one floor: a scan and the re-scans of what it missed.
+//! The combined result of several runs on one floor: a scan and its re-scans.
 
 pub use crate::joined::PastRun;
 use crate::{
@@ -11,12 +11,12 @@ use crate::{
 use account::{Account, Coverage, Summary};
 use serde::Serialize;
 
-/// What several runs scanned together. Every run keeps its own recording.
+/// The combined scan of several runs. Every run keeps its own recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Merged {
     /// The runs, in the order given.
     pub runs: Vec<MergedRun>,
-    /// What was scanned by all of them.
+    /// The coverage of all runs together.
     pub coverage: Coverage,
     /// The account of the floor over all of them.
     pub floor: Account,
@@ -27,22 +27,22 @@ pub struct Merged {
 pub struct MergedRun {
     /// Name of its folder.
     pub run: String,
-    /// SHA-256 of its journal, hexadecimal; absent if it has none.
+    /// SHA-256 of its journal, hexadecimal; absent if there is none.
     pub journal_sha256: Option<String>,
-    /// SHA-256 of its recording, hexadecimal; absent if it has none.
+    /// SHA-256 of its recording, hexadecimal; absent if there is none.
     pub recording_sha256: Option<String>,
-    /// Width of floor that it scanned in one pass, metres.
+    /// Width of floor scanned in one pass, metres.
     pub swath_m: f64,
-    /// Half width of the 95 % position error above which nothing counted in it, metres.
+    /// Limit of the 95 % position error above which nothing counted as scanned, metres.
     pub position_limit_m: f64,
     /// Its own figures, without the account of the floor.
     pub summary: Summary,
 }
 
-/// Takes several runs together.
+/// Combines several runs.
 ///
 /// # Errors
-/// No run, a run given twice, a mission that scans no floor, other cells, or another tank.
+/// There is no run; a run is given twice or is a mission without a scan; the cells or the tanks differ.
 pub fn merged(runs: &[PastRun]) -> Result<Merged, String> {
     require_scans(runs)?;
     let all = joined(runs)?;
@@ -158,7 +158,7 @@ mod tests {
         let walls = refused(round_tank(0.1), other.clone());
         assert_eq!(
             walls,
-            "runs a and b are not of one floor: tank.circle.radius_m is 5.0 in a and 5.01 in b"
+            "runs a and b are not of the same floor: tank.circle.radius_m is 5.0 in a and 5.01 in b"
         );
         (other.world.boundary, other.world.obstacles) = (round_tank(0.1).world.boundary, vec![]);
         let columns = refused(round_tank(0.1), other);

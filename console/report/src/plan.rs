@@ -1,4 +1,4 @@
-//! A plan that was made without flying: its figures for scripts and people, and its picture.
+//! A plan for a mission that has not been run: its figures for scripts and people, and its picture.
 
 use crate::{
     drawing::plan::{Drawn, svg},
@@ -15,10 +15,10 @@ use world::{
     tether::{Cable, Certificate},
 };
 
-/// A shorter time is mostly that of the way to the planner's process and back, milliseconds.
+/// A shorter time mostly measures the round trip to the planner's process, milliseconds.
 const RESOLVED_MS: f64 = 0.05;
 
-/// A plan as scripts read it.
+/// A plan for scripts.
 #[derive(Debug, Serialize)]
 pub struct Planned {
     pub(crate) planner: String,
@@ -28,46 +28,47 @@ pub struct Planned {
     /// Lines that the tethered robot never crosses.
     pub(crate) cuts: Vec<Vec<Point>>,
     pub(crate) length_m: f64,
-    /// Time to drive it at full speed, with stops to turn at corners, seconds.
+    /// Time to drive the path at full speed, with stops to turn at corners, seconds.
     mission_time_s: f64,
-    /// Absent where the clock cannot tell it from the way to the planner and back.
+    /// Time to compute the plan, milliseconds; absent if it is too short to distinguish from the round trip to the
+    /// planner.
     plan_time_ms: Option<f64>,
     pub(crate) complete: bool,
-    /// Why it is not complete.
+    /// The reason why the plan is not complete.
     reason: Option<String>,
-    /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
+    /// Warnings of the planner: floor that it omits and why, and its own solutions where the method has none.
     warnings: Vec<String>,
-    /// The floor that is to be scanned as reports count it; absent for other missions.
+    /// The reachable floor by the definition of the reports; absent for missions without a scan.
     floor: Option<PlannedFloor>,
-    /// What the path does to the tether; absent without one.
+    /// The tether along the path; absent without a tether.
     certificate: Option<Certificate>,
 }
 
-/// A floor as reports count it: by the whole swath, what lanes overlap included.
+/// The reachable floor by the definition of the reports: with the whole swath, including the overlap of lanes.
 #[derive(Debug, Serialize)]
 struct PlannedFloor {
     /// Width of floor scanned in one pass, metres.
     swath_m: f64,
     /// Floor that the tool can reach, square metres.
     reachable_m2: f64,
-    /// Floor along the shell that it cannot reach, square metres.
+    /// Floor along the shell that the tool cannot reach, square metres.
     shell_margin_m2: f64,
     /// Share of the reachable floor that the path scans, counted in cells, 0 to 1.
     scanned: f64,
-    /// The same by the area that the tool sweeps; absent if nothing is in reach.
+    /// The same share by the exact area that the tool sweeps; absent if no floor is reachable.
     scanned_exact: Option<f64>,
 }
 
-/// What a planner gave.
+/// The answer of a planner.
 #[derive(Debug)]
 pub struct Made {
     /// The plan.
     pub plan: Plan,
-    /// Time that it took, milliseconds.
+    /// Time to compute the plan, milliseconds.
     pub plan_time_ms: f64,
-    /// Why it is not complete.
+    /// The reason why the plan is not complete.
     pub reason: Option<String>,
-    /// What the planner warned of: floor that it leaves out and why, ways of its own where the method has none.
+    /// Warnings of the planner: floor that it omits and why, and its own solutions where the method has none.
     pub warnings: Vec<String>,
 }
 
@@ -93,12 +94,13 @@ impl Planned {
         }
     }
 
-    /// Length of its path, metres, and the time to drive it at full speed, with stops to turn at corners, seconds.
+    /// Length of its path, metres, and time to drive it at full speed, with stops to turn at corners, seconds.
     pub fn effort(&self) -> (f64, f64) {
         (self.length_m, self.mission_time_s)
     }
 
-    /// Whether the plan achieves the whole task, and its mission would not refuse it for what it does to the tether.
+    /// Whether the plan achieves the whole task and has a valid tether certificate, so that its mission would not
+    /// refuse it.
     pub fn flies(&self, mission: &MissionConfig) -> bool {
         let must_be_certified = mission.tether.as_ref().is_some_and(|tether| !tether.allow_uncertified);
         let is_certified = self.certificate.as_ref().is_some_and(|certificate| certificate.certified);
@@ -126,7 +128,7 @@ impl Planned {
         })
     }
 
-    /// The figures for people.
+    /// The figures as text.
     pub fn human(&self) -> String {
         let reason = self.reason.as_ref().map(|reason| format!("reason    {reason}\n")).unwrap_or_default();
         format!(
@@ -170,7 +172,7 @@ fn planned_floor(mission: &MissionConfig, drawing: &World, path: &[Point]) -> Op
     })
 }
 
-/// What the path does to the tether, certified independently of its planner; nothing without a tether.
+/// Certifies the tether along the path, independently of the planner; `None` without a tether.
 fn certificate(mission: &MissionConfig, drawing: &World, plan: &Plan) -> Option<Certificate> {
     let tether = mission.tether.as_ref().filter(|_| !plan.path.is_empty())?;
     Some(certify_from_start(tether, mission, &plan.path, &plan.cuts, drawing))
@@ -182,7 +184,7 @@ fn longest_cable(anchor: Point, world: &World, path: &[Point]) -> Option<Vec<Poi
     Some(cable.at_longest(path).taut_line())
 }
 
-/// Lengths by tag, for people.
+/// Lengths by tag, as text.
 fn lengths(planned: &Planned) -> String {
     let length_m = |tag| -> f64 {
         let legs = planned.legs.iter().filter(|leg| leg.tag == tag);
@@ -197,32 +199,33 @@ fn lengths(planned: &Planned) -> String {
     if parts.is_empty() { String::new() } else { format!("legs      {}\n", parts.join(", ")) }
 }
 
-/// The warnings, for people, except the one already printed as the reason.
+/// The warnings as text, except the one already printed as the reason.
 fn warnings(planned: &Planned) -> String {
     let fresh = planned.warnings.iter().filter(|warning| Some(*warning) != planned.reason.as_ref());
     fresh.map(|warning| format!("warning   {warning}\n")).collect::<Vec<_>>().concat()
 }
 
-/// The floor, for people.
+/// The floor as text.
 fn floor(floor: &PlannedFloor) -> String {
     let PlannedFloor { swath_m, reachable_m2, shell_margin_m2, scanned, scanned_exact } = floor;
     let exact = scanned_exact
         .map(|share| format!(", {} % by exact area", percent_text(share, 2)))
         .unwrap_or_default();
     format!(
-        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin by the whole swath of {swath_m} m, as reports count\n\
-         scanned   {} % of it in cells of the report{exact}\n",
+        "floor     {reachable_m2:.1} m² reachable, {shell_margin_m2:.2} m² shell margin; as in reports, for \
+         the full swath of {swath_m} m\nscanned   {} % of it in cells of the report{exact}\n",
         percent_text(*scanned, 2)
     )
 }
 
-/// The certificate, for people.
+/// The certificate as text.
 fn certified(certificate: &Certificate) -> String {
     let Certificate { tether_length_max_m, eccentricity_m, wrap_max_rad, wrap_total_max_rad, .. } =
         certificate;
     let reasons: Vec<String> = certificate.reasons.iter().map(|why| format!("          {why}\n")).collect();
     format!(
-        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap {:.0}° around one obstacle, {:.0}° in total\n{}",
+        "tether    {}, {tether_length_max_m:.2} m out at most ({eccentricity_m:.2} m is the minimum), wrap \
+         {:.0}° on one obstacle, {:.0}° in total\n{}",
         if certificate.certified { "certified" } else { "NOT certified" },
         wrap_max_rad.to_degrees(),
         wrap_total_max_rad.to_degrees(),

@@ -10,12 +10,12 @@ use serde_json::json;
 use std::fmt::Write;
 use world::{Point, World};
 
-/// The layers of the drawing and their colours by the numbers of the format.
+/// The layers of the drawing and their DXF colour numbers.
 const LAYERS: [(&str, u8); 4] = [("SHELL", 7), ("OBSTACLES", 5), ("PATH", 4), ("CUTS", 1)];
 
 impl Planned {
-    /// The points of the path, one a line: number of the leg, what it is for, place, and way from the start. A point where
-    /// two legs meet is there for each of them.
+    /// The points of the path, one per line: number of the leg, its purpose, position, and distance from the start. A
+    /// point where two legs meet is listed once for each of them.
     pub fn csv(&self) -> String {
         let mut text = String::from("leg,tag,x_m,y_m,along_m\n");
         let mut along_m = vec![0.0];
@@ -35,7 +35,7 @@ impl Planned {
         text
     }
 
-    /// Shell, obstacles, the legs of the path and the cuts as one feature collection, tank frame.
+    /// Shell, obstacles, the legs of the path and the cuts as one feature collection in the tank frame.
     pub fn geojson(&self, drawing: &World, facts: &account::Inspection) -> String {
         let datum = Datum::of(facts);
         let mut features =
@@ -75,7 +75,8 @@ impl Planned {
         dxf.finish()
     }
 
-    /// The legs with their numbers from 1 and their lines; a leg in one place is not a line, and other programs refuse it.
+    /// The legs, numbered from 1, with their lines. A leg without length is omitted: other programs refuse such a
+    /// line.
     fn lines(&self) -> impl Iterator<Item = (usize, &Leg, &[Point])> {
         let numbered = (1..).zip(&self.legs);
         let lines = numbered.map(|(number, leg)| (number, leg, &self.path[leg.first..=leg.last]));

@@ -1,13 +1,12 @@
-//! What reaches stdout and stderr: plain text, whoever wrote the names in it.
+//! Output to stdout and stderr in plain characters, even if names in it come from untrusted sources.
 
 use foreign::plain_lines;
 use std::io::{self, ErrorKind, Write};
 
-/// Writes a text to stdout, in plain characters; a reader that has gone away, as `head` does, is no
-/// fault.
+/// Writes a text to stdout in plain characters. A reader that has closed the pipe, such as `head`, is not an error.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the system.
 pub fn say(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match out.write_all(plain_lines(text).as_bytes()).and_then(|()| out.flush()) {
@@ -17,7 +16,7 @@ pub fn say(text: &str) -> io::Result<()> {
     }
 }
 
-/// Writes a line to stdout, as [`say`].
+/// Writes a line to stdout; see [`say`].
 ///
 /// # Errors
 /// See [`say`].
@@ -25,8 +24,8 @@ pub fn say_line(line: &str) -> io::Result<()> {
     say(&format!("{line}\n"))
 }
 
-/// Writes a line to stderr, in one piece; a line that cannot be written is dropped, because there is no other place to
-/// report that, and the exit code still says how it went.
+/// Writes a line to stderr in one piece. A line that cannot be written is dropped: there is no other place to report
+/// the failure, and the exit code still states the result.
 pub fn warn_line(line: &str) {
     let _ = io::stderr().write_all(format!("{}\n", plain_lines(line)).as_bytes());
 }

@@ -1,4 +1,4 @@
-//! What a report shows over time and place: the track, the tether, stations, and what happened.
+//! The record of a run over time and place: track, tether, stations, and incidents.
 
 mod incidents;
 mod stations;
@@ -15,13 +15,13 @@ use positioning::fix::{ellipse_95, position_covariance};
 use stations::Stations;
 use world::{Point, Pose};
 
-/// Shares of the floor are kept this far apart, seconds.
+/// Time between two stored values of the coverage, seconds.
 const PROGRESS_S: f64 = 5.0;
 
-/// So many changes of the planner are kept.
+/// Maximum number of changes of the planner stored.
 const MOST_PLANNERS: usize = 1000;
 
-/// Where the robot believed to be in a tick.
+/// The estimated position in a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackPoint {
     /// Mission time, seconds.
@@ -34,18 +34,18 @@ pub struct TrackPoint {
     pub heading_rad: f32,
     /// 95 % error by the covariance, metres.
     pub error_m: f32,
-    /// Distance to where it truly was, metres; NaN outside simulation.
+    /// Distance to the true position, metres; NaN outside simulation.
     pub true_error_m: f32,
 }
 
 impl TrackPoint {
-    /// The place.
+    /// The position.
     pub fn position(&self) -> Point {
         Point::new(f64::from(self.x_m), f64::from(self.y_m))
     }
 }
 
-/// A stretch of mission time, seconds.
+/// A span of mission time, seconds.
 pub type Span = (f64, f64);
 
 /// Everything that a report shows over time and place.
@@ -55,9 +55,9 @@ pub struct Record {
     pub track: Vec<TrackPoint>,
     /// Scanned share of the reachable floor over time.
     pub progress: Vec<(f64, f64)>,
-    /// When a lane was under the robot, and when anything else.
+    /// Times on a lane, and times on anything else.
     pub scanning: [Vec<Span>; 2],
-    /// How the tether lay; absent without one.
+    /// The tether record; absent without a tether.
     pub tether: Option<TetherRecord>,
     /// The planners that drove, in order.
     pub planners: Vec<PlannerInfo>,
@@ -67,12 +67,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// Nothing has happened yet.
+    /// An empty record.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes in one event; they must come in the order of the journal.
+    /// Adds an event; events must come in the order of the journal.
     pub fn apply(&mut self, event: &Event) {
         self.incidents.apply(event);
         match &event.kind {
@@ -131,24 +131,24 @@ impl Record {
         }
     }
 
-    /// What happened, in order; alarms and holds with their ends. That a run was cut off is the last of it.
+    /// The incidents in order; alarms and holds with their ends. If the run was cut off, that is the last incident.
     pub fn incidents(&self) -> Vec<Incident> {
         self.incidents.all()
     }
 
-    /// What the fixes say of each station.
+    /// The fixes, station by station.
     pub fn stations(&self) -> Vec<StationRecord> {
         self.stations.records()
     }
 
-    /// Where the robot believed to be at a time: the last tick not after it; `None` before the first.
+    /// The estimated position at a time: that of the last tick up to then; `None` before the first tick.
     pub fn at(&self, t_s: f64) -> Option<&TrackPoint> {
         let after = self.track.partition_point(|point| f64::from(point.t_s) <= t_s + 1e-3);
         self.track.get(after.checked_sub(1)?)
     }
 }
 
-/// Adds a moment to the last span if it follows it closely, or begins another.
+/// Extends the last span if a moment follows it closely; starts a new span otherwise.
 fn extend(spans: &mut Vec<Span>, t_s: f64) {
     match spans.last_mut() {
         Some((_, to_s)) if t_s - *to_s < 2.0 => *to_s = t_s,

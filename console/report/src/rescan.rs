@@ -1,4 +1,4 @@
-//! What of a floor is worth being scanned again after one run or several.
+//! Selects the floor that is worth a re-scan after one or more runs.
 
 mod text;
 
@@ -7,25 +7,27 @@ use account::{Area, MissReason, area_of, areas as areas_of, plate_map, updated_f
 use std::collections::{BTreeSet, VecDeque};
 use world::{Floor, ObstacleId, Point, Zone, coverage::regions};
 
-/// Missed floor this near to other missed floor belongs to it, as a share of the swath.
+/// Missed areas closer together than this are merged, as a share of the swath.
 const TOGETHER_SWATHS: f64 = 0.5;
-/// Floor around what was missed that is scanned again with it, as a share of the swath: a robot cannot aim at less.
+/// Width of the floor around a missed area that is re-scanned with it, as a share of the swath: a robot cannot aim
+/// more finely.
 const AROUND_SWATHS: f64 = 0.25;
-/// Boxes are made of blocks this wide, as a share of the swath.
+/// Boxes are made of blocks of this width, as a share of the swath.
 const BLOCK_SWATHS: f64 = 0.2;
 
-/// What is to be scanned again, and what is not worth it.
+/// The floor to re-scan, and the floor that is not worth it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rescan {
-    /// Floor to be scanned, south west and north east corners, metres.
+    /// Boxes to scan: south-west and north-east corners, metres.
     pub boxes: Vec<[Point; 2]>,
-    /// The missed areas in it, the largest first.
+    /// The missed areas in the boxes, the largest first.
     pub areas: Vec<Area<MissReason>>,
-    /// Missed areas that are left, the largest first: too small.
+    /// Missed areas that are too small to scan, the largest first.
     pub left: Vec<Area<MissReason>>,
-    /// Missed areas that no lane leads to, the largest first: another scan would miss them as well, whatever the runs missed them for.
+    /// Missed areas that no lane reaches, the largest first: another scan would miss them again, whatever the
+    /// original reason.
     pub out_of_reach: Vec<Area<MissReason>>,
-    /// Missed floor that none of the runs was asked to scan, square metres.
+    /// Missed floor that none of the runs was to scan, square metres.
     pub not_asked_m2: f64,
     /// Obstacles that the runs found.
     pub found: BTreeSet<ObstacleId>,
@@ -33,10 +35,11 @@ pub struct Rescan {
     pub zones: Vec<Zone>,
 }
 
-/// Finds what is to be scanned again.
+/// Finds the floor to re-scan.
 ///
-/// Missed floor to which no lane leads is listed separately. Of the rest, what lies closely together is merged and grown by
-/// what a robot can aim at. What is then smaller than `min_area_m2` is left. There are no more than `most` boxes; the fewer, the coarser.
+/// Missed floor that no lane reaches is listed separately. In the rest, neighbouring areas are merged; merged areas
+/// smaller than `min_area_m2` are omitted. The others are grown by a margin, because a robot cannot aim more finely.
+/// There are at most `most` boxes; the fewer boxes are allowed, the coarser they are.
 ///
 /// # Errors
 /// As [`crate::merged()`].
@@ -95,7 +98,8 @@ pub fn rescan(runs: &[PastRun], min_area_m2: f64, most: usize) -> Result<Rescan,
     })
 }
 
-/// Wanted cells in groups: a cell belongs to all that are within some distance of it. In order of their first cell.
+/// Groups the wanted cells: a cell belongs with all cells within a given distance. The groups are in order of their
+/// first cell.
 fn clusters(floor: &Floor, within_m: f64, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let mut open: Vec<bool> = (0..floor.len()).map(is_wanted).collect();
     let mut found = Vec::new();
@@ -120,7 +124,7 @@ fn clusters(floor: &Floor, within_m: f64, is_wanted: impl Fn(usize) -> bool) -> 
     found
 }
 
-/// Cells within some distance of taken ones.
+/// The cells within a given distance of selected cells.
 fn around(floor: &Floor, taken: &[bool], within_m: f64) -> Vec<bool> {
     let mut around = taken.to_vec();
     let width = floor.width;

@@ -1,4 +1,4 @@
-//! What can be done with past runs: read, report, verify, scan again what they missed.
+//! Operations on past runs: read, report, verify, and re-scan missed floor.
 
 mod past;
 mod readings;

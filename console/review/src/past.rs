@@ -1,4 +1,4 @@
-//! Past runs as their journals tell them.
+//! Past runs, read from their journals.
 
 use account::{Account, Expect, Inspection, Summary};
 use flight::failure::bad_input;
@@ -11,18 +11,18 @@ use runs::{Past, find, signed_list};
 use scenario::Scenario;
 use std::path::{Path, PathBuf};
 
-/// Past runs that the user named: folders, or names in the folder of the runs.
+/// Past runs named by the user: folders, or names in the folder of the runs.
 ///
 /// # Errors
-/// One is not there, or its journal cannot be read.
+/// A run does not exist, or its journal cannot be read.
 pub fn read_all(runs: &[PathBuf], logs: &Path) -> anyhow::Result<Vec<Past>> {
     runs.iter().map(|run| Ok(Past::read(&find(run, logs)?)?)).collect()
 }
 
-/// What runs on one floor have scanned together.
+/// The combined scan of several runs on one floor.
 ///
 /// # Errors
-/// One is not there, its journal cannot be read, or they are not of one floor.
+/// A run does not exist, its journal cannot be read, or the runs are not of one floor.
 pub fn combined(runs: &[String], logs: &Path) -> anyhow::Result<Account> {
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past: Vec<PastRun> = read_all(&runs, logs)?.into_iter().map(|past| past.run).collect();
@@ -47,7 +47,7 @@ pub fn text_of(past: &Past) -> anyhow::Result<String> {
     Ok(human(&summary(past)?) + &recovered.unwrap_or_default())
 }
 
-/// The inspection report of the run in a folder as a page, a draft.
+/// The draft inspection report of the run in a folder, as a page.
 ///
 /// # Errors
 /// Its journal, or the list of signed reports on it, cannot be read.
@@ -59,7 +59,7 @@ pub fn report_page(folder: &Path) -> anyhow::Result<String> {
     Ok(html(&Document::new(&[past.run], context).map_err(bad_input)?))
 }
 
-/// What the scenario of a run says that only people know.
+/// The facts in the scenario of a run that only people know.
 ///
 /// # Errors
 /// The scenario in its journal is refused.
@@ -68,14 +68,14 @@ pub fn inspection(Past { opened, .. }: &Past) -> anyhow::Result<Inspection> {
     Ok(scenario.map_err(|errors| bad_input(errors.render()))?.inspection)
 }
 
-/// The summary of a run that has been read, held to the bounds of its scenario.
+/// The summary of a run that has been read, compared with the bounds of its scenario.
 ///
 /// # Errors
 /// The scenario in its journal is refused.
 pub fn summary(Past { opened, run, .. }: &Past) -> anyhow::Result<Summary> {
     let scenario = Scenario::recorded(&opened.scenario_toml, "the scenario in the journal");
     let scenario = scenario.map_err(|errors| bad_input(errors.render()))?;
-    // The bounds belong to missions; located readings are not a mission.
+    // Bounds apply to missions; located readings are not a mission.
     let expect = if opened.measured.is_some() { Expect::default() } else { scenario.expect };
     let (logs, files) = (Some(run.logs.clone()), &run.files);
     let (events_sha256, recording_sha256) = (files.journal_sha256.clone(), files.recording_sha256.clone());

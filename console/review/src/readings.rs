@@ -1,4 +1,4 @@
-//! What the sensors of a past run measured: the run is computed again from its journal.
+//! The sensor readings of a past run: the run is recomputed from its journal.
 
 use crate::verify::{planners::Replayed, prepared};
 use anyhow::Context;
@@ -8,11 +8,11 @@ use recording::{Ticks, journal_of};
 use std::{io, path::Path};
 use world::{Pose, Readings};
 
-/// Gives, tick by tick, what was sensed at a time, seconds, and where the robot truly was.
+/// Writes, tick by tick, the sensor readings with their time, seconds, and the true pose of the robot.
 ///
 /// # Errors
-/// The journal of the run in the folder cannot be read, this build computes another run from it, or the readings cannot be
-/// taken.
+/// The journal of the run in the folder cannot be read, this build recomputes a different run from it, or the
+/// readings cannot be written.
 pub fn readings(
     folder: &Path,
     mut take: impl FnMut(f64, &Readings, Pose) -> io::Result<()>,
@@ -28,8 +28,8 @@ pub fn readings(
         computed.extend(flight.tick(&recorded.orders(), &mut replayed));
         if recorded.difference(&computed).context("writing an event as JSON")?.is_some() {
             return Err(bad_input(format!(
-                "this tankops computes another run from tick {} on, so that its readings are not those of the run; `tankops \
-                 verify` shows the difference: {}",
+                "this tankops recomputes a different run from tick {} on, so its readings would not be \
+                 those of the run; `tankops verify` shows the difference: {}",
                 recorded.tick,
                 path.display()
             )));

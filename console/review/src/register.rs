@@ -1,4 +1,4 @@
-//! Where this user's signatures are registered.
+//! Location of this user's register of signatures.
 
 use planner_host::user_folder;
 use runs::Register;

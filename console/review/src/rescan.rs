@@ -1,4 +1,4 @@
-//! A mission for what past runs have missed.
+//! A mission that re-scans floor missed by past runs.
 
 use crate::past::read_all;
 use anyhow::Context;
@@ -8,24 +8,24 @@ use runs::Past;
 use scenario::{Continued, Scenario};
 use std::path::{Path, PathBuf};
 
-/// Boxes in a scenario for a re-scan; more are joined into coarser ones.
+/// Maximum number of boxes in a scenario for a re-scan; more are merged into coarser ones.
 const MOST_BOXES: usize = 4000;
-/// Smaller missed areas are not worth a mission, square metres.
+/// A missed area smaller than this is not worth a mission, square metres.
 pub const MIN_AREA_M2: f64 = 0.05;
 
-/// A scan of what past runs missed.
+/// A re-scan of floor missed by past runs.
 #[derive(Debug)]
 pub enum NextScan {
-    /// There is something to be scanned.
+    /// There is floor to re-scan.
     Worth(Box<MissedScan>),
-    /// Nothing that can be reached is worth another scan: why, as a sentence and the places that stay.
+    /// No missed floor is worth a re-scan: the reason as a sentence, and the areas that stay missed.
     Nothing(String),
 }
 
-/// What past runs missed, and the scenario that scans it.
+/// The floor missed by past runs, and the scenario that re-scans it.
 #[derive(Debug)]
 pub struct MissedScan {
-    /// What was missed.
+    /// The missed floor.
     pub missed: Rescan,
     /// The scenario as a file.
     pub text: String,
@@ -33,10 +33,10 @@ pub struct MissedScan {
     pub scenario: Scenario,
 }
 
-/// The scenario that scans what past runs missed.
+/// Builds the scenario that re-scans floor missed by past runs.
 ///
 /// # Errors
-/// The runs do not go together.
+/// The runs cannot be combined.
 pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyhow::Result<NextScan> {
     let (opened, past): (Vec<_>, Vec<PastRun>) = past.into_iter().map(|past| (past.opened, past.run)).unzip();
     let missed = report::rescan(&past, min_area_m2, MOST_BOXES).map_err(bad_input)?;
@@ -47,16 +47,16 @@ pub fn missed_scan(past: Vec<Past>, min_area_m2: f64, shown_name: &str) -> anyho
         return Ok(NextScan::Nothing(text.trim_end().to_owned()));
     }
     let runs = past.iter().map(continued).collect::<anyhow::Result<Vec<_>>>()?;
-    let last = opened.last().context("there is no run")?;
+    let last = opened.last().context("no run given")?;
     let drawn: Vec<_> =
         missed.zones.iter().filter(|zone| !last.world.zones.contains(zone)).cloned().collect();
     let text = scenario::rescan(last, &runs, &missed.boxes, &missed.found, &drawn);
-    let text = text.context("reading the scenario again")?;
+    let text = text.context("reading the new scenario")?;
     let scenario = Scenario::parse(&text, shown_name).map_err(|errors| bad_input(errors.render()))?;
     Ok(NextScan::Worth(Box::new(MissedScan { missed, text, scenario })))
 }
 
-/// A run as the scenario of its re-scan names it.
+/// A run as named by the scenario of its re-scan.
 fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
     let journal_sha256 = run.files.journal_sha256.as_deref();
     let journal_sha256 =
@@ -64,10 +64,10 @@ fn continued(run: &PastRun) -> anyhow::Result<Continued<'_>> {
     Ok(Continued { name: &run.name, journal_sha256 })
 }
 
-/// The scenario that scans what past runs missed, for the console.
+/// The re-scan scenario for the console.
 ///
 /// # Errors
-/// See [`missed_scan`]; also a journal that was changed, and that there is nothing to be scanned.
+/// See [`missed_scan`]; also if a journal was changed, or if there is no floor to re-scan.
 pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
     let runs: Vec<PathBuf> = runs.iter().map(PathBuf::from).collect();
     let past = read_all(&runs, logs)?;
@@ -79,15 +79,16 @@ pub fn rescan_of(runs: &[String], logs: &Path) -> anyhow::Result<Scenario> {
     }
 }
 
-/// What speaks against a journal, as a note.
+/// The objections to a journal, as notes.
 ///
 /// # Errors
-/// It scanned outside the floor's cells.
+/// It names scanned cells outside the floor.
 pub fn doubt(Past { opened, run, beyond_floor }: &Past) -> anyhow::Result<Option<String>> {
     if let Some(tick) = beyond_floor {
         let cells = opened.floor.len();
         return Err(bad_input(format!(
-            "run {}: its journal was changed: an event of tick {tick} names cells beyond the {cells} of the floor",
+            "run {}: its journal was changed: an event of tick {tick} names cells beyond the {cells} of the \
+             floor",
             run.name
         )));
     }
@@ -95,7 +96,8 @@ pub fn doubt(Past { opened, run, beyond_floor }: &Past) -> anyhow::Result<Option
     let is_open = run.summary.outcome.is_none() && run.files.are_as_reported.is_none();
     let killed = (is_open && !run.logs.is_open).then(|| {
         format!(
-            "note: run {name} was killed; only after `tankops recover {name} --by NAME` can it be part of a signed report",
+            "note: run {name} was killed; to make it part of a signed report, close it with `tankops \
+             recover {name} --by NAME`",
             name = run.name
         )
     });

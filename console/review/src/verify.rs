@@ -1,13 +1,13 @@
-//! Compute a past run again and prove that its journal is equal.
+//! Recomputes a past run and proves that its journal is equal.
 //!
-//! Two proofs are made in one pass. *Mission*: simulator and mission are given the recorded orders and the recorded answers
-//! of the planners in the ticks in which they arrived, and every line must come out again, byte for byte. This is always
-//! possible, whatever the machine did to the planners while the run was flown. *Planners*: each ask also goes to a planner,
-//! and its answer must be the recorded one. When a planner is killed, stopped, too late, or disturbed by a thread that it left
-//! behind, is decided by the machine and not by what it is asked: such faults are taken from the journal and counted, and one
-//! that comes in another tick than then is the same fault.
+//! One pass makes two proofs. *Mission*: simulator and mission get the recorded orders, and the recorded answers of
+//! the planners in the ticks in which they arrived. Every line must then come out again, byte for byte. This is
+//! always possible, whatever happened to the planners during the run. *Planners*: each ask also goes to a planner,
+//! whose answer must equal the recorded one. The machine, not the ask, determines when a planner is killed, stopped,
+//! too late, or disturbed by a thread that it left behind. Such faults are therefore taken from the journal and
+//! counted, and one that occurs in a different tick counts as the same fault.
 //!
-//! The journal is read tick by tick; memory does not grow with it.
+//! The journal is read tick by tick; memory use does not grow with its length.
 
 pub(crate) mod planners;
 
@@ -32,30 +32,30 @@ use std::{
     thread::{self, ScopedJoinHandle},
 };
 
-/// Ticks that are read together, and after so many bytes of lines no more.
+/// Maximum number of ticks read together; fewer if their lines reach this many bytes.
 const BATCH: usize = 64;
 const BATCH_BYTES: u64 = 1 << 18;
-/// What is read ahead, bytes of lines.
+/// Size of the read-ahead queue, bytes of lines.
 const AHEAD_BYTES: u64 = 1 << 20;
 
-/// What was found.
+/// The findings of a verification.
 #[derive(Debug, Default)]
 struct Findings {
-    /// The first line that is not recomputed.
+    /// The first line whose recomputation differs.
     difference: Option<Difference>,
-    /// What speaks against the file as a whole.
+    /// The objections to the file as a whole.
     doubt: Option<String>,
-    /// Whether a report names the digests of journal and recording.
+    /// Whether a report contains the digests of journal and recording.
     is_reported: bool,
-    /// How the run was closed if its writer was killed.
+    /// The recovery of the run, if its recording process was killed.
     recovered: Option<Recovered>,
-    /// Why the journal has no end; what it holds up to there is compared.
+    /// The reason why the journal has no end; its content up to that point is compared.
     no_end: Option<String>,
-    /// What the planners did when they were asked again; `None` if they were not.
+    /// The result of asking the planners again; `None` if they were not asked.
     planners: Option<Asked>,
     /// The signed reports on the run, as lines.
     signed: Vec<String>,
-    /// What speaks against them.
+    /// The objections to the signed reports.
     not_as_signed: Vec<String>,
     /// The planners of the run, by id.
     builds: BTreeMap<String, PlannerInfo>,
@@ -63,23 +63,23 @@ struct Findings {
     last_tick: u64,
 }
 
-/// What a verification says.
+/// The result of a verification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verified {
-    /// Whether everything was recomputed as it is recorded.
+    /// Whether the whole run was recomputed equal to its record.
     pub is_equal: bool,
-    /// Whether nothing was flown, so that nothing was recomputed: readings were located.
+    /// Whether the run consists of located readings, so that nothing was recomputed.
     pub is_located: bool,
-    /// What was found, in lines for people.
+    /// The findings as lines for people.
     pub lines: Vec<String>,
 }
 
-/// Verifies the run in a folder; with plugins, the planners are asked, too.
+/// Verifies the run in a folder; with plugins, the planners are asked again, too.
 ///
-/// Costs about as much as flying the mission did, without waiting for the clock.
+/// Takes about as long as the mission took to compute, without waiting for the clock.
 ///
 /// # Errors
-/// Its journal cannot be read, or is of another version.
+/// Its journal cannot be read, or has a different version.
 pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow::Result<Verified> {
     if let Some(measured) = Ticks::open(&journal_of(folder))?.opened()?.measured.clone() {
         return verify_located(folder, &measured);
@@ -88,7 +88,7 @@ pub fn verify(folder: &Path, plugins: &PluginDirs, from_journal: bool) -> anyhow
     Ok(Verified { is_equal: findings.are_equal(), is_located: false, lines: lines(&findings, plugins) })
 }
 
-/// Verifies readings that were located: nothing was flown, so that only files and signed reports are compared.
+/// Verifies located readings: there is no mission to recompute, so only files and signed reports are compared.
 fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> anyhow::Result<Verified> {
     let past = Past::read(folder)?.run;
     let (signed, not_as_signed) = signed(folder, &SignedRun::names_of(&past));
@@ -96,23 +96,25 @@ fn verify_located(folder: &Path, Measured { file, sha256, .. }: &Measured) -> an
     let mut lines: Vec<String> =
         past.files.doubts.iter().map(|doubt| format!("different: {doubt}")).collect();
     if past.files.are_as_reported == Some(true) {
-        lines.push("equal: journal and recording have the SHA-256 that report.json names".into());
+        lines.push("equal: journal and recording have the SHA-256 stated in report.json".into());
     }
     if past.files.are_as_reported.is_none() {
         lines.push(
-            "note: no report.json names the digests of journal and recording, so they are not checked".into(),
+            "note: report.json is missing or does not state the digests of journal and recording, so these \
+             are not checked"
+                .into(),
         );
     }
-    lines.push(format!("note: nothing was flown: the readings of {file} were located (SHA-256 {sha256})"));
+    lines.push(format!("note: not a mission: the readings of {file} were located (SHA-256 {sha256})"));
     lines.extend(signed);
     lines.extend(not_as_signed.iter().map(|doubt| format!("NOT AS SIGNED: {doubt}")));
     Ok(Verified { is_equal, is_located: true, lines })
 }
 
-/// What is found of the run in a folder, in one line.
+/// Verifies the run in a folder and returns the finding in one line.
 ///
 /// # Errors
-/// Its journal cannot be read, or the run is different.
+/// Its journal cannot be read, or the recomputed run differs.
 pub fn verdict(folder: &Path, plugins: &PluginDirs) -> anyhow::Result<String> {
     let Verified { is_equal, lines, .. } = verify(folder, plugins, false)?;
     let text = lines.join("; ");
@@ -135,8 +137,7 @@ fn findings(folder: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findi
     })
 }
 
-/// The signed reports on a run as lines, and everything that speaks against them or against the run being the one that was
-/// signed.
+/// The signed reports on a run as lines, and all objections to them or to this run being the signed one.
 fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
     let Signatures { revisions, mut doubts, notes } = signatures(folder, &register());
     doubts.extend(revisions.iter().filter_map(|revision| now.iter().find_map(|run| revision.doubt(run))));
@@ -150,12 +151,12 @@ fn signed(folder: &Path, now: &[SignedRun]) -> (Vec<String>, Vec<String>) {
 }
 
 impl Findings {
-    /// How the first planner that answers otherwise does.
+    /// The first difference in a planner's answers.
     fn other_answer(&self) -> Option<&String> {
         self.planners.as_ref().and_then(|asked| asked.difference.as_ref())
     }
 
-    /// Where a planner failed from outside or by the clock that did not fail in the run.
+    /// Where a planner that did not fail in the run had an external or timing fault.
     fn unproven(&self) -> Option<&String> {
         self.planners.as_ref().and_then(|asked| asked.unproven.as_ref())
     }
@@ -164,7 +165,7 @@ impl Findings {
         self.is_run_equal() && self.not_as_signed.is_empty()
     }
 
-    /// Whether everything but the signed reports is as it was.
+    /// Whether everything except the signed reports is unchanged.
     fn is_run_equal(&self) -> bool {
         self.difference.is_none()
             && self.doubt.is_none()
@@ -173,45 +174,45 @@ impl Findings {
     }
 }
 
-/// What was found, in lines for people.
+/// The findings as lines for people.
 fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     let Findings { difference, doubt, no_end, planners, events, last_tick, .. } = findings;
     let mut lines = Vec::new();
     if !findings.is_reported && no_end.is_none() {
         lines.push(
-            "note: no report.json names the digests of journal and recording, so the recording is not checked".into(),
+            "note: report.json is missing or does not state the digests of journal and recording, so the \
+             recording is not checked"
+                .into(),
         );
     }
     if let Some(recovered) = &findings.recovered {
-        lines.push(format!("note: the run was killed, and recovered {recovered}"));
+        lines.push(format!("note: the run was killed, and later recovered {recovered}"));
     }
     if let Some(why) = no_end {
-        lines.push(format!("note: the journal is incomplete ({why}); what it holds before is compared"));
+        lines.push(format!("note: the journal is incomplete ({why}); only the part before that is compared"));
     }
     if let Some(Difference { tick, recorded, computed }) = difference {
         lines.push(format!("different from tick {tick} on\n  recorded: {recorded}\n  computed: {computed}"));
     } else if let Some(doubt) = doubt {
-        lines.push(format!("different: {doubt}; its {events} events up to tick {last_tick} are recomputed"));
+        lines.push(format!("different: {doubt}; its {events} events up to tick {last_tick} were recomputed"));
     }
     lines.extend(planners.iter().flat_map(|asked| &asked.external).map(|(planner, count)| {
-        format!(
-            "note: faults of planner {planner} from outside or by the clock, taken from the journal: {count}"
-        )
+        format!("note: external or timing faults of planner {planner}, taken from the journal: {count}")
     }));
     if let Some(why) = findings.unproven().filter(|_| findings.other_answer().is_none()) {
         lines.push(format!(
-            "not proven: a planner fails from outside or by the clock at {why}, and did not fail in the run: verify once more; \
-             the mission repeats from the recorded answers"
+            "not proven: a planner had an external or timing fault at {why}, which did not occur in the \
+             run: verify again; the mission itself is reproduced from the recorded answers"
         ));
     }
     if let Some(why) = findings.other_answer() {
-        lines.push(format!("different: {why}; the mission repeats from the recorded answers"));
+        lines.push(format!("different: {why}; the mission is reproduced from the recorded answers"));
     }
     if difference.is_some() || findings.other_answer().is_some() {
         lines.extend(planner_changes(&findings.builds, plugins).iter().map(|note| format!("note: {note}")));
     }
     if findings.is_run_equal() {
-        // A report counts the ticks that passed since the first one, which has the number 0.
+        // A report counts the ticks after the first one, which has the number 0.
         let how = if planners.is_some() { "" } else { " from the recorded answers" };
         lines.push(format!(
             "equal: {events} events recomputed{how}, byte for byte, from tick 0 to tick {last_tick}; {}",
@@ -223,10 +224,11 @@ fn lines(findings: &Findings, plugins: &PluginDirs) -> Vec<String> {
     lines
 }
 
-/// What is proven of the planners of a run that is equal.
+/// The proof about the planners of a run that is equal.
 fn proven(planners: Option<&Asked>) -> String {
     let Some(Asked { same, not_comparable, too_early, .. }) = planners else {
-        return "the planners were not asked (--from-journal): what they answered, drew and logged is not proven"
+        return "the planners were not asked (--from-journal): their answers, drawings and log lines are not \
+            proven"
             .into();
     };
     let refused = match not_comparable {
@@ -240,12 +242,12 @@ fn proven(planners: Option<&Asked>) -> String {
     format!("{same} planner answers are the same{refused}{failed}")
 }
 
-/// The run of a journal, ready to be flown again.
+/// The run of a journal, ready to be recomputed.
 pub(crate) fn prepared(path: &Path, ticks: &mut Ticks) -> anyhow::Result<(Scenario, Flight)> {
     let opened = ticks.opened()?.clone();
     if let Some(Measured { file, .. }) = &opened.measured {
         return Err(bad_input(format!(
-            "nothing was flown: the readings of {file} were located; `tankops locate` computes them again: {}",
+            "not a mission: the readings of {file} were located; `tankops locate` computes them again: {}",
             path.display()
         )));
     }
@@ -277,7 +279,8 @@ fn compare(path: &Path, plugins: Option<&PluginDirs>) -> anyhow::Result<Findings
     })
 }
 
-/// Reads a journal ahead of who compares it, up to its end, an error, or the first difference; why it has no end.
+/// Reads a journal ahead of the comparison, up to its end, an error, or the first difference; returns the reason why
+/// it has no end.
 fn read_ahead(mut ticks: Ticks, giver: &Giver<Vec<Result<RecordedTick, JournalError>>>) -> Option<String> {
     loop {
         let (mut batch, mut bytes, mut is_last) = (Vec::new(), 0, false);
@@ -293,7 +296,7 @@ fn read_ahead(mut ticks: Ticks, giver: &Giver<Vec<Result<RecordedTick, JournalEr
     }
 }
 
-/// Flies the mission again beside its journal, up to the first difference.
+/// Recomputes the mission alongside its journal, up to the first difference.
 fn recompute(
     mut flight: Flight,
     mut replayed: Replayed,
@@ -317,16 +320,19 @@ fn recompute(
     Ok(findings)
 }
 
-/// Planners of the run whose plugin is another file now.
+/// Planners of the run whose plugin file is missing or has changed.
 fn planner_changes(builds: &BTreeMap<String, PlannerInfo>, plugins: &PluginDirs) -> Vec<String> {
     let now = found(plugins).planners;
     let changed = |(id, then): (&String, &PlannerInfo)| match now.iter().find(|info| info.id == *id) {
-        None => Some(format!("planner {id} of the run is not installed; --from-journal does without it")),
+        None => Some(format!("planner {id} of the run is not installed; --from-journal does not need it")),
         Some(info) if info.sha256 != then.sha256 => Some(format!(
-            "planner {id} is another build than in the run ({} then); --from-journal does without it",
+            "planner {id} is a different build than in the run ({} then); --from-journal does not need it",
             then.version
         )),
         Some(_) => None,
     };
     builds.iter().filter_map(changed).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,5 @@
-//! Files of a run beside journal and recording: what planners printed, and what is left of those that failed. The run is whole
-//! without them, so that what cannot be written is left out.
+//! Files of a run beside journal and recording: the output of planners, and the crash files of those that failed. The run
+//! is complete without them, so write errors are ignored.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -7,14 +7,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What planners printed.
+/// Output of planners.
 const OUTPUT_FILE: &str = "planner.log";
-/// No more of it is kept, bytes.
+/// Maximum size of this file, bytes.
 const MOST_OUTPUT: usize = 4 << 20;
-/// So many crashes of a run are kept.
+/// Maximum number of crashes kept per run.
 const MOST_CRASHES: usize = 10;
 
-/// The files beside the journal of a run.
+/// The files of a run beside its journal.
 #[derive(Debug)]
 pub(crate) struct Beside {
     folder: PathBuf,
@@ -24,18 +24,18 @@ pub(crate) struct Beside {
 }
 
 impl Beside {
-    /// None written yet.
+    /// No files written yet.
     pub(crate) fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), output: None, written: 0, n_crashes: 0 }
     }
 
-    /// Adds to what planners printed.
+    /// Appends to the output of planners.
     pub(crate) fn keep_output(&mut self, text: &str) {
         if text.is_empty() || self.written > MOST_OUTPUT {
             return;
         }
         self.written += text.len();
-        let last = if self.written > MOST_OUTPUT { "(more is not kept)\n" } else { "" };
+        let last = if self.written > MOST_OUTPUT { "(further output is not kept)\n" } else { "" };
         if self.output.is_none() {
             let file = self.folder.join(OUTPUT_FILE);
             self.output = OpenOptions::new().create(true).append(true).open(file).ok();
@@ -45,7 +45,7 @@ impl Beside {
         }
     }
 
-    /// Keeps what is left of a planner that failed, in a folder of its own.
+    /// Keeps the crash files of a planner that failed, in a separate folder.
     pub(crate) fn keep_crash(&mut self, files: &[(&str, Vec<u8>)]) {
         if self.n_crashes == MOST_CRASHES {
             return;
@@ -81,7 +81,7 @@ mod tests {
             beside.keep_crash(&[("a", vec![1])]);
         }
         let output = fs::read_to_string(folder.path().join(OUTPUT_FILE)).unwrap();
-        assert!(output.len() < MOST_OUTPUT + (2 << 20) && output.ends_with("(more is not kept)\n"));
+        assert!(output.len() < MOST_OUTPUT + (2 << 20) && output.ends_with("(further output is not kept)\n"));
         assert_eq!(fs::read(folder.path().join("crash-10/a")).unwrap(), [1]);
         assert!(!folder.path().join("crash-11").exists());
     }

@@ -1,16 +1,16 @@
-//! How much of the files of past runs is read for a list: it is for an overview, also while a mission is under way, and must not
-//! take longer because a run was long, or because a file is not what it should be.
+//! Limits how much of the files of past runs is read for a list. A list is an overview, even during a mission, and must
+//! not take longer because a run was long or a file is damaged.
 
 use recording::{events_sha256_while, sha256_while};
 use std::{cell::Cell, io, path::Path};
 
-/// Lines of journals that are read for a list, bytes: of one run, and of all.
+/// Maximum size of the journal lines read for a list, bytes: for one run, and for all runs.
 const LINES_OF_ONE: u64 = 16 << 20;
 const LINES_OF_ALL: u64 = 64 << 20;
-/// What is read for digests for a list, bytes.
+/// Maximum size of the files whose digests are computed for a list, bytes.
 const DIGESTED: u64 = 1 << 30;
 
-/// What may still be read.
+/// The remaining budget.
 #[derive(Debug)]
 pub(crate) struct Budget {
     lines: Cell<u64>,
@@ -19,38 +19,38 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// For a list of runs.
+    /// The budget for a list of runs.
     pub(crate) fn of_a_list() -> Self {
         Self { lines: Cell::new(LINES_OF_ALL), lines_of_one: LINES_OF_ONE, digested: Cell::new(DIGESTED) }
     }
 
-    /// For a run that somebody asked for.
+    /// No limit, for a single run that the user asked for.
     pub(crate) fn of_one_run() -> Self {
         Self { lines: Cell::new(u64::MAX), lines_of_one: u64::MAX, digested: Cell::new(u64::MAX) }
     }
 
-    /// How many bytes of lines of the next journal may be read.
+    /// Maximum number of bytes to read from the lines of the next journal.
     pub(crate) fn lines(&self) -> u64 {
         self.lines.get().min(self.lines_of_one)
     }
 
-    /// Takes bytes of lines that were read.
+    /// Deducts bytes of lines that were read.
     pub(crate) fn take_lines(&self, bytes: u64) {
         self.lines.set(self.lines.get().saturating_sub(bytes));
     }
 
-    /// [`recording::events_sha256`].
+    /// Computes [`recording::events_sha256`].
     ///
     /// # Errors
-    /// As there; [`io::ErrorKind::QuotaExceeded`] if it is too long for what is left.
+    /// As for that function; also [`io::ErrorKind::QuotaExceeded`] if the file is too long for the remaining budget.
     pub(crate) fn events_sha256(&self, path: &Path) -> io::Result<String> {
         self.digest(|goes_on| events_sha256_while(path, goes_on))
     }
 
-    /// [`recording::sha256`].
+    /// Computes [`recording::sha256`].
     ///
     /// # Errors
-    /// As [`Budget::events_sha256`].
+    /// As for [`Budget::events_sha256`].
     pub(crate) fn sha256(&self, path: &Path) -> io::Result<String> {
         self.digest(|goes_on| sha256_while(path, goes_on))
     }

@@ -1,4 +1,4 @@
-//! What can go wrong with runs on disk.
+//! Errors of runs on disk.
 
 use recording::{JOURNAL_FILE, JournalError, RecordingError};
 use std::{io, path::PathBuf};
@@ -6,70 +6,70 @@ use std::{io, path::PathBuf};
 /// Why a run cannot be kept, found or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The folder for runs takes none: why, and what to do.
+    /// The folder for runs cannot take a run: the reason, and what to do.
     #[error("{0}")]
     Logs(String),
-    /// The machine grants too little: which limit, and what to do.
+    /// A limit of the machine is too low: which one, and what to do.
     #[error("{0}")]
     Machine(String),
-    /// There is no such run.
+    /// The run does not exist.
     #[error(
-        "there is no run {}: neither a folder with {JOURNAL_FILE} nor the beginning of a name in {}, nor `latest`; `tankops runs` lists them",
+        "there is no run {}: it is neither a folder with {JOURNAL_FILE}, nor the beginning of a name in {}, nor `latest`; `tankops runs` lists all runs",
         run.display(), logs.display()
     )]
     NoRun {
-        /// What was asked for.
+        /// The name or path that was given.
         run: PathBuf,
         /// The folder of runs.
         logs: PathBuf,
     },
-    /// Several runs have names that begin so.
-    #[error("the names of {count} runs begin with {begin}: {some}...; write more of the name")]
+    /// The names of several runs begin with the given text.
+    #[error("the names of {count} runs begin with {begin}: {some}...; enter more of the name")]
     ManyRuns {
-        /// The beginning.
+        /// The text that was given.
         begin: String,
-        /// How many runs.
+        /// Number of matching runs.
         count: usize,
-        /// The first of them.
+        /// The first of these runs.
         some: String,
     },
-    /// Its journal cannot be read.
+    /// The journal cannot be read.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// Journal and recording cannot be begun.
+    /// Journal and recording cannot be created.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// A name for its folder was not found.
+    /// No free name was found for the folder of the run.
     #[error("a thousand runs named {name} exist already: {}", logs.display())]
     NoName {
-        /// The name that was tried, with numbers behind it.
+        /// The name that was tried, with numbers appended.
         name: String,
         /// The folder of runs.
         logs: PathBuf,
     },
-    /// A file beside a run is damaged.
-    #[error("{} is damaged: {why}; put the file back as it was written", file.display())]
+    /// A file of the run besides journal and recording is damaged.
+    #[error("{} is damaged: {why}; restore the original file", file.display())]
     Damaged {
-        /// Which.
+        /// Path of the file.
         file: PathBuf,
-        /// What is wrong, with line and column.
+        /// The damage, with line and column.
         why: String,
     },
-    /// What is asked for does not suit the run: why, and what to do.
+    /// The request does not suit the run: the reason, and what to do.
     #[error("{0}")]
     Refused(String),
-    /// The system refuses something else.
+    /// Any other system error.
     #[error("{what}: {why}")]
     System {
-        /// What was being done.
+        /// The operation that failed.
         what: String,
-        /// What the system says.
+        /// The error of the system.
         why: io::Error,
     },
 }
 
 impl RunError {
-    /// Whether it is for the user to correct, and says how.
+    /// Whether the user can correct this; the message tells how.
     pub fn is_input(&self) -> bool {
         matches!(
             self,
@@ -82,7 +82,7 @@ impl RunError {
         )
     }
 
-    /// What the system refuses while something is being done.
+    /// Wraps a system error in an operation.
     pub(crate) fn during(what: String) -> impl FnOnce(io::Error) -> Self {
         |why| Self::System { what, why }
     }

@@ -1,26 +1,27 @@
-//! The files of a run, and how runs are named.
+//! The files of a run, and the names of runs.
 
 use jiff::Timestamp;
 use std::time::SystemTime;
 
 /// The report on a run that has ended.
 pub(crate) const REPORT_FILE: &str = "report.json";
-/// Locked as long as somebody writes to the run.
+/// Locked while a process writes to the run.
 pub(crate) const LOCK_FILE: &str = "run.lock";
 
-/// A moment as the names of runs begin; a clock before 1970 or after 9999 counts as the nearest moment between.
+/// A moment in the form with which the names of runs begin. A clock before 1970 or after 9999 counts as the nearest
+/// moment in that range.
 pub fn utc(moment: SystemTime) -> String {
     let time = Timestamp::try_from(moment.max(SystemTime::UNIX_EPOCH)).unwrap_or(Timestamp::MAX);
     time.strftime("%Y%m%dT%H%M%SZ").to_string()
 }
 
-/// A moment to the minute, as `2026-11-22 04:01`.
+/// A moment to the nearest minute, such as `2026-11-22 04:01`.
 pub fn utc_minute(moment: SystemTime) -> String {
     let time = Timestamp::try_from(moment.max(SystemTime::UNIX_EPOCH)).unwrap_or(Timestamp::MAX);
     time.strftime("%Y-%m-%d %H:%M").to_string()
 }
 
-/// A name without anything that a file system or a shell could mind.
+/// Replaces all characters that a file system or a shell could misinterpret.
 pub(crate) fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
 }

@@ -1,4 +1,4 @@
-//! The folder of a run: made, found, listed.
+//! The folder of a run: creating, finding and listing it.
 
 use crate::{
     error::RunError,
@@ -17,28 +17,29 @@ use std::{
     time::SystemTime,
 };
 
-/// A folder with one of these files is that of a run.
+/// A folder with one of these files is the folder of a run.
 const SIGNS: [&str; 5] = [JOURNAL_FILE, PLAIN_JOURNAL_FILE, REPORT_FILE, LOCK_FILE, FAILURE_FILE];
-/// Space that is taken for the report when a run starts, bytes, so that a disk that is full at the end has room for it.
+/// Space that is reserved for the report when a run starts, bytes, so that it can still be written if the disk is full at
+/// the end.
 const REPORT_RESERVE: usize = 256 << 10;
 
-/// Whether a folder is that of a run.
+/// Whether a folder is the folder of a run.
 pub fn is_run(folder: &Path) -> bool {
     SIGNS.iter().any(|name| folder.join(name).exists())
 }
 
-/// The folder of a run that is being written; nobody else writes to it.
+/// The folder of a run that is being written; no other process writes to it.
 pub struct RunFolder {
     path: PathBuf,
-    /// Locked as long as this process lives; a killed process leaves it unlocked.
+    /// Locked as long as this process lives; if the process is killed, the lock is released.
     _lock: File,
 }
 
 impl RunFolder {
-    /// Makes a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number behind it if that exists.
+    /// Creates a new folder `<utc>-<scenario>-<planner>-<seed>`, with a number appended if that exists.
     ///
     /// # Errors
-    /// The folder for runs cannot take one.
+    /// The folder for runs cannot take a run.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
         make_logs(logs)?;
         let refused = |error| not_writable(logs, &error);
@@ -51,10 +52,10 @@ impl RunFolder {
         Ok(Self { path, _lock: lock })
     }
 
-    /// Takes the folder of a run whose writer is gone.
+    /// Takes over the folder of a run whose writer is gone.
     ///
     /// # Errors
-    /// Somebody is writing to it.
+    /// A process is still writing to it.
     pub(crate) fn take(path: &Path) -> Result<Self, RunError> {
         let locking = || format!("locking the folder of the run: {}", path.display());
         let open = File::options().create(true).append(true).open(path.join(LOCK_FILE));
@@ -69,12 +70,12 @@ impl RunFolder {
         }
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes the report, whole or not at all.
+    /// Writes the report atomically.
     ///
     /// # Errors
     /// The system refuses.
@@ -82,7 +83,7 @@ impl RunFolder {
         self.write_report_of(summary, None)
     }
 
-    /// [`RunFolder::write_report`]; `recovered`, if its writer was killed.
+    /// As [`RunFolder::write_report`], with `recovered` if the writer was killed.
     pub(crate) fn write_report_of(
         &self,
         summary: &Summary,
@@ -115,7 +116,7 @@ fn fresh_folder(logs: &Path, name: &str) -> Result<PathBuf, RunError> {
     Err(RunError::NoName { name: name.to_owned(), logs: logs.to_owned() })
 }
 
-/// Folders of past runs, oldest first; also those that have lost their journal.
+/// The folders of past runs, oldest first, including those without a journal.
 pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     if !logs.exists() {
         return Ok(Vec::new());
@@ -133,18 +134,18 @@ pub(crate) fn past_runs(logs: &Path) -> Result<Vec<PathBuf>, RunError> {
     Ok(folders)
 }
 
-/// The second in which a run began, as its name says.
+/// The second in which a run began, according to its name.
 fn second_of(folder: &Path) -> &[u8] {
     let name = folder.file_name().unwrap_or_default().as_encoded_bytes();
     name.split(|byte| *byte == b'-').next().unwrap_or_default()
 }
 
-/// When a run began, from its lock, which is written once; none if that is missing.
+/// The time when a run began, from its lock file, which is written once; `None` if that is missing.
 fn made(folder: &Path) -> Option<SystemTime> {
     fs::metadata(folder.join(LOCK_FILE)).and_then(|lock| lock.modified()).ok()
 }
 
-/// The folder of a run that the user named by path, by name, by the beginning of its name, or as `latest`.
+/// Finds the folder of a run that the user specified by path, by name, by the beginning of its name, or as `latest`.
 ///
 /// # Errors
 /// [`RunError::NoRun`], [`RunError::ManyRuns`].

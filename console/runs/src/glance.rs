@@ -1,4 +1,4 @@
-//! What a journal says, for a list.
+//! A quick look at a journal, for a list.
 
 use crate::budget::Budget;
 use account::{Fold, Summary};
@@ -6,17 +6,17 @@ use mission::{Event, EventKind};
 use recording::{JournalError, JournalReader};
 use std::path::Path;
 
-/// What a journal says, up to the first damage.
+/// The content of a journal up to the first damage.
 pub(crate) struct Glance {
     pub summary: Summary,
-    /// What the damage is.
+    /// Description of the damage.
     pub damage: Option<String>,
-    /// Whether only its beginning and its end were read.
+    /// Whether only the beginning and the end were read.
     pub is_partial: bool,
 }
 
 impl Glance {
-    /// Looks at a journal within a budget.
+    /// Reads a journal within a budget.
     pub(crate) fn at(journal: &Path, budget: &Budget) -> Self {
         let mut reading = Reading { fold: Fold::of_figures(), reachable: None, is_partial: false };
         let damage = reading.read(journal, budget).err().map(|error| error.to_string());
@@ -31,7 +31,7 @@ impl Glance {
 
 struct Reading {
     fold: Fold,
-    /// Scanned share of the reachable floor, as the mission said last.
+    /// Scanned share of the reachable floor, from the last event that states it.
     reachable: Option<f64>,
     is_partial: bool,
 }
@@ -51,7 +51,7 @@ impl Reading {
         Ok(())
     }
 
-    /// Reads at least one event; whether that was all.
+    /// Reads at least one event; returns whether all events were read.
     fn read_up_to(&mut self, reader: &mut JournalReader, most: u64) -> Result<bool, JournalError> {
         while let Some(event) = reader.next().transpose()? {
             self.take(&event);

@@ -1,10 +1,10 @@
-//! Whether a run is on disk, as it is said last.
+//! Whether a run is on disk, for the last message about it.
 
 use crate::{error::RunError, files::REPORT_FILE, folder::RunFolder};
 use recording::{Finished, JOURNAL_FILE};
 use std::path::PathBuf;
 
-/// Whether everything of a run that ended was written, and where.
+/// Whether everything of a run that has ended was written, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kept {
     folder: PathBuf,
@@ -12,13 +12,14 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// `report`: how writing the report ended.
+    /// `report` is the result of writing the report.
     pub(crate) fn new(folder: &RunFolder, finished: &Finished, report: &Result<(), RunError>) -> Self {
         let unwritten = || report.as_ref().err().map(ToString::to_string);
         Self { folder: folder.path().to_owned(), problem: finished.error.clone().or_else(unwritten) }
     }
 
-    /// Why the run is not kept; none if it is. Looks at the disk again: the console may stay open long after the end.
+    /// Why the run is not kept; `None` if it is. Checks the disk again, because the console may stay open long after the
+    /// end.
     pub fn problem(&self) -> Option<String> {
         let mut missing = [JOURNAL_FILE, REPORT_FILE].into_iter().map(|name| self.folder.join(name));
         let missing =
@@ -31,7 +32,7 @@ impl Kept {
         self.folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The last line about the run.
+    /// The last message about the run.
     pub fn text(&self) -> String {
         let folder = self.folder.display();
         match self.problem() {

@@ -1,8 +1,9 @@
-//! Runs on disk: the folder of each, what is written to it, whether it was kept, and what past ones hold.
+//! Runs on disk: the folder of each run, the files written to it, whether the run was kept, and the contents of past
+//! runs.
 //!
-//! A run that is flown is written by a [`RunLog`] into a [`RunFolder`] of its own: journal and recording while it is under
-//! way, the report at its end. The journal is the truth; the report is a copy of what it says, and is believed as long as it
-//! fits it ([`standing()`]).
+//! Every run is written by a [`RunLog`] into its own [`RunFolder`]: journal and recording while it is in progress, the
+//! report at its end. The journal is authoritative. The report is derived from it, and is trusted only as long as it
+//! agrees with the journal ([`standing()`]).
 
 mod beside;
 mod budget;

@@ -1,4 +1,4 @@
-//! Past runs, listed.
+//! Lists past runs.
 
 use crate::{
     budget::Budget,
@@ -12,12 +12,16 @@ use crate::{
     standing::{Standing, held, standing_within},
 };
 use account::{Notes, Summary};
+use comfy_table::{
+    CellAlignment::{Left, Right},
+    Table, presets,
+};
 use recording::journal_of;
 use report::document::Recovered;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// A past run as it is listed.
+/// A past run in a list.
 #[derive(Debug, Serialize)]
 pub struct Listed {
     /// Name of its folder.
@@ -28,7 +32,7 @@ pub struct Listed {
     pub scenario: Option<String>,
     /// Id of the planner that drove first.
     pub planner: Option<String>,
-    /// Start of every random choice.
+    /// Seed of all random choices.
     pub seed: Option<u64>,
     /// Mission time that passed, seconds.
     pub mission_time_s: Option<f64>,
@@ -36,17 +40,17 @@ pub struct Listed {
     pub coverage_reachable: Option<f64>,
     /// Its folder.
     pub folder: PathBuf,
-    /// What is wrong with it.
+    /// What is wrong with the run, if anything.
     pub note: Option<String>,
-    /// What people remark about it.
+    /// The remark that people wrote about it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
-    /// How many bookmarks people have set in it.
+    /// Number of bookmarks that people set in it.
     pub bookmarks: usize,
 }
 
-/// The past runs in a folder, oldest first; also those that have lost their journal. Of long journals without a report only the
-/// beginning and the end are read. What speaks against the signed reports of a run is in its note.
+/// Lists the past runs in a folder, oldest first, including those without a journal. Of long journals without a report
+/// only the beginning and the end are read. Problems with signed reports are stated in the note of the run.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -57,33 +61,38 @@ pub fn list(logs: &Path, register: &Register) -> Result<Vec<Listed>, RunError> {
         let notes = listed.note.into_iter().chain(signatures(folder, register).doubts);
         Listed { note: notes.reduce(|one, other| format!("{one}; {other}")), ..listed }
     };
-    // The newest ones are what is looked for.
+    // The budget is spent on the newest runs first, because people look for them.
     let mut listed: Vec<Listed> = past_runs(logs)?.iter().rev().map(look).collect();
     listed.reverse();
     Ok(listed)
 }
 
-/// Past runs as lines for people.
+/// Past runs as a text table.
 pub fn table(runs: &[Listed]) -> String {
-    let head = format!("{:<16} {:>8} {:>22}  run\n", "end", "T+ s", "% of reachable floor");
-    std::iter::once(head).chain(runs.iter().map(row)).collect()
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).add_row(["end", "T+ s", "% of reachable floor", "run"]);
+    table.add_rows(runs.iter().map(cells));
+    for column in table.column_iter_mut() {
+        let is_number = matches!(column.index, 1 | 2);
+        column.set_padding((0, 2)).set_cell_alignment(if is_number { Right } else { Left });
+    }
+    table.trim_fmt() + "\n"
 }
 
-fn row(run: &Listed) -> String {
+fn cells(run: &Listed) -> [String; 4] {
     let number =
         |value: Option<f64>, scale: f64| value.map_or_else(|| "-".into(), |v| format!("{:.1}", v * scale));
     let note = run.note.as_ref().map(|note| format!("  ({note})")).unwrap_or_default();
     let people = people(run).map(|words| format!("  {words}")).unwrap_or_default();
-    format!(
-        "{:<16} {:>8} {:>22}  {}{note}{people}\n",
-        run.end,
+    [
+        run.end.clone(),
         number(run.mission_time_s, 1.0),
         number(run.coverage_reachable.map(world::coverage::percent), 1.0),
-        run.name.replace(char::is_control, "?")
-    )
+        format!("{}{note}{people}", run.name.replace(char::is_control, "?")),
+    ]
 }
 
-/// What people noted about a run.
+/// The remark and the bookmarks of a run.
 fn people(run: &Listed) -> Option<String> {
     let bookmarks = match run.bookmarks {
         0 => None,
@@ -122,7 +131,7 @@ fn look_at(folder: &Path, budget: &Budget) -> Listed {
 fn listed(folder: &Path, end: &str, summary: Option<&Summary>, note: Option<String>) -> Listed {
     let (notes, doubt) = match read_notes(folder) {
         Ok(notes) => (notes, None),
-        Err(why) => (Notes::default(), Some(format!("notes not read: {why}"))),
+        Err(why) => (Notes::default(), Some(format!("notes cannot be read: {why}"))),
     };
     let note = note.into_iter().chain(doubt).reduce(|one, other| format!("{one}; {other}"));
     Listed {
@@ -144,18 +153,18 @@ fn word(summary: &Summary) -> &'static str {
     summary.outcome.map_or("unknown", mission::Outcome::word)
 }
 
-/// A run of which only the journal says what happened.
+/// A run whose report is missing or not trusted: its entry is built from the journal.
 fn by_journal(folder: &Path, doubt: Option<&str>, failure: Option<String>, budget: &Budget) -> Listed {
     let Glance { summary, damage, is_partial } = Glance::at(&journal_of(folder), budget);
     let with = |more: &str| Some(doubt.map_or_else(|| more.to_owned(), |doubt| format!("{doubt}; {more}")));
-    // Whatever became of the report: the journal has the run to its end.
+    // Whatever happened to the report, the journal is complete.
     let ended = summary.outcome.filter(|_| damage.is_none());
     match (ended, failure, damage) {
         (Some(outcome), ..) => {
             let source = match (doubt, is_partial) {
                 (None, false) => "without a report",
                 (Some(_), false) => "figures from the journal",
-                (_, true) => "figures from the beginning and the end of the journal, which is long",
+                (_, true) => "figures from the beginning and the end of a long journal",
             };
             listed(folder, outcome.word(), Some(&summary), with(source))
         }

@@ -1,4 +1,4 @@
-//! What is written about a run while it is flown: journal, recording and, at its end, the report.
+//! Writes a run while it is flown: journal, recording and, at its end, the report.
 
 use crate::{beside::Beside, error::RunError, folder::RunFolder, kept::Kept};
 use account::{Expect, Logs, PlannerCalls, Stops, Summary};
@@ -13,29 +13,29 @@ use std::{
 /// How long closing a run may take before it is abandoned with a message.
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A run that is being written, or, without a folder, only computed.
+/// A run that is being written or, without a folder, only computed.
 pub struct RunLog {
     folder: Option<RunFolder>,
     beside: Option<Beside>,
     recorder: RunRecorder,
-    /// What is said of a run whose recorder is not done in time.
+    /// Message about a run whose recorder does not finish in time.
     least: Summary,
     began: Instant,
 }
 
 /// A run that was flown.
 pub struct Closed {
-    /// Its report.
+    /// The report.
     pub summary: Summary,
-    /// Whether it is on disk; `None` if it was not to be.
+    /// Whether the run is on disk; `None` if it was not to be kept.
     pub kept: Option<Kept>,
 }
 
 impl RunLog {
-    /// Makes the folder of the run and begins its files.
+    /// Creates the folder of the run and its files.
     ///
     /// # Errors
-    /// They cannot be made.
+    /// The folder or the files cannot be created.
     pub fn create(logs: &Path, scenario: &str, planner: &str, seed: u64) -> Result<Self, RunError> {
         check_clock(SystemTime::now())?;
         let folder = RunFolder::create(logs, scenario, planner, seed)?;
@@ -44,10 +44,10 @@ impl RunLog {
         Ok(Self { folder: Some(folder), beside, recorder, least: Summary::default(), began: Instant::now() })
     }
 
-    /// From now on has the system put the journal on disk every second.
+    /// Flushes the journal to disk every second from now on.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The system cannot create a thread.
     pub fn sync(&mut self) -> Result<(), RunError> {
         Ok(self.recorder.sync()?)
     }
@@ -55,14 +55,14 @@ impl RunLog {
     /// Writes nothing, but computes report and hash.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The system cannot create a thread.
     pub fn unwritten() -> Result<Self, RunError> {
         let began = Instant::now();
         let recorder = RunRecorder::spawn(JournalWriter::unwritten(began), None)?;
         Ok(Self { folder: None, beside: None, recorder, least: Summary::default(), began })
     }
 
-    /// Takes the events of a tick, which are copied unless they are shared; waits while the recorder's queue is full.
+    /// Takes the events of a tick, which are copied unless they are shared. Waits while the recorder's queue is full.
     pub fn keep(&mut self, events: impl Into<Arc<[Event]>>) {
         let events = events.into();
         if let Some(event) = events.last() {
@@ -83,25 +83,25 @@ impl RunLog {
         }
     }
 
-    /// Keeps what is left of a planner that failed: files by name, in a folder of its own.
+    /// Keeps the crash files of a planner that failed in a separate folder; `files` lists them by name.
     pub fn keep_crash(&mut self, files: &[(&str, Vec<u8>)]) {
         if let Some(beside) = &mut self.beside {
             beside.keep_crash(files);
         }
     }
 
-    /// How recording goes.
+    /// The progress of recording.
     pub fn health(&self) -> Health {
         self.recorder.health()
     }
 
-    /// Whether so much waits to be written that the caller should wait before it sends more.
+    /// Whether the recorder's queue is so long that the caller should wait before sending more.
     pub fn is_behind(&self) -> bool {
         self.recorder.is_behind()
     }
 
-    /// Closes the files, and writes the report with what is not an event: figures about the planners' calls and about stops, by
-    /// the wall clock, and what a scenario expects.
+    /// Closes the files and writes the report. The report includes data that is not in the events: wall-clock figures
+    /// about planner calls and stops, and the expectations of the scenario.
     pub fn close(
         self,
         within: Duration,
@@ -121,7 +121,7 @@ impl RunLog {
             wall_time_s: Some(began.elapsed().as_secs_f64()),
             events_sha256: finished.events_sha256.clone(),
             recording_sha256: finished.recording_sha256.clone().or_else(|| {
-                // Not whole, but perhaps of use.
+                // Incomplete, but possibly useful.
                 finished.recording.as_ref().and_then(|path| sha256(path).ok())
             }),
             planner_calls: Some(calls),
@@ -138,13 +138,13 @@ impl RunLog {
     }
 }
 
-/// A recording carries the time of the machine, which has to be one of our days.
+/// A recording carries the machine's time, which must be a plausible date.
 fn check_clock(now: SystemTime) -> Result<(), RunError> {
     if now >= SystemTime::UNIX_EPOCH {
         return Ok(());
     }
     Err(RunError::Machine(
-        "no run can be recorded: the clock of the machine stands before 1970; set it".into(),
+        "no run can be recorded: the machine's clock is set to before 1970; correct it".into(),
     ))
 }
 
@@ -159,7 +159,7 @@ mod tests {
         let error = check_clock(SystemTime::UNIX_EPOCH - Duration::from_secs(1)).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "no run can be recorded: the clock of the machine stands before 1970; set it"
+            "no run can be recorded: the machine's clock is set to before 1970; correct it"
         );
         assert!(!error.is_input());
     }

@@ -1,4 +1,4 @@
-//! Whether runs can be kept in the folder for logs, found out before a terminal is taken over or anything moves.
+//! Checks whether runs can be kept in the folder for runs, before a terminal is taken over or anything moves.
 
 use crate::{error::RunError, log::CLOSE_TIMEOUT};
 use recording::{JOURNAL_FILE, Options, RECORDING_FILE, RunRecorder, events_sha256};
@@ -9,9 +9,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Free space that a run must find, bytes. A mission takes about 100 MB an hour, so this is ten minutes of it.
+/// Minimum free space for a run, bytes. A mission takes about 100 MB an hour, so this is enough for ten minutes.
 const MIN_FREE_BYTES: u64 = 16 << 20;
-/// What is written to see whether writing works, bytes: one block on common file systems.
+/// Size of the test file, bytes: one block on common file systems.
 const PROBE: [u8; 4096] = [b'\n'; 4096];
 
 /// Why no run can be kept in a folder.
@@ -26,21 +26,21 @@ pub(crate) enum LogsError {
     /// The system refuses to create, write or remove a file in it.
     #[error("cannot keep runs in {}: the folder is not writable ({why}); choose another one with --logs", logs.display())]
     NotWritable { logs: PathBuf, why: String },
-    /// There is too little space.
+    /// There is not enough space.
     #[error(
         "cannot keep runs in {}: {} MB are free, at least {} MB are needed; free some space or choose another folder with \
          --logs", logs.display(), megabytes(*free_bytes), megabytes(*needed_bytes)
     )]
     NoSpace { logs: PathBuf, free_bytes: u64, needed_bytes: u64 },
-    /// The system lets no file grow to what a run needs.
+    /// A limit of the system on the size of files is too low for a run.
     #[error(
-        "cannot keep runs in {}: the system lets no file grow beyond {} kB, at least {} MB are needed: `ulimit -f {}`",
+        "cannot keep runs in {}: the system limits files to {} kB, at least {} MB are needed; raise the limit: `ulimit -f {}`",
         logs.display(), limit_bytes / 1000, megabytes(MIN_FREE_BYTES), MIN_FREE_BYTES >> 10
     )]
     FilesTooSmall { logs: PathBuf, limit_bytes: u64 },
 }
 
-/// Checks that runs can be kept in a folder, as a run that begins does, and leaves nothing behind.
+/// Checks that runs can be kept in a folder, in the same way as the start of a run does, and leaves nothing behind.
 ///
 /// # Errors
 /// [`RunError::Logs`].
@@ -53,17 +53,17 @@ fn check(logs: &Path) -> Result<(), LogsError> {
         logs.ancestors().take_while(|folder| is_missing(folder)).map(Path::to_owned).collect();
     let checked = make_logs(logs);
     for folder in missing {
-        // Only what was created above, and only while it is empty: another run may have begun in it.
+        // Only folders created above, and only while they are empty: a different run may have begun there.
         let _ = fs::remove_dir(folder);
     }
     checked
 }
 
-/// Records something in a folder of its own below that for runs, reads it back and leaves nothing behind; gives its length,
-/// bytes.
+/// Writes a test recording to a separate folder below the one for runs, reads it back, and leaves nothing behind. Returns
+/// its length in bytes.
 ///
 /// # Errors
-/// It cannot be written or is not what was written.
+/// It cannot be written, or differs when it is read back.
 pub fn check_recorder(logs: &Path) -> Result<u64, RunError> {
     make_logs(logs)?;
     let folder = logs.join(format!(".recorder-{}", std::process::id()));
@@ -83,7 +83,7 @@ fn record_and_read(folder: &Path) -> Result<u64, RunError> {
     let hash = events_sha256(&journal).map_err(trying("reading"))?;
     if finished.events_sha256.as_ref() != Some(&hash) {
         return Err(RunError::Logs(format!(
-            "what was read back is not what was written: {}",
+            "the test file differs from what was written: {}",
             journal.display()
         )));
     }
@@ -100,8 +100,8 @@ impl From<LogsError> for RunError {
     }
 }
 
-/// Creates the folder for runs if there is none, and checks that a file can be written there and removed, and that
-/// there is space for ten minutes of a mission.
+/// Creates the folder for runs if it does not exist. Checks that a file can be written and removed there, and that there
+/// is space for ten minutes of a mission.
 ///
 /// # Errors
 /// See [`LogsError`].
@@ -115,7 +115,7 @@ pub(crate) fn make_logs(logs: &Path) -> Result<(), LogsError> {
 }
 
 fn check_folder(logs: &Path) -> Result<(), LogsError> {
-    // A file system that does not know its size does not say that it is full.
+    // A file system that does not report its size is not treated as full.
     if let Some(free_bytes) = free_bytes(logs).filter(|free_bytes| *free_bytes < MIN_FREE_BYTES) {
         return Err(LogsError::NoSpace { logs: logs.to_owned(), free_bytes, needed_bytes: MIN_FREE_BYTES });
     }
@@ -125,7 +125,7 @@ fn check_folder(logs: &Path) -> Result<(), LogsError> {
     probe(logs).map_err(|error| LogsError::NotWritable { logs: logs.to_owned(), why: error.to_string() })
 }
 
-/// The first part of a path that is a file, if one is.
+/// The first part of a path that is a file, if any.
 fn file_on_the_way(path: &Path) -> Option<PathBuf> {
     let existing = path.ancestors().find(|part| part.exists())?;
     (!existing.is_dir()).then(|| existing.to_owned())
@@ -135,14 +135,14 @@ fn is_missing(folder: &Path) -> bool {
     !folder.as_os_str().is_empty() && folder.symlink_metadata().is_err()
 }
 
-/// Space left where runs are kept, bytes, or where the folder would be created; `None` if the system does not say.
+/// Free space where runs are kept, or where the folder would be created, bytes; `None` if the system does not report it.
 pub fn free_bytes(logs: &Path) -> Option<u64> {
     let folder = logs.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new("."));
     let space = rustix::fs::statvfs(folder).ok()?;
     (space.f_blocks > 0).then(|| space.f_bavail.saturating_mul(space.f_frsize))
 }
 
-/// Creates a file, writes to it and removes it: permissions alone do not reveal quotas and read-only mounts.
+/// Creates a file, writes to it and removes it. Permissions alone would not reveal quotas and read-only mounts.
 fn probe(folder: &Path) -> io::Result<()> {
     let path = folder.join(format!(".probe-{}-{:?}", std::process::id(), std::thread::current().id()));
     let mut file = File::create_new(&path)?;

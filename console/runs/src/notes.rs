@@ -1,4 +1,4 @@
-//! The notes of people, in a file of their own beside the journal: no file of the run changes.
+//! Notes that people write about a run, in a separate file beside the journal; no other file of the run is changed.
 
 use crate::whole::write_whole;
 use account::Notes;
@@ -7,21 +7,21 @@ use recording::journal_of;
 use serde_json::{Map, Value};
 use std::{io, path::Path};
 
-/// Name of the notes in the folder of a run.
+/// File name of the notes in the folder of a run.
 pub const NOTES_FILE: &str = "notes.json";
-/// Longest file of notes, bytes: as many bookmarks with as long texts as there may be.
+/// Maximum size of a file of notes, bytes: the maximum number of bookmarks, each with the longest text.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The notes about the run in a folder; none if there is no such file.
+/// Reads the notes about the run in a folder; empty if there is no such file.
 ///
 /// # Errors
-/// The file cannot be read or understood: a sentence with its line and column.
+/// The file cannot be read or parsed: a sentence with its line and column.
 pub fn read_notes(folder: &Path) -> Result<Notes, String> {
     let path = folder.join(NOTES_FILE);
     let is_long = path.metadata().is_ok_and(|file| file.len() > MOST_BYTES);
     if is_long {
         return Err(format!(
-            "{}: longer than {} MB, which no notes are; correct or remove the file",
+            "{}: longer than {} MB, the maximum for notes; correct or remove the file",
             path.display(),
             MOST_BYTES >> 20
         ));
@@ -31,7 +31,7 @@ pub fn read_notes(folder: &Path) -> Result<Notes, String> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Notes::default()),
         Err(error) => return Err(format!("{}: {error}", path.display())),
     };
-    // A list would be taken for the members of the object in their order.
+    // Otherwise a list would be read as the members of the object in their order.
     let object: Map<String, Value> =
         serde_json::from_str(&text).map_err(|error| not_understood(&path, &error))?;
     drop(object);
@@ -47,14 +47,14 @@ fn not_understood(path: &Path, error: &serde_json::Error) -> String {
     format!("{}:{line}:{column}: {why}; correct or remove the file", path.display())
 }
 
-/// Writes the notes about the run in a folder, whole or not at all. A file that cannot be understood is not written over.
+/// Writes the notes about the run in a folder atomically. A file that cannot be parsed is not overwritten.
 ///
 /// # Errors
-/// What [`read_notes`] says of the file that is there; there is no run in the folder; the system refuses.
+/// The error of [`read_notes`] for the existing file; the folder no longer holds a run; the system refuses.
 pub fn write_notes(folder: &Path, notes: &Notes) -> Result<(), String> {
     read_notes(folder)?;
     if !journal_of(folder).exists() {
-        return Err(format!("{}: there is no run any more", folder.display()));
+        return Err(format!("{}: the run no longer exists", folder.display()));
     }
     let path = folder.join(NOTES_FILE);
     let text = serde_json::to_string_pretty(notes).map_err(|error| error.to_string())? + "\n";
@@ -73,7 +73,7 @@ mod tests {
     fn notes_are_kept_beside_the_journal_and_damaged_ones_are_named_and_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let mut notes = Notes::default();
-        assert!(write_notes(folder.path(), &notes).unwrap_err().contains("there is no run"));
+        assert!(write_notes(folder.path(), &notes).unwrap_err().contains("the run no longer exists"));
         fs::write(folder.path().join(JOURNAL_FILE), "journal").unwrap();
         assert_eq!(read_notes(folder.path()), Ok(Notes::default()));
         notes.mark(12.5, "pump noise").unwrap();

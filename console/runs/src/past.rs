@@ -1,4 +1,4 @@
-//! Past runs, read from their journals.
+//! Reads past runs from their journals.
 
 use crate::{
     error::RunError,
@@ -20,28 +20,28 @@ use std::{
 };
 use world::{CellRun, Floor};
 
-/// Events that are read ahead at a time, and after so many bytes of lines no more.
+/// Maximum number of events to read ahead at a time, and size of their lines in bytes after which reading ahead stops.
 const BATCH: usize = 512;
 const BATCH_BYTES: u64 = 1 << 18;
-/// What is read ahead, bytes of lines.
+/// Events that were read ahead, and the size of their lines, bytes.
 const AHEAD_BYTES: u64 = 1 << 20;
 
 /// A past run.
 #[derive(Debug)]
 pub struct Past {
-    /// How it was opened.
+    /// The first event of the run.
     pub opened: Box<RunOpened>,
-    /// Its events, folded, and its files.
+    /// The state derived from its events, and its files.
     pub run: PastRun,
-    /// Tick of the first event that names cells beyond those of the floor, which no run does: the journal was changed.
+    /// Tick of the first event that names cells outside the floor, which no run does: the journal was changed.
     pub beyond_floor: Option<u64>,
 }
 
 impl Past {
-    /// Reads the run in a folder. What speaks against its journal is in its logs, as an error.
+    /// Reads the run in a folder. Problems with its journal are added to its logs as an error.
     ///
     /// # Errors
-    /// Its journal cannot be read.
+    /// The journal cannot be read.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let journal = journal_of(folder);
         let mut reader = JournalReader::open(&journal)?;
@@ -67,7 +67,7 @@ impl Past {
         let doubts = files.doubts.first().cloned();
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let run = PastRun {
-            // Whoever renames a folder does not change when the run began.
+            // Renaming a folder does not change when the run began.
             began: began(files.closed_as.as_deref().unwrap_or(&name)),
             name,
             logs: Logs {
@@ -85,8 +85,8 @@ impl Past {
     }
 }
 
-/// Gives every event of a journal, in order; a thread of its own reads ahead. Another one computes the digests of journal and
-/// recording meanwhile, which are returned.
+/// Passes every event of a journal to the caller, in order. One thread reads ahead; a second one computes the digests of
+/// journal and recording meanwhile, which are returned.
 fn each_event(
     reader: &mut JournalReader,
     folder: &Path,
@@ -113,14 +113,14 @@ fn each_event(
         taken.flatten().for_each(&mut take);
         let read: Result<(), JournalError> =
             reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        // Nothing is proven of what cannot be read.
+        // Without a readable file, nothing is proven about it.
         is_damaged.store(read.is_err(), Ordering::Relaxed);
         let digests = hashing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         read.map(|()| digests)
     })
 }
 
-/// The digests of the files of a run, and what speaks against them.
+/// The digests of the files of a run, and the doubts about them.
 fn files(
     folder: &Path,
     opened: &RunOpened,
@@ -152,7 +152,7 @@ fn files(
     }
 }
 
-/// When a run began, as its name says: `20261122T040132Z-...` as `2026-11-22 04:01`.
+/// When a run began, according to its name: `20261122T040132Z-...` as `2026-11-22 04:01`.
 fn began(name: &str) -> Option<String> {
     let stamp = name.get(..16).filter(|stamp| stamp.ends_with('Z') && stamp.as_bytes()[8] == b'T')?;
     let digits =

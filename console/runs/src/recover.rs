@@ -1,5 +1,5 @@
-//! Closing a run whose writer was killed: what is there is fixed by digests, and the report says who did it, when, and what is
-//! missing. Neither journal nor recording is changed.
+//! Closes a run whose writer was killed. The report records digests of the existing files, who closed the run and when,
+//! and what is missing. Neither journal nor recording is changed.
 
 use crate::{
     error::RunError, folder::RunFolder, past::Past, report_file::Reported, standing::held, utc_minute,
@@ -9,15 +9,16 @@ use recording::{JournalError, recorded_failure, remove_reserve};
 use report::document::Recovered;
 use std::{path::Path, time::SystemTime};
 
-/// What the process that was killed would have added at the end.
+/// What the killed process would have added at the end.
 const BY_THE_CLOCK: &str = "wall-clock figures: computing time, planner calls, stops";
-/// What a recording lacks that nobody has closed.
-const OF_RECORDING: &str = "the index of the recording, and what it had not written yet: up to 5 s";
+/// What is missing from a recording that was not closed.
+const OF_RECORDING: &str = "the index of the recording, and up to 5 s that had not been written yet";
 
-/// Closes the run in a folder that was killed.
+/// Closes the run in a folder whose writer was killed.
 ///
 /// # Errors
-/// Somebody is writing to it; it was closed already; its journal holds nothing, or cannot be read; the system refuses.
+/// A process is still writing to it; it has already been closed; its journal is empty or cannot be read; the system
+/// refuses.
 pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
     let run = RunFolder::take(folder)?;
     refuse_closed(folder)?;
@@ -28,11 +29,11 @@ pub fn recover(folder: &Path, by: &str) -> Result<Recovered, RunError> {
     let summary = Summary {
         events_sha256: files.journal_sha256.clone(),
         recording_sha256: files.recording_sha256.clone(),
-        // Nobody but this process has locked it.
+        // No other process holds the lock.
         logs: Some(Logs { is_open: false, ..past.run.logs.clone() }),
         ..past.run.summary.clone()
     };
-    // The draft that the writer left is used up.
+    // The draft left by the writer is reused.
     run.write_report_of(&summary, Some(&recovered))?;
     remove_reserve(folder);
     Ok(recovered)
@@ -45,17 +46,17 @@ fn refuse_closed(folder: &Path) -> Result<(), RunError> {
         Ok(None) => Ok(()),
         Ok(Some(report)) => refused(match report.recovered() {
             Some(Recovered { by, at, .. }) => {
-                format!("the run was recovered already, by {by}, {at} UTC; nothing was changed")
+                format!("the run was already recovered by {by}, {at} UTC; nothing was changed")
             }
             None => {
                 "the run has a report, so it was closed when it ended; there is nothing to recover".into()
             }
         }),
-        Err(why) => refused(format!("the run was closed when it ended, and {why}; put the file back")),
+        Err(why) => refused(format!("the run was closed when it ended, and {why}; restore the file")),
     }
 }
 
-/// Why nothing can be recovered of a journal.
+/// Why nothing can be recovered from a journal.
 fn explained(error: RunError, folder: &Path) -> RunError {
     match error {
         RunError::Journal(JournalError::NotOpened { .. }) => RunError::Refused(format!(
@@ -66,7 +67,7 @@ fn explained(error: RunError, folder: &Path) -> RunError {
     }
 }
 
-/// What a run lacks.
+/// What is missing from a run.
 fn missing(folder: &Path, past: &Past) -> Vec<String> {
     let run = &past.run;
     let mut missing = Vec::new();

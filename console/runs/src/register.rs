@@ -1,5 +1,5 @@
-//! The register of signatures: the signed reports of a user, kept apart from the runs, so that a list in the folder of a run that
-//! has lost one, or was changed, is noticed.
+//! The register of signatures: the signed reports of a user, kept apart from the runs. It reveals a list in the folder of
+//! a run that is missing a report or was changed.
 
 use crate::error::RunError;
 use foreign::read_regular;
@@ -10,12 +10,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The register: a signed report a line, as JSON; lines are only ever added.
+/// The register, as JSON with one signed report per line; lines are only ever appended.
 #[derive(Debug, Clone)]
 pub struct Register(Option<PathBuf>);
 
 impl Register {
-    /// The register in a file; without one nothing is kept and nothing is noticed.
+    /// Creates a register stored in a file. Without a file nothing is registered, and lost reports are not noticed.
     pub fn at(file: Option<PathBuf>) -> Self {
         Self(file)
     }
@@ -31,7 +31,7 @@ impl Register {
             .map_err(RunError::during(format!("writing the register of signatures: {}", file.display())))
     }
 
-    /// The signed reports of a run, which has one of these names.
+    /// The signed reports of a run that has one of these names.
     ///
     /// # Errors
     /// The register cannot be read.
@@ -39,7 +39,7 @@ impl Register {
         self.about(|run| names.contains(&run.run))
     }
 
-    /// The signed reports on runs that `is_meant` accepts.
+    /// The signed reports on runs for which `is_meant` is true.
     ///
     /// # Errors
     /// The register cannot be read.
@@ -68,25 +68,25 @@ impl Register {
         Ok(found)
     }
 
-    /// The signed report that was written to a file, by its absolute path; none where the register cannot be read.
+    /// The signed report that was written to a file, given its absolute path; `None` if the register cannot be read.
     pub fn signed_as(&self, file: &Path) -> Option<Revision> {
         let all = self.about(|_| true).unwrap_or_default();
         all.into_iter().find(|revision| Path::new(&revision.file) == file)
     }
 
-    /// Its file, for people.
+    /// Path of its file, for display.
     pub(crate) fn shown(&self) -> String {
         self.0.as_ref().map(|file| file.display().to_string()).unwrap_or_default()
     }
 }
 
-/// Adds a line and puts it on the disk.
+/// Appends a line and flushes it to disk.
 fn append(file: &Path, line: &str) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
     }
     let mut file = OpenOptions::new().append(true).create(true).open(file)?;
-    // In one piece, so that the lines of two processes do not mix.
+    // In one write, so that the lines of two processes do not mix.
     file.write_all(format!("{line}\n").as_bytes())?;
     file.sync_all()
 }

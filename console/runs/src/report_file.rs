@@ -1,4 +1,4 @@
-//! The report of a run on disk, and whether it fits the journal.
+//! The report of a run on disk, and whether it agrees with the journal.
 
 mod figures;
 
@@ -17,16 +17,16 @@ use std::{
     time::SystemTime,
 };
 
-/// A report as it is written to disk: with the name of the run, and the length of the journal that it was made from.
+/// A report as written to disk, with the name of the run and the length of the journal from which it was made.
 #[derive(Serialize)]
 pub(crate) struct ReportFile<'a> {
-    /// Name of its folder.
+    /// Name of the run's folder.
     run: &'a str,
     #[serde(flatten)]
     pub summary: &'a Summary,
-    /// Absent if there is no journal any more.
+    /// Absent if the journal no longer exists.
     pub journal_bytes: Option<u64>,
-    /// Absent if there is no recording any more.
+    /// Absent if the recording no longer exists.
     pub recording_bytes: Option<u64>,
     /// How the run was closed if its writer was killed.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,10 +36,11 @@ pub(crate) struct ReportFile<'a> {
 }
 
 impl<'a> ReportFile<'a> {
-    /// The report on a run of this name with files of these lengths, bytes, as text; `recovered`, if its writer was killed.
+    /// Formats the report on a run with this name and files of these lengths in bytes; `recovered` is set if the writer
+    /// was killed.
     ///
     /// # Errors
-    /// It cannot be written as JSON.
+    /// The report cannot be converted to JSON.
     pub(crate) fn text(
         run: &'a str,
         summary: &'a Summary,
@@ -56,13 +57,14 @@ impl<'a> ReportFile<'a> {
     }
 }
 
-/// SHA-256 of all lines of a report but that with the digest itself: `grep -v '"report_sha256"' report.json | sha256sum`.
+/// SHA-256 of all lines of a report except the one with the digest itself: `grep -v '"report_sha256"' report.json |
+/// sha256sum`.
 fn digest_of_lines(text: &str) -> String {
     let lines = text.split_inclusive('\n').filter(|line| !line.contains("\"report_sha256\""));
     sha256_of(lines.collect::<String>().as_bytes())
 }
 
-/// What a report says of the files that it was made from.
+/// What a report states about the files from which it was made.
 #[derive(Deserialize)]
 struct Source {
     #[serde(default)]
@@ -80,38 +82,37 @@ struct Source {
     report_sha256: Option<String>,
 }
 
-/// Longest report, bytes: the missed areas of the largest floor, and a hundred times as much.
+/// Maximum size of a report, bytes: a hundred times the missed areas of the largest floor.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// What is said of a journal that its report was not made from.
-const NOT_THE_ONE: &str =
-    "the journal is not the one that the report was made from: their SHA-256 digests differ";
+/// Message about a journal from which the report was not made.
+const NOT_THE_ONE: &str = "the report was made from a different journal: their SHA-256 digests differ";
 
-/// What is said of a recording that its report was not made with.
-const NOT_THE_RECORDING: &str = "the recording is not the one that was written with the run: their SHA-256 digests differ; put the file back, or write another one with `tankops export`";
+/// Message about a recording that does not belong to the report.
+const NOT_THE_RECORDING: &str = "the recording is not the one written with the run: their SHA-256 digests differ; restore the file, or write a new one with `tankops export`";
 
-/// What is said of a report without the digest that every report is written with.
+/// Message about a report without the digest with which every report is written.
 const NO_SEAL: &str = "report.json was changed after the run ended: its line report_sha256 is missing";
 
-/// What is known of the digest of a recording.
+/// How the digest of a recording is obtained.
 pub(crate) enum Now<'a> {
-    /// It was computed; `None` if the file cannot be read.
+    /// Already computed; `None` if the file cannot be read.
     Is(Option<&'a str>),
-    /// It is computed if length and time of the file do not say enough, as for lists.
+    /// Computed only if length and time of the file are not sufficient, as in lists.
     Within(&'a Budget),
 }
 
-/// The report of a run as it is on disk, and what it says against the files beside it.
+/// The report of a run as found on disk, and its disagreements with the other files.
 pub(crate) struct Reported {
     text: String,
     source: Source,
 }
 
 impl Reported {
-    /// The report in the folder of a run; `None` if there is none.
+    /// Reads the report in the folder of a run; `None` if there is none.
     ///
     /// # Errors
-    /// It cannot be read, as a sentence.
+    /// Why the report cannot be read, as a sentence.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>, String> {
         match read_json(&folder.join(REPORT_FILE), MOST_BYTES) {
             Ok(text) => {
@@ -123,14 +124,14 @@ impl Reported {
         }
     }
 
-    /// Its figures, if it is as it was written and fits the journal.
+    /// The figures of the report, if it is unchanged and agrees with the journal.
     ///
     /// # Errors
-    /// Why it is not believed, as a sentence.
+    /// Why the report is not trusted, as a sentence.
     pub(crate) fn summary(&self, folder: &Path, budget: &Budget) -> Result<Box<Summary>, String> {
         let summary: Box<Summary> = serde_json::from_str(&self.text).map_err(|error| damaged(&error))?;
         self.seal_doubt().map_or(Ok(()), Err)?;
-        // A report that says itself that the journal is not whole claims nothing about it.
+        // A report that states itself that the journal is incomplete claims nothing about it.
         let Some(then) = &self.source.events_sha256 else { return Ok(summary) };
         let path = journal_of(folder);
         let no_journal = |error: io::Error| format!("{} cannot be read: {error}", name_of(&path));
@@ -139,13 +140,13 @@ impl Reported {
             return Err(NOT_THE_ONE.to_owned());
         }
         if untouched {
-            // Report and journal are as they were written together.
+            // Both report and journal are unchanged since they were written together.
             return Ok(summary);
         }
         match read_ending(&path).map_err(no_journal)? {
             Some(ending) if agrees(&summary, &ending) => Ok(summary),
             None if self.recovered().is_some() && summary.outcome.is_none() => Ok(summary),
-            _ => Err(format!("{REPORT_FILE} was changed: it does not end as the journal does")),
+            _ => Err(format!("{REPORT_FILE} was changed: its end differs from that of the journal")),
         }
     }
 
@@ -159,18 +160,19 @@ impl Reported {
         self.source.recovered.as_ref()
     }
 
-    /// Whether it names the digests of journal and recording.
+    /// Whether it holds the digests of journal and recording.
     pub(crate) fn names_digests(&self) -> bool {
         self.source.events_sha256.is_some() && self.source.recording_sha256.is_some()
     }
 
-    /// What speaks against the journal whose digest is this.
+    /// Why the journal with this digest does not match the report; `None` if it does.
     pub(crate) fn journal_doubt(&self, sha256: Option<&str>) -> Option<String> {
         let then = self.source.events_sha256.as_deref()?;
         (then != sha256?).then(|| NOT_THE_ONE.to_owned())
     }
 
-    /// What speaks against the recording. A recording that is not there any more can be made again, and is not a doubt.
+    /// Why the recording does not match the report; `None` if it does. A missing recording can be made again, so it does
+    /// not count as a mismatch.
     pub(crate) fn recording_doubt(&self, folder: &Path, now: &Now<'_>) -> Option<String> {
         let (then, path) = (self.source.recording_sha256.as_deref()?, folder.join(RECORDING_FILE));
         if !path.exists() {
@@ -196,12 +198,13 @@ impl Reported {
         }
     }
 
-    /// What speaks against its figures: the journal gives others (`figures`), or the file was changed.
+    /// Why the figures are not trusted: they differ from those of the journal (`figures`), or the file was changed.
+    /// `None` if they are trusted.
     pub(crate) fn figures_doubt(&self, figures: &Summary) -> Option<String> {
         if self.source.report_sha256.is_none() {
             return self.seal_doubt();
         }
-        // Those of a journal that is not whole are few.
+        // An incomplete journal gives only few figures.
         let figures = Some(figures).filter(|_| self.source.events_sha256.is_some());
         let reported: Summary = match serde_json::from_str(&self.text) {
             Ok(reported) => reported,
@@ -213,13 +216,13 @@ impl Reported {
             .or_else(|| self.seal_doubt())
     }
 
-    /// What speaks against a report that no longer has the digest that it was written with.
+    /// Why the report does not match its own digest; `None` if it does.
     fn seal_doubt(&self) -> Option<String> {
         let Some(then) = &self.source.report_sha256 else { return Some(NO_SEAL.to_owned()) };
         let now = digest_of_lines(&self.text);
         (*then != now).then(|| {
             format!(
-                "{REPORT_FILE} was changed after the run ended: its lines have the SHA-256 {now}, expected {then}"
+                "{REPORT_FILE} was changed after the run ended: the SHA-256 of its lines is {now}, expected {then}"
             )
         })
     }
@@ -233,11 +236,12 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Whether a file has the length that the report names and was not written after it; then it is not hashed.
+/// Whether a file has the length stated in the report and was not written after the report; then it need not be hashed.
 ///
-/// This is for lists; whoever must be sure reads the file ([`Reported::journal_doubt`], [`Reported::recording_doubt`]).
+/// This is sufficient for lists. Where certainty is needed, the file is read ([`Reported::journal_doubt`],
+/// [`Reported::recording_doubt`]).
 fn is_untouched(file: &Path, bytes: Option<u64>, folder: &Path) -> io::Result<bool> {
-    // In one tick of the file system's clock both may have been written, or the file changed.
+    // Within one tick of the file system's clock, both may have been written, or the file may have been changed.
     let (file, report) = (fs::metadata(file)?, fs::metadata(folder.join(REPORT_FILE))?);
     let written = |file: &Metadata| file.modified().unwrap_or(SystemTime::UNIX_EPOCH);
     Ok(bytes == Some(file.len()) && written(&file) < written(&report))
@@ -250,7 +254,8 @@ fn agrees(summary: &Summary, ending: &Event) -> bool {
         && summary.ticks == Some(ending.tick)
 }
 
-/// What speaks against the journal of a run whose digest is this: its report names another one, or cannot be read.
+/// Why the journal of a run with this digest is not trusted: the report states a different digest, or cannot be read.
+/// `None` if it is trusted.
 pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     match Reported::read(folder) {
         Ok(reported) => reported?.journal_doubt(sha256),
@@ -258,10 +263,10 @@ pub fn journal_doubt(folder: &Path, sha256: Option<&str>) -> Option<String> {
     }
 }
 
-/// What contradicts a journal without an end: the run has a report, so it was closed cleanly.
+/// The evidence against a journal without an end: the run has a report, so it was closed normally.
 pub fn end_is_missing(folder: &Path) -> Option<String> {
     let reported = Reported::read(folder).ok()??;
     let report: Value = serde_json::from_str(&reported.text).ok()?;
     report.get("outcome")?.as_str()?;
-    Some("the run has a report, so it came to its end, but the journal has none".to_owned())
+    Some("the run has a report, so it finished, but the journal has no end".to_owned())
 }

@@ -1,4 +1,4 @@
-//! Signed reports of a run: which there are, and that none is changed.
+//! The signed reports of a run, and whether all of them are unchanged.
 
 use crate::{error::RunError, register::Register, report_file::Reported, whole::write_whole};
 use foreign::read_json;
@@ -15,10 +15,10 @@ use std::{
 
 /// The list of signed reports in the folder of a run.
 pub const SIGNED_FILE: &str = "signed.json";
-/// Longest list, bytes: ten thousand signatures.
+/// Maximum size of the list, bytes: ten thousand signatures.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// The signed reports of the run in a folder, in their order.
+/// Reads the list of signed reports of the run in a folder, in order.
 ///
 /// # Errors
 /// The list cannot be read.
@@ -36,16 +36,16 @@ pub fn signed_list(folder: &Path) -> Result<Vec<Revision>, RunError> {
 /// The signed reports of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Signatures {
-    /// As they are listed, in their order.
+    /// The reports in the order of the list.
     pub revisions: Vec<Revision>,
-    /// What speaks against them, as sentences that name the file.
+    /// Problems with them, as sentences that name the file.
     pub doubts: Vec<String>,
-    /// What only another register shows, as sentences.
+    /// Points that only a different register could settle, as sentences.
     pub notes: Vec<String>,
 }
 
-/// The signed reports of the run in a folder, and what speaks against them: a file that has another digest than when it was
-/// signed, or is not where it was written any more, and a list that is missing, damaged, or other than the register has it.
+/// Reads the signed reports of the run in a folder, and checks them. It is a problem if a file has changed since it was
+/// signed or is no longer where it was written, or if a list is missing, damaged or different from the register.
 pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let mut found = Signatures::default();
     match signed_list(folder) {
@@ -67,7 +67,7 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     let lost: Vec<String> = lost.collect();
     found.doubts.extend(lost);
     for revision in found.revisions.iter().filter(|revision| entry(revision).is_none()) {
-        // Who keeps this register has signed this run, but not this report.
+        // The owner of this register has signed this run, but not this report.
         let is_invented = registered.iter().any(|entry| entry.signature.by == revision.signature.by);
         let to = if is_invented { &mut found.doubts } else { &mut found.notes };
         to.push(unregistered(revision, is_invented, register));
@@ -75,9 +75,10 @@ pub fn signatures(folder: &Path, register: &Register) -> Signatures {
     found
 }
 
-/// Finds a signed report on these files in the register, under a name that the run in this folder no longer has; as a sentence.
+/// Searches the register for a signed report on exactly these files, but under a name that the run in this folder no
+/// longer has. Returns a message if there is one.
 ///
-/// Both digests must agree: equal runs have equal journals, but each recording holds its own time of day.
+/// Both digests must match: equal runs have equal journals, but each recording contains its own time of day.
 pub fn signed_under_another_name(folder: &Path, register: &Register, now: &SignedRun) -> Option<String> {
     now.recording_sha256.as_ref()?;
     let names = names_of(folder);
@@ -88,7 +89,7 @@ pub fn signed_under_another_name(folder: &Path, register: &Register, now: &Signe
     let entry = register.about(is_it).ok()?.into_iter().next()?;
     let then = entry.runs.iter().find(|then| is_it(then))?;
     Some(format!(
-        "run {} has the files of run {}, which was signed as revision {} by {} at {} UTC, as {} says; give its folder that name again",
+        "run {} has the files of run {}, which was signed as revision {} by {} at {} UTC, according to {}; rename its folder back to that name",
         names[0],
         then.run,
         entry.revision,
@@ -98,7 +99,7 @@ pub fn signed_under_another_name(folder: &Path, register: &Register, now: &Signe
     ))
 }
 
-/// The names of a run: of its folder, and what that was called when the run was closed.
+/// The names of a run: the current name of its folder, and the name when the run was closed.
 fn names_of(folder: &Path) -> Vec<String> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let closed_as =
@@ -110,18 +111,18 @@ fn is_same_report(one: &Revision, other: &Revision) -> bool {
     (&one.number, &one.revision) == (&other.number, &other.revision)
 }
 
-/// Where a list says something else of a signed report than the register, which is never changed.
+/// The difference between a listed signed report and its entry in the register, which is never changed.
 fn list_change(listed: &Revision, entry: &Revision, register: &Register) -> Option<String> {
     let [now, then] = [listed, entry].map(|revision| serde_json::to_value(revision).ok());
     let Difference { key, one, other } = first_difference(&now?, &then?)?;
     Some(format!(
-        "{SIGNED_FILE} was changed: {key} of revision {} is {one}, and {} has {other}",
+        "{SIGNED_FILE} was changed: {key} of revision {} is {one}, but {other} in {}",
         listed.revision,
         register.shown()
     ))
 }
 
-/// What speaks against the file of a signed report. `entry`: what the register has of it, if it has anything.
+/// The problem with the file of a signed report, if any. `entry` is its entry in the register, if any.
 fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
     let Revision { revision: letter, file, sha256: then, .. } = entry.unwrap_or(listed);
     match sha256(&PathBuf::from(file)) {
@@ -130,7 +131,7 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
             let or_list = match entry {
                 Some(_) => String::new(),
                 None => format!(
-                    ", or {SIGNED_FILE} was; the register of {}, who signed, shows which",
+                    ", or {SIGNED_FILE} was; the register of {}, who signed it, shows which",
                     listed.signature.by
                 ),
             };
@@ -144,42 +145,43 @@ fn file_doubt(listed: &Revision, entry: Option<&Revision>) -> Option<String> {
     }
 }
 
-/// That the folder is none of those that a report on it names: it was renamed, or copied.
+/// The problem with a folder whose name is in no report on it: the folder was renamed or copied.
 fn renamed(listed: &Revision, folder: &Path) -> Option<String> {
     let name = folder.file_name()?.to_string_lossy();
     let signed: Vec<&str> = listed.runs.iter().map(|run| run.run.as_str()).collect();
     (!signed.is_empty() && !signed.contains(&&*name)).then(|| {
         format!(
-            "the folder is called {name}, and revision {} was signed on {}; give it that name again",
+            "the folder is called {name}, but revision {} was signed on {}; rename it back to that name",
             listed.revision,
             signed.join(" and ")
         )
     })
 }
 
-/// A listed report that the register does not have.
+/// A listed report that is not in the register.
 fn unregistered(listed: &Revision, is_invented: bool, register: &Register) -> String {
     let Revision { revision: letter, signature, .. } = listed;
     let of = register.shown();
     if is_invented {
         format!(
-            "{SIGNED_FILE} lists revision {letter} by {}, {} UTC, and {of} has other reports that {} signed on this run, but not this one",
+            "{SIGNED_FILE} lists revision {letter} by {}, {} UTC; {of} has other reports that {} signed on this run, but not this one",
             signature.by, signature.at, signature.by
         )
     } else {
         format!(
-            "whether {} signed revision {letter} only the register of {} shows; it is not in this one ({of})",
+            "only the register of {} shows whether {} signed revision {letter}; this register does not \
+             list it ({of})",
             signature.by, signature.by
         )
     }
 }
 
-/// A report of the register that the list of a run does not have.
+/// A report in the register that is missing from the list of a run.
 fn lost(entry: &Revision, folder: &Path, register: &Register) -> String {
     let list = folder.join(SIGNED_FILE);
-    let why = if list.exists() { "does not list that" } else { "is missing" };
+    let why = if list.exists() { "does not list it" } else { "is missing" };
     format!(
-        "run {} was signed as revision {} by {} at {} UTC (SHA-256 {}), as {} says, but its {SIGNED_FILE} {why}: {}",
+        "run {} was signed as revision {} by {} at {} UTC (SHA-256 {}), according to {}, but its {SIGNED_FILE} {why}: {}",
         names_of(folder)[0],
         entry.revision,
         entry.signature.by,
@@ -190,7 +192,7 @@ fn lost(entry: &Revision, folder: &Path, register: &Register) -> String {
     )
 }
 
-/// Adds a signed report to the lists of all runs that it is about and to the register, or to none of them.
+/// Adds a signed report to the lists of all runs that it covers and to the register, or to none of them.
 ///
 /// # Errors
 /// A list cannot be read or written.
@@ -206,7 +208,7 @@ pub fn add_signed(folders: &[PathBuf], register: &Register, revision: &Revision)
         .inspect_err(|_| folders[..added].iter().for_each(|folder| take_back(folder, revision)))
 }
 
-/// Takes a report off the list again, if the system lets it.
+/// Removes a report from the list again, if the system permits it.
 fn take_back(folder: &Path, revision: &Revision) {
     if let Ok(mut revisions) = signed_list(folder) {
         revisions.retain(|listed| listed != revision);
@@ -288,7 +290,8 @@ mod tests {
         let Signatures { doubts, notes, .. } = signatures(&signed.run(), &none);
         assert!(
             doubts.is_empty()
-                && notes[0].starts_with("whether L. Kern signed revision A only the register of L. Kern"),
+                && notes[0]
+                    .starts_with("only the register of L. Kern shows whether L. Kern signed revision A"),
             "{notes:?}"
         );
         fs::write(&signed.file, "forged").unwrap();
@@ -348,7 +351,7 @@ mod tests {
         let signed = Signed::new();
         let list = signed.run().join(SIGNED_FILE);
         fs::write(&list, "[]").unwrap();
-        assert!(signed.doubt(&signed.register).contains("its signed.json does not list that"));
+        assert!(signed.doubt(&signed.register).contains("its signed.json does not list it"));
         fs::remove_file(&list).unwrap();
         let doubt = signed.doubt(&signed.register);
         assert!(

@@ -1,4 +1,4 @@
-//! How a past run stands, by its report, its journal and the signs that its writer left.
+//! The status of a past run, derived from its report, its journal and the files left by its writer.
 
 use crate::{budget::Budget, files::LOCK_FILE, report_file::Reported};
 use account::Summary;
@@ -6,33 +6,33 @@ use foreign::open_regular;
 use recording::recorded_failure;
 use std::{fs::TryLockError, path::Path};
 
-/// How a past run stands.
+/// The status of a past run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Standing {
-    /// It ended, and its report agrees with its journal.
+    /// The run ended, and its report agrees with its journal.
     Ended(Box<Summary>),
-    /// It ended, but its journal or its recording is not whole, as the report itself says.
+    /// The run ended, but its journal or its recording is incomplete, as the report itself states.
     NotRecorded(Box<Summary>, String),
-    /// Somebody is writing to it.
+    /// A process is still writing to it.
     Running,
-    /// It has no report that can be believed: only the journal says what happened.
+    /// The run has no report that can be trusted; only the journal tells what happened.
     JournalOnly {
-        /// What is wrong with its report; absent if there is none.
+        /// What is wrong with the report; absent if there is none.
         doubt: Option<String>,
-        /// Why its writer could not write, if it could not; otherwise it was killed.
+        /// Why the writer could not write; absent if it was killed.
         failure: Option<String>,
     },
 }
 
-/// How the run in a folder stands.
+/// Determines the status of the run in a folder.
 ///
-/// The journal is the truth and the report a copy of what it says: a report that cannot be read, or does not fit the
-/// journal, counts for nothing.
+/// The journal is authoritative and the report is derived from it: a report that cannot be read or disagrees with the
+/// journal is ignored.
 pub fn standing(folder: &Path) -> Standing {
     standing_within(folder, &Budget::of_one_run())
 }
 
-/// [`standing()`], read within a budget.
+/// As [`standing()`], within a budget.
 pub(crate) fn standing_within(folder: &Path, budget: &Budget) -> Standing {
     let failure = recorded_failure(folder);
     let summary = Reported::read(folder)
@@ -53,17 +53,17 @@ fn reported(summary: Box<Summary>, failure: Option<String>) -> Standing {
         return Standing::Ended(summary);
     }
     let error = summary.logs.as_ref().and_then(|logs| logs.error.clone()).or(failure);
-    Standing::NotRecorded(summary, error.unwrap_or_else(|| "the journal is not whole".into()))
+    Standing::NotRecorded(summary, error.unwrap_or_else(|| "the journal is incomplete".into()))
 }
 
-/// Whether somebody is writing to the run in a folder.
+/// Whether a process is writing to the run in a folder.
 pub(crate) fn is_locked(folder: &Path) -> bool {
     let locked = open_regular(&folder.join(LOCK_FILE))
         .map(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)));
     locked.unwrap_or(false)
 }
 
-/// Up to when a journal that stops early goes.
+/// The point up to which an incomplete journal extends.
 pub(crate) fn held(summary: &Summary) -> String {
     summary.mission_time_s.map_or_else(
         || "the journal is empty".into(),

@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Writes files atomically: complete, or not at all.
 
 use rustix::fs::OFlags;
 use std::{
@@ -8,22 +8,22 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a file whole or not at all: to a draft beside it, `NAME.part`, onto the disk, then renamed. The space that a draft
-/// already takes is used. When it fails, the file is as it was, and there is no draft.
+/// Writes a file atomically: to a draft beside it, `NAME.part`, which is flushed to disk and then renamed. The space
+/// already taken by an existing draft is reused. If writing fails, the file is unchanged and no draft remains.
 ///
-/// What is not a regular file (a pipe, `/dev/stdout`) is written to as it is.
+/// A target that is not a regular file (a pipe, `/dev/stdout`) is written to directly.
 ///
 /// # Errors
 /// The system refuses, or the file is read-only.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A link stays one: what it leads to is replaced.
+    // A link stays a link: its target is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let there = path.metadata().ok();
     if there.as_ref().is_some_and(|file| !file.is_file()) {
         return fs::write(&path, bytes);
     }
     if there.is_some_and(|file| file.permissions().readonly()) {
-        // The system would let it be replaced, and everything be written by some users.
+        // The system would allow the file to be replaced, and root could write to it in any case.
         return Err(io::Error::new(
             io::ErrorKind::PermissionDenied,
             "the file is read-only, as signed reports are",
@@ -32,7 +32,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_by_draft(&path, &draft_of(&path), bytes)
 }
 
-/// [`write_whole`] by a draft of another name, for files that several processes may write at once.
+/// As [`write_whole`], with a different name for the draft, for files that several processes may write at the same time.
 ///
 /// # Errors
 /// The system refuses.
@@ -40,7 +40,7 @@ pub fn write_by_draft(path: &Path, draft: &Path, bytes: &[u8]) -> io::Result<()>
     write_in(path, draft, bytes, || open_draft(draft))
 }
 
-/// A draft of ours, or a new one in place of what else is there: a link or a pipe would lead elsewhere.
+/// Opens an existing draft of ours, or replaces whatever else has its name: a link or a pipe would lead elsewhere.
 fn open_draft(draft: &Path) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let there = OpenOptions::new().write(true).custom_flags(flags.bits().cast_signed()).open(draft);
@@ -54,18 +54,18 @@ fn open_draft(draft: &Path) -> io::Result<File> {
     }
 }
 
-/// Where a file is drafted: `NAME.part`.
+/// Path of the draft of a file: `NAME.part`.
 pub(crate) fn draft_of(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     path.with_file_name(name)
 }
 
-/// What is written to.
+/// The file to write to.
 trait Draft: Write {
-    /// Cuts off what is longer.
+    /// Truncates the file.
     fn cut(&mut self, bytes: u64) -> io::Result<()>;
-    /// Puts it on the disk.
+    /// Flushes the file to disk.
     fn settle(&mut self) -> io::Result<()>;
 }
 
@@ -93,7 +93,7 @@ fn write_in<D: Draft>(
         fs::rename(draft, path)
     };
     write().inspect_err(|_| drop(fs::remove_file(draft)))?;
-    // The new name is kept by the folder; some file systems cannot be asked for that.
+    // The new name is stored in the folder, which some file systems cannot flush.
     let _ = path.parent().map(|folder| File::open(folder).and_then(|folder| folder.sync_all()));
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! From the parsed TOML to a checked scenario.
+//! Builds a checked scenario from the parsed TOML.
 
 use super::{
     Scenario,
@@ -18,15 +18,15 @@ use sim::{AeConfig, Mover, NoiseModel, RobotConfig, SimConfig};
 use toml::de::DeTable;
 use world::{Boundary, Obstacle, Point, Pose, Station, World};
 
-/// Clearance that is kept at least where ranges scatter, metres. With 0.05 one of 1,293 robots drawn by seed touched the shell, which it knows only
-/// by its position: the 95 % error was 0.047 m, the error 0.063 m.
+/// The smallest clearance kept if ranges scatter, in metres. With 0.05, one of 1,293 robots of random scenarios touched
+/// the shell, which it locates only by its own position: the 95 % error was 0.047 m, and the error 0.063 m.
 const LEAST_CLEARANCE_M: f64 = 0.08;
 
-/// A start this near to the first path point stands on it, metres.
+/// A start within this distance of the first path point, in metres, counts as on it.
 const ON_PATH_M: f64 = 1e-3;
 
-/// Reads every section, checks that they fit together, and gives the scenario or everything that is wrong.
-/// `also`: what else is looked for.
+/// Reads every section and checks that they fit together. Returns the scenario or all problems. `also` runs an
+/// additional check.
 pub(crate) fn assemble(
     text: &str,
     shown_name: &str,
@@ -43,7 +43,7 @@ pub(crate) fn assemble(
     }
 }
 
-/// The sections that are looked at more than once.
+/// The sections that are used more than once.
 struct Sections<'a> {
     root: &'a Section<'a>,
     robot: Option<Section<'a>>,
@@ -51,7 +51,7 @@ struct Sections<'a> {
     mission: Option<Section<'a>>,
 }
 
-/// Everything on the floor and everything that moves there, as far as it could be read.
+/// Everything on the floor and everything that moves there; `None` for parts that could not be read.
 struct Floor {
     boundary: Option<Boundary>,
     obstacles: Vec<Obstacle>,
@@ -119,7 +119,7 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
         locating,
         planner: planner?,
         fallback,
-        // Who flies it knows; a scenario does not.
+        // Whether an operator attends depends on the caller, not on the scenario.
         attended: false,
         start_names_plan: false,
         better_plan: rest.better_plan,
@@ -156,14 +156,14 @@ fn read(root: &Section<'_>, text: &str, shown_name: &str) -> Option<Scenario> {
     })
 }
 
-/// The runs that a re-scan continues are named by digests; only reports read them.
+/// Checks the digests of the runs that a re-scan continues. Only reports use them.
 fn check_continued(root: &Section<'_>) {
     let digests = if root.has("continues_sha256") { root.texts("continues_sha256") } else { None };
     let is_digest = |text: &String| {
         text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
     };
     if digests.is_some_and(|digests| !digests.iter().all(is_digest)) {
-        let wanted = "SHA-256 of journals, 64 hexadecimal digits each, as `tankops rescan` writes them";
+        let wanted = "SHA-256 of journals, 64 hexadecimal digits each, as written by `tankops rescan`";
         root.complain("continues_sha256", Complaint::OutOfRange(wanted.to_owned()));
     }
 }
@@ -191,16 +191,16 @@ impl Floor {
     }
 }
 
-/// Complains of a mission that does not say by itself where the robot is put down.
+/// Complains if the start is missing in a mission that does not determine it itself.
 fn require_start(sections: &Sections<'_>) {
     let (Some(mission), Some(robot)) = (&sections.mission, &sections.robot) else { return };
     if mission.has("kind") && matches!(mission.word("kind"), Some("goto" | "cover")) && !robot.has("start_m")
     {
-        robot.require("start_m", "add start_m = [x, y] to [robot], where it is put down");
+        robot.require("start_m", "add start_m = [x, y] to [robot]: the place where it is put down");
     }
 }
 
-/// Where the robot starts: as given, or on the path and along it.
+/// The pose at the start: as given, or on the path and in its direction.
 fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     let (robot, task) = (robot?, task?);
     let (position, ahead) = match (robot.start, task) {
@@ -218,13 +218,13 @@ fn start(robot: Option<&Robot>, task: Option<&TaskConfig>) -> Option<Pose> {
     Some(Pose { position, heading_rad: robot.start_heading_rad.unwrap_or(along) })
 }
 
-/// The clearance that is kept: a hull whose place is only estimated would touch what it passes without any.
+/// The clearance to keep. Without one, a robot that only estimates its position would touch objects that it passes.
 fn kept_clearance_m(clearance_m: f64, robot: &Robot, ae: &AeConfig) -> f64 {
     let is_exact = robot.limits.radius_m == 0.0 || ae.noise == NoiseModel::None;
     if is_exact { clearance_m } else { clearance_m.max(LEAST_CLEARANCE_M) }
 }
 
-/// The last place of the mission.
+/// The end point of the mission.
 fn end_of(task: &TaskConfig) -> Option<Point> {
     match task {
         TaskConfig::Goto { goal, .. } => Some(*goal),
@@ -233,7 +233,7 @@ fn end_of(task: &TaskConfig) -> Option<Point> {
     }
 }
 
-/// Puts the random obstacles onto the floor.
+/// Adds the random obstacles to the floor.
 fn scatter(
     root: &Section<'_>,
     floor: &mut Floor,
@@ -273,7 +273,7 @@ fn check_places(sections: &Sections<'_>, floor: &Floor, start: Option<Pose>, tas
     }
 }
 
-/// The tether, if there is one; a complaint stands for one that cannot be.
+/// The tether, if there is one. Complains about a tether that is not possible.
 fn tether_of(
     sections: &Sections<'_>,
     floor: &Floor,
@@ -296,7 +296,7 @@ fn tether_of(
         (task, &floor.robot, clearance_m)
     {
         let site = Site { radius_m: robot.limits.radius_m, ..site };
-        // Without a place of its own the anchor is where the robot starts.
+        // Without anchor_m, the anchor is the robot's start.
         let place = sections.robot.as_ref().filter(|_| !section.has("anchor_m"));
         let place = place.map_or((&section, "anchor_m"), |robot| (robot, "start_m"));
         tether::check_room(place, &tether, &site, (clearance_m, *tolerance_m));
@@ -304,7 +304,7 @@ fn tether_of(
     Some(tether)
 }
 
-/// A robot that scans the floor on a tether comes back to where the tether is made fast.
+/// A robot that scans the floor on a tether returns to the anchor.
 fn back_to_the_anchor(task: TaskConfig, tether: Option<&TetherConfig>) -> TaskConfig {
     match (task, tether) {
         (TaskConfig::Cover { regions, tolerance_m, .. }, Some(tether)) => {
@@ -314,7 +314,7 @@ fn back_to_the_anchor(task: TaskConfig, tether: Option<&TetherConfig>) -> TaskCo
     }
 }
 
-/// The keys of `[mission]` that stand for themselves.
+/// The keys of `[mission]` that are independent of the task.
 struct Rest {
     tick_s: f64,
     time_limit_s: f64,
@@ -378,7 +378,7 @@ fn better_plan(word: &str) -> BetterPlan {
     }
 }
 
-/// What it takes for floor to count as scanned; lanes must be left some width.
+/// The conditions for floor to count as scanned; the overlap must be less than the swath.
 fn scan(mission: &Section<'_>, swath_m: Option<f64>) -> Option<ScanConfig> {
     let (overlap_m, limit_m) = (mission.number("overlap_m"), mission.number("scan_position_limit_m"));
     let (overlap_m, swath_m) = (overlap_m?, swath_m?);

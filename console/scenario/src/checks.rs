@@ -1,46 +1,47 @@
-//! Whether the sections fit together: start, goal, sizes of the grid and of the run.
+//! Checks that the sections fit together: start, goal, and the sizes of the grid and of the run.
 
 use super::{problem::Complaint, section::Section};
 use world::{Boundary, Floor, Obstacle, Point, PressureSensor, Zone, ZoneKind};
 
-/// Cells that a coverage grid may have.
+/// The largest number of cells of a coverage grid.
 pub(crate) const MOST_CELLS: f64 = Floor::MOST_CELLS as f64;
 
-/// Lanes side by side that a floor may take.
+/// The largest number of parallel lanes on a floor.
 pub(crate) const MOST_LANES: f64 = 600.0;
 
-/// Ticks that a run may last.
+/// The largest number of ticks of a run.
 pub(crate) const MOST_TICKS: f64 = 1e7;
 
-/// Slack for numbers that were written down rounded, metres.
+/// Slack for rounded numbers in files, in metres.
 pub(crate) const ROUNDING_M: f64 = 1e-6;
 
-/// Room that a robot needs where it starts, millimetres: what is seen is kept off by as much. An estimate that is only a little wrong
-/// would lie within anything nearer, and the mission could not tell moving off from running into it.
+/// The free distance in millimetres that a robot needs at its start. The robot keeps this far from obstacles that it
+/// senses. With less, a small position error would put an obstacle within this distance, and the mission could not
+/// distinguish moving off from a collision.
 const START_ROOM_MM: f64 = 10.0;
 
-/// Time that a robot may need on average to know its medium, seconds.
+/// The longest average time in seconds in which a robot must detect its medium.
 const LONGEST_WAIT_S: f64 = 10.0;
 
-/// What a robot of some radius may run into.
+/// Everything that a robot of a given radius could collide with.
 pub(crate) struct Site<'a> {
     /// The wall.
     pub boundary: &'a Boundary,
     /// Obstacles, known or not.
     pub obstacles: &'a [Obstacle],
-    /// Zones.
+    /// The zones.
     pub zones: &'a [Zone],
-    /// Radius of the hull, metres.
+    /// The radius of the hull in metres.
     pub radius_m: f64,
 }
 
 impl Site<'_> {
-    /// Why the robot cannot stand at a place, if it cannot.
+    /// The reason why the robot cannot be at a point, if any.
     pub(crate) fn objection(&self, place: Point) -> Option<Complaint> {
         self.wall(place).or_else(|| self.obstacle(place)).or_else(|| self.no_go(place))
     }
 
-    /// Why the robot cannot start at a place where it can stand, if it cannot.
+    /// The reason why the robot cannot start at a point where it can be, if any.
     pub(crate) fn objection_to_start(&self, place: Point) -> Option<Complaint> {
         let wall = ("the wall".to_owned(), self.boundary.wall_distance_m(place));
         let obstacle = |obstacle: &Obstacle| {
@@ -87,7 +88,7 @@ impl Site<'_> {
     }
 }
 
-/// Complains about a limit beyond which a position counts as lost, metres, that no position in the tank exceeds.
+/// Complains about a position limit, in metres, that no position in the tank can exceed.
 pub(crate) fn check_position_limit(mission: &Section<'_>, boundary: &Boundary, limit_m: f64) {
     let (low, high) = boundary.bounds();
     let most_m = (high - low).min() / 2.0;
@@ -96,24 +97,25 @@ pub(crate) fn check_position_limit(mission: &Section<'_>, boundary: &Boundary, l
     }
 }
 
-/// Complains about a pressure sensor that scatters so much that the robot would wait too long at the start.
+/// Complains about a pressure sensor that scatters so widely that the robot would wait too long at the start.
 pub(crate) fn check_pressure(robot: &Section<'_>, tick_s: f64, sensor: Option<PressureSensor>) {
     let Some(sensor) = sensor else { return };
-    // One reading always counts, however long a tick is.
+    // One reading is always allowed, however long a tick is.
     let most = (LONGEST_WAIT_S / tick_s).max(1.0);
     if sensor.readings_to_decide() > most {
-        // Rounded down, so that the number offered is accepted.
+        // Rounded down, so that the suggested number is accepted.
         let most_pa = (PressureSensor::largest_sigma_pa(sensor.depth_m, most) * 1e3).floor() / 1e3;
         let must_be = format!(
-            "at most {most_pa} Pa at pressure_depth_m = {}: the robot would wait over {LONGEST_WAIT_S} s for its readings to decide",
+            "at most {most_pa} Pa at pressure_depth_m = {}: otherwise the robot would wait over \
+             {LONGEST_WAIT_S} s for conclusive readings",
             sensor.depth_m
         );
         robot.complain("pressure_sigma_pa", Complaint::OutOfRange(must_be));
     }
 }
 
-/// Edge of a cell of the coverage grid, metres; complains about too many cells. A mission to a goal needs no fine grid, so on a
-/// floor that is too large for the default its cells are larger.
+/// The edge of a cell of the coverage grid in metres; complains about too many cells. A mission to a goal needs no fine
+/// grid, so its cells become larger if the floor is too large for the default.
 pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Option<f64> {
     let cell_m = mission.number("cell_m")?;
     let Some((low, high)) = boundary.map(Boundary::bounds) else { return Some(cell_m) };
@@ -122,7 +124,7 @@ pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Opti
     if cells <= MOST_CELLS {
         return Some(cell_m);
     }
-    // Rounded up to millimetres, with room for the cells cut at the edges.
+    // Rounded up to millimetres, with a reserve for cells cut at the edges.
     let fits_m = ((size.x * size.y / MOST_CELLS).sqrt() * 1010.0).ceil() / 1000.0;
     if !mission.has("cell_m") && mission.word("kind") == Some("goto") {
         return Some(fits_m);
@@ -132,24 +134,24 @@ pub(crate) fn cell_m(mission: &Section<'_>, boundary: Option<&Boundary>) -> Opti
     None
 }
 
-/// Complains about a swath that is so narrow, without the overlap, that the floor takes too many lanes.
+/// Complains about a swath that is too narrow: without the overlap, the floor would need too many lanes.
 pub(crate) fn check_lanes(mission: &Section<'_>, boundary: &Boundary, swath_m: f64, overlap_m: f64) {
     let (low, high) = boundary.bounds();
     let across_m = (high - low).min();
     let lanes = across_m / (swath_m - overlap_m);
     if lanes > MOST_LANES {
-        // Rounded up to millimetres, so that the number offered is accepted.
+        // Rounded up to millimetres, so that the suggested number is accepted.
         let fits_m = ((across_m / MOST_LANES + overlap_m) * 1000.0).ceil() / 1000.0;
         let of = if overlap_m > 0.0 { format!(" with overlap_m = {overlap_m}") } else { String::new() };
         let must_be = format!(
-            "at least {fits_m} m{of}, for no more than {MOST_LANES} lanes side by side (now {})",
+            "at least {fits_m} m{of}, for at most {MOST_LANES} parallel lanes (now {})",
             lanes as u64
         );
         mission.complain("swath_m", Complaint::OutOfRange(must_be));
     }
 }
 
-/// Complains about a run with too many ticks, or none.
+/// Complains about a run with too many ticks, or less than one.
 pub(crate) fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64) {
     let ticks = time_limit_s / tick_s;
     if ticks > MOST_TICKS {
@@ -160,7 +162,7 @@ pub(crate) fn check_ticks(mission: &Section<'_>, tick_s: f64, time_limit_s: f64)
     }
 }
 
-/// Complains about ranging more often than once a tick.
+/// Complains about ranging more often than once per tick.
 pub(crate) fn check_period(ae: &Section<'_>, tick_s: f64, period_s: f64) {
     if period_s < tick_s {
         ae.complain("period_s", at_least_a_tick(tick_s));

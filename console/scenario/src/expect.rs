@@ -1,10 +1,10 @@
-//! The bounds that the run is held to: `[expect]`.
+//! Reads the bounds on the run's results: `[expect]`.
 
 use super::section::Section;
 use account::Expect;
 use mission::Outcome;
 
-/// Reads `[expect]`; no bounds if it is not there.
+/// Reads `[expect]`; without this section there are no bounds.
 pub(crate) fn expect(root: &Section<'_>) -> Option<Expect> {
     let section = root.table_or_empty("expect")?;
     let outcome = section.word("outcome").map(|word| match word {

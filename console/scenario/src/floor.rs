@@ -1,4 +1,4 @@
-//! What stands on the floor: `[tank]`, `[[obstacles]]`, `[[zones]]`.
+//! Reads the objects on the floor: `[tank]`, `[[obstacles]]`, `[[zones]]` and `[plates]`.
 
 use super::{
     outline::{counter_clockwise, outline},
@@ -18,7 +18,10 @@ pub(crate) fn tank(root: &Section<'_>) -> Option<Boundary> {
     let section = root.table("tank")?;
     if section.has("map") {
         section.text("map")?;
-        section.complain("map", Complaint::Map("maps are read from scenario files only".into()));
+        section.complain(
+            "map",
+            Complaint::Map("a map can be used only in a scenario that is read from a file".into()),
+        );
         return None;
     }
     if section.has("radius_m") {
@@ -46,14 +49,14 @@ pub(crate) fn plates(root: &Section<'_>, boundary: Option<&Boundary>) -> Option<
     let n_annular = if section.has("annular_count") {
         section.whole("annular_count")? as u32
     } else {
-        // Of a square or any other floor as much shell as a round one of its area has.
+        // The perimeter of a circle with the same area, whatever the shape of the floor.
         let shell_m = (4.0 * std::f64::consts::PI * boundary?.area_m2()).sqrt();
         (shell_m / length_m).ceil().clamp(1.0, 1000.0) as u32
     };
     Some(PlateLayout::Regular(RegularPlates { annular_m, n_annular, length_m, width_m }))
 }
 
-/// Reads the outlines of plates; those that are wrong are left out.
+/// Reads the outlines of plates; invalid outlines are left out.
 fn drawn_plates(section: &Section<'_>, boundary: Option<&Boundary>) -> Option<Vec<DrawnPlate>> {
     let mut names = Names::default();
     let sections = section.tables("outlines");
@@ -68,7 +71,7 @@ fn drawn_plates(section: &Section<'_>, boundary: Option<&Boundary>) -> Option<Ve
     let mut read = |section: &Section<'_>| {
         let name = if section.has("name") { names.of(section, String::new) } else { section.text("name") };
         if name.as_deref() == Some(NO_PLATE) {
-            section.complain("name", Complaint::Duplicate { other: "the floor on no plate".into() });
+            section.complain("name", Complaint::Duplicate { other: "the floor outside all plates".into() });
         }
         let vertices_m = counter_clockwise(section, "vertices_m")?;
         let shape = Shape::Polygon { vertices: vertices_m.clone() };
@@ -80,7 +83,7 @@ fn drawn_plates(section: &Section<'_>, boundary: Option<&Boundary>) -> Option<Ve
     Some(sections.iter().filter_map(&mut read).collect())
 }
 
-/// Reads `[[obstacles]]` and how they move; those that are wrong are left out.
+/// Reads `[[obstacles]]` and their motion; invalid obstacles are left out.
 pub(crate) fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec<Obstacle>, Vec<Mover>) {
     let mut movers = Vec::new();
     let mut names = Names::default();
@@ -90,7 +93,7 @@ pub(crate) fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec
         let id = ObstacleId(i as u32 + 1);
         let shape = outline(section, "kind");
         let track = track(section);
-        // What moves cannot stand on a drawing.
+        // A moving obstacle cannot be on a drawing.
         let known = if section.has("known") { section.flag("known") } else { Some(track.is_none()) };
         let shape = shape?;
         movers.extend(track.map(|track| Mover { id, track }));
@@ -103,7 +106,7 @@ pub(crate) fn obstacles(root: &Section<'_>, boundary: Option<&Boundary>) -> (Vec
     (obstacles, movers)
 }
 
-/// How an obstacle moves, if it does.
+/// The motion of an obstacle, if it moves.
 fn track(section: &Section<'_>) -> Option<Track> {
     if section.has("velocity_m_per_s") {
         section.refuse(&["waypoints_m", "speed_m_per_s", "known"], "velocity_m_per_s");
@@ -116,13 +119,15 @@ fn track(section: &Section<'_>) -> Option<Track> {
         return Some(Track::Waypoints { points: points?, speed_m_per_s: speed? });
     }
     if section.has("speed_m_per_s") {
-        section
-            .require("waypoints_m", "add waypoints_m = [[x, y], ...], the places it goes to and back from");
+        section.require(
+            "waypoints_m",
+            "add waypoints_m = [[x, y], ...], the points between which it moves back and forth",
+        );
     }
     None
 }
 
-/// Reads `[[zones]]`; those that are wrong are left out.
+/// Reads `[[zones]]`; invalid zones are left out.
 pub(crate) fn zones(root: &Section<'_>) -> Vec<Zone> {
     let mut names = Names::default();
     let sections = root.tables("zones");
@@ -139,12 +144,12 @@ pub(crate) fn zones(root: &Section<'_>) -> Vec<Zone> {
     sections.iter().enumerate().filter_map(read).collect()
 }
 
-/// Names given so far, so that none is given twice.
+/// The names used so far, to detect duplicates.
 #[derive(Default)]
 pub(crate) struct Names(BTreeMap<String, Place>);
 
 impl Names {
-    /// The name of an entry, or the one made up for it; complains about one that was given before.
+    /// The name of an entry, or a generated one; complains about a duplicate.
     pub(crate) fn of(&mut self, section: &Section<'_>, made_up: impl Fn() -> String) -> Option<String> {
         let name = if section.has("name") { section.text("name")? } else { made_up() };
         if let Some(first) = self.0.get(&name) {

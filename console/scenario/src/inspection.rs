@@ -1,4 +1,4 @@
-//! What only people know of an inspection: `[inspection]`, in a scenario or in a file of its own.
+//! Reads the facts that only people know about an inspection: `[inspection]`, in a scenario or in a separate file.
 
 use super::{
     problem::{Complaint, ScenarioErrors},
@@ -10,10 +10,10 @@ use super::{
 use account::{Date, Inspection, is_placeholder};
 use toml::de::DeTable;
 
-/// Longest fact, characters: more than a sheet of paper.
+/// The largest length of a fact in characters: more than a page.
 const MOST_LETTERS: usize = 4000;
 
-/// Reads `[inspection]`; nothing is known if it is not there.
+/// Reads `[inspection]`; without this section all facts are unknown.
 pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
     let section = root.table_or_empty("inspection")?;
     let text = |key: &str| fact(&section, key);
@@ -53,12 +53,14 @@ pub(crate) fn section(root: &Section<'_>) -> Option<Inspection> {
     })
 }
 
-/// A text of people; none if it is empty. A placeholder, which says that nothing is known, is refused.
+/// A fact; `None` if the text is empty. A placeholder such as "TBD" is refused.
 fn fact(section: &Section<'_>, key: &str) -> Option<String> {
-    // What is empty is not known.
+    // An empty text means an unknown fact.
     let text = section.text(key).filter(|text| !text.trim().is_empty())?;
     if is_placeholder(&text) {
-        let wanted = "the fact, or no such key: a placeholder is not signed".to_owned();
+        let wanted = "the fact itself; leave the key out if it is unknown, because a placeholder cannot be \
+                      signed"
+            .to_owned();
         section.complain(key, Complaint::OutOfRange(wanted));
     }
     if text.chars().count() > MOST_LETTERS {
@@ -67,20 +69,21 @@ fn fact(section: &Section<'_>, key: &str) -> Option<String> {
     Some(text)
 }
 
-/// A day as a text.
+/// A date as text.
 fn day(section: &Section<'_>, key: &str) -> Option<String> {
     let text = fact(section, key)?;
     if Date::read(&text).is_none() {
-        let wanted = "a day that there is, as \"2027-03-31\", or the last one of a month, as \"2027-03\"";
+        let wanted = "a date that exists, for example \"2027-03-31\", or a month, for example \"2027-03\", \
+                      which means its last day";
         section.complain(key, Complaint::OutOfRange(wanted.to_owned()));
     }
     Some(text)
 }
 
-/// Reads a file with `[inspection]`: what is known only after the run.
+/// Reads a separate file with `[inspection]`: facts that become known only after the run.
 ///
 /// # Errors
-/// Everything that is wrong with it.
+/// All problems of the file.
 pub fn inspection(text: &str, shown_name: &str) -> Result<Inspection, ScenarioErrors> {
     let table = DeTable::parse(text).map_err(|error| syntax_error(text, shown_name, &error))?;
     let source = Source::new(text);

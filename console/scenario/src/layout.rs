@@ -1,38 +1,38 @@
-//! `[random_obstacles]`: columns at random places, the same ones for the same seed.
+//! `[random_obstacles]`: columns at random positions; the same seed gives the same columns.
 
 use super::{problem::Complaint, section::Section};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
 
-/// Places tried for each obstacle before giving up.
+/// The number of positions tried for each obstacle.
 const TRIES_PER_OBSTACLE: usize = 200;
 
-/// Where the centres of random obstacles may lie.
+/// The area in which the centres of random obstacles are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sampling {
     /// Anywhere on the floor.
     Disk,
-    /// Anywhere in the square or box around the tank, as Wang et al. 2023 draw them: one in five stands outside.
+    /// Anywhere in the square or box around the tank, as in Wang et al. 2023, where one in five is outside the tank.
     Square,
 }
 
-/// What is asked for.
+/// The parameters of random obstacles.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RandomObstacles {
-    /// How many.
+    /// The number of obstacles.
     pub count: usize,
-    /// Smallest and largest radius, metres.
+    /// The smallest and the largest radius in metres.
     pub radius_m: [f64; 2],
-    /// Where their centres may lie.
+    /// The area in which the centres are drawn.
     pub sampling: Sampling,
-    /// Least distance between two outlines, metres; also to the obstacles that were placed by hand.
+    /// The smallest distance in metres between two outlines, including those of other obstacles.
     pub min_gap_m: f64,
-    /// Least distance of an outline from the start and the end of the mission, metres.
+    /// The smallest distance in metres of an outline from the start and the end of the mission.
     pub keep_clear_m: f64,
-    /// Whether they are on the drawing.
+    /// Whether the obstacles are on the drawing.
     pub known: bool,
-    /// Start of the random choices.
+    /// The random seed.
     pub seed: u64,
 }
 
@@ -61,9 +61,9 @@ pub(crate) fn random_obstacles(section: &Section<'_>, scenario_seed: Option<u64>
 }
 
 impl RandomObstacles {
-    /// Adds them to `obstacles`; returns how many found room.
+    /// Adds the obstacles to `obstacles`; returns the number of obstacles placed.
     ///
-    /// `free` are the places to keep clear.
+    /// `free` holds the points to keep clear.
     pub(crate) fn place(&self, boundary: &Boundary, free: &[Point], obstacles: &mut Vec<Obstacle>) -> usize {
         let mut chance = Pcg64Mcg::seed_from_u64(self.seed);
         let by_hand = ObstacleMap::new(boundary, obstacles);

@@ -1,9 +1,9 @@
-//! Scenario files: one TOML text that says everything about a run.
+//! Scenario files: one TOML text that states everything about a run.
 //!
-//! [`Scenario::read_with`] takes a file, [`Scenario::parse`] a text. What comes out has been checked: the engine and the
-//! simulator need not doubt it. What is wrong comes back as [`ScenarioErrors`], all of it at once, each problem with
-//! line, column, key, value and remedy; [`ScenarioErrors::render`] shows it. Settings from the command line are put
-//! into the text before it is read, so that the text alone gives the same scenario again.
+//! [`Scenario::read_with`] reads a file, and [`Scenario::parse`] a text. The result has been checked, so the engine and
+//! the simulator can rely on it. All problems are reported together as [`ScenarioErrors`], each with line, column, key,
+//! value and remedy; [`ScenarioErrors::render`] formats them. Settings from the command line are written into the text
+//! before it is parsed, so the resulting text alone reproduces the scenario.
 
 mod assemble;
 mod checks;
@@ -41,41 +41,41 @@ use std::{io::Read, path::Path};
 use toml::de::DeTable;
 use world::PlateLayout;
 
-/// A larger file is not a scenario, kilobytes; a large map written out takes some two thousand.
+/// The largest size of a scenario in kilobytes; a scenario with a large map takes about two thousand.
 const LIMIT_KB: usize = 8000;
 
-/// A scenario, checked.
+/// A checked scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// What it is called; part of file names.
+    /// The name; part of file names.
     pub name: String,
-    /// What it shows, for people; may be empty.
+    /// A description for people; may be empty.
     pub about: String,
-    /// The file, or what else it is called in messages.
+    /// The file name, or a different name, for messages.
     pub shown_name: String,
-    /// The text it was read from, with settings already put in; gives the same scenario again.
+    /// The text of the scenario after settings have been applied; it reproduces the scenario.
     pub text: String,
-    /// Start of every random choice.
+    /// The seed of all random numbers.
     pub seed: u64,
-    /// What is simulated.
+    /// The simulated world.
     pub sim: SimConfig,
-    /// What is to be done.
+    /// The mission to run.
     pub mission: MissionConfig,
-    /// How the plates of the floor lie, if the drawing specifies it.
+    /// The layout of the floor plates, if the drawing specifies it.
     pub plates: Option<PlateLayout>,
-    /// What the operator ticks by hand before the start.
+    /// Items that the operator ticks by hand before the start.
     pub checklist: Vec<String>,
-    /// Bounds that the run is held to.
+    /// Bounds on the run's results.
     pub expect: Expect,
-    /// What only people know of the inspection.
+    /// Facts that only people know about the inspection.
     pub inspection: Inspection,
 }
 
 impl Scenario {
-    /// Reads a scenario file, `-` being the standard input, and puts settings from the command line into it.
+    /// Reads a scenario file, or standard input for `-`, and applies settings from the command line.
     ///
     /// # Errors
-    /// Everything that is wrong with it or with the settings.
+    /// All problems of the scenario or the settings.
     pub fn read_with(path: &Path, settings: &Settings) -> Result<Self, ScenarioErrors> {
         let shown_name =
             if is_stdin(path) { "standard input".to_owned() } else { path.display().to_string() };
@@ -85,18 +85,19 @@ impl Scenario {
         Self::parse(&map::put_in(&text, &shown_name, folder)?, &shown_name)
     }
 
-    /// Reads a scenario from its text; `shown_name` is what messages call it.
+    /// Parses a scenario; `shown_name` is its name in messages.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All problems of the scenario.
     pub fn parse(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
         Self::checked(text, shown_name, readable::check)
     }
 
-    /// Reads the scenario of a past run from its text, which was accepted then: older runs have names that would be refused now.
+    /// Parses the scenario of a past run, which was accepted then. Older runs may have names that would be refused
+    /// today.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All problems of the scenario.
     pub fn recorded(text: &str, shown_name: &str) -> Result<Self, ScenarioErrors> {
         Self::checked(text, shown_name, |_, _| {})
     }
@@ -117,17 +118,17 @@ impl Scenario {
         })
     }
 
-    /// Reads a scenario from its text after putting settings into it.
+    /// Parses a scenario after applying settings to its text.
     ///
     /// # Errors
-    /// Everything that is wrong with it or with the settings.
+    /// All problems of the scenario or the settings.
     pub fn parse_with(text: &str, shown_name: &str, settings: &Settings) -> Result<Self, ScenarioErrors> {
         let (text, shown_name) = with_settings(text, shown_name, settings)?;
         Self::parse(&text, &shown_name)
     }
 }
 
-/// The text with the settings in it, and what messages call it.
+/// Applies settings to a text; returns it with its name for messages.
 fn with_settings(
     text: &str,
     shown_name: &str,
@@ -163,7 +164,7 @@ fn read_text(path: &Path) -> Result<String, Complaint> {
     }
 }
 
-/// Whether a path stands for the standard input, as `-` does.
+/// Whether a path refers to standard input, as `-` does.
 pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }

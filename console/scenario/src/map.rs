@@ -1,7 +1,6 @@
-//! `tank.map`: an occupancy map put into the text of a scenario as wall and obstacles.
+//! `tank.map`: writes an occupancy map into the text of a scenario, as wall and obstacles.
 //!
-//! As with settings from the command line, the changed text alone gives the same scenario again: a journal needs no map
-//! file.
+//! The changed text alone reproduces the scenario, as with settings from the command line: a journal needs no map file.
 
 use super::problem::{Complaint, Problem, ScenarioErrors};
 use import::{MapFloor, OccupancyMap, plan::points};
@@ -10,10 +9,10 @@ use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Value, value};
 use world::{Boundary, Point};
 
-/// The text with its map, if it names one, as wall and obstacles; `folder` is where the scenario lies.
+/// Replaces the map in a text, if it names one, by wall and obstacles; `folder` is the folder of the scenario.
 ///
 /// # Errors
-/// The map cannot be read or shows no free floor.
+/// The map cannot be read, or has no free floor.
 pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<String, ScenarioErrors> {
     let (Ok(table), Ok(mut document)) = (DeTable::parse(text), text.parse::<DocumentMut>()) else {
         return Ok(text.to_owned());
@@ -22,7 +21,7 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     let Some((tank, named)) = tank.and_then(|tank| Some((tank, tank.get("map")?))) else {
         return Ok(text.to_owned());
     };
-    // What is neither text nor a tolerance is left to the reader of the schema.
+    // The schema check reports values of the wrong type.
     let Some(file) = named.get_ref().as_str() else { return Ok(text.to_owned()) };
     let tolerance = tank.get("map_tolerance_m");
     let tolerance_m = tolerance.and_then(|tolerance| number(tolerance.get_ref())).filter(|m| *m >= 0.0);
@@ -44,18 +43,19 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     let floor = MapFloor::new(&map, start(table.get_ref()), tolerance_m);
     let floor = floor.ok_or_else(|| {
         let why = map.unseen.map(|unseen| format!("; {unseen}")).unwrap_or_default();
-        wrong(format!("shows no free floor{why}"))
+        wrong(format!("has no free floor{why}"))
     })?;
     let goal = table.get_ref().get("mission").and_then(|mission| mission.get_ref().get("goal_m"));
     if let Some(goal) = goal.filter(|goal| point(goal.get_ref()).is_some_and(|at| floor.is_cut_off(&map, at)))
     {
-        let what = format!("is free floor in {file}, but no way leads there from the start: a closed door?");
+        let what =
+            format!("is on free floor in {file}, but cannot be reached from the start; is a door closed?");
         return Err(problem("mission.goal_m", goal.span(), what));
     }
-    let tank = document["tank"].as_table_like_mut().expect("the tank has a map");
+    let tank = document["tank"].as_table_like_mut().expect("the tank names a map");
     tank.remove("map_tolerance_m");
     tank.remove("map");
-    let Boundary::Polygon { vertices } = &floor.wall else { panic!("the walls of maps are rectangles") };
+    let Boundary::Polygon { vertices } = &floor.wall else { panic!("the wall of a map is a rectangle") };
     let wall: Value = points(vertices).parse().expect("numbers in brackets are TOML");
     tank.insert("vertices_m", value(wall));
     let mut changed = document.to_string();
@@ -74,7 +74,7 @@ pub(crate) fn put_in(text: &str, shown_name: &str, folder: &Path) -> Result<Stri
     Ok(changed)
 }
 
-/// Where the robot starts, if the text says so.
+/// The start of the robot, if the text states it.
 fn start(table: &DeTable<'_>) -> Option<Point> {
     let robot = || point(table.get("robot")?.get_ref().get("start_m")?.get_ref());
     let path = || point(table.get("mission")?.get_ref().get("path_m")?.get_ref().get(0)?.get_ref());
@@ -131,7 +131,7 @@ mod tests {
         let errors = put_in(&text("[2.25, 1.25]"), "s.toml", dir.path()).unwrap_err();
         assert_eq!(
             errors.problems[0].to_string(),
-            "mission.goal_m = [2.25, 1.25]: is free floor in m.yaml, but no way leads there from the start: a closed door?"
+            "mission.goal_m = [2.25, 1.25]: is on free floor in m.yaml, but cannot be reached from the start; is a door closed?"
         );
         assert!(put_in(&text("[-0.25, 0.75]"), "s.toml", dir.path()).is_ok());
     }

@@ -1,14 +1,14 @@
-//! Outlines of obstacles and zones, and the polygons in them.
+//! Reads outlines of obstacles and zones, and polygons.
 
 use super::{problem::Complaint, section::Section};
 use import::plan::MOST_CORNERS;
 use world::{Point, Shape, shape::ring_area_m2};
 
-/// Keys that belong to one outline or another.
+/// Keys that some kinds of outline use.
 const KEYS: [&str; 7] =
     ["center_m", "radius_m", "size_m", "heading_deg", "vertices_m", "points_m", "width_m"];
 
-/// Reads the outline whose kind the key `word_key` names.
+/// Reads an outline; the key `word_key` gives its kind.
 pub(crate) fn outline(section: &Section<'_>, word_key: &str) -> Option<Shape> {
     let kind = section.word(word_key)?;
     let used: &[&str] = match kind {
@@ -66,7 +66,7 @@ fn polyline(section: &Section<'_>) -> Option<Shape> {
     Some(Shape::Polyline { points, half_width_m: width_m? / 2.0 })
 }
 
-/// The corners of a simple polygon, brought into counter-clockwise order.
+/// The corners of a simple polygon in counter-clockwise order.
 pub(crate) fn counter_clockwise(section: &Section<'_>, name: &str) -> Option<Vec<Point>> {
     let mut vertices = section.points(name)?;
     vertices.dedup();
@@ -93,7 +93,7 @@ pub(crate) fn counter_clockwise(section: &Section<'_>, name: &str) -> Option<Vec
     None
 }
 
-/// Two sides of a closed polygon that cross, if any do.
+/// The first two sides of a closed polygon that cross, if any.
 fn crossing(vertices: &[Point]) -> Option<(usize, usize)> {
     let n = vertices.len();
     let side = |i: usize| (vertices[i], vertices[(i + 1) % n]);
@@ -106,7 +106,7 @@ fn cross((a, b): (Point, Point), (c, d): (Point, Point)) -> bool {
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
 }
 
-/// A corner of a counter-clockwise polygon that points inwards.
+/// The first inward corner of a counter-clockwise polygon, if any.
 fn dent(vertices: &[Point]) -> Option<Point> {
     let n = vertices.len();
     (0..n).find_map(|i| {

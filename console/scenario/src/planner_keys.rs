@@ -1,4 +1,4 @@
-//! What planners object to, at the place in the scenario where it stands.
+//! Locates the objections of planners in the text of a scenario.
 
 use super::{Complaint, Problem, Scenario, ScenarioErrors};
 use std::ops::Range;
@@ -8,8 +8,8 @@ use toml::{
 };
 
 impl Scenario {
-    /// Objections of planners as problems of this scenario: the path of a key (`planner.parameters.k_rep`) and what is
-    /// wrong with it.
+    /// Converts objections of planners to problems of this scenario. An objection is the path of a key
+    /// (`planner.parameters.k_rep`) and the problem.
     pub fn refused(&self, objections: Vec<(String, String)>) -> ScenarioErrors {
         let table = DeTable::parse(&self.text).ok();
         let problem = |(key, message): (String, String)| {
@@ -25,7 +25,7 @@ impl Scenario {
     }
 }
 
-/// Bytes of the value of a key, or of the nearest table around it.
+/// The bytes of a key's value, or of the nearest enclosing table.
 fn place(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     let mut parts = key.split('.');
     let first: &Spanned<DeValue<'_>> = table.get(parts.next()?)?;

@@ -1,19 +1,19 @@
-//! What can be wrong with a scenario.
+//! Problems of a scenario.
 
 use foreign::NotUtf8;
 use std::{fmt, ops::Range};
 use thiserror::Error;
 
-/// One thing that is wrong, and where.
+/// A problem, and its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// Path of the key, as `tank.radius_m`; empty for the file as a whole.
+    /// The path of the key, for example `tank.radius_m`; empty for the whole file.
     pub key: String,
-    /// The value as written, shortened; absent where there is none.
+    /// The value as written, shortened; `None` if there is no value.
     pub value: Option<String>,
-    /// Bytes of the text that it concerns; absent when there is no text to point at.
+    /// The bytes of the text that the problem concerns; `None` if there is no position to show.
     pub at: Option<Range<usize>>,
-    /// What is wrong.
+    /// The problem itself.
     pub what: Complaint,
 }
 
@@ -27,229 +27,231 @@ impl fmt::Display for Problem {
     }
 }
 
-/// What is wrong with a value, a key or the file.
+/// A problem with a value, a key or the file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Complaint {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// The file is too large.
-    #[error("larger than {limit_kb} kB, which no scenario is")]
+    #[error("larger than {limit_kb} kB, the largest size of a scenario")]
     TooLarge {
-        /// Largest size accepted, kilobytes.
+        /// The largest accepted size in kilobytes.
         limit_kb: usize,
     },
     /// The file is not text in UTF-8.
     #[error("{0}")]
     NotText(NotUtf8),
-    /// The text is not TOML.
-    #[error("not TOML: {0}")]
+    /// The text is not valid TOML.
+    #[error("invalid TOML: {0}")]
     NotToml(String),
-    /// A `--set`, `--planner` or `--seed` that cannot be put in.
+    /// A `--set`, `--planner` or `--seed` that cannot be applied.
     #[error("{0}")]
     BadSetting(String),
-    /// No such key.
+    /// A key that does not exist.
     #[error("unknown key")]
     UnknownKey {
-        /// What to do about it.
+        /// The remedy.
         remedy: String,
     },
-    /// A key that must be given is not.
+    /// A required key is missing.
     #[error("missing")]
     Missing {
-        /// What to write.
+        /// The text to add.
         remedy: String,
     },
-    /// A value of another type.
+    /// A value of the wrong type.
     #[error("must be {wanted}")]
     WrongType {
-        /// What it must be.
+        /// The required type.
         wanted: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: String,
     },
-    /// Infinite or not a number.
+    /// A number that is infinite or NaN.
     #[error("must be a finite number")]
     NotFinite,
     /// A number out of range.
     #[error("must be {0}")]
     OutOfRange(String),
-    /// A word that is not among the choices.
+    /// A word that is not one of the allowed words.
     #[error("must be one of {}", .words.join(", "))]
     UnknownWord {
-        /// The choices.
+        /// The allowed words.
         words: &'static [&'static str],
-        /// The one that was probably meant.
+        /// The word that was probably meant.
         nearest: Option<&'static str>,
     },
-    /// A key that means nothing beside another one.
-    #[error("means nothing with {beside}")]
+    /// A key that has no meaning together with another key.
+    #[error("has no effect with {beside}")]
     OutOfPlace {
-        /// The other one.
+        /// The other key, with its value.
         beside: String,
     },
     /// A list that is too short.
     #[error("needs at least {need} entries, has {have}")]
     TooFew {
-        /// How many there are.
+        /// The number of entries.
         have: usize,
-        /// How many it takes.
+        /// The required number of entries.
         need: usize,
     },
     /// A list that is too long.
     #[error("has {have} entries; at most {most}")]
     TooMany {
-        /// How many there are.
+        /// The number of entries.
         have: usize,
-        /// How many at most.
+        /// The largest number of entries.
         most: usize,
     },
-    /// Two of a kind with one name or place.
-    #[error("the same as that of {other}")]
+    /// Two items with the same name or position.
+    #[error("is the same as that of {other}")]
     Duplicate {
-        /// The first of them.
+        /// The first of the two items.
         other: String,
     },
     /// Fewer than two stations.
-    #[error("{have} of at least 2 stations")]
+    #[error("only {have} of at least 2 stations")]
     TooFewStations {
-        /// How many there are.
+        /// The number of stations.
         have: usize,
     },
-    /// A polygon with a dent.
+    /// A polygon with an inward corner.
     #[error("not convex at [{}, {}]", .at.0, .at.1)]
     NotConvex {
-        /// The corner that points inwards.
+        /// The inward corner.
         at: (f64, f64),
     },
     /// A polygon whose sides cross.
     #[error("sides {first} and {second} cross")]
     CrossingSides {
-        /// One side, counted from 1.
+        /// The number of one side, from 1.
         first: usize,
-        /// The other one.
+        /// The number of the other side.
         second: usize,
     },
     /// A polygon without area, or a line without length.
-    #[error("the points enclose nothing")]
+    #[error("the points enclose no area")]
     Flat,
-    /// Something that must stand on the floor and does not.
-    #[error("lies {by_m:.3} m outside the tank")]
+    /// Something that must be inside the tank, but is not.
+    #[error("is {by_m:.3} m outside the tank")]
     OutsideTank {
-        /// How far out.
+        /// The distance outside the tank in metres.
         by_m: f64,
     },
-    /// An obstacle no part of which is in the tank.
-    #[error("lies wholly outside the tank")]
+    /// An obstacle that is completely outside the tank.
+    #[error("is completely outside the tank")]
     WhollyOutside,
-    /// A place where the hull would touch the wall.
+    /// A position where the hull would touch the wall.
     #[error("the hull would reach {by_m:.3} m into the wall")]
     InWall {
-        /// How far.
+        /// The depth in metres.
         by_m: f64,
-        /// Radius of the hull, metres.
+        /// The radius of the hull in metres.
         radius_m: f64,
     },
-    /// A place in an obstacle.
-    #[error("lies in obstacle \"{name}\"")]
+    /// A position inside an obstacle.
+    #[error("is inside obstacle \"{name}\"")]
     InObstacle {
-        /// Which.
+        /// The name of the obstacle.
         name: String,
     },
-    /// A place where the hull would touch an obstacle.
+    /// A position where the hull would touch an obstacle.
     #[error("the hull would reach {by_m:.3} m into obstacle \"{name}\"")]
     HullInObstacle {
-        /// Which.
+        /// The name of the obstacle.
         name: String,
-        /// How far.
+        /// The depth in metres.
         by_m: f64,
-        /// Radius of the hull, metres.
+        /// The radius of the hull in metres.
         radius_m: f64,
     },
-    /// A place where the robot must not be.
-    #[error("lies in the no-go zone \"{name}\"")]
+    /// A position that the robot must not enter.
+    #[error("is inside no-go zone \"{name}\"")]
     InNoGo {
-        /// Which.
+        /// The name of the zone.
         name: String,
     },
-    /// A start from which the robot can hardly move without touching something.
-    #[error("the hull would stand {room_mm:.3} mm from {what}")]
+    /// A start from which the robot could hardly move without touching something.
+    #[error("the hull would be {room_mm:.3} mm from {what}")]
     NoRoomToStart {
-        /// What stands there.
+        /// The nearest object.
         what: String,
-        /// Between it and the hull, millimetres.
+        /// The distance between this object and the hull in millimetres.
         room_mm: f64,
-        /// How much is needed, millimetres.
+        /// The required distance in millimetres.
         needed_mm: f64,
     },
-    /// A position error that would be accepted although it says nothing in a tank of this size.
-    #[error("with a limit of {limit_m} m a robot that may be anywhere in this tank would not count as lost")]
+    /// A position limit that is too large to mean anything in a tank of this size.
+    #[error(
+        "with a limit of {limit_m} m, a robot that could be anywhere in this tank would not count as lost"
+    )]
     LimitOfTank {
-        /// What is written, metres.
+        /// The limit as written, in metres.
         limit_m: f64,
-        /// The largest that is accepted, metres.
+        /// The largest accepted limit in metres.
         most_m: f64,
     },
-    /// A spiral that does not fit into the tank.
-    #[error("larger than the tank less the robot's radius: {fits_m} m fit")]
+    /// A spiral that does not fit in the tank.
+    #[error("larger than the tank less the robot's radius: at most {fits_m} m")]
     SpiralTooLarge {
-        /// The largest outer radius that fits.
+        /// The largest outer radius that fits, in metres.
         fits_m: f64,
     },
-    /// A path point where the hull would touch the wall.
-    #[error("point {number} at [{}, {}] lies {by_m:.3} m too near to the wall for the hull", .at.0, .at.1)]
+    /// A path point at which the hull would touch the wall.
+    #[error("point {number} at [{}, {}] is {by_m:.3} m too close to the wall for the hull", .at.0, .at.1)]
     PathInWall {
-        /// Which point, from 1.
+        /// The number of the point, from 1.
         number: usize,
-        /// Where.
+        /// The coordinates of the point.
         at: (f64, f64),
-        /// By how much.
+        /// The missing distance in metres.
         by_m: f64,
     },
     /// Too many points for a path.
     #[error("{points} points; at most {limit}")]
     TooManyPoints {
-        /// How many.
+        /// The number of points.
         points: u64,
-        /// How many at most.
+        /// The largest number of points.
         limit: u64,
     },
-    /// Too fine a coverage grid.
+    /// A coverage grid that is too fine.
     #[error("{cells} cells; at most {limit}")]
     TooManyCells {
-        /// How many.
+        /// The number of cells.
         cells: u64,
-        /// How many at most.
+        /// The largest number of cells.
         limit: u64,
-        /// The smallest edge that is allowed here, metres.
+        /// The smallest allowed cell edge in metres.
         fits_m: f64,
     },
-    /// Too long a mission for so short a tick.
+    /// A mission that is too long for its tick.
     #[error("{ticks} ticks of {tick_s} s; at most {limit}")]
     TooManyTicks {
-        /// How many.
+        /// The number of ticks.
         ticks: u64,
-        /// How long each is.
+        /// The length of a tick in seconds.
         tick_s: f64,
-        /// How many at most.
+        /// The largest number of ticks.
         limit: u64,
     },
     /// A planner that does not exist, or that refuses a value.
     #[error("{0}")]
     Planner(String),
-    /// An occupancy map that cannot be taken.
+    /// An occupancy map that cannot be used.
     #[error("{0}")]
     Map(String),
     /// Random obstacles that do not fit.
-    #[error("only {placed} of them found room")]
+    #[error("only {placed} of them fit")]
     NoRoom {
-        /// How many did.
+        /// The number of obstacles that fit.
         placed: usize,
     },
 }
 
 impl Complaint {
-    /// What to do about it, where that is not plain from the message.
+    /// The remedy, unless the message makes it obvious.
     pub fn help(&self) -> Option<String> {
         let text = match self {
             Self::UnknownKey { remedy } | Self::Missing { remedy } | Self::WrongType { remedy, .. } => {
@@ -257,23 +259,23 @@ impl Complaint {
             }
             Self::NotText(foreign) => foreign.remedy(),
             Self::TooLarge { .. } => "a scenario is a short TOML file; is this the right file?".into(),
-            Self::NotToml(_) => "the format is TOML: `key = value` lines under `[section]` heads".into(),
+            Self::NotToml(_) => "a scenario is TOML: `key = value` lines below `[section]` headers".into(),
             Self::UnknownWord { nearest: Some(word), .. } => format!("did you mean \"{word}\"?"),
-            Self::OutOfPlace { .. } => "leave this key out".into(),
+            Self::OutOfPlace { .. } => "remove this key".into(),
             Self::TooFewStations { .. } => {
-                "give 2 stations or more, as stations = [{ name = \"A\", at_m = [4.0, 0.0] }, ...]; \
-                 3 or more leave no mirror position, 4 or more let a faulty one be found"
+                "write at least 2 stations, as in stations = [{ name = \"A\", at_m = [4.0, 0.0] }, ...]; with 3 \
+                 or more there is no mirror image, and with 4 or more a faulty station can be detected"
                     .into()
             }
             Self::NotConvex { .. } => "split it into convex polygons, one [[...]] entry each".into(),
             Self::CrossingSides { .. } => "list the corners in order around the outline".into(),
-            Self::Flat => "give corners that do not all lie on one line".into(),
-            Self::WhollyOutside => "move it onto the floor or leave it out".into(),
+            Self::Flat => "write corners that are not all on one line".into(),
+            Self::WhollyOutside => "move it onto the floor or remove it".into(),
             Self::InWall { radius_m, .. } | Self::HullInObstacle { radius_m, .. } => {
                 format!("keep the robot's radius, {radius_m} m, away from anything solid")
             }
             Self::InObstacle { .. } | Self::InNoGo { .. } | Self::OutsideTank { .. } => {
-                "choose a place on the free floor".into()
+                "choose a point on the free floor".into()
             }
             Self::NoRoomToStart { needed_mm, .. } => {
                 format!("leave {needed_mm} mm, so that the robot can move off without touching it")
@@ -281,12 +283,12 @@ impl Complaint {
             Self::LimitOfTank { most_m, .. } => {
                 format!("at most {most_m:.3} m, half the width of the tank; 0.5 is usual")
             }
-            Self::SpiralTooLarge { fits_m } => format!("write outer_radius_m = {fits_m}"),
+            Self::SpiralTooLarge { fits_m } => format!("write outer_radius_m = {fits_m} or less"),
             Self::PathInWall { .. } => "keep the robot's radius away from the wall".into(),
-            Self::TooManyPoints { .. } => "leave points out, or take a larger step or pitch".into(),
+            Self::TooManyPoints { .. } => "remove points, or use a larger step or pitch".into(),
             Self::TooManyCells { fits_m, .. } => format!("write cell_m = {fits_m} or more"),
-            Self::TooManyTicks { .. } => "take a longer tick or a shorter time limit".into(),
-            Self::NoRoom { .. } => "ask for fewer or smaller obstacles, or for a smaller gap".into(),
+            Self::TooManyTicks { .. } => "use a longer tick or a shorter time limit".into(),
+            Self::NoRoom { .. } => "use fewer or smaller obstacles, or a smaller gap".into(),
             Self::Unreadable(_)
             | Self::BadSetting(_)
             | Self::Planner(_)
@@ -302,20 +304,20 @@ impl Complaint {
     }
 }
 
-/// Everything that is wrong with a scenario, in the order of the text.
+/// All problems of a scenario, in the order of the text.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.first_line())]
 pub struct ScenarioErrors {
-    /// The file as it is called in messages.
+    /// The name of the file in messages.
     pub shown_name: String,
-    /// The text that the problems point into.
+    /// The text to which the problems refer.
     pub text: String,
-    /// At least one.
+    /// The problems; at least one.
     pub problems: Vec<Problem>,
 }
 
 impl ScenarioErrors {
-    /// One problem that concerns the whole file.
+    /// Creates an error with a single problem of the whole file.
     pub fn of_file(shown_name: &str, what: Complaint) -> Self {
         let problem = Problem { key: String::new(), value: None, at: None, what };
         Self { shown_name: shown_name.to_owned(), text: String::new(), problems: vec![problem] }

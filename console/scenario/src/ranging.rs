@@ -1,4 +1,4 @@
-//! Acoustic-emission ranging: `[ae]`.
+//! Reads acoustic-emission ranging: `[ae]`.
 
 use super::{floor::Names, problem::Complaint, section::Section};
 use mission::{Locating, spelling::nearest};
@@ -6,10 +6,11 @@ use positioning::{Aggregation, RangeNoise, SolverKind, Timing};
 use sim::{AeConfig, BehindColumns, Disturbances, NoiseModel, StationFault, TimingErrors};
 use world::{Boundary, Station, StationId};
 
-/// A station may lie this far behind the wall: sensors sit on it, and drawings are rounded to centimetres.
+/// The largest distance in metres of a station behind the wall: sensors are mounted on the wall, and drawings are
+/// rounded to centimetres.
 const ON_WALL_M: f64 = 0.01;
 
-/// Reads `[ae]` without its stations.
+/// Reads `[ae]` except for its stations.
 pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     let (period_s, repetitions) = (section.number("period_s"), section.whole("repetitions"));
     let (noise, timing) = (noise(section), timing(section));
@@ -26,7 +27,8 @@ pub(crate) fn ae(section: &Section<'_>) -> Option<AeConfig> {
     })
 }
 
-/// How the estimator is to use the ranges; it knows their scatter, but not their faults.
+/// The settings of the estimator for the ranges. The estimator uses the stated scatter, but has no information about
+/// faults.
 pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating> {
     let (solver, aggregation) = (section.word("solver"), section.word("aggregation"));
     let calibrate_sound_speed = section.flag("calibrate_sound_speed");
@@ -38,7 +40,7 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
         NoiseModel::HeavyTailed { sigma_ratio } => Some(RangeNoise::HeavyTailed { sigma_ratio }),
     };
     if solver == Some("bounded") && noise.is_none_or(|noise| noise.bound_ratio().is_none()) {
-        let must_be = "another solver: only uniform and triangular noise have bounds";
+        let must_be = "a different solver: only uniform and triangular noise have bounds";
         section.complain("solver", Complaint::OutOfRange(must_be.into()));
     }
     let TimingErrors { jitter_m, resolution_m } = ae.timing;
@@ -69,19 +71,19 @@ pub(crate) fn locating(section: &Section<'_>, ae: &AeConfig) -> Option<Locating>
     })
 }
 
-/// Complains of methods that take the noise for a share of the distance, where times err, too.
+/// Refuses methods that assume noise proportional to distance if times have errors, too.
 fn refuse_beside_timing(section: &Section<'_>, solver: Option<&str>, aggregation: Option<&str>) {
     if solver == Some("bounded") {
-        let must_be = "another solver: with noise.jitter_m or noise.resolution_m the noise has no bounds";
+        let must_be = "a different solver: noise.jitter_m and noise.resolution_m make the noise unbounded";
         section.complain("solver", Complaint::OutOfRange(must_be.into()));
     }
     if let Some("midrange" | "posterior") = aggregation {
-        let must_be = "\"mean\" or \"trimmed-mean\" with noise.jitter_m or noise.resolution_m";
+        let must_be = "\"mean\" or \"trimmed-mean\" if noise.jitter_m or noise.resolution_m is set";
         section.complain("aggregation", Complaint::OutOfRange(must_be.into()));
     }
 }
 
-/// Errors of the times behind the ranges.
+/// Reads the errors of the times from which ranges are computed.
 fn timing(section: &Section<'_>) -> Option<TimingErrors> {
     if !section.has("noise") {
         return Some(TimingErrors::default());
@@ -91,7 +93,7 @@ fn timing(section: &Section<'_>) -> Option<TimingErrors> {
     Some(TimingErrors { jitter_m: jitter_m?, resolution_m: resolution_m? })
 }
 
-/// What goes wrong with ranges besides their scatter, but for the faults of single stations.
+/// Reads the disturbances of ranges besides their scatter, except for faults of single stations.
 fn disturbances(section: &Section<'_>) -> Option<Disturbances> {
     let (ping_dropout_probability, nlos_probability) =
         (section.number("ping_dropout_probability"), section.number("nlos_probability"));
@@ -138,7 +140,7 @@ fn fault(entry: &Section<'_>, stations: &[Station]) -> Option<StationFault> {
         entry.complain("station", Complaint::OutOfRange(format!("the name of a station{hint}")));
     }
     if from_s? >= to_s? {
-        entry.complain("to_s", Complaint::OutOfRange(format!("greater than {} s, the beginning", from_s?)));
+        entry.complain("to_s", Complaint::OutOfRange(format!("greater than from_s, {} s", from_s?)));
     }
     Some(StationFault { station: station?.id, from_s: from_s?, to_s: to_s?, excess_range_m })
 }
@@ -179,7 +181,7 @@ fn noise(section: &Section<'_>) -> Option<NoiseModel> {
     }
 }
 
-/// Standard deviation of one range as a share of it, as the estimator may expect it; never quite zero.
+/// The standard deviation of a range as a share of the range, as the estimator expects it; never zero.
 pub(crate) fn range_sigma_ratio(noise: NoiseModel) -> f64 {
     const LEAST: f64 = 1e-3;
     match noise {

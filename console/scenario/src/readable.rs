@@ -1,5 +1,5 @@
-//! That every text of a file can be read as it is written: what a reader could not see, or what would have him read something else, is
-//! refused, in names as in facts. Comments may say anything.
+//! Checks that every name and fact in a file can be read as written. Characters that are invisible, or that change how
+//! the text around them appears, are refused; in comments they are allowed.
 
 use super::{
     problem::{Complaint, Problem},
@@ -11,7 +11,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// Complains about every text and every key that is not plain.
+/// Complains about every text and every key with such a character.
 pub(crate) fn check(source: &Source<'_>, table: &DeTable<'_>) {
     of_table(source, "", table);
 }
@@ -40,7 +40,7 @@ fn of_value(source: &Source<'_>, path: &str, value: &Spanned<DeValue<'_>>) {
 
 fn complain(source: &Source<'_>, path: &str, text: &str, at: std::ops::Range<usize>) {
     let Some(odd) = unplain(text) else { return };
-    let what = Complaint::OutOfRange(format!("text that can be read: {odd} cannot"));
+    let what = Complaint::OutOfRange(format!("text without control or invisible characters; contains {odd}"));
     let (key, value) = (foreign::plain(path).into_owned(), Some(source.excerpt(&at)));
     source.note(Problem { key, value, at: Some(at), what });
 }

@@ -1,33 +1,34 @@
-//! Problems as text: file, line and column, the line itself with a mark under the place, and what to do.
+//! Formats problems as text: file, line and column, the line itself with a marker under the position, and the remedy.
 
 use super::problem::{Problem, ScenarioErrors};
 use std::fmt::Write;
 
-/// Problems shown before the rest is only counted.
+/// The number of problems shown in full; the rest are only counted.
 const MOST_SHOWN: usize = 20;
 
-/// Characters of a source line shown around the mark.
+/// The number of characters of a source line shown around the marker.
 const WINDOW: usize = 100;
 
 impl ScenarioErrors {
-    /// Everything that is wrong, for people: one block for each problem. Holds no control characters of the file.
+    /// All problems as text for people, one block each. The result contains no control characters from the file.
     pub fn render(&self) -> String {
         let mut text = String::new();
         for (i, problem) in self.problems.iter().take(MOST_SHOWN).enumerate() {
             if i > 0 {
                 text.push('\n');
             }
-            block(&mut text, &self.shown_name, &self.text, problem).expect("writing to a string");
+            block(&mut text, &self.shown_name, &self.text, problem).expect("writing to a String cannot fail");
         }
         let rest = self.problems.len().saturating_sub(MOST_SHOWN);
         if rest > 0 {
-            writeln!(text, "error: {}: {rest} more problems", self.shown_name).expect("writing to a string");
+            writeln!(text, "error: {}: {rest} more problems", self.shown_name)
+                .expect("writing to a String cannot fail");
         }
         text
     }
 }
 
-/// A place in a text.
+/// A position in a text.
 struct Spot<'a> {
     line: usize,
     column: usize,
@@ -50,8 +51,8 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// The line without control characters, cut to a window around the place, and how many characters stand before
-    /// the place in it.
+    /// The line without control characters, cut to a window around the position, and the number of characters before
+    /// the position in this window.
     fn shown(&self) -> (String, usize) {
         let first = (self.column - 1).saturating_sub(WINDOW / 2);
         let cut = |c: char| if foreign::is_plain(c) { c } else { ' ' };

@@ -1,4 +1,4 @@
-//! The scenario that scans again what runs have missed.
+//! Creates the scenario of a re-scan.
 
 use mission::RunOpened;
 use std::collections::BTreeSet;
@@ -8,17 +8,18 @@ use world::{ObstacleId, Point, Shape, Zone};
 /// A run that a re-scan continues.
 #[derive(Debug, Clone, Copy)]
 pub struct Continued<'a> {
-    /// Name of its folder.
+    /// The name of its folder.
     pub name: &'a str,
-    /// SHA-256 of its journal, hexadecimal: by it a report knows that both are of one floor.
+    /// The SHA-256 of its journal in hexadecimal. A report uses it to verify that both runs are of the same floor.
     pub journal_sha256: &'a str,
 }
 
-/// The scenario of a past run, changed into a mission that scans some boxes, from south west to north east, metres; obstacles
-/// that were found and zones that were drawn under way are on the drawing now. `runs` missed what is in the boxes.
+/// Changes the scenario of a past run into a mission that scans these boxes, each given by its south-west and
+/// north-east corners in metres. Obstacles that were found, and zones that were drawn during the run, become part of
+/// the drawing. `runs` are the runs that missed the areas in the boxes.
 ///
 /// # Errors
-/// The scenario of the run cannot be parsed: its journal was changed.
+/// The scenario of the run cannot be parsed, because its journal was changed.
 pub fn rescan(
     opened: &RunOpened,
     runs: &[Continued<'_>],
@@ -26,12 +27,13 @@ pub fn rescan(
     found: &BTreeSet<ObstacleId>,
     drawn: &[Zone],
 ) -> Result<String, TomlError> {
-    // The journals of other programs may have names that a scenario may not have.
+    // Journals of other programs may contain names that are not allowed in a scenario.
     let mut document: DocumentMut = foreign::plain_lines(&opened.scenario_toml).parse()?;
     let first_name = opened.scenario.strip_suffix("-rescan").unwrap_or(&opened.scenario);
     document["name"] = value(format!("{first_name}-rescan"));
     let names: Vec<&str> = runs.iter().map(|run| run.name).collect();
-    document["about"] = value(foreign::plain(&format!("What {} missed", names.join(" and "))).into_owned());
+    document["about"] =
+        value(foreign::plain(&format!("Areas missed by {}", names.join(" and "))).into_owned());
     document["continues_sha256"] = value(runs.iter().map(|run| run.journal_sha256).collect::<Array>());
     document.remove("expect");
     let start = opened.mission.start;
@@ -52,7 +54,7 @@ pub fn rescan(
     Ok(document.to_string())
 }
 
-/// Obstacles that stand in the scenario and were found are known from now on.
+/// Marks the obstacles of the scenario that were found as known.
 fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
     let know = |index: usize, table: &mut dyn TableLike| {
         // Obstacles are numbered from 1 in the order of the file.
@@ -76,7 +78,7 @@ fn put_on_drawing(document: &mut DocumentMut, found: &BTreeSet<ObstacleId>) {
     }
 }
 
-/// Adds a zone to those of the scenario, however these are written.
+/// Adds a zone to the scenario's zones, in whichever syntax these are written.
 fn add_zone(document: &mut DocumentMut, zone: &Zone) {
     let Shape::Polygon { vertices } = &zone.shape else { return };
     let corners: Array = vertices.iter().map(|p| Value::Array([p.x, p.y].into_iter().collect())).collect();
@@ -96,7 +98,7 @@ fn pair(x: f64, y: f64) -> Item {
     value([x, y].into_iter().collect::<Array>())
 }
 
-/// West, south, east, north, in millimetres at the finest.
+/// West, south, east and north, rounded to millimetres.
 fn numbers([low, high]: &[Point; 2]) -> Value {
     let rounded = |number: f64| (number * 1000.0).round() / 1000.0;
     Value::Array([low.x, low.y, high.x, high.y].map(rounded).into_iter().collect())

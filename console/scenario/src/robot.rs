@@ -1,49 +1,49 @@
-//! The robot: `[robot]`.
+//! Reads the robot: `[robot]`.
 
 use super::{problem::Complaint, section::Section};
 use planner_api::{Limits, Motion};
 use world::{Amphibious, Pace, Point, PressureSensor};
 
-/// `[robot]` as read; the start may still follow from the mission.
+/// `[robot]` as read; the start may still be determined by the mission.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Robot {
-    /// What it can do, but for the length of a tick, which is the mission's.
+    /// The limits of the robot, except for the length of a tick, which the mission sets.
     pub limits: Limits,
-    /// Where it starts, if given.
+    /// The start position, if given.
     pub start: Option<Point>,
-    /// Heading at the start, radians, if given.
+    /// The heading at the start in radians, if given.
     pub start_heading_rad: Option<f64>,
-    /// Standard deviation of the surveyed start, metres.
+    /// The standard deviation of the surveyed start in metres.
     pub start_sigma_m: f64,
-    /// Standard deviation of the surveyed heading at the start, radians.
+    /// The standard deviation of the surveyed heading at the start in radians.
     pub start_heading_sigma_rad: f64,
-    /// Average share of the way lost to slip.
+    /// The average share of the distance lost to slip.
     pub slip_mean: f64,
-    /// Its standard deviation from tick to tick.
+    /// The standard deviation of slip from tick to tick.
     pub slip_sigma: f64,
-    /// Standard deviation of odometry as a share of the way.
+    /// The standard deviation of odometry as a share of the distance.
     pub odometry_sigma_ratio: f64,
-    /// Constant error of the gyro, radians per second.
+    /// The constant error of the gyro in radians per second.
     pub gyro_bias_rad_per_s: f64,
     /// The pressure sensor of an amphibious robot, if it has one.
     pub pressure: Option<PressureSensor>,
 }
 
 impl Robot {
-    /// Standard deviation of the way as a share of it that the estimator may expect: odometry's own error and slip
-    /// together, never less than 2 %.
+    /// The standard deviation of a distance, as a share of it, that the estimator expects: the error of odometry and
+    /// slip combined, at least 2 %.
     pub(crate) fn odometry_sigma_per_m(&self) -> f64 {
         let squares = [self.odometry_sigma_ratio, self.slip_mean, self.slip_sigma].map(|share| share * share);
         squares.iter().sum::<f64>().sqrt().max(0.02)
     }
 
-    /// Standard deviation of a turn as a share of it that the estimator may expect, never less than 1 %.
+    /// The standard deviation of a turn, as a share of it, that the estimator expects; at least 1 %.
     pub(crate) fn turn_sigma_per_rad(&self) -> f64 {
         self.odometry_sigma_ratio.max(0.01)
     }
 
-    /// Standard deviation of the heading's drift that the estimator may expect, radians per second, never less than
-    /// a good gyro's 3 degrees a minute.
+    /// The standard deviation of the heading's drift that the estimator expects, in radians per second; at least that
+    /// of a good gyro, 3 degrees per minute.
     pub(crate) fn gyro_sigma_rad_per_s(&self) -> f64 {
         self.gyro_bias_rad_per_s.abs().max(0.05_f64.to_radians())
     }
@@ -55,7 +55,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let motion = word.map(|word| if word == "point" { Motion::Point } else { Motion::Unicycle });
     let radius_m = section.number("radius_m");
     if motion == Some(Motion::Unicycle) && radius_m == Some(0.0) {
-        let must_be = "greater than 0 m; only motion = \"point\" has no hull";
+        let must_be = "greater than 0 m; only a robot with motion = \"point\" has no hull";
         section.complain("radius_m", Complaint::OutOfRange(must_be.into()));
     }
     let amphibious = word.map(|word| amphibious(section, word));
@@ -71,7 +71,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     let gyro_bias_deg = section.number("gyro_bias_deg_per_s");
     let amphibious = amphibious?;
     let pressure = if amphibious.is_some() { pressure(section) } else { None };
-    // Planners get the faster of both paces; the zones specify where the slower one applies.
+    // Planners get the faster of the two limits; the zones specify where the slower limit applies.
     let fastest = amphibious.map_or(one_pace?, |both| both.fastest());
     Some(Robot {
         limits: Limits {
@@ -81,7 +81,7 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
             radius_m: radius_m?,
             sensing_range_m: sensing_range_m?,
             acceleration_m_per_s2: acceleration?,
-            // The mission says how long a tick is.
+            // The mission sets the length of a tick.
             tick_s: 0.0,
             amphibious,
         },
@@ -97,13 +97,13 @@ pub(crate) fn robot(section: &Section<'_>) -> Option<Robot> {
     })
 }
 
-/// The limits that hold everywhere, and those that hold by zone.
+/// The keys of the limits that apply everywhere, and of those that depend on the zone.
 const ONE_PACE: [&str; 2] = ["speed_max_m_per_s", "turn_rate_max_deg_per_s"];
 const ON_LAND: [&str; 2] = ["land_speed_max_m_per_s", "land_turn_rate_max_deg_per_s"];
 const PRESSURE: [&str; 2] = ["pressure_sigma_pa", "pressure_depth_m"];
 const UNDERWATER: [&str; 2] = ["underwater_speed_max_m_per_s", "underwater_turn_rate_max_deg_per_s"];
 
-/// How a robot walks and swims, if its motion is that; keys that do not go with the motion are refused.
+/// The limits on land and under water, for an amphibious robot; for other robots the keys are refused.
 fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
     let beside = format!("motion = \"{motion}\"");
     if motion != "amphibious" {
@@ -119,11 +119,11 @@ fn amphibious(section: &Section<'_>, motion: &str) -> Option<Amphibious> {
     Some(Amphibious { land: land?, underwater: underwater?, transition_steps })
 }
 
-/// The pressure sensor, if there is one.
+/// The pressure sensor, if any.
 fn pressure(section: &Section<'_>) -> Option<PressureSensor> {
     let depth_m = section.number("pressure_depth_m");
     if !section.has("pressure_sigma_pa") {
-        section.refuse(&["pressure_depth_m"], "no pressure_sigma_pa");
+        section.refuse(&["pressure_depth_m"], "pressure_sigma_pa missing");
         return None;
     }
     let sigma_pa = section.number("pressure_sigma_pa");

@@ -1,17 +1,17 @@
-//! Every key a scenario may have: what it holds, its unit, its range, its default.
+//! All keys of a scenario: type, unit, range and default.
 //!
-//! The reader checks values against these tables, misspelt keys are compared with them, and a test holds
-//! `docs/scenario-format.md` to them.
+//! The reader checks values against these tables and compares misspelt keys with them, and a test compares
+//! `docs/scenario-format.md` with them.
 
 use std::fmt;
 
-/// The numbers a key accepts.
+/// The range of numbers that a key accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     low: f64,
     low_is_open: bool,
     high: f64,
-    /// Why nothing less will do, where that is not plain.
+    /// The reason for the lower bound, if it is not obvious.
     why: Option<&'static str>,
 }
 
@@ -20,23 +20,23 @@ pub(crate) const fn above(low: f64) -> Span {
     Span { low, low_is_open: true, high: f64::INFINITY, why: None }
 }
 
-/// Every number from `low` on.
+/// Every number that is at least `low`.
 pub(crate) const fn at_least(low: f64) -> Span {
     Span { low, low_is_open: false, high: f64::INFINITY, why: None }
 }
 
 impl Span {
-    /// The same, up to and including `high`.
+    /// This span with an upper bound, `high` included.
     pub(crate) const fn up_to(self, high: f64) -> Self {
         Self { high, ..self }
     }
 
-    /// The same, with the reason why nothing less will do: reads on after the bound and a colon.
+    /// This span with the reason for its lower bound, which a message appends after a colon.
     pub(crate) const fn because(self, why: &'static str) -> Self {
         Self { why: Some(why), ..self }
     }
 
-    /// What a number must be instead, if it is not accepted: reads on after "must be".
+    /// The required range, if a number is not accepted; continues "must be".
     pub(crate) fn complaint(&self, number: f64, unit: &str) -> Option<String> {
         let gap = if unit.is_empty() { "" } else { " " };
         if self.low_is_open && number <= self.low {
@@ -66,68 +66,68 @@ impl fmt::Display for Span {
     }
 }
 
-/// What a key holds.
+/// The type of a key's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// A real number; a whole one will do.
+    /// A real number; a whole number is accepted, too.
     Number(Span),
-    /// A whole number from the first to the last.
+    /// A whole number in this range, bounds included.
     Whole(i64, i64),
     /// `true` or `false`.
     Flag,
     /// Any text.
     Text,
-    /// Text without blanks, as part of file names.
+    /// Text without blanks, which can be part of file names.
     Slug,
-    /// One of these words.
+    /// One of the given words.
     Word(&'static [&'static str]),
     /// `[x, y]`.
     Point,
-    /// `[[x, y], ...]`, at least so many.
+    /// `[[x, y], ...]`, with at least this many points.
     Points(usize),
-    /// `[a, b]`, each in the span.
+    /// `[a, b]`, both in the span.
     Pair(Span),
-    /// `[[from, to], ...]`, times.
+    /// `[[from, to], ...]`: time spans.
     Times,
-    /// `[[west, south, east, north], ...]`, at least one.
+    /// `[[west, south, east, north], ...]`, with at least one box.
     Boxes,
-    /// A list of texts, at least one.
+    /// A list of at least one text.
     Texts,
-    /// A table with keys of its own.
+    /// A table with its own keys.
     Table(&'static [Key]),
-    /// Tables with keys of their own.
+    /// A list of tables with their own keys.
     Tables(&'static [Key]),
-    /// A table of free keys with simple values.
+    /// A table with arbitrary keys and simple values.
     Free,
 }
 
-/// What holds when a key is not given.
+/// The value of a key that is not given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Default {
-    /// It must be given.
+    /// The key is required.
     Required,
-    /// Nothing, or something worked out from other keys: in words.
+    /// No value, or a value derived from other keys; described in words.
     Absent(&'static str),
-    /// This number.
+    /// A number.
     Number(f64),
-    /// This whole number.
+    /// A whole number.
     Whole(i64),
-    /// This flag.
+    /// A flag.
     Flag(bool),
-    /// This word.
+    /// A word.
     Word(&'static str),
 }
 
 /// One key of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key {
-    /// As it is written, unit last.
+    /// The name as written; ends in the unit.
     pub name: &'static str,
-    /// Unit of its numbers; empty for pure ones.
+    /// The unit of its numbers; empty for dimensionless numbers.
     pub unit: &'static str,
-    /// What it holds.
+    /// The type of its value.
     pub kind: Kind,
-    /// What holds without it.
+    /// The value if the key is not given.
     pub default: Default,
 }
 
@@ -171,13 +171,13 @@ impl Key {
 
 const LENGTH: Span = above(0.0).up_to(1000.0);
 const ANGLE: Span = at_least(-360.0).up_to(360.0);
-/// Coordinates of a national or world-wide system in metres; no place on Earth has larger ones.
+/// Coordinates in metres of a national or global reference system; none on Earth are larger.
 const DATUM: Span = at_least(-1e8).up_to(1e8);
 const SHARE: Span = at_least(0.0).up_to(1.0);
 const ANY_LENGTH: Span = at_least(0.0);
 const BY_KIND: &str = "by kind";
 
-/// The whole file.
+/// The keys of the whole file.
 pub(crate) static ROOT: &[Key] = &[
     key("name", "", Kind::Slug),
     key("about", "", Kind::Text).or_none("empty"),
@@ -187,23 +187,23 @@ pub(crate) static ROOT: &[Key] = &[
     key("obstacles", "", Kind::Tables(OBSTACLES)).or_none("none"),
     key("random_obstacles", "", Kind::Table(RANDOM_OBSTACLES)).or_none("none"),
     key("zones", "", Kind::Tables(ZONES)).or_none("none"),
-    key("plates", "", Kind::Table(PLATES)).or_none("not known"),
-    key("robot", "", Kind::Table(ROBOT)).or_none("all defaults"),
+    key("plates", "", Kind::Table(PLATES)).or_none("unknown"),
+    key("robot", "", Kind::Table(ROBOT)).or_none("defaults"),
     key("ae", "", Kind::Table(AE)),
     key("tether", "", Kind::Table(TETHER)).or_none("none"),
     key("mission", "", Kind::Table(MISSION)),
     key("planner", "", Kind::Table(PLANNER)),
     key("checklist", "", Kind::Table(CHECKLIST)).or_none("nothing to tick"),
     key("expect", "", Kind::Table(EXPECT)).or_none("no bounds"),
-    key("inspection", "", Kind::Table(INSPECTION)).or_none("all of it missing"),
+    key("inspection", "", Kind::Table(INSPECTION)).or_none("no facts"),
 ];
 
-/// A file of facts that are known only after the run.
+/// The keys of a file with facts that become known only after the run.
 pub(crate) static INSPECTION_FILE: &[Key] = &[key("inspection", "", Kind::Table(INSPECTION))];
 
 const MISSING: &str = "missing";
 
-/// What only people know of an inspection.
+/// The facts that only people know about an inspection.
 static INSPECTION: &[Key] = &[
     key("client", "", Kind::Text).or_none(MISSING),
     key("site", "", Kind::Text).or_none(MISSING),
@@ -250,15 +250,15 @@ static TANK: &[Key] = &[
 
 static PLATES: &[Key] = &[
     number("annular_width_m", "m", at_least(0.0).up_to(100.0)).or(0.6),
-    key("annular_count", "", Kind::Whole(1, 1000)).or_none("one for every `plate_length_m` of shell"),
+    key("annular_count", "", Kind::Whole(1, 1000)).or_none("one per `plate_length_m` of shell"),
     number("plate_length_m", "m", at_least(0.1).up_to(1000.0)).or(6.0),
     number("plate_width_m", "m", at_least(0.1).up_to(1000.0)).or(1.8),
-    key("outlines", "", Kind::Tables(PLATE_OUTLINES)).or_none("laid by the sizes"),
+    key("outlines", "", Kind::Tables(PLATE_OUTLINES)).or_none("regular layout"),
 ];
 
 static PLATE_OUTLINES: &[Key] = &[key("name", "", Kind::Text), key("vertices_m", "m", Kind::Points(3))];
 
-/// The outlines an obstacle or a zone may have.
+/// The kinds of outline of an obstacle or a zone.
 pub(crate) static OUTLINES: &[&str] = &["circle", "box", "polygon", "polyline"];
 
 static OBSTACLES: &[Key] = &[
@@ -271,10 +271,10 @@ static OBSTACLES: &[Key] = &[
     key("vertices_m", "m", Kind::Points(3)).or_none(BY_KIND),
     key("points_m", "m", Kind::Points(2)).or_none(BY_KIND),
     number("width_m", "m", LENGTH).or_none(BY_KIND),
-    key("velocity_m_per_s", "m/s", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("it stands still"),
-    key("waypoints_m", "m", Kind::Points(1)).or_none("it stands still"),
+    key("velocity_m_per_s", "m/s", Kind::Pair(at_least(-10.0).up_to(10.0))).or_none("stationary"),
+    key("waypoints_m", "m", Kind::Points(1)).or_none("stationary"),
     number("speed_m_per_s", "m/s", above(0.0).up_to(10.0)).or_none("for `waypoints_m`"),
-    key("known", "", Kind::Flag).or_none("`true`, `false` for what moves"),
+    key("known", "", Kind::Flag).or_none("`true`; `false` if it moves"),
 ];
 
 static RANDOM_OBSTACLES: &[Key] = &[
@@ -311,11 +311,11 @@ static ROBOT: &[Key] = &[
     number("underwater_turn_rate_max_deg_per_s", "deg/s", above(0.0).up_to(720.0)).or(17.8),
     key("transition_ticks", "", Kind::Whole(0, 10_000)).or_whole(20),
     number("pressure_sigma_pa", "Pa", above(0.0).up_to(1e6))
-        .or_none("no sensor: the zone at the estimated place"),
+        .or_none("no sensor; the zone at the estimated position is used"),
     number("pressure_depth_m", "m", above(0.0).up_to(100.0)).or(0.3),
     number("acceleration_m_per_s2", "m/s²", above(0.0).up_to(100.0)).or(0.5),
     number("sensing_range_m", "m", above(0.0).up_to(100.0)).or(3.0),
-    point("start_m").or_none("the first point of the path"),
+    point("start_m").or_none("first point of the path"),
     number("start_heading_deg", "deg", ANGLE).or_none("towards the second point of the path, or the goal"),
     number("start_sigma_m", "m", at_least(0.0).up_to(10.0)).or(0.02),
     number("start_heading_sigma_deg", "deg", at_least(0.0).up_to(180.0)).or(1.0),
@@ -355,7 +355,7 @@ static FAULTS: &[Key] = &[
 ];
 
 static TETHER: &[Key] = &[
-    point("anchor_m").or_none("where the robot starts"),
+    point("anchor_m").or_none("start of the robot"),
     number("reel_length_m", "m", LENGTH),
     number("wrap_max_deg", "deg", above(0.0).up_to(3600.0)).or(360.0),
     number("wrap_total_max_deg", "deg", above(0.0).up_to(36_000.0)).or(720.0),
@@ -373,15 +373,15 @@ static NOISE: &[Key] = &[
     number("resolution_m", "m", at_least(0.0).up_to(100.0)).or(0.0),
 ];
 
-/// Why a goal is not reached more closely.
-const TOO_NEAR: &str = "a robot that is steered once a tick does not stop nearer to a place";
+/// The reason for the smallest tolerance of a goal.
+const TOO_NEAR: &str = "a robot that is steered once per tick cannot stop closer to a point";
 
 static MISSION: &[Key] = &[
     word("kind", &["goto", "follow", "cover"]),
     point("goal_m").or_none("for `goto`"),
     key("spiral", "", Kind::Table(SPIRAL)).or_none("for `follow`: this or `path_m`"),
     key("path_m", "m", Kind::Points(2)).or_none("for `follow`: this or `spiral`"),
-    key("boxes_m", "m", Kind::Boxes).or_none("for `cover`: all floor that can be reached"),
+    key("boxes_m", "m", Kind::Boxes).or_none("for `cover`: all reachable floor"),
     number("tolerance_m", "m", at_least(0.01).up_to(100.0).because(TOO_NEAR)).or(0.2),
     number("tick_s", "s", at_least(0.001).up_to(10.0)).or(0.1),
     number("time_limit_s", "s", above(0.0)).or(600.0),
@@ -405,12 +405,12 @@ static SPIRAL: &[Key] = &[
 
 static PLANNER: &[Key] = &[
     key("id", "", Kind::Slug),
-    key("parameters", "", Kind::Free).or_none("the planner's own"),
+    key("parameters", "", Kind::Free).or_none("planner's defaults"),
     key("fallback", "", Kind::Table(FALLBACK)).or_none("none"),
 ];
 
 static FALLBACK: &[Key] =
-    &[key("id", "", Kind::Slug), key("parameters", "", Kind::Free).or_none("the planner's own")];
+    &[key("id", "", Kind::Slug), key("parameters", "", Kind::Free).or_none("planner's defaults")];
 
 const NO_BOUND: &str = "no bound";
 
@@ -438,7 +438,7 @@ static EXPECT: &[Key] = &[
     number("tether_end_length_max_m", "m", at_least(0.0)).or_none(NO_BOUND),
 ];
 
-/// Every section with its path, the whole file first under the empty path.
+/// All sections by path, beginning with the whole file under the empty path.
 pub(crate) fn sections() -> Vec<(String, &'static [Key])> {
     let mut found = vec![(String::new(), ROOT)];
     let mut next = 0;
@@ -454,7 +454,7 @@ pub(crate) fn sections() -> Vec<(String, &'static [Key])> {
     found
 }
 
-/// A key's path from its section's.
+/// The path of a key from the path of its section.
 pub(crate) fn joined(section: &str, key: &str) -> String {
     if section.is_empty() { key.to_owned() } else { format!("{section}.{key}") }
 }

@@ -1,4 +1,4 @@
-//! Reading one section: takes values by key, checks them against the schema, notes what is wrong.
+//! Reads a section: gets values by key, checks them against the schema, and notes problems.
 
 use super::{
     problem::{Complaint, Problem},
@@ -14,22 +14,22 @@ use toml::{
 };
 use world::Point;
 
-/// Obstacles, zones or stations that a scenario may have.
+/// The largest number of obstacles, zones or stations of a scenario.
 const MOST_ENTRIES: usize = 50_000;
 
-/// Coordinates beyond this are mistakes, metres.
+/// Coordinates beyond this, in metres, are mistakes.
 const FAR_M: f64 = 10_000.0;
 
-/// Where a value stands, to complain about it later.
+/// The position of a value, for later complaints.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Place {
-    /// Path of the key.
+    /// The path of the key.
     pub key: String,
-    /// Bytes of the value.
+    /// The bytes of the value.
     pub at: Range<usize>,
 }
 
-/// A table of the file with the keys it may have.
+/// A table of the file with its allowed keys.
 pub(crate) struct Section<'a> {
     source: &'a Source<'a>,
     table: Option<&'a DeTable<'a>>,
@@ -41,7 +41,7 @@ pub(crate) struct Section<'a> {
 type Value<'a> = Spanned<DeValue<'a>>;
 
 impl<'a> Section<'a> {
-    /// The whole file; complains about unknown keys.
+    /// Opens the whole file as a section; complains about unknown keys.
     pub(crate) fn root(source: &'a Source<'a>, table: &'a DeTable<'a>, keys: &'static [Key]) -> Self {
         let end = source.text.trim_end().len();
         let root = Self { source, table: Some(table), keys, path: String::new(), at: end..end };
@@ -52,7 +52,7 @@ impl<'a> Section<'a> {
     fn inner(&self, name: &str, keys: &'static [Key], value: &'a Value<'a>) -> Option<Self> {
         let path = joined(&self.path, name);
         let DeValue::Table(table) = value.get_ref() else {
-            let remedy = "write { key = value, ... }, or the keys under a head in square brackets";
+            let remedy = "write { key = value, ... }, or the keys below a header in square brackets";
             self.complain_at(path, &value.span(), wrong_type("a table", remedy));
             return None;
         };
@@ -80,12 +80,12 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Path of a key of this section.
+    /// The path of a key of this section.
     pub(crate) fn path_of(&self, name: &str) -> String {
         joined(&self.path, name)
     }
 
-    /// Where a key's value stands; where the section does if the key is not given.
+    /// The position of a key's value, or of the section if the key is not given.
     pub(crate) fn place(&self, name: &str) -> Place {
         let at = self.value(name).map_or_else(|| self.at.clone(), Spanned::span);
         Place { key: self.path_of(name), at }
@@ -96,7 +96,7 @@ impl<'a> Section<'a> {
         self.value(name).is_some()
     }
 
-    /// Whether the key is given as a list of any length.
+    /// Whether the value of the key is a list.
     pub(crate) fn is_list(&self, name: &str) -> bool {
         self.value(name).is_some_and(|value| value.get_ref().is_array())
     }
@@ -106,7 +106,7 @@ impl<'a> Section<'a> {
         self.complain_about(&self.place(name), self.has(name), what);
     }
 
-    /// Complains about the section as a whole.
+    /// Complains about the whole section.
     pub(crate) fn complain_whole(&self, what: Complaint) {
         let place = Place { key: self.path.clone(), at: self.at.clone() };
         self.complain_about(&place, false, what);
@@ -122,7 +122,7 @@ impl<'a> Section<'a> {
         self.source.note(Problem { key, value, at: Some(at.clone()), what });
     }
 
-    /// Complains unless the key, needed beside another one, is given.
+    /// Complains if the key is not given although another key requires it; returns whether it is given.
     pub(crate) fn require(&self, name: &str, remedy: &str) -> bool {
         if !self.has(name) {
             self.complain(name, Complaint::Missing { remedy: remedy.to_owned() });
@@ -130,7 +130,7 @@ impl<'a> Section<'a> {
         self.has(name)
     }
 
-    /// Complains about each of the keys that is given.
+    /// Complains about each of these keys that is given.
     pub(crate) fn refuse(&self, names: &[&str], beside: &str) {
         for name in names.iter().filter(|name| self.has(name)) {
             self.complain(name, Complaint::OutOfPlace { beside: beside.to_owned() });
@@ -145,7 +145,7 @@ impl<'a> Section<'a> {
         self.keys.iter().find(|key| key.name == name).expect("only declared keys are read")
     }
 
-    /// The value of a key; complains if it is required and missing.
+    /// The value of a key; complains if a required key is missing.
     fn required(&self, name: &str) -> Option<&'a Value<'a>> {
         let value = self.value(name);
         if value.is_none() && self.key(name).default == Default::Required {
@@ -155,7 +155,7 @@ impl<'a> Section<'a> {
         value
     }
 
-    /// A number; its default if it is not given, `None` if that is absent or something is wrong.
+    /// A number; if it is not given, its default. `None` if there is no default or the value is invalid.
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
         let key = self.key(name);
         let (Kind::Number(span), unit) = (key.kind, key.unit) else {
@@ -171,9 +171,7 @@ impl<'a> Section<'a> {
     fn checked_number(&self, key: String, value: &Value<'_>, span: Span, unit: &str) -> Option<f64> {
         let Some(number) = as_number(value.get_ref()) else {
             let remedy = match value.get_ref() {
-                DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
-                    "leave out the quotes".to_owned()
-                }
+                DeValue::String(text) if text.trim().parse::<f64>().is_ok() => "remove the quotes".to_owned(),
                 _ if unit.is_empty() => "write a plain number".to_owned(),
                 _ => format!("write a plain number, in {unit}"),
             };
@@ -191,7 +189,7 @@ impl<'a> Section<'a> {
         Some(number)
     }
 
-    /// A whole number; its default if it is not given.
+    /// A whole number; if it is not given, its default.
     pub(crate) fn whole(&self, name: &str) -> Option<i64> {
         let key = self.key(name);
         let Kind::Whole(low, high) = key.kind else { panic!("{name} is declared as a whole number") };
@@ -208,7 +206,7 @@ impl<'a> Section<'a> {
         None
     }
 
-    /// A flag; its default if it is not given.
+    /// A flag; if it is not given, its default.
     pub(crate) fn flag(&self, name: &str) -> Option<bool> {
         let Some(value) = self.required(name) else {
             return if let Default::Flag(default) = self.key(name).default { Some(default) } else { None };
@@ -220,7 +218,7 @@ impl<'a> Section<'a> {
         flag
     }
 
-    /// One of the words; the default if it is not given.
+    /// One of the allowed words; if it is not given, the default.
     pub(crate) fn word(&self, name: &str) -> Option<&'static str> {
         let key = self.key(name);
         let Kind::Word(words) = key.kind else { panic!("{name} is declared as a word") };
@@ -240,9 +238,9 @@ impl<'a> Section<'a> {
     pub(crate) fn text(&self, name: &str) -> Option<String> {
         let text = self.required(name)?.get_ref().as_str();
         match text {
-            None => self.complain(name, wrong_type("text", "put it between double quotes")),
+            None => self.complain(name, wrong_type("text", "enclose it in double quotes")),
             Some(text) if text.trim().is_empty() && name == "name" => {
-                self.complain(name, Complaint::OutOfRange("at least one letter".into()));
+                self.complain(name, Complaint::OutOfRange("text with at least one character".into()));
                 return None;
             }
             Some(_) => {}
@@ -256,14 +254,14 @@ impl<'a> Section<'a> {
         let allowed = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         let starts_well = slug.starts_with(|c: char| c.is_ascii_alphanumeric());
         if !starts_well || slug.len() > 64 || !slug.chars().all(allowed) {
-            let must_be = "at most 64 letters, digits, `-`, `_` or `.`, the first a letter or a digit";
+            let must_be = "at most 64 letters, digits, `-`, `_` or `.`, beginning with a letter or a digit";
             self.complain(name, Complaint::OutOfRange(must_be.into()));
             return None;
         }
         Some(slug)
     }
 
-    /// A point.
+    /// Reads a point.
     pub(crate) fn point(&self, name: &str) -> Option<Point> {
         self.checked_point(self.path_of(name), self.required(name)?)
     }
@@ -292,7 +290,7 @@ impl<'a> Section<'a> {
         Some([a?, b?])
     }
 
-    /// A list of points, each with its place.
+    /// A list of points.
     pub(crate) fn points(&self, name: &str) -> Option<Vec<Point>> {
         let Kind::Points(need) = self.key(name).kind else { panic!("{name} is declared as points") };
         let list = self.list(name, "a list of points", "write [[x, y], [x, y], ...] in metres")?;
@@ -308,7 +306,7 @@ impl<'a> Section<'a> {
         points.into_iter().collect()
     }
 
-    /// Texts that are not empty.
+    /// A list of texts that are not empty.
     pub(crate) fn texts(&self, name: &str) -> Option<Vec<String>> {
         let remedy = "write [\"...\", ...]";
         let list = self.list(name, "a list of texts", remedy)?;
@@ -320,14 +318,14 @@ impl<'a> Section<'a> {
             let text = value.get_ref().as_str().filter(|text| !text.trim().is_empty());
             if text.is_none() {
                 let key = format!("{}.{i}", self.path_of(name));
-                self.complain_at(key, &value.span(), wrong_type("a text with at least one letter", remedy));
+                self.complain_at(key, &value.span(), wrong_type("text with at least one character", remedy));
             }
             text.map(str::to_owned)
         };
         list.iter().enumerate().map(text_at).collect()
     }
 
-    /// Boxes as their south west and north east corners.
+    /// A list of boxes, each as its south-west and north-east corners.
     pub(crate) fn boxes(&self, name: &str) -> Option<Vec<[Point; 2]>> {
         let remedy = "write [[west, south, east, north], ...] in metres";
         let list = self.list(name, "a list of boxes", remedy)?;
@@ -370,14 +368,14 @@ impl<'a> Section<'a> {
         None
     }
 
-    /// A pair of numbers.
+    /// Reads a pair of numbers.
     pub(crate) fn pair(&self, name: &str) -> Option<[f64; 2]> {
         let key = self.key(name);
         let Kind::Pair(span) = key.kind else { panic!("{name} is declared as a pair") };
         self.checked_pair(self.path_of(name), self.required(name)?, span, key.unit, "write [number, number]")
     }
 
-    /// Spans of time, each from an earlier to a later one; none if not given.
+    /// A list of time spans, each from an earlier to a later time; empty if not given.
     pub(crate) fn times(&self, name: &str) -> Option<Vec<(f64, f64)>> {
         if !self.has(name) {
             return Some(Vec::new());
@@ -392,7 +390,7 @@ impl<'a> Section<'a> {
                 let [from, to] =
                     self.checked_pair(key.clone(), value, span, "s", "write [from, to] in seconds")?;
                 if from >= to {
-                    let must_be = "from an earlier to a later time".to_owned();
+                    let must_be = "a span from an earlier to a later time".to_owned();
                     self.complain_at(key, &value.span(), Complaint::OutOfRange(must_be));
                     return None;
                 }
@@ -402,13 +400,13 @@ impl<'a> Section<'a> {
         spans.into_iter().collect()
     }
 
-    /// A table within this one; `None` if it is not given or none.
+    /// A table within this section; `None` if it is missing or not a table.
     pub(crate) fn table(&self, name: &str) -> Option<Self> {
         let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
         self.inner(name, keys, self.required(name)?)
     }
 
-    /// A table within this one; an empty one if it is not given.
+    /// A table within this section; an empty table if it is not given.
     pub(crate) fn table_or_empty(&self, name: &str) -> Option<Self> {
         let Kind::Table(keys) = self.key(name).kind else { panic!("{name} is declared as a table") };
         match self.value(name) {
@@ -423,10 +421,10 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The tables of a list; none if it is not given.
+    /// A list of tables; empty if it is not given.
     pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
         let Kind::Tables(keys) = self.key(name).kind else { panic!("{name} is declared as tables") };
-        let remedy = format!("write [[{}]] with double brackets and its keys below", self.path_of(name));
+        let remedy = format!("write [[{}]] in double brackets and its keys below", self.path_of(name));
         let list = self.list(name, "a list of tables", &remedy).unwrap_or_default();
         if list.len() > MOST_ENTRIES {
             self.complain(name, Complaint::TooMany { have: list.len(), most: MOST_ENTRIES });
@@ -438,7 +436,7 @@ impl<'a> Section<'a> {
             .collect()
     }
 
-    /// Planner parameters; none if not given.
+    /// Planner parameters; empty if not given.
     pub(crate) fn parameters(&self, name: &str) -> Option<Parameters> {
         let Some(value) = self.value(name) else { return Some(Parameters::new()) };
         let DeValue::Table(table) = value.get_ref() else {
@@ -497,7 +495,7 @@ fn as_number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// What to write where a required key is missing.
+/// The text to add for a missing required key.
 fn missing_remedy(section: &str, key: &Key) -> String {
     let name = key.name;
     match key.kind {

@@ -1,18 +1,18 @@
-//! Settings from the command line, put into the text of a scenario.
+//! Applies settings from the command line to the text of a scenario.
 
 use super::problem::Complaint;
 use std::fmt;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
-/// Keys at the top of the file that `--set` reaches by their bare names; other bare names are planner parameters.
+/// Top-level keys that `--set` accepts by their bare names; other bare names are planner parameters.
 const TOP_KEYS: [&str; 3] = ["name", "about", "seed"];
 
-/// What the command line changes about a scenario.
+/// Changes to a scenario from the command line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Settings {
     /// `--set KEY=VALUE`, in order; a bare key is a planner parameter.
     pub set: Vec<String>,
-    /// `--planner ID`; the parameters of another planner in the file are dropped.
+    /// `--planner ID`; if the file names a different planner, its parameters are dropped.
     pub planner: Option<String>,
     /// `--seed N`.
     pub seed: Option<u64>,
@@ -28,15 +28,15 @@ impl fmt::Display for Settings {
 }
 
 impl Settings {
-    /// Whether nothing is to be changed.
+    /// Whether there are no changes.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The text with the settings in it: planner first, then seed, then every `--set` in order.
+    /// The text with the settings applied: first the planner, then the seed, then every `--set` in order.
     ///
     /// # Errors
-    /// A setting that is not a `KEY=VALUE` or whose key leads through something that is not a table.
+    /// A setting is not a `KEY=VALUE`, or its key leads through a value that is not a table.
     pub fn put_into(&self, text: &str) -> Result<String, Complaint> {
         let bad = |error: toml_edit::TomlError| Complaint::NotToml(error.message().to_owned());
         let mut document: DocumentMut = text.parse().map_err(bad)?;
@@ -73,20 +73,20 @@ fn put_setting(document: &mut DocumentMut, setting: &str) -> Result<(), String> 
     if key.is_empty() || written.is_empty() || key.split('.').any(str::is_empty) {
         return Err("must be KEY=VALUE, with dots between the parts of the key".into());
     }
-    // What is not a TOML value is a word: --set mode=literal needs no quotes.
+    // A value that is not valid TOML is a word: --set mode=literal needs no quotes.
     let mut value: Value = written.parse().unwrap_or_else(|_| written.into());
     let path: Vec<&str> = match key.split('.').collect::<Vec<_>>()[..] {
         [only] if !TOP_KEYS.contains(&only) => vec!["planner", "parameters", only],
         ref path => path.to_vec(),
     };
-    // No parameter takes such a number, but one may take the word.
+    // No parameter accepts an infinite number or NaN, but a parameter may accept the word.
     if path.starts_with(&["planner", "parameters"]) && value.as_float().is_some_and(|x| !x.is_finite()) {
         value = written.into();
     }
     put(document.as_item_mut(), &path, &value)
 }
 
-/// Puts a value at the end of a path, making the tables on the way; a number in the path counts along a list.
+/// Writes a value at the end of a path, creating missing tables; a number in the path is the index in a list.
 fn put(item: &mut Item, path: &[&str], value: &Value) -> Result<(), String> {
     let [first, rest @ ..] = path else {
         *item = Item::Value(in_place_of(item, value));
@@ -102,12 +102,12 @@ fn put(item: &mut Item, path: &[&str], value: &Value) -> Result<(), String> {
     }
     let table = item
         .as_table_mut()
-        .ok_or_else(|| format!("`{first}` would be inside something that is not a table"))?;
+        .ok_or_else(|| format!("`{first}` would be inside a value that is not a table"))?;
     put_in_table(table, path, value)
 }
 
 fn put_in_table(table: &mut Table, path: &[&str], value: &Value) -> Result<(), String> {
-    let [first, rest @ ..] = path else { return Err("names a whole table, not a key of it".into()) };
+    let [first, rest @ ..] = path else { return Err("refers to a whole table; name one of its keys".into()) };
     let item = table
         .entry(first)
         .or_insert_with(|| if rest.is_empty() { Item::None } else { Item::Table(Table::new()) });
@@ -139,10 +139,10 @@ fn index(part: &str) -> Option<usize> {
 }
 
 fn no_entry(part: &str, count: usize) -> String {
-    format!("there is no entry `{part}`; the list has {count}, counted from 0")
+    format!("no entry `{part}`; the list has {count}, counted from 0")
 }
 
-/// The new value with the blanks and the comment of the old one.
+/// The new value with the spacing and comment of the old one.
 fn in_place_of(item: &Item, value: &Value) -> Value {
     item.as_value().map_or_else(|| value.clone(), |old| in_place_of_value(old, value))
 }

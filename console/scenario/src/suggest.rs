@@ -1,9 +1,9 @@
-//! What was probably meant by a key that does not exist.
+//! Suggests a correction for an unknown key.
 
 use super::schema::{Key, sections};
 use mission::spelling::nearest;
 
-/// Units people write, as the end of a key, with the unit they measure in and how many of that they are.
+/// Units in which people write values: the suffix of the key, the scenario's unit, and the conversion factor.
 const UNITS: &[(&str, &str, f64)] = &[
     ("_m_per_s2", "m/s²", 1.0),
     ("_cm_per_s", "m/s", 0.01),
@@ -41,9 +41,9 @@ const UNITS: &[(&str, &str, f64)] = &[
     ("_s", "s", 1.0),
 ];
 
-/// What to write instead of an unknown key: the right unit, the nearest name, the right section, or all names.
+/// The suggested correction: the right unit, the nearest name, the right section, or a list of all names.
 pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: Option<f64>) -> String {
-    // Names are compared letter by letter; nobody means a known key by a page of text.
+    // Names are compared letter by letter, so very long ones are cut; they cannot be misspellings of a known key.
     let short: String = unknown.chars().take(64).collect();
     same_quantity(keys, &short, value)
         .or_else(|| {
@@ -53,7 +53,7 @@ pub(crate) fn remedy(section: &str, keys: &'static [Key], unknown: &str, value: 
         .unwrap_or_else(|| all_names(section, keys))
 }
 
-/// The same key with another unit, or without one.
+/// The same quantity with a different unit, or without one.
 fn same_quantity(keys: &[Key], unknown: &str, value: Option<f64>) -> Option<String> {
     let (stem, unit) = split_unit(unknown);
     let right = keys.iter().find(|key| !key.unit.is_empty() && split_unit(key.name).0 == stem)?;
@@ -63,7 +63,7 @@ fn same_quantity(keys: &[Key], unknown: &str, value: Option<f64>) -> Option<Stri
         }
         _ => String::new(),
     };
-    Some(format!("`{}` is the key, in {}{converted}", right.name, right.unit))
+    Some(format!("the key is `{}`, in {}{converted}", right.name, right.unit))
 }
 
 fn split_unit(name: &str) -> (&str, Option<(&'static str, f64)>) {
@@ -77,17 +77,17 @@ fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-/// The section that has a key of this very name.
+/// The section that has a key with exactly this name.
 fn elsewhere(unknown: &str) -> Option<String> {
     let (path, _) = sections().into_iter().find(|(_, keys)| keys.iter().any(|key| key.name == unknown))?;
     let place = if path.is_empty() { "the top of the file".to_owned() } else { format!("[{path}]") };
-    Some(format!("`{unknown}` is a key of {place}"))
+    Some(format!("`{unknown}` belongs in {place}"))
 }
 
 fn all_names(section: &str, keys: &[Key]) -> String {
     let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
     let place = if section.is_empty() { "a scenario".to_owned() } else { format!("[{section}]") };
-    format!("{place} has the keys {}", names.join(", "))
+    format!("the keys of {place} are {}", names.join(", "))
 }
 
 #[cfg(test)]
@@ -102,17 +102,17 @@ mod tests {
     fn another_unit_is_converted() {
         assert_eq!(
             remedy("tank", keys("tank"), "radius_cm", Some(500.0)),
-            "`radius_m` is the key, in m: write radius_m = 5"
+            "the key is `radius_m`, in m: write radius_m = 5"
         );
         assert_eq!(
             remedy("robot", keys("robot"), "speed_max_kmh", Some(3.6)),
-            "`speed_max_m_per_s` is the key, in m/s: write speed_max_m_per_s = 1"
+            "the key is `speed_max_m_per_s`, in m/s: write speed_max_m_per_s = 1"
         );
     }
 
     #[test]
     fn a_missing_unit_is_named() {
-        assert_eq!(remedy("ae", keys("ae"), "period", Some(1.0)), "`period_s` is the key, in s");
+        assert_eq!(remedy("ae", keys("ae"), "period", Some(1.0)), "the key is `period_s`, in s");
     }
 
     #[test]
@@ -123,13 +123,13 @@ mod tests {
 
     #[test]
     fn a_key_of_another_section_is_sent_there() {
-        assert_eq!(remedy("robot", keys("robot"), "swath_m", None), "`swath_m` is a key of [mission]");
+        assert_eq!(remedy("robot", keys("robot"), "swath_m", None), "`swath_m` belongs in [mission]");
     }
 
     #[test]
     fn a_section_of_the_future_gets_the_list() {
         let list = remedy("", keys(""), "winch", None);
-        assert!(list.starts_with("a scenario has the keys name, about, seed, "), "{list}");
+        assert!(list.starts_with("the keys of a scenario are name, about, seed, "), "{list}");
         assert!(list.contains(", tank, "), "{list}");
     }
 }

@@ -1,16 +1,16 @@
-//! What is to be done: `[mission]` and `[planner]`.
+//! Reads the task and the planner: `[mission]` and `[planner]`.
 
 use super::{problem::Complaint, section::Section};
 use mission::{PlannerChoice, TaskConfig};
 use world::{Boundary, Point, shape, spiral::Spiral};
 
-/// Points that a path may have.
+/// The largest number of points of a path.
 const MOST_POINTS: u64 = 200_000;
 
-/// Slack for numbers that were written down rounded, metres.
+/// Slack for rounded numbers in files, in metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// Reads the task of `[mission]`; a preset path must leave the hull room at the wall, and a coverage mission ends at
+/// Reads the task of `[mission]`. A preset path must leave room for the hull at the wall; a coverage mission ends at
 /// `start`.
 pub(crate) fn task(
     section: &Section<'_>,
@@ -23,7 +23,7 @@ pub(crate) fn task(
     let beside = format!("kind = \"{kind}\"");
     if kind == "goto" {
         section.refuse(&["spiral", "path_m", "boxes_m"], &beside);
-        section.require("goal_m", "add goal_m = [x, y], where the robot is to go");
+        section.require("goal_m", "add goal_m = [x, y], the point to drive to");
         return Some(TaskConfig::Goto { goal: section.point("goal_m")?, tolerance_m: tolerance_m? });
     }
     if kind == "cover" {
@@ -38,11 +38,11 @@ pub(crate) fn task(
     Some(TaskConfig::Follow { path, tolerance_m: tolerance_m? })
 }
 
-/// A box that holds no floor is a slip of the pen.
+/// A box that contains no floor is a typing error.
 fn complain_of_boxes_outside(section: &Section<'_>, boundary: Option<&Boundary>, boxes: &[[Point; 2]]) {
     let outside = |[low, high]: &[Point; 2]| boundary.is_some_and(|wall| !wall.meets_box(*low, *high));
     if let Some(index) = boxes.iter().position(outside) {
-        let must_be = format!("boxes that hold some of the floor; box {} lies outside the tank", index + 1);
+        let must_be = format!("boxes that contain some of the floor; box {} is outside the tank", index + 1);
         section.complain("boxes_m", Complaint::OutOfRange(must_be));
     }
 }
@@ -95,7 +95,7 @@ fn spiral(section: &Section<'_>, walls: Option<(&Boundary, f64)>) -> Option<Vec<
         let fits_m = boundary.wall_distance_m(Point::origin()) - radius_m;
         let is_out = |point: &Point| boundary.wall_distance_m(*point) < radius_m - ROUNDING_M;
         if path.iter().any(is_out) {
-            // Rounded down to millimetres, so that the number offered does fit.
+            // Rounded down to millimetres, so that the suggested radius fits.
             let fits_m = ((fits_m * 1000.0 + 1e-6).floor() / 1000.0).max(0.0);
             section.complain("outer_radius_m", Complaint::SpiralTooLarge { fits_m });
         }
@@ -118,7 +118,7 @@ pub(crate) fn planner(section: &Section<'_>) -> Option<PlannerChoice> {
     Some(PlannerChoice { id: id?, parameters: parameters? })
 }
 
-/// Reads the planner that takes over after a fault; `None` if there is none, or something is wrong with it.
+/// Reads the planner that takes over after a fault; `None` if there is none, or it is invalid.
 pub(crate) fn fallback(section: &Section<'_>) -> Option<PlannerChoice> {
     planner(&section.table("fallback")?)
 }

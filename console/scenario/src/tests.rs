@@ -90,7 +90,7 @@ fn a_pressure_sensor_that_scatters_too_much_to_decide_is_refused_with_one_that_d
     let walks = SMALL.replacen("start_m = [-3, 0]", "start_m = [-3, 0]\npressure_sigma_pa = 200", 1);
     let said = Scenario::parse(&walks, "x.toml").expect_err("a robot that does not swim").render();
     assert!(
-        said.contains("robot.pressure_sigma_pa = 200: means nothing with motion = \"unicycle\""),
+        said.contains("robot.pressure_sigma_pa = 200: has no effect with motion = \"unicycle\""),
         "{said}"
     );
 }
@@ -162,11 +162,11 @@ fn a_robot_that_comes_back_to_the_anchor_has_room_there() {
     assert!(with("anchor_m = [0, -4.74]", "tolerance_m = 0.1").is_err());
     for (anchor, away) in [("[0, -4.8]", "0.200"), ("[0, -5.0]", "0.000")] {
         let said = with(&format!("anchor_m = {anchor}"), "").expect_err("too near to the wall");
-        let must_be = format!("tether.anchor_m = {anchor}: must be at least 0.250 m away from the wall");
-        assert!(said.contains(&must_be) && said.contains(&format!("this is {away} m")), "{said}");
+        let must_be = format!("tether.anchor_m = {anchor}: must be at least 0.250 m from the wall");
+        assert!(said.contains(&must_be) && said.contains(&format!("the distance is {away} m")), "{said}");
     }
     let at_start = cover("[-4.6, 0]", "clearance_m = 0.3", "").expect_err("too near to the wall");
-    assert!(at_start.contains("robot.start_m = [-4.6, 0]: must be at least 0.450 m away"), "{at_start}");
+    assert!(at_start.contains("robot.start_m = [-4.6, 0]: must be at least 0.450 m from"), "{at_start}");
     // A mission that ends elsewhere may have its anchor in the shell.
     let elsewhere = SMALL.replace("[planner]", "[tether]\nreel_length_m = 20\nanchor_m = [0, -5]\n[planner]");
     assert!(Scenario::parse(&elsewhere, "x.toml").is_ok());
@@ -212,7 +212,7 @@ fn an_error_shows_file_line_column_key_value_and_remedy() {
     assert!(shown.starts_with(first), "{shown}");
     let text = SMALL.replace("radius_m = 5", "radius_cm = 500");
     let shown = errors(&text).render();
-    let first = "error: x.toml:3:1: tank.radius_cm = 500: unknown key\n  |\n3 | radius_cm = 500\n  | ^^^^^^^^^\n  help: `radius_m` is the key, in m: write radius_m = 5\n";
+    let first = "error: x.toml:3:1: tank.radius_cm = 500: unknown key\n  |\n3 | radius_cm = 500\n  | ^^^^^^^^^\n  help: the key is `radius_m`, in m: write radius_m = 5\n";
     assert!(shown.contains(first), "{shown}");
 }
 
@@ -236,7 +236,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "name = \"small\"",
         "name = \"../x\"",
-        "1:8: name = \"../x\": must be at most 64 letters, digits, `-`, `_` or `.`, the first a letter or a digit",
+        "1:8: name = \"../x\": must be at most 64 letters, digits, `-`, `_` or `.`, beginning with a letter or a digit",
     ),
     ("name = \"small\"", "name = \"small\"\nseed = -1", "2:8: seed = -1: must be at least 0"),
     ("name = \"small\"", "name = \"small\"\nseed = 1.5", "2:8: seed = 1.5: must be a whole number"),
@@ -249,19 +249,19 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "[planner]",
         "[tether]\nreel_length_m = 9\nanchor_m = [0, 7]\n[planner]",
-        "13:12: tether.anchor_m = [0, 7]: lies 2.000 m outside the tank",
+        "13:12: tether.anchor_m = [0, 7]: is 2.000 m outside the tank",
     ),
     (
         "[planner]",
         "[tether]\nreel_length_m = 1\nanchor_m = [0, 0]\n[planner]",
-        "12:17: tether.reel_length_m = 1: must be at least 3.00 m, the way from the anchor to the start",
+        "12:17: tether.reel_length_m = 1: must be at least 3.00 m, the distance from the anchor to the start",
     ),
     (
         "kind = \"goto\"",
         "kind = \"hover\"",
         "7:8: mission.kind = \"hover\": must be one of goto, follow, cover",
     ),
-    ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: lies 1.000 m outside the tank"),
+    ("goal_m = [3, 0]", "goal_m = [6, 0]", "8:10: mission.goal_m = [6, 0]: is 1.000 m outside the tank"),
     (
         "goal_m = [3, 0]",
         "goal_m = [4.9, 0]",
@@ -281,16 +281,12 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "goal_m = [3, 0]",
         "goal_m = [3, 0]\ntolerance_m = 0.001",
-        "9:15: mission.tolerance_m = 0.001: must be at least 0.01 m: a robot that is steered once a tick does not stop nearer to a place",
+        "9:15: mission.tolerance_m = 0.001: must be at least 0.01 m: a robot that is steered once per tick cannot stop closer to a point",
     ),
     ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 0", "9:10: mission.tick_s = 0: must be at least 0.001 s"),
     ("goal_m = [3, 0]", "goal_m = [3, 0]\ntick_s = 2", "4:1: ae.period_s: must be at least one tick, 2 s"),
     ("goal_m = [3, 0]", "", "6:1: mission.goal_m: missing"),
-    (
-        "start_m = [-3, 0]",
-        "start_m = [-7, 0]",
-        "10:11: robot.start_m = [-7, 0]: lies 2.000 m outside the tank",
-    ),
+    ("start_m = [-3, 0]", "start_m = [-7, 0]", "10:11: robot.start_m = [-7, 0]: is 2.000 m outside the tank"),
     ("start_m = [-3, 0]", "", "9:1: robot.start_m: missing"),
     (
         "start_m = [-3, 0]",
@@ -305,37 +301,33 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     (
         "start_m = [-3, 0]",
         "start_m = [-3, 0]\nradius_m = 0",
-        "11:12: robot.radius_m = 0: must be greater than 0 m; only motion = \"point\" has no hull",
+        "11:12: robot.radius_m = 0: must be greater than 0 m; only a robot with motion = \"point\" has no hull",
     ),
     (
         "start_m = [-3, 0]",
         "start_m = [-3, 0]\nmotion = \"amphibious\"\nspeed_max_m_per_s = 1",
-        "12:21: robot.speed_max_m_per_s = 1: means nothing with motion = \"amphibious\"",
+        "12:21: robot.speed_max_m_per_s = 1: has no effect with motion = \"amphibious\"",
     ),
     (
         "start_m = [-3, 0]",
         "start_m = [-3, 0]\ntransition_ticks = 5",
-        "11:20: robot.transition_ticks = 5: means nothing with motion = \"unicycle\"",
+        "11:20: robot.transition_ticks = 5: has no effect with motion = \"unicycle\"",
     ),
-    (
-        "at_m = [0, 5]",
-        "at_m = [0, 5.5]",
-        "5:65: ae.stations.1.at_m = [0, 5.5]: lies 0.500 m outside the tank",
-    ),
+    ("at_m = [0, 5]", "at_m = [0, 5.5]", "5:65: ae.stations.1.at_m = [0, 5.5]: is 0.500 m outside the tank"),
     (
         "at_m = [0, 5]",
         "at_m = [5, 0]",
-        "5:65: ae.stations.1.at_m = [5, 0]: the same as that of station \"A\"",
+        "5:65: ae.stations.1.at_m = [5, 0]: is the same as that of station \"A\"",
     ),
     (
         "name = \"B\"",
         "name = \"A\"",
-        "5:53: ae.stations.1.name = \"A\": the same as that of ae.stations.0.name",
+        "5:53: ae.stations.1.name = \"A\": is the same as that of ae.stations.0.name",
     ),
     (
         ", { name = \"B\", at_m = [0, 5] }",
         "",
-        "5:12: ae.stations = [{ name = \"A\", at_m = [5, 0] }]: 1 of at least 2 stations",
+        "5:12: ae.stations = [{ name = \"A\", at_m = [5, 0] }]: only 1 of at least 2 stations",
     ),
     ("id = \"apf\"", "", "11:1: planner.id: missing"),
     (
@@ -366,15 +358,15 @@ fn each_mistake_in_an_obstacle_has_its_sentence() {
         ),
         (
             "kind = \"circle\"\ncenter_m = [0, 0]\nradius_m = 1\nwidth_m = 1",
-            "17:11: obstacles.0.width_m = 1: means nothing with kind = \"circle\"",
+            "17:11: obstacles.0.width_m = 1: has no effect with kind = \"circle\"",
         ),
         (
             "kind = \"circle\"\ncenter_m = [9, 0]\nradius_m = 1",
-            "13:1: obstacles.0: lies wholly outside the tank",
+            "13:1: obstacles.0: is completely outside the tank",
         ),
         (
             "kind = \"circle\"\ncenter_m = [-3, 0]\nradius_m = 1",
-            "10:11: robot.start_m = [-3, 0]: lies in obstacle \"obstacle 1\"",
+            "10:11: robot.start_m = [-3, 0]: is inside obstacle \"obstacle 1\"",
         ),
         (
             "kind = \"circle\"\ncenter_m = [3, 1]\nradius_m = 0.9",
@@ -390,7 +382,7 @@ fn each_mistake_in_an_obstacle_has_its_sentence() {
         ),
         (
             "kind = \"polygon\"\nvertices_m = [[0, 0], [1, 1], [2, 2]]",
-            "15:14: obstacles.0.vertices_m = [[0, 0], [1, 1], [2, 2]]: the points enclose nothing",
+            "15:14: obstacles.0.vertices_m = [[0, 0], [1, 1], [2, 2]]: the points enclose no area",
         ),
         (
             "kind = \"cirle\"",
@@ -410,7 +402,7 @@ fn an_error_for_a_spiral_that_does_not_fit_names_one_that_does() {
         SMALL.replace("kind = \"goto\"\ngoal_m = [3, 0]", &task)
     };
     let shown = errors(&spiral(5.0)).render();
-    assert!(shown.contains("larger than the tank less the robot's radius: 4.75 m fit"), "{shown}");
+    assert!(shown.contains("larger than the tank less the robot's radius: at most 4.75 m"), "{shown}");
     assert!(shown.contains("help: write outer_radius_m = 4.75"), "{shown}");
     read(&spiral(4.75));
 }
@@ -435,7 +427,7 @@ fn all_errors_are_reported_at_once() {
     assert_eq!(keys, ["tank.radius_m", "tank.raduis_m", "mission.goal_m", "mission.swath", "planner.id"]);
     let shown = errors.render();
     assert!(
-        shown.contains("did you mean `radius_m`?") && shown.contains("`swath_m` is the key, in m"),
+        shown.contains("did you mean `radius_m`?") && shown.contains("the key is `swath_m`, in m"),
         "{shown}"
     );
 }
@@ -443,7 +435,7 @@ fn all_errors_are_reported_at_once() {
 #[test]
 fn single_brackets_round_obstacles_are_explained() {
     let shown = errors(&format!("{SMALL}[obstacles]\nkind = \"circle\"\n")).render();
-    assert!(shown.contains("write [[obstacles]] with double brackets"), "{shown}");
+    assert!(shown.contains("write [[obstacles]] in double brackets"), "{shown}");
 }
 
 #[test]
@@ -451,7 +443,7 @@ fn too_many_random_obstacles_say_how_many_found_room() {
     let crowd = "[random_obstacles]\ncount = 500\nradius_m = [0.5, 0.5]\nmin_gap_m = 0.6\n";
     let shown = errors(&format!("{SMALL}{crowd}")).render();
     assert!(
-        shown.contains("random_obstacles.count = 500: only ") && shown.contains(" of them found room"),
+        shown.contains("random_obstacles.count = 500: only ") && shown.contains(" of them fit"),
         "{shown}"
     );
 }
@@ -465,7 +457,7 @@ fn what_is_no_scenario_at_all_is_refused_quickly_and_shortly() {
         ("binary.toml", &noise[..5000], "is not UTF-8"),
         ("empty.toml", b"", "name: missing"),
         ("words.toml", b"this is not toml\n", "words.toml:1:"),
-        ("deep.toml", &b"[".repeat(900_000), "not TOML"),
+        ("deep.toml", &b"[".repeat(900_000), "invalid TOML"),
     ];
     for (name, bytes, expected) in cases {
         let path = folder.path().join(name);
@@ -631,11 +623,11 @@ fn plates_have_sizes_or_outlines() {
     let cases = [
         (format!("plate_width_m = 2\n{two}"), "plates.plate_width_m = 2"),
         (two.replace("P-02", "P-01"), "the same as that of plates.outlines.0.name"),
-        (two.replace("P-02", "no plate"), "the same as that of the floor on no plate"),
+        (two.replace("P-02", "no plate"), "the same as that of the floor outside all plates"),
         (two.replace("[0, -2], [0, 0]", "[0, 0], [0, -2], [-2, 0]"), "sides 1 and 3 cross"),
         (
             two.replace("[[-2, -2], [0, -2], [0, 0]]", "[[7, 7], [8, 7], [8, 8]]"),
-            "lies wholly outside the tank",
+            "is completely outside the tank",
         ),
         (two.replace("name = \"P-02\", ", ""), "plates.outlines.1.name: missing"),
         ("outlines = []".into(), "plates.outlines"),

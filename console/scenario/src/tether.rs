@@ -1,4 +1,4 @@
-//! The tether: `[tether]`.
+//! Reads the tether: `[tether]`.
 
 use super::{
     checks::{ROUNDING_M, Site},
@@ -8,7 +8,7 @@ use super::{
 use mission::TetherConfig;
 use world::{Point, tether::Limits};
 
-/// Reads `[tether]`; the anchor is where the robot starts if nothing else is said.
+/// Reads `[tether]`; without `anchor_m`, the anchor is the robot's start.
 pub(crate) fn tether(section: &Section<'_>, start: Option<Point>) -> Option<TetherConfig> {
     let anchor = if section.has("anchor_m") { section.point("anchor_m") } else { start };
     let (reel_length_m, friction) = (section.number("reel_length_m"), section.number("friction"));
@@ -22,7 +22,7 @@ pub(crate) fn tether(section: &Section<'_>, start: Option<Point>) -> Option<Teth
     Some(TetherConfig { anchor: anchor?, limits, friction: friction?, allow_uncertified: allow_uncertified? })
 }
 
-/// Complains about an anchor that is not on free floor, and about a reel that does not even reach the start.
+/// Complains about an anchor that is not on free floor, and about a reel that is too short to reach the start.
 pub(crate) fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_>, start: Point) {
     if section.has("anchor_m")
         && let Some(what) = site.objection(tether.anchor)
@@ -31,18 +31,19 @@ pub(crate) fn check(section: &Section<'_>, tether: &TetherConfig, site: &Site<'_
     }
     let way_m = (start - tether.anchor).norm();
     if way_m > tether.limits.reel_length_m {
-        let must_be = format!("at least {way_m:.2} m, the way from the anchor to the start");
+        let must_be = format!("at least {way_m:.2} m, the distance from the anchor to the start");
         section.complain("reel_length_m", Complaint::OutOfRange(must_be));
     }
 }
 
-/// As far from the anchor the robot counts as back for the certificate of a plan, metres; nearer if the mission says so.
+/// The distance in metres from the anchor within which the robot counts as back, for the certificate of a plan; less if
+/// the mission's tolerance is smaller.
 const BACK_M: f64 = 0.3;
-/// Share of that by which the place with room for hull and clearance may lie beside the anchor.
+/// The share of that distance within which there must be a point with room for hull and clearance.
 const ASIDE: f64 = 0.5;
 
-/// Complains about an anchor at which a robot that comes back to it has no room: its hull must fit, and all of the
-/// clearance a little beside it.
+/// Complains about an anchor without room for the returning robot: the hull must fit at the anchor, and hull and
+/// clearance at a point nearby.
 pub(crate) fn check_room(
     (section, key): (&Section<'_>, &str),
     tether: &TetherConfig,
@@ -58,11 +59,11 @@ pub(crate) fn check_room(
     let aside_m = ASIDE * tolerance_m.min(BACK_M);
     let need_m = site.radius_m + (clearance_m - aside_m).max(0.0);
     let Some((away_m, from)) = nearest.filter(|(away_m, _)| *away_m < need_m - ROUNDING_M) else { return };
-    // A place outside the tank or within something solid is complained about as such.
+    // A point outside the tank or inside something solid is reported separately.
     if section.has(key) && away_m >= 0.0 {
         let must_be = format!(
-            "at least {need_m:.3} m away from {from}, for the robot comes back to it: its hull must fit, and its clearance \
-             {aside_m:.3} m beside it; this is {away_m:.3} m"
+            "at least {need_m:.3} m from {from}, because the robot returns to it: its hull must fit there, and \
+             its clearance within {aside_m:.3} m; the distance is {away_m:.3} m"
         );
         section.complain(key, Complaint::OutOfRange(must_be));
     }

@@ -1,10 +1,10 @@
-//! What is simulated.
+//! Configuration of the simulator.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use world::{Amphibious, ObstacleId, Point, Pose, PressureSensor, StationId, World};
 
-/// How ranges scatter about the true distance.
+/// The random error of ranges.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "model")]
 pub enum NoiseModel {
@@ -12,7 +12,7 @@ pub enum NoiseModel {
     None,
     /// True distance times `1 + u`, `u` uniform in `[-ratio, ratio]` (Wang et al. 2023, eq. 13).
     Uniform {
-        /// Largest error as a share of the distance.
+        /// Maximum error as a share of the distance.
         ratio: f64,
     },
     /// True distance times `1 + g`, `g` normal with standard deviation `sigma_ratio`.
@@ -23,84 +23,85 @@ pub enum NoiseModel {
     /// True distance times `1 + t`, `t` triangular about 0 with ends at `-ratio` and `ratio`: the mean of two uniform
     /// errors, as in two-way ranging.
     Triangular {
-        /// Largest error as a share of the distance.
+        /// Maximum error as a share of the distance.
         ratio: f64,
     },
     /// True distance times `1 + t`, `t` with Student's distribution of 3 degrees of freedom, scaled to the standard
-    /// deviation `sigma_ratio`: now and then a range is far off.
+    /// deviation `sigma_ratio`. Occasionally a range is far off.
     HeavyTailed {
         /// Standard deviation as a share of the distance.
         sigma_ratio: f64,
     },
 }
 
-/// What a station hears of a robot behind something solid.
+/// The sound that a station receives from a robot behind something solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BehindColumns {
-    /// The direct sound, as if nothing were there.
+    /// The direct sound, as if there were no obstacle.
     #[default]
     Heard,
     /// The wave that creeps around the column.
     Creeping,
-    /// The direct sound, later by an exponential delay of mean [`Disturbances::excess_range_mean_m`].
+    /// The direct sound, delayed by a random amount with an exponential distribution of mean
+    /// [`Disturbances::excess_range_mean_m`].
     Late,
     /// The shortest echo from the wall.
     WallEcho,
-    /// Nothing.
+    /// No sound.
     Silent,
 }
 
 /// A temporary fault of one station.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StationFault {
-    /// Which station.
+    /// Id of the station.
     pub station: StationId,
-    /// Beginning in mission time, seconds.
+    /// Start of the fault, mission time, seconds.
     pub from_s: f64,
-    /// End in mission time, seconds.
+    /// End of the fault, mission time, seconds.
     pub to_s: f64,
-    /// Metres that every range is too long by; `None`: the station is silent.
+    /// Metres by which every range is too long; `None` if the station is silent.
     pub excess_range_m: Option<f64>,
 }
 
-/// Everything that goes wrong with ranges besides their scatter. The default is nothing.
+/// All disturbances of ranges other than their random error. By default there are none.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbances {
     /// Probability that a single range of a station is missing, 0 to 1.
     pub ping_dropout_probability: f64,
-    /// Probability that a range scatters [`Self::outlier_factor`] times as far, 0 to 1.
+    /// Probability that the error of a range is [`Self::outlier_factor`] times as large, 0 to 1.
     pub outlier_probability: f64,
-    /// How much further outliers scatter.
+    /// Factor on the error of outliers.
     pub outlier_factor: f64,
     /// Probability that a single range is late, 0 to 1.
     pub late_ping_probability: f64,
-    /// Probability that all ranges of a station are late in a cycle, because it is not in line of sight, 0 to 1.
+    /// Probability that all ranges of a station are late in a cycle, as if it were out of sight, 0 to 1.
     pub nlos_probability: f64,
     /// Mean of the exponential delay of late ranges, metres.
     pub excess_range_mean_m: f64,
-    /// What is heard of a robot behind a column.
+    /// The sound received from a robot behind a column.
     pub behind_columns: BehindColumns,
     /// Standard deviation of the surveyed station positions in x and in y, metres; drawn once per run.
     pub survey_sigma_m: f64,
     /// Share by which all ranges are too long because sound is slower than assumed.
     pub sound_speed_error_ratio: f64,
-    /// Faults of single stations.
+    /// Temporary faults of single stations.
     pub faults: Vec<StationFault>,
 }
 
-/// Errors of ranges that are the same at every distance: those of the times that the ranges are computed from.
+/// Errors of ranges that do not depend on the distance: errors of the times from which the ranges are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimingErrors {
-    /// Standard deviation of the normal error of each range, metres.
+    /// Standard deviation of the normally distributed error of each range, metres.
     pub jitter_m: f64,
-    /// Ranges are rounded to whole multiples of this, metres; 0: they are not.
+    /// Ranges are rounded to whole multiples of this, metres; 0 for no rounding.
     pub resolution_m: f64,
 }
 
 impl TimingErrors {
-    /// Whether there are none.
+    /// Whether all errors are zero.
     pub fn is_none(&self) -> bool {
         !(self.jitter_m > 0.0 || self.resolution_m > 0.0)
     }
@@ -111,18 +112,18 @@ impl TimingErrors {
 pub struct AeConfig {
     /// Time between ranging cycles, seconds.
     pub period_s: f64,
-    /// Ranges per station and cycle.
+    /// Number of ranges per station and cycle.
     pub repetitions: u32,
-    /// How they scatter.
+    /// Their random error.
     pub noise: NoiseModel,
-    /// How their times err besides.
+    /// Their timing errors.
     #[serde(default, skip_serializing_if = "TimingErrors::is_none")]
     pub timing: TimingErrors,
     /// Probability that a station is not heard in a cycle, 0 to 1.
     pub dropout_probability: f64,
-    /// Intervals of mission time without any ranges, seconds: from, to.
+    /// Intervals of mission time without any ranges, seconds: start, end.
     pub outages_s: Vec<(f64, f64)>,
-    /// What else goes wrong.
+    /// Other disturbances.
     pub disturbances: Disturbances,
 }
 
@@ -133,61 +134,61 @@ pub struct RobotConfig {
     pub start: Pose,
     /// Radius of the hull, metres.
     pub radius_m: f64,
-    /// Largest speed, metres per second.
+    /// Maximum speed, metres per second.
     pub v_max_m_per_s: f64,
-    /// Largest turn rate, radians per second.
+    /// Maximum turn rate, radians per second.
     pub w_max_rad_per_s: f64,
-    /// Largest change of speed, metres per second squared.
+    /// Maximum acceleration, metres per second squared.
     pub acceleration_m_per_s2: f64,
-    /// Range at which it sees obstacles, metres.
+    /// Range within which the robot sees obstacles, metres.
     pub sensing_range_m: f64,
     /// Mean share of the commanded distance that is lost to slip.
     pub slip_mean: f64,
-    /// Standard deviation of the slip from tick to tick.
+    /// Standard deviation of the slip between ticks.
     pub slip_sigma: f64,
     /// Standard deviation of the odometry's own error, as a share of the distance.
     pub odometry_sigma_ratio: f64,
     /// Constant bias of the gyro, radians per second.
     pub gyro_bias_rad_per_s: f64,
-    /// For a robot that walks and swims: the limits that replace those above, depending on its zone.
+    /// For a robot that walks and swims: limits that replace the ones above, depending on its zone.
     #[serde(default)]
     pub amphibious: Option<Amphibious>,
-    /// The sensor by which it knows whether the floor under it is flooded.
+    /// The pressure sensor that detects whether the floor under the robot is flooded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<PressureSensor>,
 }
 
-/// An obstacle that moves.
+/// A moving obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mover {
-    /// Which one.
+    /// Id of the obstacle.
     pub id: ObstacleId,
-    /// How.
+    /// Its motion.
     pub track: Track,
 }
 
-/// How an obstacle moves; it does not turn, and only the wall stops it.
+/// The motion of an obstacle; it does not rotate, and only the wall stops it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Track {
-    /// Straight on, and back again from the wall.
+    /// Straight ahead; reverses at the wall.
     Straight {
-        /// Metres per second, tank frame.
+        /// Velocity, metres per second, tank frame.
         velocity_m_per_s: Vector2<f64>,
     },
-    /// From its initial position to one point after the other, and back the same way, forever.
+    /// From its initial position through the points and back the same way, repeated forever.
     Waypoints {
         /// The points, metres, tank frame.
         points: Vec<Point>,
-        /// Metres per second.
+        /// Speed, metres per second.
         speed_m_per_s: f64,
     },
 }
 
-/// Everything that the simulator needs besides the seed.
+/// Everything that the simulator needs except the seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SimConfig {
-    /// The tank as it truly is.
+    /// The true tank.
     pub world: World,
     /// The robot.
     pub robot: RobotConfig,
@@ -195,36 +196,36 @@ pub struct SimConfig {
     pub ae: Option<AeConfig>,
     /// Length of a tick, seconds.
     pub tick_s: f64,
-    /// Obstacles that move.
+    /// The moving obstacles.
     #[serde(default)]
     pub movers: Vec<Mover>,
     /// Where the tether enters the tank, metres, tank frame; `None` for a robot without one.
     #[serde(default)]
     pub tether_anchor: Option<Point>,
-    /// Length of the tether on the reel, metres; `None` for no limit. A robot at its end cannot move on.
+    /// Length of the tether on the reel, metres; `None` for no limit. A robot at the end of its tether cannot move on.
     #[serde(default)]
     pub reel_length_m: Option<f64>,
 }
 
-/// The truth of one tick.
+/// The true state in one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
     /// True pose.
     pub pose: Pose,
-    /// Distance from the hull to the nearest solid, metres; negative in a collision.
+    /// Distance from the hull to the nearest solid object, metres; negative in a collision.
     pub clearance_m: f64,
-    /// Whether the hull began to touch something in this tick.
+    /// Whether a contact of the hull began in this tick.
     pub collided: bool,
-    /// How the tether lies; `None` without one.
+    /// True geometry of the tether; `None` without one.
     pub tether: Option<TetherTruth>,
 }
 
-/// How the tether truly lies.
+/// The true geometry of the tether.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TetherTruth {
     /// Length between anchor and robot, metres.
     pub length_m: f64,
-    /// Largest wrap on one obstacle, radians.
+    /// Maximum wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
     /// Total wrap, radians.
     pub wrap_total_rad: f64,

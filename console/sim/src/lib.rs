@@ -1,8 +1,8 @@
-//! The truth: where the robot really is, and what it senses there.
+//! The simulator: where the robot really is, and what its sensors read there.
 //!
-//! The simulator answers two calls, [`Simulator::sense`] and [`Simulator::act`]. It knows no clock: time is the number of
+//! The simulator has two main calls, [`Simulator::sense`] and [`Simulator::act`]. It has no clock: time is the number of
 //! ticks. All randomness comes from one seed; the same seed and the same drives give the same readings on every machine.
-//! Cost: a tick takes a few distance queries, some microseconds.
+//! A tick costs a few distance queries, which take some microseconds.
 
 mod config;
 mod motion;

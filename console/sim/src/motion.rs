@@ -1,24 +1,24 @@
-//! From the drive command to the arc that the tracks drive in one tick.
+//! Converts a drive command into the arc that the tracks drive in one tick.
 
 use crate::config::RobotConfig;
 use geometry::{Drive, Pose, Vector, unit_vector, wrap_angle_rad};
 use world::Pace;
 
-/// Most motion of one tick, metres or radians; keeps absurd settings finite.
+/// Maximum motion in one tick, metres or radians; keeps absurd settings finite.
 const LONGEST: f64 = 1e6;
 
-/// What the tracks do in one tick, robot frame: drive ahead while the heading turns at a constant rate.
+/// The motion of the tracks in one tick, robot frame: straight ahead while the heading turns at a constant rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Arc {
     /// Change of heading before the start, radians; a point robot turns instantly.
     pub turn_first_rad: f64,
-    /// Distance ahead, metres; negative backwards.
+    /// Distance ahead, metres; negative backward.
     pub way_m: f64,
     /// Change of heading along the arc, radians.
     pub turn_rad: f64,
 }
 
-/// The robot's speed and what it can do.
+/// The robot's speed and limits.
 #[derive(Debug, Clone)]
 pub(crate) struct Tracks {
     v_max_m_per_s: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Tracks {
 }
 
 impl Tracks {
-    /// Tracks at rest. Limits below zero count as zero.
+    /// Tracks at rest. Negative limits count as zero.
     pub(crate) fn new(robot: &RobotConfig, tick_s: f64) -> Self {
         Self {
             v_max_m_per_s: robot.v_max_m_per_s.max(0.0),
@@ -41,13 +41,13 @@ impl Tracks {
         }
     }
 
-    /// Sets other limits. A robot that is faster than they allow brakes as hard as it can.
+    /// Sets new limits. A robot that is faster than they allow brakes as hard as it can.
     pub(crate) fn set_limits(&mut self, pace: Pace) {
         self.v_max_m_per_s = pace.v_max_m_per_s.max(0.0);
         self.w_max_rad_per_s = pace.w_max_rad_per_s.max(0.0);
     }
 
-    /// Obeys a drive for one tick as far as the limits allow. A number that is not finite counts as zero.
+    /// Follows a drive for one tick as far as the limits allow. A number that is not finite counts as zero.
     pub(crate) fn drive(&mut self, drive: Drive, pose: &Pose) -> Arc {
         match drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => {
@@ -81,7 +81,7 @@ impl Tracks {
         }
     }
 
-    /// Stops the robot, because it ran into something.
+    /// Stops the robot because it has hit something.
     pub(crate) fn stop(&mut self) {
         self.velocity = Vector::zeros();
     }
@@ -98,12 +98,14 @@ impl Arc {
         turned.moved(self.way_m * share, 0.0, self.turn_rad * share)
     }
 
-    /// The same motion as a single arc from the previous heading: metres ahead, metres to the left, change of heading.
+    /// The same motion as a single arc from the previous heading: distance ahead and to the left, metres, and change of
+    /// heading, radians.
     pub(crate) fn seen_from_start(&self) -> (f64, f64, f64) {
         if self.turn_first_rad == 0.0 {
             return (self.way_m, 0.0, self.turn_rad);
         }
-        // A chord as long as the distance, at half the turn from the previous heading; an arc is longer than its chord.
+        // A chord as long as the distance, at half the turn from the previous heading; the arc itself is longer than its
+        // chord.
         let half = self.turn_first_rad / 2.0;
         let length = self.way_m * if half.abs() < 1e-6 { 1.0 } else { half / half.sin() };
         (length * half.cos(), length * half.sin(), self.turn_first_rad)
@@ -119,7 +121,7 @@ fn finite(number: f64) -> f64 {
     if number.is_finite() { number.clamp(-LONGEST, LONGEST) } else { 0.0 }
 }
 
-/// The number, or the largest that a motion may have.
+/// The number, limited to the maximum that a motion can have.
 pub(crate) fn bounded(number: f64) -> f64 {
     number.clamp(-LONGEST, LONGEST)
 }

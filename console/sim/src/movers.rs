@@ -1,4 +1,4 @@
-//! Obstacles that move.
+//! Moving obstacles.
 
 use crate::config::{Mover, Track};
 use nalgebra::{Isometry2, Vector2};
@@ -21,7 +21,7 @@ enum Course {
     Straight {
         velocity_m_per_s: Vector2<f64>,
     },
-    /// Along the stops in a cycle; `next` is the index of the one ahead.
+    /// Visits the stops in a cycle; `next` is the index of the next one.
     Stops {
         stops: Vec<Point>,
         next: usize,
@@ -30,7 +30,7 @@ enum Course {
 }
 
 impl Movers {
-    /// The movers among these obstacles; those without an obstacle or a finite speed are ignored.
+    /// Creates the movers; entries without an obstacle or a finite speed are ignored.
     pub(crate) fn new(movers: &[Mover], obstacles: &[Obstacle]) -> Self {
         let index_of = |id: ObstacleId| obstacles.iter().position(|obstacle| obstacle.id == id);
         let moving = |mover: &Mover| {
@@ -41,12 +41,12 @@ impl Movers {
         Self(movers.iter().filter_map(moving).collect())
     }
 
-    /// Whether nothing moves.
+    /// Whether there are no moving obstacles.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Moves them all for `dt_s` seconds.
+    /// Moves all of them for `dt_s` seconds.
     pub(crate) fn advance(&mut self, obstacles: &mut [Obstacle], boundary: &Boundary, dt_s: f64) {
         for moving in &mut self.0 {
             let shape = &mut obstacles[moving.index].shape;
@@ -89,7 +89,7 @@ impl Course {
             }
             Self::Stops { stops, next, speed_m_per_s } => {
                 let (mut here, mut left_m) = (at, *speed_m_per_s * dt_s);
-                // Each stop at most once in a tick, or coincident stops would be visited forever.
+                // Each stop at most once per tick; otherwise coincident stops would be visited forever.
                 for _ in 0..stops.len() {
                     let way = stops[*next % stops.len()] - here;
                     if way.norm() > left_m {

@@ -5,14 +5,14 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal, StudentT};
 use rand_pcg::Pcg64;
 
-/// Shortest range that is reported, metres.
+/// Minimum range that is reported, metres.
 const SHORTEST_M: f64 = 1e-6;
-/// Longest range that is reported, metres.
+/// Maximum range that is reported, metres.
 const LONGEST_M: f64 = 1e9;
 /// Degrees of freedom of the heavy-tailed noise: the smallest integer for which the variance exists.
 const TAIL_FREEDOM: f64 = 3.0;
 
-/// The streams; none depends on how much is drawn from the others.
+/// The streams; they are independent of each other.
 #[derive(Debug, Clone)]
 pub(crate) struct RandomStreams {
     /// Errors of the ranges.
@@ -23,7 +23,7 @@ pub(crate) struct RandomStreams {
     pub odometry: Pcg64,
     /// Slip of the tracks.
     pub slip: Pcg64,
-    /// Disturbances of ranges besides their scatter.
+    /// Disturbances of ranges other than their random error.
     pub disturbance: Pcg64,
     /// Survey errors of the stations.
     pub survey: Pcg64,
@@ -57,7 +57,7 @@ fn mixed(number: u64) -> u64 {
     number ^ (number >> 31)
 }
 
-/// A normal number with mean 0 and variance 1.
+/// A normally distributed number with mean 0 and variance 1.
 pub(crate) fn normal(rng: &mut impl Rng) -> f64 {
     rng.sample(StandardNormal)
 }
@@ -81,9 +81,9 @@ impl NoiseModel {
     }
 }
 
-/// A distance with its error, limited to the ranges that can be reported, metres; always positive.
+/// A distance with its error, metres, limited to the ranges that can be reported; always positive.
 pub(crate) fn reported_m(range_m: f64) -> f64 {
-    // Not a number where the error overflows: then the range is as long as can be reported.
+    // NaN if the error overflows: then the maximum range is reported.
     if range_m.is_nan() { LONGEST_M } else { range_m.clamp(SHORTEST_M, LONGEST_M) }
 }
 

@@ -1,4 +1,4 @@
-//! Acoustic-emission ranging: when a cycle ends, and its ranges.
+//! Acoustic-emission ranging: the timing of cycles, and their ranges.
 
 mod path;
 
@@ -11,16 +11,16 @@ use rand::RngExt;
 use rand_distr::{Distribution, Exp1};
 use world::{Point, RangeSet, Station, Vector, World};
 
-/// Tolerance when time is compared with a multiple of the period, as a share of the period.
+/// Tolerance for comparing the time with a multiple of the period, as a share of the period.
 const SLACK: f64 = 1e-6;
 
-/// The stations of a tank as they really are, and the random errors of their ranges.
+/// The stations of a tank at their true positions, and the random errors of their ranges.
 ///
 /// The same configuration, tank, seed and positions give the same ranges on every machine.
 #[derive(Clone)]
 pub struct Sounder {
     config: AeConfig,
-    /// At their true positions.
+    /// The stations at their true positions.
     stations: Vec<Station>,
     propagation: Propagation,
     streams: RandomStreams,
@@ -40,12 +40,12 @@ impl Sounder {
         Self { config, stations, propagation, streams, ended: 0.0 }
     }
 
-    /// A station fails, besides what the configuration holds.
+    /// Adds a fault of a station to those of the configuration.
     pub(crate) fn inject(&mut self, fault: StationFault) {
         self.config.disturbances.faults.push(fault);
     }
 
-    /// The ranges of a cycle, if one ends at time `t_s`; empty if no station was heard.
+    /// The ranges of a cycle if one ends at time `t_s`, otherwise `None`; empty if no station was heard.
     ///
     /// The first cycle ends after one period. A period shorter than a tick means one cycle in every tick.
     pub(crate) fn due_cycle(&mut self, t_s: f64, truth: Point) -> Option<Vec<RangeSet>> {
@@ -61,7 +61,7 @@ impl Sounder {
     /// The ranges of one cycle that ends at time `t_s`.
     pub fn cycle(&mut self, t_s: f64, truth: Point) -> Vec<RangeSet> {
         let Self { config, stations, propagation, streams, .. } = self;
-        // Numbers are drawn for every station, heard or not, so that a loss leaves all later ranges as they were.
+        // Random numbers are drawn for every station, heard or not, so that a loss does not change later ranges.
         let mut sets: Vec<RangeSet> =
             stations.iter().map(|station| measure(config, propagation, station, truth, streams)).collect();
         sets.retain(|_| streams.dropout.random::<f64>() >= config.dropout_probability);
@@ -117,14 +117,14 @@ fn measure(
     RangeSet { station: station.id, ranges_m }
 }
 
-/// A range with the errors of its time, metres.
+/// Adds the timing errors to a range, metres.
 fn timed_m(timing: TimingErrors, range_m: f64, streams: &mut RandomStreams) -> f64 {
     let TimingErrors { jitter_m, resolution_m } = timing;
     let jittered_m = if jitter_m > 0.0 { range_m + jitter_m * normal(&mut streams.timing) } else { range_m };
     if resolution_m > 0.0 { (jittered_m / resolution_m).round() * resolution_m } else { jittered_m }
 }
 
-/// An exponential number with mean 1.
+/// An exponentially distributed number with mean 1.
 fn exponential(streams: &mut RandomStreams) -> f64 {
     Exp1.sample(&mut streams.disturbance)
 }

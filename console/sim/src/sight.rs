@@ -1,4 +1,4 @@
-//! Which obstacles the robot sees.
+//! Determines which obstacles the robot sees.
 
 use geometry::{
     polyline::{edges, segments_cross},
@@ -6,9 +6,9 @@ use geometry::{
 };
 use world::{Boundary, Obstacle, ObstacleMap, Point, Pose, Shape, Sighting};
 
-/// Distance from an outline within which a ray has hit it, metres.
+/// Distance from an outline at which a ray counts as having hit it, metres.
 const TOUCH_M: f64 = 1e-6;
-/// Points of a round outline that are tested.
+/// Number of points tested on a round outline.
 const ROUND_POINTS: u32 = 24;
 
 /// The obstacles of which some part is within `reach_m` of the robot's centre and in its line of sight.
@@ -53,7 +53,7 @@ fn is_first_hit(map: &ObstacleMap, shape: &Shape, eye: Point, point: Point) -> b
     }
 }
 
-/// Points of an outline, enough to see an obstacle whose nearest point is hidden.
+/// Points on an outline, enough to see an obstacle whose nearest point is hidden.
 pub(crate) fn outline_points(shape: &Shape) -> Vec<Point> {
     match shape {
         Shape::Disc { center, radius_m } => (0..ROUND_POINTS)
@@ -71,7 +71,7 @@ fn with_midpoints(points: &[Point], closing: Option<&Point>) -> Vec<Point> {
     corners.iter().copied().chain(midpoints).collect()
 }
 
-/// Whether a straight wall stands between two points; a round wall never does.
+/// Whether a straight wall is between two points; a round wall never is.
 fn is_behind_wall(boundary: &Boundary, a: Point, b: Point) -> bool {
     let Boundary::Polygon { vertices } = boundary else { return false };
     edges(vertices).any(|(c, d)| segments_cross(a, b, c, d))

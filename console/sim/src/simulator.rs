@@ -1,4 +1,4 @@
-//! The simulator: sense and act.
+//! The simulator, with its calls `sense` and `act`.
 
 use crate::{
     config::{RobotConfig, SimConfig, StationFault, TetherTruth, Truth},
@@ -12,7 +12,7 @@ use crate::{
 use geometry::Drive;
 use world::{Medium, Mode, ObstacleMap, Odometry, Point, Pose, Readings, StationId, tether::Cable};
 
-/// A hull that touched something keeps touching it until the gap is wider than this, metres.
+/// A contact of the hull ends only when the gap is wider than this, metres.
 const CONTACT_GAP_M: f64 = 1e-3;
 
 /// One robot in one tank; time is the number of ticks.
@@ -36,7 +36,7 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// A robot at rest at its start; `seed` determines all randomness.
+    /// Creates a robot at rest at its start; `seed` determines all randomness.
     pub fn new(config: SimConfig, seed: u64) -> Self {
         let map = ObstacleMap::new(&config.world.boundary, &config.world.obstacles);
         let mut simulator = Self {
@@ -59,7 +59,7 @@ impl Simulator {
         simulator
     }
 
-    /// A robot at rest somewhere, with its cable as it lies: what a forecast starts from.
+    /// Creates a robot at rest at any place, with its cable in a given position: the start of a forecast.
     pub fn resumed(config: SimConfig, seed: u64, pose: Pose, cable: Option<Cable>) -> Self {
         let robot = RobotConfig { start: pose, ..config.robot.clone() };
         let mut simulator = Self::new(SimConfig { robot, ..config }, seed);
@@ -67,7 +67,7 @@ impl Simulator {
         simulator
     }
 
-    /// What the robot senses at the start of this tick; to be called once per tick, because it draws random numbers.
+    /// Returns the sensor readings at the start of this tick. Call it once per tick, because it draws random numbers.
     pub fn sense(&mut self) -> Readings {
         let world = &self.config.world;
         let t_s = self.tick as f64 * self.config.tick_s.max(0.0);
@@ -90,7 +90,7 @@ impl Simulator {
         }
     }
 
-    /// Moves the truth by one tick.
+    /// Advances the true state by one tick.
     pub fn act(&mut self, drive: Drive) {
         self.update_mode();
         let by_tracks = self.tracks.drive(drive, &self.pose);
@@ -116,8 +116,8 @@ impl Simulator {
         self.tick += 1;
     }
 
-    /// A station fails from this tick on, for so many seconds: its ranges are too long by so many metres, or absent.
-    /// Without acoustic-emission ranging nothing fails.
+    /// Adds a fault of a station from this tick on: for some seconds its ranges are too long by some metres, or missing.
+    /// Has no effect without acoustic-emission ranging.
     pub fn inject(&mut self, station: StationId, for_s: f64, excess_range_m: Option<f64>) {
         let from_s = self.tick as f64 * self.config.tick_s.max(0.0);
         if let Some(sounder) = &mut self.sounder {
@@ -125,7 +125,7 @@ impl Simulator {
         }
     }
 
-    /// The truth at the start of this tick.
+    /// The true state at the start of this tick.
     pub fn truth(&self) -> Truth {
         Truth {
             pose: self.pose,
@@ -145,7 +145,7 @@ impl Simulator {
         self.tick
     }
 
-    /// Takes one step of a transition between walking and swimming, if the floor under the robot calls for it.
+    /// Advances a transition between walking and swimming by one step, if the floor under the robot requires it.
     fn update_mode(&mut self) {
         let Some(amphibious) = self.config.robot.amphibious else { return };
         let medium = Medium::at(&self.config.world.zones, self.pose.position);
@@ -153,7 +153,7 @@ impl Simulator {
         self.tracks.set_limits(amphibious.pace(self.mode.weight()));
     }
 
-    /// Moves the moving obstacles; returns whether one runs into the hull.
+    /// Moves the moving obstacles; returns whether one of them hits the hull.
     fn move_obstacles(&mut self) -> bool {
         if self.movers.is_empty() {
             return false;
@@ -164,7 +164,8 @@ impl Simulator {
         self.clearance_m() < 0.0
     }
 
-    /// Whether a move needs more tether than the reel holds. A move that needs less than before is always possible.
+    /// Whether a move needs more tether than the reel holds. A move that needs less tether than before is always
+    /// possible.
     fn is_reel_empty(&self, moved: Option<&Cable>) -> bool {
         let (Some(reel_length_m), Some(before), Some(after)) =
             (self.config.reel_length_m, &self.cable, moved)
@@ -188,8 +189,7 @@ impl Simulator {
         (robot.slip_mean + robot.slip_sigma * normal(&mut self.streams.slip)).clamp(0.0, 1.0)
     }
 
-    /// The odometry of a motion: tracks sense neither slip nor that the robot was stopped; the gyro measures the turn
-    /// but drifts.
+    /// The odometry of a motion. The tracks sense neither slip nor a collision; the gyro measures the turn but drifts.
     fn measure_odometry(&mut self, by_tracks: &Arc) -> Odometry {
         let robot = &self.config.robot;
         let mut erring = || bounded(1.0 + robot.odometry_sigma_ratio * normal(&mut self.streams.odometry));
@@ -209,7 +209,7 @@ fn dragged(cable: &Cable, to: Point) -> Cable {
     cable
 }
 
-/// The cable from its anchor straight to the robot; none if the anchor is invalid.
+/// The cable from its anchor straight to the robot; `None` if the anchor is invalid.
 fn initial_cable(config: &SimConfig) -> Option<Cable> {
     let shapes: Vec<_> = config.world.obstacles.iter().map(|o| o.shape.clone()).collect();
     let mut cable = Cable::new(config.tether_anchor?, &config.world.boundary, &shapes).ok()?;

@@ -1,14 +1,14 @@
-//! How far a robot moves along an arc before its hull touches something.
+//! Computes how far a robot moves along an arc before its hull touches something.
 
 use crate::motion::Arc;
 use world::{ObstacleMap, Pose};
 
-/// Shortest step along an arc, metres; the gap that remains at a contact is smaller.
+/// Minimum step along an arc, metres; the gap that remains at a contact is smaller.
 const STEP_M: f64 = 1e-4;
-/// Most steps along one arc; only motions that no robot makes would need more.
+/// Maximum number of steps along one arc; no realistic motion needs more.
 const MAX_STEPS: usize = 20_000;
 
-/// Where an arc ended.
+/// The result of moving along an arc.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reached {
     pub pose: Pose,
@@ -17,9 +17,9 @@ pub(crate) struct Reached {
 
 /// Moves along an arc to its end or to the first contact.
 ///
-/// Every step is as long as the gap to the nearest solid, so nothing is passed, however thin. The heading turns to the end
-/// even when the robot is blocked: a round hull turns on the spot. A hull that already overlaps something can move wherever
-/// the overlap does not grow.
+/// Every step is as long as the gap to the nearest solid object, so even thin objects are not missed. The heading turns
+/// to the end even if the robot is blocked, because a round hull can turn on the spot. A hull that already overlaps
+/// something can move wherever the overlap does not grow.
 pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -> Reached {
     let length_m = arc.way_m.abs();
     let gap_m = |share: f64| map.clearance_m(arc.pose_after(start, share).position) - radius_m;
@@ -30,7 +30,7 @@ pub(crate) fn sweep(map: &ObstacleMap, radius_m: f64, start: &Pose, arc: &Arc) -
         }
         let next = (share + gap.max(STEP_M) / length_m).min(1.0);
         let next_gap = gap_m(next);
-        // False also for a gap that is not a number.
+        // Also false for a gap that is NaN.
         let is_free = next_gap >= gap.min(0.0);
         if !is_free {
             break;

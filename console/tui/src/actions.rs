@@ -1,4 +1,5 @@
-//! Everything the operator can do, in one table: keys, footer, help, commands, their reference and `keys.toml` come from it.
+//! Everything the operator can do, in one table. Keys, footer, help, commands, their reference and `keys.toml` are
+//! all derived from this table.
 
 mod action;
 mod argument;
@@ -18,9 +19,9 @@ use crate::screens::Screen;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// Names an action; what each does is said in its row.
+/// The id of an action; the row of the table describes the action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the row of each says what it does")]
+#[expect(missing_docs, reason = "each variant is described by its row of the table")]
 pub enum ActionId {
     Hold,
     Interrupt,
@@ -62,7 +63,7 @@ pub enum ActionId {
     Exclude,
     DrawZone,
     Include,
-    /// An action of the alarm that is selected, by its number from 1.
+    /// The action with this number (from 1) in the list of the selected alarm.
     Remedy(u8),
     ShowPlace,
     NextLike,
@@ -89,7 +90,7 @@ pub enum ActionId {
     Open,
     GoTo,
     Theme,
-    /// To a screen.
+    /// Go to a screen.
     Go(Screen),
     Reload,
     NextMissed,
@@ -101,7 +102,7 @@ pub enum ActionId {
     View,
     Replay,
     Play,
-    /// To another moment of a run that is played back.
+    /// Jump to another moment of the replayed run.
     Jump(Jump),
     Seek,
     Bookmark,
@@ -125,5 +126,5 @@ pub enum ActionId {
     Edit,
 }
 
-/// Every action, in the order of the footer and of help.
+/// Every action, in the order of the footer and the help.
 pub static ACTIONS: LazyLock<Vec<Action>> = LazyLock::new(rows::all);

@@ -1,53 +1,53 @@
-//! What the terminal can show, found from the environment without asking the terminal.
+//! The terminal's capabilities, taken from the environment without querying the terminal.
 
 use serde::{Deserialize, Serialize};
 
 /// How many colours the terminal has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Colours {
-    /// None, or none wanted: bold and reverse only.
+    /// No colours, or none wanted: bold and reverse video only.
     None,
-    /// The terminal's own sixteen.
+    /// The terminal's own sixteen colours.
     Sixteen,
-    /// The palette of 256.
+    /// The 256-colour palette.
     Indexed,
-    /// 24 bit.
+    /// 24-bit colour.
     True,
 }
 
 /// Which characters the terminal's font has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Glyphs {
-    /// 7 bit only.
+    /// 7-bit characters only.
     Ascii,
     /// Lines, half blocks and dots, but no braille.
     Half,
-    /// Braille too.
+    /// Braille as well.
     Braille,
-    /// The octants of Unicode 16 too: dots without gaps. No environment promises them.
+    /// The octants of Unicode 16 as well: dots without gaps. No environment variable shows that a terminal has them.
     Octant,
 }
 
 impl Glyphs {
-    /// Whether a character can show eight dots, so that lines need no letters.
+    /// Whether one character can show eight dots, so that lines need no letters.
     pub fn has_dots(self) -> bool {
         matches!(self, Self::Braille | Self::Octant)
     }
 }
 
-/// What the terminal can show.
+/// The terminal's capabilities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Caps {
     /// Its colours.
     pub colours: Colours,
     /// Its characters.
     pub glyphs: Glyphs,
-    /// Whether it sits behind a slow connection, so that fewer frames should be drawn.
+    /// Whether the console runs over a slow connection, so that it should draw fewer frames.
     pub ssh: bool,
 }
 
 impl Caps {
-    /// The capabilities according to the environment; `variable` looks up an environment variable.
+    /// Derives the capabilities from the environment; `variable` looks up an environment variable.
     pub fn from_env(variable: impl Fn(&str) -> Option<String>) -> Self {
         let term = variable("TERM").unwrap_or_default();
         let says = |name: &str| variable(name).filter(|value| !value.is_empty());
@@ -75,7 +75,7 @@ fn glyphs(term: &str, locale: Option<String>) -> Glyphs {
     let locale = locale.map(|name| name.to_lowercase().replace('-', ""));
     match (term, locale) {
         ("dumb" | "vt100" | "", _) => Glyphs::Ascii,
-        // The plain C locale of containers says nothing about the terminal, other charsets do.
+        // The plain C locale of containers is no evidence about the terminal; other character sets are.
         (_, Some(name)) if !name.contains("utf8") && name != "c" && name != "posix" => Glyphs::Ascii,
         ("linux", _) => Glyphs::Half,
         _ => Glyphs::Braille,

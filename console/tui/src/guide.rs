@@ -12,7 +12,7 @@ use crate::model::{Cause, Run};
 use crate::screens::Screen;
 use remedy::{END, HOLD, OTHER_PLANNER, PARAMETERS, RESUME, SHOW, run, wait};
 
-/// What an alarm is called in a table, short enough for one.
+/// The name of an alarm in a table, short enough for one row.
 pub fn name(cause: &Cause, of: &Run) -> String {
     match cause {
         Cause::PositionLost => "position lost".into(),
@@ -30,14 +30,14 @@ pub fn name(cause: &Cause, of: &Run) -> String {
         Cause::Recording => "recording FAILED".into(),
         Cause::Writer => "console of this run has exited".into(),
         Cause::Console => "part of the console failed".into(),
-        Cause::Response => "console answers slowly".into(),
+        Cause::Response => "console responds slowly".into(),
         Cause::Frames => "screen skips frames".into(),
         Cause::RecorderLag => "recorder is behind".into(),
         Cause::Disk => "little disk space left".into(),
     }
 }
 
-/// What an alarm means, and what can be done about it.
+/// The meaning of an alarm, and what the operator can do about it.
 pub fn guide(cause: &Cause) -> Guide {
     match cause {
         Cause::PositionLost => position::POSITION_LOST,
@@ -52,15 +52,17 @@ pub fn guide(cause: &Cause) -> Guide {
         Cause::RecorderLag => console::RECORDER_LAG,
         Cause::Disk => console::DISK,
         Cause::Map => Guide {
-            cause: "The robot sees something that is not on the drawing.",
-            effect: "Planners avoid it. The floor under it does not count; what it blocks becomes unreachable.",
-            remedies: const { &[SHOW, wait("Check that it is what it seems: nozzle, sump, debris."), HOLD] },
+            cause: "The robot detects something that is not on the drawing.",
+            effect: "Planners avoid it. The floor under it is not counted; floor that it blocks becomes \
+            unreachable.",
+            remedies: const { &[SHOW, wait("Check what it is: nozzle, sump, debris."), HOLD] },
         },
         Cause::Tether(word) => tether::guide(word),
         Cause::Certificate => Guide {
-            cause: "Run to its end, the plan would exceed a limit of the tether, touch something, or leave tether out \
-                    at the anchor.",
-            effect: "A refused plan is not run: the robot is held. An uncertified one is run on the operator's order.",
+            cause: "If run to its end, the plan would exceed a limit of the tether, touch something, or \
+            finish with tether still out.",
+            effect: "A refused plan is not run: the robot is held. An uncertified plan is run only on the \
+            operator's order.",
             remedies: const {
                 &[
                     OTHER_PLANNER,
@@ -72,7 +74,7 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Planner => Guide {
             cause: "The planner panicked, crashed, hung, or sent an invalid answer; its process has ended.",
-            effect: "Robot is held. A fallback planner of the scenario takes over automatically.",
+            effect: "Robot is held. If the scenario names a fallback planner, it takes over automatically.",
             remedies: const { &[RESUME, OTHER_PLANNER, PARAMETERS, END] },
         },
         Cause::Stuck => Guide {
@@ -82,7 +84,7 @@ pub fn guide(cause: &Cause) -> Guide {
         },
         Cause::Ended => Guide {
             cause: "The mission ended before its task was complete.",
-            effect: "Nothing moves. What was scanned and recorded is kept.",
+            effect: "Nothing moves. Everything scanned and recorded is kept.",
             remedies: const {
                 &[
                     run("Show the result (<result>).", ActionId::Go(Screen::Result)),

@@ -1,14 +1,15 @@
-//! Keys as the console names them, free of any terminal library.
+//! Keys as the console names them, independent of any terminal library.
 
 use serde::{Deserialize, Serialize};
 use std::{fmt, time::Duration};
 
-/// One key, with its modifier where it has one.
+/// A key, with its modifier if it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 pub enum Key {
-    /// A character as typed; capitals come as capitals.
+    /// A character as typed; capitals arrive as capitals.
     Char(char),
-    /// A small letter with Ctrl.
+    /// A lower-case letter with Ctrl.
     Ctrl(char),
     /// A function key.
     F(u8),
@@ -24,17 +25,17 @@ pub enum Key {
     Backspace,
     /// Delete.
     Delete,
-    /// Arrow up.
+    /// Up arrow.
     Up,
-    /// Arrow down.
+    /// Down arrow.
     Down,
-    /// Arrow left.
+    /// Left arrow.
     Left,
-    /// Arrow right.
+    /// Right arrow.
     Right,
-    /// Arrow left with Ctrl.
+    /// Left arrow with Ctrl.
     CtrlLeft,
-    /// Arrow right with Ctrl.
+    /// Right arrow with Ctrl.
     CtrlRight,
     /// Page up.
     PageUp,
@@ -46,37 +47,38 @@ pub enum Key {
     End,
 }
 
-/// A key going down, or repeating while it is held down.
+/// A key press, or a repeat while the key is held down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyPress {
-    /// Which key.
+    /// The key.
     pub key: Key,
-    /// Whether the terminal says that it repeats; only movement listens to repeats.
+    /// Whether the terminal reports the press as a repeat; only movement actions act on repeats.
     pub repeat: bool,
-    /// How long after the same key, if no other went down between: many terminals do not say that a key repeats. `None` for a
-    /// press that follows another key, and for one that no keyboard made.
+    /// The time since the same key last went down, if no other key was pressed in between: many terminals do not
+    /// report that a key repeats. `None` for a press that follows a different key, and for one that did not come from
+    /// a keyboard.
     #[serde(default)]
     pub since_same: Option<Duration>,
 }
 
-/// What a press is, as far as it can be told by the time that has passed since the same key went down.
+/// The kind of a key press, as far as the time since the last press of the same key reveals it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freshness {
     /// The key is held down.
     Held,
-    /// The key is held down and repeats for the first time, or it was pressed again: what follows tells.
+    /// Either the first repeat of a key that is held down, or a second press; only the next press can tell.
     Unclear,
     /// The key was pressed.
     Fresh,
 }
 
 impl KeyPress {
-    /// A key that is held down repeats at least this often.
+    /// A held key repeats at least this often.
     pub const REPEATS_WITHIN: Duration = Duration::from_millis(300);
-    /// A key that is held down repeats for the first time within this.
+    /// A held key repeats for the first time within this time.
     const BEGINS_WITHIN: Duration = Duration::from_secs(2);
 
-    /// Whether the key is held down.
+    /// Classifies the press by the time since the last press of the same key.
     pub fn freshness(&self) -> Freshness {
         match self.since_same {
             _ if self.repeat => Freshness::Held,
@@ -87,7 +89,7 @@ impl KeyPress {
     }
 }
 
-/// Keys with a name of their own, as `keys.toml` writes them.
+/// Keys that have names in `keys.toml`.
 const NAMED: [(&str, Key); 17] = [
     ("space", Key::Char(' ')),
     ("enter", Key::Enter),
@@ -109,7 +111,7 @@ const NAMED: [(&str, Key); 17] = [
 ];
 
 impl Key {
-    /// The key of a name: a character, `space`, `enter`, `up`, `F5`, `Ctrl-L`.
+    /// The key with a given name: a character, `space`, `enter`, `up`, `F5`, `Ctrl-L`.
     pub fn named(name: &str) -> Option<Self> {
         let mut letters = name.chars();
         if let (Some(letter), None) = (letters.next(), letters.next()) {
@@ -128,7 +130,7 @@ impl Key {
         named.or_else(control).or_else(function)
     }
 
-    /// Its name, as `keys.toml` writes it.
+    /// The key's name, as `keys.toml` writes it.
     pub fn name(self) -> String {
         let named = NAMED.iter().find(|(_, key)| *key == self);
         named.map_or_else(|| self.to_string(), |(name, _)| (*name).to_owned())
@@ -157,7 +159,13 @@ impl fmt::Display for Key {
             Self::PageUp => f.write_str("PgUp"),
             Self::PageDown => f.write_str("PgDn"),
             Self::BackTab => f.write_str("Shift-Tab"),
-            other => write!(f, "{other:?}"),
+            Self::Enter => f.write_str("Enter"),
+            Self::Esc => f.write_str("Esc"),
+            Self::Tab => f.write_str("Tab"),
+            Self::Backspace => f.write_str("Backspace"),
+            Self::Delete => f.write_str("Delete"),
+            Self::Home => f.write_str("Home"),
+            Self::End => f.write_str("End"),
         }
     }
 }
@@ -165,6 +173,8 @@ impl fmt::Display for Key {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
 
     #[test]
     fn every_key_is_found_by_its_name() {
@@ -189,5 +199,33 @@ mod tests {
             .map(|key| key.to_string())
             .into();
         assert_eq!(shown, ["space", "S", "Ctrl-C", "F1", "Enter"]);
+    }
+
+    #[test]
+    fn every_key_has_a_word_of_its_own() {
+        let all: [Key; Key::COUNT] = [
+            Key::Char('s'),
+            Key::Ctrl('s'),
+            Key::F(1),
+            Key::Enter,
+            Key::Esc,
+            Key::Tab,
+            Key::BackTab,
+            Key::Backspace,
+            Key::Delete,
+            Key::Up,
+            Key::Down,
+            Key::Left,
+            Key::Right,
+            Key::CtrlLeft,
+            Key::CtrlRight,
+            Key::PageUp,
+            Key::PageDown,
+            Key::Home,
+            Key::End,
+        ];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

@@ -1,7 +1,8 @@
-//! Which panes the mission screen has at some size, and where they lie.
+//! The panes of the mission screen for a given terminal size, and their positions.
 //!
-//! Every pane has a rank, a least and a preferred number of rows. Where there is too little room the panes of the highest
-//! rank get their least rows; what is left goes row by row, in order of rank, to those that would like more.
+//! Every pane has a rank, and a minimum and a preferred number of rows. If space is short, the highest-ranked panes
+//! get their minimum; the remaining rows are then handed out one by one, in order of rank, to the panes that prefer
+//! more.
 
 use crate::model::{
     Pane, Run,
@@ -9,14 +10,14 @@ use crate::model::{
 };
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Columns of a stack of panes, at least and at most.
+/// Minimum and maximum width of a stack of panes, columns.
 const STACK: (u16, u16) = (30, 50);
-/// Columns of the map for some rows of floor: what a round tank takes, its legend and the frame.
+/// Width of the map for a given number of floor rows, columns: the round tank, its legend and the frame.
 const MAP: (u16, u16) = (2, 22);
-/// Rows of the map that are not floor: frame and readout.
+/// Rows of the map that show no floor: the frame and the readout.
 const MAP_FRAME: u16 = 3;
 
-/// What a pane asks of the room, rows with its frame. The first ones of a list rank highest.
+/// The rows that a pane requests, with its frame. Panes at the beginning of a list rank highest.
 struct Wish {
     pane: Pane,
     least: u16,
@@ -27,26 +28,26 @@ const fn wish(pane: Pane, least: u16, rows: u16) -> Wish {
     Wish { pane, least, rows }
 }
 
-/// What there is to show beyond the panes that every mission has.
+/// What the layout must show beyond the panes of every mission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shown {
     /// Whether there is a tether.
     pub tether: bool,
-    /// Whether it is known what was missed.
+    /// Whether the missed areas are known.
     pub missed: bool,
-    /// How many AE stations there are.
+    /// The number of AE stations.
     pub stations: u16,
 }
 
 impl Shown {
-    /// What there is to show of a run.
+    /// What the layout must show for a run.
     pub(crate) fn of(run: &Run, missed: bool) -> Self {
         let stations = run.about.as_ref().map_or(0, |about| about.world.stations.len() as u16);
         Self { tether: run.tether.is_some(), missed, stations }
     }
 }
 
-/// The panes of the mission screen and their places in some area, for a terminal of `size`; none for a screen that shows one
+/// The panes of the mission screen and their areas, for a terminal of `size`; empty for a terminal that shows one
 /// page at a time.
 pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> Vec<(Pane, Rect)> {
     let arrangement = Arrangement::of(width, height);
@@ -82,7 +83,7 @@ pub(crate) fn mission(area: Rect, (width, height): (u16, u16), shown: Shown) -> 
     placed
 }
 
-/// The panes that a page of a small screen is made of.
+/// The panes on a page of a small screen.
 pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
     match pane {
         Pane::Planner if shown.tether => stack(area, &[wish(Pane::Tether, 5, 6), wish(Pane::Planner, 4, 20)]),
@@ -90,7 +91,7 @@ pub(crate) fn page(area: Rect, pane: Pane, shown: Shown) -> Vec<(Pane, Rect)> {
     }
 }
 
-/// The panes beside the map. What can end a mission goes first.
+/// The panes beside the map. Whatever can end a mission comes first.
 fn first(shown: Shown, wide: bool) -> Vec<Wish> {
     let rows = |full: u16, short: u16| if wide { full } else { short };
     let tether = shown.tether.then_some(wish(Pane::Tether, 5, rows(8, 6)));
@@ -120,7 +121,7 @@ fn second(shown: Shown, alarms: bool) -> Vec<Wish> {
         .collect()
 }
 
-/// Places panes above each other, those of the highest rank in any case, in the order in which the operator reads them.
+/// Stacks panes vertically in the operator's reading order. The highest-ranked panes are always placed.
 fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
     let mut taken: Vec<(&Wish, u16)> = Vec::new();
     let mut left = area.height;
@@ -140,7 +141,7 @@ fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
         }
     }
     taken.sort_by_key(|(wish, _)| order(wish.pane));
-    // What nobody asked for goes to the last one.
+    // Rows that no pane requests go to the last pane.
     if let Some((_, rows)) = taken.last_mut() {
         *rows += left;
     }
@@ -153,7 +154,7 @@ fn stack(area: Rect, wishes: &[Wish]) -> Vec<(Pane, Rect)> {
     taken.into_iter().map(place).collect()
 }
 
-/// From top to bottom.
+/// The position of a pane in the stack, from top to bottom.
 fn order(pane: Pane) -> usize {
     const ORDER: [Pane; 12] = [
         Pane::Map,

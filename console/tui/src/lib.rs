@@ -1,10 +1,11 @@
-//! The console's screens: a pure model, update and view, and the terminal shell around them.
+//! The console's screens: a pure model, update function and view, and the terminal shell around them.
 //!
-//! [`Model`] is plain data. [`update()`] folds a [`Msg`] into it and answers with [`Effect`]s for the caller to carry
-//! out; [`view()`] draws it. Neither knows a clock, a file, a thread or a terminal: time arrives as a message. Only
-//! [`terminal`] touches the real terminal.
+//! [`Model`] is plain data. [`update()`] folds a [`Msg`] into it and returns [`Effect`]s for the caller to carry out;
+//! [`view()`] draws the model. Neither function uses a clock, file, thread or terminal: time arrives as a message.
+//! Only [`terminal`] touches the real terminal.
 //!
-//! The screen shows what the mission knows. The truth that a simulator adds to the stream of events is never read.
+//! The screen shows the mission's own state. The ground truth that a simulator adds to the event stream is never
+//! read.
 
 pub mod actions;
 pub mod caps;

@@ -1,4 +1,4 @@
-//! Everything the screen knows, as plain data.
+//! The state of the screens, as plain data.
 
 pub mod alarms;
 pub mod change;
@@ -59,34 +59,34 @@ pub use what_if::{Candidate, Forecast, WhatIf};
 use mission::{PlannerChoice, PlannerInfo, Severity};
 use serde::{Deserialize, Serialize};
 
-/// Seconds for which a refusal or a piece of news stays in the line above the keys.
+/// Seconds for which a refusal or an announcement stays in the line above the keys.
 const NOTICE_S: f64 = 8.0;
-/// Characters that an operator reads in a second beside other work.
+/// Characters per second that an operator reads while doing other work.
 const READ_PER_S: f64 = 10.0;
-/// Seconds without any event after which a running mission counts as silent.
+/// Seconds without an event after which a running mission counts as silent.
 const SILENCE_S: f64 = 2.0;
 
-/// Everything the screen knows.
+/// The state of the screens.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Model {
-    /// What there is to open: scenarios, past runs.
+    /// The scenarios and past runs that can be opened.
     pub home: Home,
-    /// The list of past runs.
+    /// The review screen: the list of past runs.
     #[serde(default)]
     pub review: Review,
-    /// The run that is open, and what is between the operator and its mission.
+    /// The open run, and the exchange between the operator and its mission.
     pub live: Live,
-    /// Speed of the simulation with which a mission begins.
+    /// The initial simulation speed of a mission.
     #[serde(default)]
     pub first_speed: Speed,
-    /// The console itself.
+    /// The state of the console itself.
     pub console: Console,
-    /// What the operator looks at.
+    /// What the operator is looking at.
     pub ui: Ui,
 }
 
 impl Model {
-    /// A console that opens on the plan of a mission: home is one key away.
+    /// Makes a console that opens on the plan of a mission; the home screen is one key away.
     pub fn opened(id: RunId, source: Source, speed: Speed) -> Self {
         let live = Live { id, source: Some(source), is_opening: true, speed, ..Live::default() };
         let mut model = Self { live, first_speed: speed, ..Self::default() };
@@ -94,7 +94,7 @@ impl Model {
         model
     }
 
-    /// A console that looks on at the run in a folder.
+    /// Makes a console that only watches the run in a folder.
     pub fn looking_on(id: RunId, folder: String) -> Self {
         let mut model = Self::opened(id, Source::File(folder), Speed::default());
         model.live.access = Access::LookOnly;
@@ -102,7 +102,7 @@ impl Model {
         model
     }
 
-    /// A console that plays a past run back, beside another one if there is one to compare it with; there is no engine.
+    /// Makes a console that replays a past run, optionally beside a second one; there is no engine.
     pub fn replaying(id: RunId, run: String, with: Option<String>) -> Self {
         let mut model = Self::default();
         model.replay(id, run);
@@ -112,7 +112,7 @@ impl Model {
         model
     }
 
-    /// A past run takes the place of the run that is open.
+    /// Replaces the open run with a replay of a past run.
     pub(crate) fn replay(&mut self, id: RunId, run: String) {
         self.live = Live {
             id,
@@ -127,7 +127,7 @@ impl Model {
         self.ui.go(Screen::Mission);
     }
 
-    /// What is known of the active planner, or of the first one.
+    /// The description of the active planner, or of the first one before any is active.
     pub fn planner(&self) -> Option<&PlannerInfo> {
         let run = &self.live.run;
         let id = run.planner_id();
@@ -135,14 +135,14 @@ impl Model {
         run.planning.info.as_ref().or_else(listed)
     }
 
-    /// What is known of a planner.
+    /// The description of a planner.
     pub fn info_of(&self, id: &str) -> Option<&PlannerInfo> {
         let driving = self.live.run.planning.info.as_ref();
         driving.into_iter().chain(&self.console.planners).find(|info| info.id == id)
     }
 
-    /// The planner whose parameters are listed, and the choice that they belong to: a draft for a forecast if there is one,
-    /// else the active planner.
+    /// The planner whose parameters are listed, with the choice that the parameters belong to: a forecast draft if
+    /// there is one, otherwise the active planner.
     pub fn edited(&self) -> Option<(&PlannerInfo, Option<&PlannerChoice>)> {
         match self.live.what_if.as_ref().and_then(|what_if| what_if.draft.as_ref()) {
             Some(draft) => Some((self.info_of(&draft.id)?, Some(draft))),
@@ -150,30 +150,30 @@ impl Model {
         }
     }
 
-    /// The selected alarm; without a selection the first one of the table.
+    /// The selected alarm, or the first one of the table if none is selected.
     pub fn selected_alarm(&self) -> Option<&Alarm> {
         let alarms = &self.live.run.alarms;
         let chosen = self.ui.alarm.as_ref().and_then(|cause| alarms.get(cause));
         chosen.or_else(|| alarms.table().first().copied())
     }
 
-    /// Whether the mission runs and yet nothing was heard of it, and for how long, seconds.
+    /// How long a running mission has been silent, seconds; `None` if it is not silent.
     pub fn silent_s(&self) -> Option<f64> {
         let silence_s = self.console.now.mono_s - self.live.heard_mono_s;
         (self.is_heard() && silence_s > SILENCE_S).then_some(silence_s)
     }
 
-    /// Whether events come as long as the mission runs.
+    /// Whether the mission sends events as long as it runs.
     fn is_heard(&self) -> bool {
         self.live.run.is_running() && !self.live.is_replay()
     }
 
-    /// The notice, while it is fresh.
+    /// The current notice, until it expires.
     pub fn notice(&self) -> Option<&Notice> {
         self.console.notice.as_ref().filter(|notice| notice.until_mono_s > self.console.now.mono_s)
     }
 
-    /// Whether it is known by now that the key that was waited for is not held down.
+    /// Whether enough time has passed to tell that the pending key is not held down.
     pub fn has_settled(&self) -> bool {
         self.console
             .settling
@@ -181,16 +181,17 @@ impl Model {
             .is_some_and(|settling| settling.until_mono_s <= self.console.now.mono_s)
     }
 
-    /// When the screen next changes by itself, on the console's own clock, seconds; `None` if it does not.
+    /// The time at which the screen next changes without any input, on the console's own clock, seconds; `None` if it
+    /// does not.
     pub fn wakes_at_mono_s(&self) -> Option<f64> {
         let notice = self.notice().map(|notice| notice.until_mono_s);
         let silence = self.is_heard().then(|| match self.silent_s() {
             None => self.live.heard_mono_s + SILENCE_S,
             Some(_) => self.console.now.mono_s + 1.0,
         });
-        // What takes long shows how long it has taken, second by second.
+        // Long work shows its elapsed time, which changes every second.
         let busy = self.live.busy.as_ref().map(|_| self.console.now.mono_s + 1.0);
-        // A figure beyond its limit, or back within it, is looked at again.
+        // A figure that has just crossed its limit must be checked again.
         let health = self.console.watches.is_pending().then_some(self.console.now.mono_s + 1.0);
         let settling = self.console.settling.as_ref().map(|settling| settling.until_mono_s);
         [notice, silence, busy, health, settling].into_iter().flatten().reduce(f64::min)
@@ -203,7 +204,7 @@ impl Model {
         self.say_for(NOTICE_S.max(reading_s), severity, text);
     }
 
-    /// Shows the operator a message that is true for so many seconds only.
+    /// Shows the operator a message for a given number of seconds.
     pub(crate) fn say_for(&mut self, seconds: f64, severity: Severity, text: impl Into<String>) {
         let until_mono_s = self.console.now.mono_s + seconds;
         self.console.notice = Some(Notice { severity, text: text.into(), until_mono_s });

@@ -1,4 +1,4 @@
-//! A screen as a picture, for documents: an SVG drawing of its cells.
+//! Renders a screen as an SVG drawing for documents.
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
@@ -6,18 +6,18 @@ use std::fmt::Write;
 
 /// Width and height of a cell, pixels.
 const CELL: (f64, f64) = (8.4, 18.0);
-/// Height of the letters' foot above the foot of their cell, pixels.
+/// The height of the text baseline above the bottom of the cell, pixels.
 const FOOT: f64 = 5.0;
-/// Colours of a dark terminal: text and ground.
+/// Text and background colours of a dark terminal.
 const TEXT: &str = "#d8dee4";
 const GROUND: &str = "#14181d";
-/// The sixteen colours of terminals, as most of them show them on a dark ground.
+/// The sixteen terminal colours as most terminals show them on a dark background.
 const SIXTEEN: [&str; 16] = [
     "#14181d", "#e06c6c", "#6cc070", "#e0b040", "#5c9bd8", "#c678c8", "#5cc8d8", "#d8dee4", "#8b98a5",
     "#ff8a80", "#8fe08f", "#ffd75f", "#82cdeb", "#f0a0f0", "#8fe8f0", "#ffffff",
 ];
 
-/// How a run of cells looks.
+/// The look of a run of cells.
 #[derive(Debug, Clone, PartialEq)]
 struct Look {
     text: String,
@@ -26,7 +26,8 @@ struct Look {
     dim: bool,
 }
 
-/// The screen as an SVG document, about 100 bytes for each run of cells that look alike, and for each word.
+/// Renders the screen as an SVG document. The document takes about 100 bytes for each word and for each run of cells
+/// that look alike.
 pub fn svg(screen: &Buffer) -> String {
     let (width, height) = (f64::from(screen.area.width) * CELL.0, f64::from(screen.area.height) * CELL.1);
     let mut svg = format!(
@@ -60,7 +61,7 @@ fn draw(svg: &mut String, run: &[Cell], (column, row): (usize, usize)) {
     let opacity = if look.dim { " opacity=\"0.65\"" } else { "" };
     let y = y + CELL.1 - FOOT;
     let mut column = column;
-    // Word by word: a viewer that stretches a text to its length stretches its spaces otherwise than its letters.
+    // Draw word by word: a viewer that stretches a text to its length stretches spaces and letters differently.
     for word in run.chunk_by(|one, other| is_blank(one) == is_blank(other)) {
         let (x, width) = (column as f64 * CELL.0, word.len() as f64 * CELL.0);
         column += word.len();
@@ -73,7 +74,7 @@ fn draw(svg: &mut String, run: &[Cell], (column, row): (usize, usize)) {
             "<text x=\"{x:.1}\" y=\"{y:.1}\" textLength=\"{width:.1}\" lengthAdjust=\"spacingAndGlyphs\" \
              fill=\"{}\"{weight}{opacity}>{}</text>",
             look.text,
-            escaped(&text)
+            foreign::markup(&text)
         );
     }
 }
@@ -116,7 +117,7 @@ fn colour(colour: Color, unset: &str) -> String {
     }
 }
 
-/// A colour of the palette of 256: sixteen of the terminal, a cube of 6x6x6, and 24 greys.
+/// A colour of the 256-colour palette: sixteen terminal colours, a 6x6x6 cube, and 24 greys.
 fn indexed(index: u8) -> String {
     let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * u32::from(step) };
     match index {
@@ -130,10 +131,6 @@ fn indexed(index: u8) -> String {
             format!("#{level:02x}{level:02x}{level:02x}")
         }
     }
-}
-
-fn escaped(text: &str) -> String {
-    foreign::plain(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The same console in sentences, one a line: for screen readers and logs.
+//! The console as sentences, one per line, for screen readers and logs.
 
 use crate::model::{
     Entry, Model, Screen,
@@ -9,22 +9,22 @@ use crate::view::{question, standing};
 use mission::Outcome;
 use world::coverage::percent;
 
-/// What was said last.
+/// What has already been printed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Said {
     screen: Option<Screen>,
-    /// Number of the line of the log that is said next.
+    /// The number of the next log line to print.
     next_line: u64,
     notice: Option<String>,
     question: Option<String>,
     standing: String,
     tenths: u8,
-    /// How many forecasts of the open what-if were said.
+    /// How many forecasts of the open what-if have been printed.
     forecasts: usize,
 }
 
 impl Said {
-    /// What has changed since, a sentence each.
+    /// The changes since the last call, one sentence each.
     pub fn next(&mut self, model: &Model) -> Vec<String> {
         let screen = model.ui.screen;
         let mut lines = Vec::new();
@@ -36,7 +36,7 @@ impl Said {
         let notice = model.notice().map(|notice| notice.text.clone());
         let is_said = |text: &String| entries.iter().any(|entry| entry.text == *text);
         lines.extend(newly(&mut self.notice, notice).filter(|text| !is_said(text)));
-        // Who reads sentences types commands: the keys that a question names are pressed by one.
+        // Readers of plain text type commands, and `key` is the command that presses the keys named in a question.
         let question = newly(&mut self.question, question(model));
         lines.extend(question.map(|question| format!("{question} Commands: `key enter`, `key esc`.")));
         let standing = standing(model);
@@ -49,7 +49,7 @@ impl Said {
         lines
     }
 
-    /// The forecasts that were made since, in the order of the table.
+    /// The forecasts finished since the last call, in the order of the table.
     fn forecasts(&mut self, model: &Model) -> Vec<String> {
         let candidates = model.live.what_if.as_ref().map_or(&[][..], |what_if| &what_if.candidates);
         let made: Vec<String> = candidates.iter().map_while(forecast).collect();
@@ -57,12 +57,12 @@ impl Said {
         made.into_iter().skip(known).collect()
     }
 
-    /// What was logged since, the oldest first.
+    /// The log lines added since the last call, oldest first.
     fn entries(&mut self, model: &Model) -> Vec<Entry> {
         let log = &model.live.run.log;
-        // Another run begins with a log of its own.
+        // A new run begins with a new log.
         let from = match log.end() < self.next_line {
-            // What a replay goes back over was said before.
+            // Lines that a replay passes again have already been printed.
             true if model.live.is_replay() => log.end(),
             true => 0,
             false => self.next_line,
@@ -71,7 +71,7 @@ impl Said {
         (from.max(log.oldest())..log.end()).filter_map(|number| log.get(number)).cloned().collect()
     }
 
-    /// Every tenth of the floor is worth a sentence.
+    /// Reports every further tenth of the floor.
     fn coverage(&mut self, model: &Model) -> Option<String> {
         let scanned = model.live.run.progress.as_ref()?.covered_reachable;
         let tenths = (10.0 * scanned).floor().clamp(0.0, 10.0) as u8;
@@ -81,7 +81,7 @@ impl Said {
     }
 }
 
-/// How the mission would go on with a planner, if that is known.
+/// The forecast for a planner, if it is finished.
 fn forecast(candidate: &Candidate) -> Option<String> {
     let planner = &candidate.choice.id;
     Some(match candidate.made.as_ref()? {
@@ -100,7 +100,7 @@ fn forecast(candidate: &Candidate) -> Option<String> {
     })
 }
 
-/// Takes in what is to be said; what is new.
+/// Remembers the current text; returns the text if it is new.
 fn newly(last: &mut Option<String>, now: Option<String>) -> impl Iterator<Item = String> + use<> {
     let is_new = *last != now;
     last.clone_from(&now);

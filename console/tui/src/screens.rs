@@ -1,6 +1,6 @@
-//! The screens, a row each: its digit and name, what it shows, and what Enter, the arrow keys and a filter do on it.
+//! The screens, one row each: digit and name, contents, and the effect of Enter, the arrow keys and a filter.
 //!
-//! A new screen is a variant and a row here, and a folder for what its row names.
+//! A new screen needs a variant and a row here, and a folder for the functions that its row names.
 
 use crate::actions::context::Context::{self, Cursor, Map, On, Pan, Replay, Rows};
 use crate::actions::{Action, ActionId, action};
@@ -14,56 +14,57 @@ use serde::{Deserialize, Serialize};
 /// A screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 pub enum Screen {
-    /// What there is to open.
+    /// Scenarios and past runs to open.
     #[default]
     Home,
-    /// A mission before it moves.
+    /// A mission before the start.
     Plan,
     /// A mission under way.
     Mission,
-    /// What is wrong.
+    /// Alarms.
     Alarms,
-    /// What happened.
+    /// Events.
     Events,
     /// Past runs.
     Review,
-    /// What a mission has achieved.
+    /// The result of a mission.
     Result,
-    /// Which plugins there are.
+    /// Plugins.
     Plugins,
 }
 
-/// What a screen is.
+/// The definition of a screen.
 #[derive(Clone, Copy)]
 pub(crate) struct Row {
     name: &'static str,
-    /// What shows it: its digit, its command, its line in the help, and whether there is anything to show.
+    /// The action that shows the screen: its digit, command and help text, and whether there is anything to show.
     go: Action,
-    /// Draws it between the line on top and the lines at the foot.
+    /// Draws the screen between the top line and the bottom lines.
     pub draw: Draw,
-    /// The contexts that can be active on it; on a screen with a map the last ones are those of its cursor.
+    /// The sets of contexts that can be active on the screen; on a screen with a map, the last sets are those of its
+    /// cursor.
     contexts: &'static [&'static [Context]],
-    /// Which of them are active.
+    /// The index of the active set of contexts.
     active: fn(&Model) -> usize,
-    /// The word beside Enter in the footer; `None` while there is nothing to open.
+    /// The label of Enter in the footer; `None` while there is nothing to open.
     pub opens: fn(&Model) -> Option<&'static str>,
-    /// What Enter does, if it opens anything.
+    /// The effect of Enter, if there is anything to open.
     pub enter: fn(&mut Model) -> Vec<Effect>,
-    /// Selects another line, so many further down.
+    /// Moves the selection down by some lines.
     pub select: fn(&mut Model, isize),
-    /// The text by which its list is filtered; `None` where it is the filter of the events.
+    /// The filter of the screen's list; `None` if it uses the event filter.
     pub filter: Option<Filter>,
-    /// The run that a command is about.
+    /// The run that a command on this screen applies to.
     pub run: fn(&Model) -> Option<String>,
-    /// Whether it lists what is on the disk: that is looked at whenever the screen is shown.
+    /// Whether the screen lists files; the disk is then rescanned whenever the screen is shown.
     pub lists_runs: bool,
 }
 
-/// The text of a filter, to read and to write.
+/// Read and write access to the text of a filter.
 type Filter = (fn(&Model) -> &str, fn(&mut Model) -> &mut String);
 type Draw = fn(&Look, &mut Frame, Rect, Arrangement);
 
-/// A screen on which Enter opens nothing and no line is selected.
+/// Makes a screen on which Enter opens nothing and no line can be selected.
 const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Context]], draw: Draw) -> Row {
     Row {
         name,
@@ -80,20 +81,20 @@ const fn row(go: Action, name: &'static str, contexts: &'static [&'static [Conte
     }
 }
 
-/// What shows a screen.
+/// Makes the action that shows a screen.
 const fn shows(screen: Screen, name: &'static str, about: &'static str, keys: &'static [Key]) -> Action {
     action(ActionId::Go(screen), name, about, keys, &[Context::Screen])
 }
 
-/// Every screen, in the order of the digits.
+/// All screens, in the order of their digits.
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
     Row { lists_runs: true, opens: |_| Some("open"), enter: go::open_selected, select: |m, by| m.home.select(by),
         filter: Some((|m| &m.home.filter, |m| &mut m.home.filter)), run: go::run_at_home,
         ..row(shows(Screen::Home, "home", "Screen 1: scenarios and past runs", &[Key::Char('1')]), "Home",
             &[&[On(Screen::Home), Rows]], view::home::draw) },
-    // Esc ends the cursor here, and nothing else.
-    row(shows(Screen::Plan, "plan", "Screen 2: the plan before it moves", &[Key::Char('2')]).when(offer::is_open), "Plan",
+    // Esc closes the cursor here, and does nothing else.
+    row(shows(Screen::Plan, "plan", "Screen 2: the plan before the start", &[Key::Char('2')]).when(offer::is_open), "Plan",
         &[&[On(Screen::Plan), Map, Pan], &[Map, Pan, Cursor]], view::plan::draw),
     Row { active: of_mission, opens: |m| (m.ui.pane == Pane::Events).then_some("open"), enter: events::enter,
         select: |m, by| m.ui.events.select(by),
@@ -122,7 +123,7 @@ const ROWS: &[Row] = &[
             &[&[On(Screen::Plugins), Rows]], view::plugins::draw) },
 ];
 
-/// Which contexts the mission screen has: by its pane or its cursor, then the same for a replay.
+/// The index of the mission screen's contexts: by pane or cursor, then the same again for a replay.
 fn of_mission(model: &Model) -> usize {
     let here = match model.ui.pane {
         _ if model.ui.cursor.is_some() => 3,
@@ -133,7 +134,7 @@ fn of_mission(model: &Model) -> usize {
     here + if model.live.is_replay() { 4 } else { 0 }
 }
 
-/// The contexts of their own that the screens have.
+/// The screen-specific contexts.
 #[rustfmt::skip]
 pub(crate) const EACH: &[Context; ROWS.len()] = &[
     On(Screen::Home), On(Screen::Plan), On(Screen::Mission), On(Screen::Alarms),
@@ -141,7 +142,7 @@ pub(crate) const EACH: &[Context; ROWS.len()] = &[
 ];
 
 impl Screen {
-    /// Every screen, in the order of their keys.
+    /// All screens, in the order of their keys.
     #[rustfmt::skip]
     pub const ALL: [Self; ROWS.len()] = [
         Self::Home, Self::Plan, Self::Mission, Self::Alarms, Self::Events, Self::Review, Self::Result, Self::Plugins,
@@ -151,35 +152,35 @@ impl Screen {
         &ROWS[self as usize]
     }
 
-    /// Its name, as the top line shows it.
+    /// The screen's name in the top line.
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// The digit that selects it.
+    /// The digit that shows the screen.
     pub fn digit(self) -> u8 {
         self as u8 + 1
     }
 
-    /// Whether it has a map.
+    /// Whether the screen has a map.
     pub(crate) fn has_map(self) -> bool {
         self.row().contexts.iter().any(|contexts| contexts.contains(&Map))
     }
 }
 
-/// What shows each screen, as rows of the table of actions.
+/// The actions that show the screens, as rows of the action table.
 pub(crate) fn actions() -> Vec<Action> {
     ROWS.iter().map(|row| row.go).collect()
 }
 
-/// The contexts of the screen that is shown, with nothing over it.
+/// The active contexts of the current screen without an overlay.
 pub(crate) fn contexts(model: &Model) -> &'static [Context] {
     let row = model.ui.screen.row();
     let last = row.contexts.len() - 1;
     row.contexts[(row.active)(model).min(last)]
 }
 
-/// Every set of contexts that can be active on a screen with nothing over it.
+/// Every set of contexts that can be active on a screen without an overlay.
 pub(crate) fn together() -> impl Iterator<Item = &'static [Context]> {
     ROWS.iter().flat_map(|row| row.contexts).copied()
 }

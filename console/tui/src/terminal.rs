@@ -1,4 +1,4 @@
-//! The shell around the pure part: takes the terminal over and always gives it back.
+//! The shell around the pure part: takes over the terminal and always restores it.
 
 mod clipboard;
 mod key;
@@ -20,14 +20,14 @@ use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Reports of buttons and wheel, of movement with a button down, in a form without bounds.
+/// Turns on mouse reports: buttons, wheel and dragging, with coordinates of any size.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
-/// No reports of the mouse.
+/// Turns off mouse reports.
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 
-/// The terminal while the console has it; gives it back when dropped.
+/// Owns the terminal while the console uses it, and restores the terminal when dropped.
 ///
-/// The thread that enters owns the terminal: a panic of another thread leaves it alone.
+/// The thread that calls [`Self::enter`] owns the terminal; a panic of any other thread does not restore it.
 pub struct TerminalGuard {
     terminal: Terminal<CrosstermBackend<FrameOutput>>,
     has_mouse: bool,
@@ -35,10 +35,10 @@ pub struct TerminalGuard {
 }
 
 impl TerminalGuard {
-    /// Takes the terminal over: raw mode, alternate screen, bracketed paste, reports of focus.
+    /// Takes over the terminal: raw mode, alternate screen, bracketed paste, focus reports.
     ///
     /// # Errors
-    /// If there is no terminal or it cannot be written to; the terminal is restored before the error is returned.
+    /// Fails if there is no terminal or writing to it fails; the terminal is restored first.
     pub fn enter() -> io::Result<Self> {
         restore::own();
         let sent = Arc::default();
@@ -55,45 +55,46 @@ impl TerminalGuard {
         }
     }
 
-    /// Draws a frame: what changed since the last one leaves in one write, as one synchronized update. Gives its bytes.
+    /// Draws a frame: sends the changes since the last frame in one write, as one synchronized update. Returns the
+    /// number of bytes sent.
     ///
     /// # Errors
-    /// If the terminal cannot be written.
+    /// Fails if writing to the terminal fails.
     pub fn draw(&mut self, view: impl FnOnce(&mut Frame)) -> io::Result<usize> {
         self.terminal.draw(view)?;
         Ok(self.sent.swap(0, Ordering::Relaxed))
     }
 
-    /// Makes the next frame draw every cell. The terminal is not asked anything.
+    /// Makes the next frame draw every cell, without querying the terminal.
     ///
     /// # Errors
-    /// If the terminal cannot be written.
+    /// Fails if writing to the terminal fails.
     pub fn redraw(&mut self) -> io::Result<()> {
         queue!(self.terminal.backend_mut(), Clear(ClearType::All))?;
-        // Both buffers are blank after this, so every cell counts as changed.
+        // Both buffers are now blank, so every cell counts as changed.
         self.terminal.swap_buffers();
         Ok(())
     }
 
-    /// Puts a text into the clipboard of the terminal, if the terminal allows it; it gives no answer.
+    /// Copies a text to the terminal's clipboard, if the terminal allows it; the terminal does not confirm.
     ///
     /// # Errors
-    /// If the terminal cannot be written.
+    /// Fails if writing to the terminal fails.
     pub fn copy(&mut self, text: &str) -> io::Result<()> {
         let out = self.terminal.backend_mut();
         out.write_all(clipboard::sequence(text).as_bytes())?;
         out.flush()
     }
 
-    /// Gives the terminal back for a while, as before stopping the process.
+    /// Restores the terminal temporarily, before the process is stopped.
     pub fn suspend(&mut self) {
         restore();
     }
 
-    /// Takes the terminal over again; the next frame draws every cell.
+    /// Takes over the terminal again; the next frame draws every cell.
     ///
     /// # Errors
-    /// If the terminal cannot be written.
+    /// Fails if writing to the terminal fails.
     pub fn resume(&mut self) -> io::Result<()> {
         restore::own();
         take_over()?;
@@ -101,10 +102,10 @@ impl TerminalGuard {
         self.redraw()
     }
 
-    /// Takes the mouse from the terminal, or gives it back: buttons, wheel and dragging, but no bare movement.
+    /// Turns mouse capture on or off: buttons, wheel and dragging, but not plain movement.
     ///
     /// # Errors
-    /// If the terminal cannot be written.
+    /// Fails if writing to the terminal fails.
     pub fn take_mouse(&mut self, taken: bool) -> io::Result<()> {
         if taken != self.has_mouse || taken {
             let mut output = io::stdout();

@@ -1,4 +1,4 @@
-//! What a mark on the screen stands for, and how each terminal shows it.
+//! The roles of marks on the screen, and how each terminal shows them.
 
 mod colours;
 
@@ -7,10 +7,10 @@ use colours::{Rgb, nearest_indexed};
 use ratatui::style::{Color, Modifier, Style};
 use serde::{Deserialize, Serialize};
 
-/// Makes the roles, each with the letter for it in the stored screens of the tests.
+/// Defines the roles, each with its letter in the screen snapshots of the tests.
 macro_rules! roles {
     ($($(#[$doc:meta])* $role:ident $letter:literal,)*) => {
-        /// What a mark on the screen stands for. The view speaks only in roles.
+        /// The role of a mark on the screen. The view refers to roles only, never to colours.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Role {
             $($(#[$doc])* $role,)*
@@ -20,7 +20,7 @@ macro_rules! roles {
             /// Every role.
             pub const ALL: [Self; [$($letter),*].len()] = [$(Self::$role),*];
 
-            /// One letter for the role, as the stored screens of the tests show it.
+            /// The letter of the role in the screen snapshots of the tests.
             pub fn letter(self) -> char {
                 [$($letter),*][self as usize]
             }
@@ -31,7 +31,7 @@ macro_rules! roles {
 roles! {
     /// Plain text.
     Text '.',
-    /// Text of less weight: units, hints.
+    /// Less prominent text: units, hints.
     Dim 'd',
     /// Title of a pane.
     Title 'T',
@@ -49,53 +49,53 @@ roles! {
     Warn 'W',
     /// Needs action now.
     Crit 'C',
-    /// The robot moves by itself.
+    /// The robot moves automatically.
     Run 'R',
     /// The robot is held.
     Hold 'H',
-    /// A value older than it should be.
+    /// A stale value.
     Stale '~',
     /// The selected line of a list.
     Selected 's',
-    /// The line that asks before the robot moves.
+    /// The line that asks for confirmation before the robot moves.
     Confirm 'c',
     /// Floor that has been scanned.
     Scanned '%',
-    /// Floor of which a part has been scanned.
+    /// Partially scanned floor.
     Partly ':',
-    /// Floor that has been scanned again.
+    /// Floor that has been scanned more than once.
     Overlap '2',
-    /// Floor in reach that was not scanned when the mission ended.
+    /// Reachable floor that was not scanned when the mission ended.
     Missed 'm',
-    /// Floor out of reach.
+    /// Unreachable floor.
     Unreachable '/',
-    /// Floor out of reach along the shell.
+    /// The shell margin.
     Margin 'n',
     /// Outline and name of a plate.
     Plate 'P',
     /// The tank's wall.
     Wall 'o',
-    /// An obstacle of the drawing.
+    /// An obstacle on the drawing.
     Obstacle '#',
-    /// An obstacle that was discovered.
+    /// A found obstacle.
     Found '?',
     /// A no-go zone.
     NoGo 'z',
     /// An acoustic-emission station.
     Station '*',
-    /// Where the robot has been.
+    /// The robot's trail.
     Trail '-',
-    /// Where the plan leads.
+    /// The path of the plan.
     Plan 'p',
-    /// Where another plan leads, for comparison.
+    /// The path of another plan, for comparison.
     Ghost 'G',
-    /// Where the robot goes next.
+    /// The robot's next target.
     Target 'x',
-    /// What the planner drew: pulls.
+    /// A planner drawing: attraction.
     Pull '+',
-    /// What the planner drew: pushes.
+    /// A planner drawing: repulsion.
     Push '=',
-    /// What the planner drew: anything else.
+    /// A planner drawing: anything else.
     Drawn 'D',
     /// The robot.
     Robot '@',
@@ -103,7 +103,7 @@ roles! {
     Tether 't',
 }
 
-/// A choice of colours.
+/// A colour theme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ThemeName {
@@ -112,7 +112,7 @@ pub enum ThemeName {
     Dark,
     /// For a light background.
     Light,
-    /// For a black background and poor light or sight.
+    /// For a black background and poor light or eyesight.
     Contrast,
 }
 
@@ -120,7 +120,7 @@ impl ThemeName {
     /// Every theme.
     pub const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::Contrast];
 
-    /// How configuration and commands call it.
+    /// The theme's name in configuration and commands.
     pub fn name(self) -> &'static str {
         match self {
             Self::Dark => "dark",
@@ -129,12 +129,12 @@ impl ThemeName {
         }
     }
 
-    /// The theme of a name.
+    /// The theme with the given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|theme| theme.name() == name)
     }
 
-    /// The theme for a background as the terminal's `COLORFGBG` says it, such as `0;15`; dark if it says nothing.
+    /// The theme for the background reported by the terminal's `COLORFGBG`, such as `0;15`; dark if it is not set.
     pub fn for_background(colorfgbg: Option<&str>) -> Self {
         let background = colorfgbg.and_then(|colours| colours.rsplit(';').next());
         match background.and_then(|number| number.parse().ok()) {
@@ -151,27 +151,28 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// The styles for a terminal: its own colours where it has few, never one it does not have.
+    /// The styles for a terminal: on terminals with few colours the terminal's own, and never a colour that the
+    /// terminal lacks.
     pub fn new(name: ThemeName, caps: &Caps) -> Self {
         Self { styles: Role::ALL.map(|role| style(role, name, caps.colours)) }
     }
 
-    /// Gives each role a colour that no other has, so that [`Theme::role_of`] can distinguish them.
+    /// Gives each role a unique colour, so that [`Theme::role_of`] can tell the roles apart.
     pub fn labelled() -> Self {
         Self { styles: Role::ALL.map(|role| Style::new().fg(Color::Indexed(16 + role as u8))) }
     }
 
-    /// For a screen drawn with [`Theme::labelled`]: what a colour stands for.
+    /// The role of a colour on a screen drawn with [`Theme::labelled`].
     pub fn role_of(colour: Color) -> Option<Role> {
         Role::ALL.into_iter().find(|role| colour == Color::Indexed(16 + *role as u8))
     }
 
-    /// How text of a role looks.
+    /// The text style of a role.
     pub fn style(&self, role: Role) -> Style {
         self.styles[role as usize]
     }
 
-    /// The colour in which a role is drawn on the map.
+    /// The colour of a role on the map.
     pub fn color(&self, role: Role) -> Color {
         self.style(role).fg.unwrap_or(Color::Reset)
     }
@@ -179,7 +180,7 @@ impl Theme {
 
 fn style(role: Role, name: ThemeName, colours: Colours) -> Style {
     let plain = Style::new().add_modifier(weight(role));
-    // Colours make less weight by themselves; a terminal that dims them would make them too weak.
+    // Colours reduce the prominence on their own; dimming as well would make the text too faint.
     let coloured = Style::new().add_modifier(weight(role) - Modifier::DIM);
     match colours {
         Colours::None => plain,
@@ -192,7 +193,7 @@ fn style(role: Role, name: ThemeName, colours: Colours) -> Style {
     }
 }
 
-/// What is left of a role without colour.
+/// The style of a role without colours.
 fn weight(role: Role) -> Modifier {
     match role {
         Role::Crit | Role::Confirm => Modifier::BOLD | Modifier::REVERSED,
@@ -212,7 +213,7 @@ fn weight(role: Role) -> Modifier {
     }
 }
 
-/// The terminal's own colours; on a light background those that are dark enough.
+/// The terminal's own colours; on a light background, those that are dark enough.
 fn sixteen(role: Role, name: ThemeName) -> Option<Color> {
     let color = sixteen_on_dark(role)?;
     if name != ThemeName::Light {

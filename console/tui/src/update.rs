@@ -1,4 +1,4 @@
-//! Messages into the model; what has to be done outside comes back as effects.
+//! Applies messages to the model and returns the effects for the caller to carry out.
 
 pub(crate) mod act;
 pub(crate) mod alarms;
@@ -44,10 +44,10 @@ use crate::model::{Cause, Model, Overlay, Pane, ui::Arrangement};
 use mission::{Hold, Phase, PlannerInfo, RefusedPlugin, Severity};
 use send::hold_now;
 
-/// How long it is said that a key is not assigned, seconds.
+/// How long the message about an unassigned key is shown, seconds.
 const UNASSIGNED_S: f64 = 2.0;
 
-/// Takes in one message and answers what has to be done outside.
+/// Applies one message and returns the effects for the caller to carry out.
 ///
 /// Pure: the same model and message give the same model and effects.
 pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
@@ -90,7 +90,7 @@ pub fn update(model: &mut Model, msg: Msg) -> Vec<Effect> {
     effects
 }
 
-/// What is more important than anything that was said before it.
+/// The conditions that outrank an earlier message to the operator.
 struct Pressing {
     hold_asked: bool,
     hold: Option<Hold>,
@@ -113,10 +113,10 @@ impl Pressing {
     }
 }
 
-/// How many alarms ring the bell that the operator has not acknowledged.
+/// The number of unacknowledged alarms that ring the bell.
 fn ringing(model: &Model) -> usize {
     let Bell(Some(least)) = model.console.preferences.bell else { return 0 };
-    // Alarms are acknowledged where the orders are given.
+    // Alarms are acknowledged on the console that gives the orders.
     if model.live.is_look_only() {
         return 0;
     }
@@ -132,7 +132,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     {
         return if held_keys::is_pressed(model, press) { preflight::tick(model) } else { Vec::new() };
     }
-    // A letter is typed where text is typed, and so is the space: there Ctrl-C holds.
+    // In an input line, letters and the space are typed; there Ctrl-C holds.
     if typing::press(model, press.key) {
         return Vec::new();
     }
@@ -143,7 +143,7 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
         return unknown(model, press.key);
     };
     match action.id {
-        // A key that is held down stops the robot, too, and does nothing else.
+        // A repeat of a held key still stops the robot, and does nothing else.
         ActionId::Hold if press.repeat && model.live.may_move() && !model.live.hold_asked => hold_now(model),
         _ if press.repeat && !action.repeats => Vec::new(),
         id if held_keys::is_agreement(model, id) && !held_keys::is_pressed(model, press) => Vec::new(),
@@ -151,8 +151,8 @@ fn press_key(model: &mut Model, press: KeyPress) -> Vec<Effect> {
     }
 }
 
-/// Reports a key that has no action here. It cancels a question: who types something else than an answer has not read it, and
-/// a later Enter must not agree to it.
+/// Reports a key that has no action here. The key also cancels a question: an operator who types anything but an
+/// answer has not read it, and a later Enter must not agree to it.
 fn unknown(model: &mut Model, key: Key) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::None => {
@@ -194,7 +194,7 @@ fn take_planners(model: &mut Model, found: Vec<PlannerInfo>, refused: Vec<Refuse
     (model.console.planners, model.console.refused) = (found, refused);
 }
 
-/// Writes news of the console into the log and the line above the keys; what is critical becomes an alarm.
+/// Writes a message about the console to the log and the line above the keys; a critical one becomes an alarm.
 fn news(model: &mut Model, cause: &Cause, severity: Severity, text: String) {
     model.live.run.log.add(model.live.run.clock.t_s, severity, "console", text.clone());
     if severity == Severity::Crit {

@@ -1,4 +1,4 @@
-//! The model onto the screen.
+//! Draws the model on the screen.
 
 pub(crate) mod alarm_screen;
 mod alarms;
@@ -57,12 +57,12 @@ pub fn view(model: &Model, caps: &Caps, frame: &mut Frame) {
     view_cached(model, caps, &mut Cache::default(), frame);
 }
 
-/// Draws the model with what is left of the frame before; the cells are the same.
+/// Draws the model, reusing the cache of the previous frame; the cells are the same as without a cache.
 pub fn view_cached(model: &Model, caps: &Caps, cache: &mut Cache, frame: &mut Frame) {
     draw(model, *caps, &Theme::new(model.ui.theme, caps), cache, frame);
 }
 
-/// Draws the model with a theme of the caller's choice.
+/// Draws the model with the given theme.
 pub fn view_with(model: &Model, caps: &Caps, theme: &Theme, frame: &mut Frame) {
     draw(model, *caps, theme, &mut Cache::default(), frame);
 }
@@ -92,7 +92,7 @@ fn draw(model: &Model, caps: Caps, theme: &Theme, cache: &mut Cache, frame: &mut
     *cache = shared.into_inner();
 }
 
-/// Draws a screen between the line on top and the two lines at the foot, which every screen has.
+/// Draws a screen between the top line and the two bottom lines, which every screen has.
 fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let [top, body, next, keys] = Layout::vertical([
         Constraint::Length(1),
@@ -112,7 +112,7 @@ fn framed(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) 
     footer::draw(look, frame, keys);
 }
 
-/// The mission screen: the panes that fit, and the timeline of a replay below them.
+/// Draws the mission screen: the panes that fit, and below them the timeline of a replay.
 pub(crate) fn mission(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let size = (frame.area().width, frame.area().height);
     let area = timeline::draw(look, frame, area, arrangement);

@@ -1,4 +1,4 @@
-//! Which part of the floor has been scanned, in square cells.
+//! Records which part of the floor has been scanned, in square cells.
 
 mod floor;
 mod floor_class;
@@ -24,7 +24,7 @@ use crate::tiles::Tiles;
 use geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 
-/// Number of cells of each kind, and how many of them have been scanned.
+/// The number of cells of each kind, and how many of them have been scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Cells of floor.
@@ -41,7 +41,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Takes in a cell.
+    /// Counts a cell.
     ///
     /// ```
     /// use world::{Cell, Counts};
@@ -58,7 +58,7 @@ impl Counts {
         self.margin += usize::from(kind == Cell::Margin && !covered);
     }
 
-    /// The same of the reachable floor alone.
+    /// Returns the counts for the reachable floor alone.
     ///
     /// ```
     /// use world::Counts;
@@ -91,7 +91,7 @@ pub struct CoverageGrid {
 }
 
 impl CoverageGrid {
-    /// A floor of which nothing has been scanned.
+    /// Creates a floor of which nothing has been scanned.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -146,7 +146,8 @@ impl CoverageGrid {
         &self.floor
     }
 
-    /// Marks what a disc with a diameter of `swath_m` scans from `a` to `b`; returns the cells of floor that are new.
+    /// Marks the cells that a disc with a diameter of `swath_m` scans from `a` to `b`; returns the floor cells that
+    /// are newly scanned.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -165,7 +166,7 @@ impl CoverageGrid {
         runs
     }
 
-    /// Marks what a tool scans between two poses that are close together.
+    /// Marks the cells that a tool scans between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
@@ -181,7 +182,7 @@ impl CoverageGrid {
         self.apply(&runs);
     }
 
-    /// The cells of floor that a tool would scan between two poses and that have not been scanned.
+    /// Returns the floor cells that a tool would newly scan between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
@@ -230,7 +231,7 @@ impl CoverageGrid {
         }
     }
 
-    /// Marks everything that has been scanned on an aligned grid.
+    /// Marks all cells that have been scanned on an aligned grid.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -263,7 +264,7 @@ impl CoverageGrid {
         self.covered.at(index)
     }
 
-    /// Number of cells of each kind.
+    /// Returns the number of cells of each kind.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -277,7 +278,7 @@ impl CoverageGrid {
         self.counts
     }
 
-    /// Scanned share of the floor that the tool can reach, 0 to 1.
+    /// Returns the scanned share of the floor that the tool can reach, 0 to 1.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, World};
@@ -292,7 +293,7 @@ impl CoverageGrid {
         share(self.counts.covered_reachable, self.counts.reachable)
     }
 
-    /// Scanned share of the whole floor, 0 to 1.
+    /// Returns the scanned share of the whole floor, 0 to 1.
     ///
     /// ```
     /// use world::{Boundary, CoverageGrid, Floor, Point, Pose, Tool, World};
@@ -312,7 +313,7 @@ fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
-/// Cells in ascending order of their index, as runs.
+/// Combines cells, in ascending order of their index, into runs.
 ///
 /// ```
 /// use world::{CellRun, coverage::runs_of};

@@ -1,8 +1,9 @@
-//! The tank floor and everything on it: boundary, obstacles, stations, zones, what a robot senses there, the coverage
-//! grid, shortest paths, the tether and the preset spiral.
+//! The tank floor and everything on it: boundary, obstacles, stations, zones, sensor readings, the coverage grid,
+//! shortest paths, the tether and the preset spiral.
 //!
-//! Frame: the tank frame, origin at the tank's centre, x east, y north, metres; angles in radians, counter-clockwise.
-//! Cost: distance queries go through a bounding volume hierarchy and grow with the logarithm of the obstacle count.
+//! Frame: the tank frame, with its origin at the tank's centre, x east, y north, metres; angles in radians,
+//! counter-clockwise. Cost: distance queries use a bounding volume hierarchy and grow with the logarithm of the
+//! number of obstacles.
 
 pub mod coverage;
 pub mod medium;
@@ -20,7 +21,7 @@ pub use coverage::{
     Cell, CellRun, Counts, CoverageGrid, Floor, FloorClass, FloorMaker, KindRun, ShellFigures, ShellStretch,
     ShellZone, SweptArea, Tool,
 };
-/// Points, poses and shapes, so that a crate that uses the tank need not name two crates.
+/// Points, poses and shapes are re-exported, so that a crate that uses the tank need not also depend on `geometry`.
 pub use geometry::{self, Amphibious, Boundary, Pace, Point, Pose, Shape, Vector, polyline, shape};
 pub use medium::{Medium, Mode, PressureSensor, SensedMedium};
 pub use obstacles::{Near, ObstacleMap};

@@ -1,16 +1,16 @@
-//! Dry and flooded floor, and which way of moving each calls for.
+//! Dry and flooded floor, and the way of moving for each.
 
 use crate::tank::{Zone, ZoneKind};
 use geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// What covers the floor.
+/// The medium that covers the floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Medium {
-    /// Nothing: the robot walks.
+    /// Air: the robot walks.
     Land,
-    /// Water: it swims.
+    /// Water: the robot swims.
     Underwater,
 }
 
@@ -22,31 +22,32 @@ pub struct Mode {
 
 /// Gauge pressure under one metre of fresh water, pascals.
 const PA_PER_M: f64 = 9_806.65;
-/// Evidence that decides the medium, as the logarithm of a ratio of likelihoods: one decision in a million is wrong.
+/// The evidence that decides the medium, as a log-likelihood ratio: one decision in a million is wrong.
 const DECIDED: f64 = 13.815_510_558;
 
-/// A pressure sensor, by which an amphibious robot knows whether the floor under it is flooded (Yang et al. 2021, Fig. 6).
+/// A pressure sensor with which an amphibious robot detects whether the floor under it is flooded (Yang et al. 2021,
+/// Fig. 6).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PressureSensor {
-    /// Depth of the sensor below the surface where the floor is flooded, metres.
+    /// Depth of the sensor below the surface on flooded floor, metres.
     pub depth_m: f64,
     /// Standard deviation of one reading, pascals; greater than 0.
     pub sigma_pa: f64,
 }
 
-/// The medium by the readings of a pressure sensor.
+/// The medium according to the readings of a pressure sensor.
 ///
-/// Readings add up until they decide (a sequential test of the two expected pressures, Wald 1945). What they have decided stands until
-/// later readings decide otherwise, so that noise at the waterline changes nothing.
+/// Readings accumulate until they decide (a sequential test of the two expected pressures, Wald 1945). A decision
+/// holds until later readings decide differently, so noise at the waterline changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SensedMedium {
     known: Option<Medium>,
-    /// For water where positive.
+    /// Positive for water.
     evidence: f64,
 }
 
 impl PressureSensor {
-    /// Gauge pressure that the sensor reads in a medium, but for its noise, pascals.
+    /// Returns the expected gauge pressure in a medium without noise, pascals.
     ///
     /// ```
     /// use world::{Medium, PressureSensor};
@@ -58,7 +59,7 @@ impl PressureSensor {
         if medium == Medium::Underwater { PA_PER_M * self.depth_m } else { 0.0 }
     }
 
-    /// The mean number of readings until the medium is known at the start. A later change takes twice as many.
+    /// Returns the mean number of readings until the medium is first known. A later change takes twice as many.
     ///
     /// ```
     /// use world::PressureSensor;
@@ -70,7 +71,8 @@ impl PressureSensor {
         (2.0 * DECIDED / (apart * apart)).max(1.0)
     }
 
-    /// The largest standard deviation of a reading, pascals, with which the given number of readings decides the medium on average.
+    /// Returns the largest standard deviation of a reading, pascals, with which the given number of readings decides
+    /// the medium on average.
     ///
     /// ```
     /// use world::PressureSensor;
@@ -88,7 +90,7 @@ impl PressureSensor {
 }
 
 impl SensedMedium {
-    /// The medium; `None` while the readings have not decided.
+    /// The medium; `None` until the readings have decided.
     ///
     /// ```
     /// assert_eq!(world::SensedMedium::default().known(), None);
@@ -97,7 +99,7 @@ impl SensedMedium {
         self.known
     }
 
-    /// Takes in a reading, pascals; returns the medium if it is now known, or known to be another one.
+    /// Adds a reading, pascals; returns the medium if it has just become known or has changed.
     ///
     /// ```
     /// use world::{Medium, PressureSensor, SensedMedium};
@@ -122,7 +124,8 @@ impl SensedMedium {
 }
 
 impl Medium {
-    /// The medium at a point, tank frame: that of the last zone of either kind around it; dry floor without one.
+    /// Returns the medium at a point, tank frame: that of the last dry or flooded zone that contains it, otherwise
+    /// dry floor.
     ///
     /// ```
     /// use world::{Medium, Point, Shape, Zone, ZoneKind};
@@ -137,7 +140,7 @@ impl Medium {
         if kind == Some(ZoneKind::Underwater) { Self::Underwater } else { Self::Land }
     }
 
-    /// What the floor is: `dry` or `flooded`.
+    /// Returns the word for the floor: `dry` or `flooded`.
     ///
     /// ```
     /// assert_eq!(world::Medium::Underwater.word(), "flooded");
@@ -151,7 +154,7 @@ impl Medium {
 }
 
 impl Mode {
-    /// The mode that a medium calls for.
+    /// Returns the mode for a medium.
     ///
     /// ```
     /// use world::{Amphibious, Medium, Mode};
@@ -161,7 +164,7 @@ impl Mode {
         Self { weight: if medium == Medium::Underwater { 1.0 } else { 0.0 } }
     }
 
-    /// The mode one tick later: one step of the transition toward the mode that a medium calls for.
+    /// Returns the mode one tick later: one step of the transition toward the mode for a medium.
     ///
     /// ```
     /// use world::{Amphibious, Medium, Mode};

@@ -1,8 +1,8 @@
-//! Distances, rays and neighbours among many obstacles.
+//! Distance, ray and neighbour queries among many obstacles.
 //!
-//! parry2d does the geometry, in the types of glam; only this file and `boxes` convert between nalgebra and glam.
-//! Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the number of obstacles plus
-//! the number of those nearby.
+//! parry2d computes the geometry with the types of glam; only this file and `boxes` convert between nalgebra and
+//! glam. Cost: every query descends a bounding volume hierarchy, so it grows with the logarithm of the number of
+//! obstacles, plus the number of obstacles nearby.
 
 mod boxes;
 
@@ -25,14 +25,14 @@ use parry2d_f64::{
 /// One convex part of an obstacle.
 #[derive(Clone)]
 struct ObstaclePart {
-    /// Index into the obstacles.
+    /// Index of the obstacle.
     owner: usize,
     outline: Outline,
 }
 
 #[derive(Clone)]
 enum Outline {
-    // The papers' obstacles may be points, and from a ball of radius zero parry gives no outward direction.
+    // Obstacles in the papers may be points, but parry gives no outward direction for a ball of radius zero.
     Disc { center: Point, radius_m: f64 },
     Parry(SharedShape),
 }
@@ -40,13 +40,13 @@ enum Outline {
 /// An obstacle near a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
-    /// Index into the obstacles of which the map was made.
+    /// Index in the list of obstacles from which the map was made.
     pub index: usize,
-    /// Its id.
+    /// The id of the obstacle.
     pub id: ObstacleId,
-    /// Distance from the point to its outline, metres; negative inside.
+    /// Distance from the point to the outline, metres; negative inside.
     pub distance_m: f64,
-    /// Nearest point of its outline, tank frame.
+    /// Nearest point of the outline, tank frame.
     pub closest: Point,
 }
 
@@ -69,7 +69,7 @@ pub struct ObstacleMap {
 }
 
 impl ObstacleMap {
-    /// A map of these obstacles within this wall; costs `n log n` once.
+    /// Creates a map of obstacles within a wall; costs `n log n` once.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -96,7 +96,8 @@ impl ObstacleMap {
         }
     }
 
-    /// Distance to the nearest obstacle or the wall, metres; negative inside an obstacle or outside the tank.
+    /// Returns the distance to the nearest obstacle or the wall, metres; negative inside an obstacle or outside the
+    /// tank.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -110,7 +111,7 @@ impl ObstacleMap {
         self.boundary.wall_distance_m(point).min(self.obstacle_distance_m(point))
     }
 
-    /// Distance to the nearest obstacle, metres; negative inside one, infinite without any.
+    /// Returns the distance to the nearest obstacle, metres; negative inside an obstacle, infinite without obstacles.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -130,12 +131,12 @@ impl ObstacleMap {
         nearest.map_or(f64::INFINITY, |(_, distance_m)| distance_m)
     }
 
-    /// The wall around them.
+    /// The wall around the obstacles.
     pub(crate) fn boundary(&self) -> &Boundary {
         &self.boundary
     }
 
-    /// The obstacles within a range of a point, metres, each once, in order of their index.
+    /// Returns the obstacles within a range of a point, metres, each once, in order of their index.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -159,7 +160,7 @@ impl ObstacleMap {
         found
     }
 
-    /// Distance along a ray to the first obstacle, metres; `None` if there is none within `max_m`.
+    /// Returns the distance along a ray to the first obstacle, metres; `None` if there is no obstacle within `max_m`.
     ///
     /// `direction` is a unit vector; a ray that starts inside an obstacle hits at 0.
     ///
@@ -180,7 +181,8 @@ impl ObstacleMap {
         hit.map(|(_, distance)| distance).filter(|distance| *distance <= max_m)
     }
 
-    /// Smallest distance from any point of a segment to an obstacle or the wall, metres; not above zero if it touches.
+    /// Returns the smallest distance from a segment to any obstacle or the wall, metres; zero or negative if it
+    /// touches one.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape};
@@ -195,7 +197,7 @@ impl ObstacleMap {
         self.obstacle_clearance_m(a, b).min(wall_clearance_m(&self.boundary, a, b))
     }
 
-    /// The same to obstacles alone; infinite without any.
+    /// Returns the smallest distance from a segment to any obstacle, metres; infinite without obstacles.
     pub(crate) fn obstacle_clearance_m(&self, a: Point, b: Point) -> f64 {
         let around = segment_box(a, b);
         let nearest = self.tree.find_best(
@@ -213,9 +215,9 @@ impl ObstacleMap {
     }
 }
 
-/// Smallest distance from any point of a segment to the wall, metres.
+/// Returns the smallest distance from a segment to the wall, metres.
 ///
-/// The distance to a round wall from inside is concave along a segment, so its least value is at an end.
+/// Inside a round wall, the distance to it is concave along a segment, so its minimum is at an end.
 pub(crate) fn wall_clearance_m(boundary: &Boundary, a: Point, b: Point) -> f64 {
     let ends = boundary.wall_distance_m(a).min(boundary.wall_distance_m(b));
     let Boundary::Polygon { vertices } = boundary else { return ends };
@@ -252,7 +254,7 @@ impl Outline {
         }
     }
 
-    /// Signed distance to the outline and the nearest point of it.
+    /// Returns the signed distance to the outline, and the nearest point of it.
     fn project(&self, point: Point) -> (f64, Point) {
         match self {
             Self::Disc { center, radius_m } => {
@@ -263,7 +265,8 @@ impl Outline {
             }
             Self::Parry(shape) => {
                 let projection = shape.project_local_point(point.into(), false);
-                // Of a point on a side, parry may say that it is deep inside: its search ends at another side.
+                // For a point on a side, parry may report that it is deep inside, because its search ends at a
+                // different side.
                 let inside_of = shape.as_convex_polygon().filter(|_| projection.is_inside);
                 let closest = inside_of
                     .and_then(|polygon| nearest_on_sides(polygon.points(), point))
@@ -311,7 +314,7 @@ fn segment_box(a: Point, b: Point) -> Aabb {
     Aabb::new(a.inf(&b).into(), a.sup(&b).into())
 }
 
-/// Distance between two boxes, metres; 0 when they overlap.
+/// Returns the distance between two boxes, metres; 0 if they overlap.
 fn box_gap(a: &Aabb, b: &Aabb) -> f64 {
     (a.mins - b.maxs).max(b.mins - a.maxs).max(DVec2::ZERO).length()
 }

@@ -1,8 +1,8 @@
 //! The plates that a tank floor is made of.
 //!
-//! A ring of annular plates lies along the shell; the rest is covered by rows of rectangular plates from south to north,
-//! every second row shifted by half a plate. The rest of a rectangle that the ring cuts is a sketch plate. A floor that is laid
-//! otherwise has its plates from a drawing.
+//! A ring of annular plates lies along the shell. The rest is covered by rows of rectangular plates from south to
+//! north, with every second row shifted by half a plate. A rectangle that is cut by the ring becomes a sketch plate.
+//! For any other layout, a drawing defines the plates.
 
 mod drawn;
 
@@ -10,7 +10,7 @@ use crate::coverage::Floor;
 pub use drawn::{DrawnPlate, NO_PLATE};
 use geometry::{Boundary, Point, Vector, shape::rectangle, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, f64::consts::TAU, sync::Arc};
+use std::{collections::BTreeMap, f64::consts::TAU, fmt, sync::Arc};
 
 /// The layout of the plates of a floor.
 ///
@@ -23,17 +23,17 @@ use std::{collections::BTreeMap, f64::consts::TAU, sync::Arc};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum PlateLayout {
-    /// By its sizes.
+    /// A regular layout, given by its dimensions.
     Regular(RegularPlates),
-    /// By the outline of each plate.
+    /// A layout given by the outline of each plate.
     Drawn {
-        /// Where plates overlap, the first one counts. Shared: there may be thousands.
+        /// The plates; where they overlap, the first one counts. Shared, because there may be thousands.
         plates: Arc<[DrawnPlate]>,
     },
 }
 
 impl PlateLayout {
-    /// The plates of a floor, and the plate of each of its cells.
+    /// Returns the plates of a floor, and the plate of each of its cells.
     ///
     /// ```
     /// use world::{Boundary, DrawnPlate, Floor, PlateLayout, Point, World};
@@ -52,7 +52,7 @@ impl PlateLayout {
         }
     }
 
-    /// The seams between the plates of a floor, as lines, tank frame: the outlines of drawn ones.
+    /// Returns the seams between the plates of a floor as lines, tank frame; for drawn plates, their outlines.
     ///
     /// ```
     /// use world::{Boundary, PlateLayout, RegularPlates};
@@ -68,7 +68,7 @@ impl PlateLayout {
     }
 }
 
-/// The sizes of the plates of a floor that is laid in rows.
+/// The dimensions of a regular layout of plates in rows.
 ///
 /// ```
 /// use world::RegularPlates;
@@ -77,7 +77,7 @@ impl PlateLayout {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RegularPlates {
-    /// Width of the annular ring from the shell inwards, metres; 0 without one.
+    /// Width of the annular ring, from the shell inwards, metres; 0 without a ring.
     pub annular_m: f64,
     /// Number of plates in the ring; the first one begins due east.
     pub n_annular: u32,
@@ -87,25 +87,37 @@ pub struct RegularPlates {
     pub width_m: f64,
 }
 
-/// Kind of a plate.
+/// The kind of a plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 #[serde(rename_all = "snake_case")]
 pub enum PlateKind {
-    /// In the ring along the shell.
+    /// A plate in the ring along the shell.
     Annular,
-    /// Cut by the ring or the shell.
+    /// A plate that is cut by the ring or the shell.
     Sketch,
-    /// Whole.
+    /// A whole plate.
     Rectangular,
 }
 
-/// One plate.
+impl fmt::Display for PlateKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Annular => "annular",
+            Self::Sketch => "sketch",
+            Self::Rectangular => "rectangular",
+        })
+    }
+}
+
+/// A plate.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Plate {
-    /// Its kind.
+    /// The kind of the plate.
     pub kind: PlateKind,
-    /// `A-07`: the seventh annular plate, counter-clockwise from east; `R-03-05`, `S-03-01`: a rectangular or sketch plate
-    /// of the third row from the south, fifth or first from the west; as in the drawing if one shows it.
+    /// The name, which is that in the drawing if there is one. Otherwise, `A-07` is the seventh annular plate,
+    /// counter-clockwise from east; `R-03-05` and `S-03-01` are the fifth plate (rectangular) and the first plate
+    /// (sketch) from the west in the third row from the south.
     pub name: String,
 }
 
@@ -114,18 +126,19 @@ pub struct Plate {
 pub struct PlateMap {
     /// The plates that have floor, in order of kind and name.
     pub plates: Vec<Plate>,
-    /// For every cell the index of its plate; [`NONE`] where there is no floor.
+    /// For every cell, the index of its plate; [`NONE`] where there is no floor.
     of_cell: Vec<u32>,
 }
 
-/// The plate of a cell without one.
+/// The plate index of a cell without a plate.
 const NONE: u32 = u32::MAX;
 
-/// Where a plate lies: its kind, its row from 1 (0 in the ring), its number from 1.
+/// The position of a plate: its kind, its row from 1 (0 in the ring), and its number from 1.
 type Place = (PlateKind, i64, i64);
 
 impl RegularPlates {
-    /// The plate under a point of the floor; `last`: that of its neighbour, with which it mostly shares the plate.
+    /// Returns the plate under a point of the floor. `last` is the plate of the neighbouring point, which is usually
+    /// the same.
     fn place_of(&self, boundary: &Boundary, point: Point, last: Option<Place>) -> Place {
         if boundary.wall_distance_m(point) < self.annular_m {
             let share = wrap_angle_rad(point.y.atan2(point.x)).rem_euclid(TAU) / TAU;
@@ -134,7 +147,7 @@ impl RegularPlates {
         }
         let (low, high) = boundary.bounds();
         let middle = nalgebra::center(&low, &high);
-        // The rows lie symmetrically about the middle.
+        // The rows are symmetrical about the middle.
         let n_rows = ((high.y - low.y) / self.width_m).ceil();
         let south_m = middle.y - n_rows * self.width_m / 2.0;
         let row = ((point.y - south_m) / self.width_m).floor();
@@ -153,15 +166,16 @@ impl RegularPlates {
         (kind, row as i64 + 1, number as i64 + 1)
     }
 
-    /// Whether all of a rectangle, given by its south-west corner, lies within the ring.
+    /// Whether a rectangle, given by its south-west corner, lies entirely within the ring.
     fn is_whole(&self, boundary: &Boundary, corner: Point) -> bool {
         let corners = rectangle(corner, corner + Vector::new(self.length_m, self.width_m));
         corners.iter().all(|corner| boundary.wall_distance_m(*corner) >= self.annular_m)
     }
 
-    /// The plates of a floor, and the plate of each of its cells.
+    /// Returns the plates of a floor, and the plate of each of its cells.
     fn map(&self, boundary: &Boundary, floor: &Floor) -> PlateMap {
-        // In the order in which they are met; there are millions of cells, and neighbours mostly share a plate.
+        // Plates are numbered in the order in which they are found. There are millions of cells, and neighbours
+        // usually share a plate.
         let mut order: BTreeMap<Place, u32> = BTreeMap::new();
         let mut last: Option<(Place, u32)> = None;
         let mut met = |point: Point| {
@@ -184,7 +198,7 @@ impl RegularPlates {
         for index in of_cell.iter_mut().filter(|index| **index != NONE) {
             *index = sorted[*index as usize];
         }
-        // Plates are counted from the first one of their row that has floor.
+        // Plates are counted from the first plate of their row that has floor.
         let mut firsts: BTreeMap<i64, i64> = BTreeMap::new();
         for (_, row, number) in order.keys() {
             let first = firsts.entry(*row).or_insert(*number);
@@ -202,11 +216,11 @@ impl RegularPlates {
     }
 }
 
-/// Steps in which a seam is followed to where it ends, metres.
+/// The step length with which a seam is followed to its end, metres.
 const SEAM_STEP_M: f64 = 0.1;
 
 impl RegularPlates {
-    /// The seams between the plates of a floor, as lines, tank frame.
+    /// Returns the seams between the plates of a floor as lines, tank frame.
     fn seams(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
         let (low, high) = boundary.bounds();
         let middle = nalgebra::center(&low, &high);
@@ -232,7 +246,7 @@ impl RegularPlates {
         seams
     }
 
-    /// The parts of a line that lie within the ring.
+    /// Returns the parts of a line that lie within the ring.
     fn within(&self, boundary: &Boundary, a: Point, b: Point) -> Vec<Vec<Point>> {
         let is_in = |share: f64| {
             let place = a + (b - a) * share;
@@ -255,7 +269,7 @@ impl RegularPlates {
         parts.into_iter().map(|(first, last)| vec![a + (b - a) * first, a + (b - a) * last]).collect()
     }
 
-    /// The inner edge of the ring and the seams between its plates.
+    /// Returns the inner edge of the ring, and the seams between its plates.
     fn ring(&self, boundary: &Boundary) -> Vec<Vec<Point>> {
         let n = self.n_annular.max(1);
         let inner = match boundary {
@@ -270,7 +284,7 @@ impl RegularPlates {
         let far_m = (high - low).norm();
         let seam = |k: u32| {
             let angle = TAU * f64::from(k) / f64::from(n);
-            // Plates are counted by their direction from the origin.
+            // Plates are counted by their direction as seen from the origin.
             let from = |share: f64| Point::new(far_m * share * angle.cos(), far_m * share * angle.sin());
             let is_in = |share: f64| {
                 boundary.contains(from(share)) && boundary.wall_distance_m(from(share)) < self.annular_m
@@ -286,7 +300,8 @@ impl RegularPlates {
     }
 }
 
-/// Where a line enters or leaves what is within, to a thousandth of the step between two places on it, as shares of the line.
+/// Returns where a line enters or leaves an area, as a share of the line, to a thousandth of the step between two
+/// places on it.
 fn edge(is_in: impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
     for _ in 0..10 {
         let half = f64::midpoint(inside, outside);
@@ -295,7 +310,7 @@ fn edge(is_in: impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
     inside
 }
 
-/// A closed outline whose edges lie so much further inwards, metres; counter-clockwise, as walls are.
+/// Moves the edges of a closed outline inwards by `by_m` metres; the outline is counter-clockwise, as walls are.
 fn inset(vertices: &[Point], by_m: f64) -> Vec<Point> {
     let n = vertices.len();
     let corner = |k: usize| {
@@ -305,14 +320,14 @@ fn inset(vertices: &[Point], by_m: f64) -> Vec<Point> {
             Vector::new(-way.y, way.x)
         };
         let (one, other) = (inward(before, at), inward(at, after));
-        // Where both edges meet, moved inwards.
+        // The intersection of both edges after they are moved inwards.
         at + (one + other) * (by_m / (1.0 + one.dot(&other)).max(0.1))
     };
     (0..=n).map(corner).collect()
 }
 
 impl PlateMap {
-    /// Index of a cell's plate; `None` where there is no floor.
+    /// Returns the index of a cell's plate; `None` where there is no floor.
     ///
     /// ```
     /// use world::{Boundary, Floor, PlateLayout, Point, RegularPlates, World};
@@ -333,6 +348,8 @@ impl PlateMap {
 mod tests {
     use super::*;
     use crate::World;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
 
     fn layout() -> RegularPlates {
         RegularPlates { annular_m: 0.75, n_annular: 12, length_m: 6.0, width_m: 1.8 }
@@ -365,7 +382,7 @@ mod tests {
             }
         }
         assert_eq!(map.plates.iter().filter(|plate| plate.kind == PlateKind::Annular).count(), 12);
-        let names: std::collections::BTreeSet<&str> = map.plates.iter().map(|p| p.name.as_str()).collect();
+        let names: BTreeSet<&str> = map.plates.iter().map(|p| p.name.as_str()).collect();
         assert_eq!(names.len(), map.plates.len(), "names are given once");
         assert!(names.contains("A-01") && names.iter().any(|name| name.starts_with("S-01-01")));
     }
@@ -390,5 +407,14 @@ mod tests {
         let (_, map) = plates(&boundary, RegularPlates { annular_m: 0.0, ..layout() });
         assert!(map.plates.iter().any(|plate| plate.kind == PlateKind::Rectangular), "{:?}", map.plates);
         assert!(map.plates.iter().all(|plate| plate.kind != PlateKind::Annular));
+    }
+
+    #[test]
+    fn every_kind_has_a_word_of_its_own() {
+        let all: [PlateKind; PlateKind::COUNT] =
+            [PlateKind::Annular, PlateKind::Sketch, PlateKind::Rectangular];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a robot senses in one tick. Nothing here carries the truth.
+//! The sensor readings of a robot in one tick. They never include the truth.
 
 use crate::tank::{ObstacleId, StationId};
 use geometry::Shape;
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 /// The repeated ranges between one station and the robot in one ranging cycle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RangeSet {
-    /// Which station was heard.
+    /// The station that was heard.
     pub station: StationId,
     /// One range per repetition, metres, each greater than zero.
     pub ranges_m: Vec<f64>,
 }
 
-/// Motion since the last tick by track encoders and gyro, robot frame.
+/// Motion since the last tick from track encoders and gyro, robot frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Odometry {
     /// Distance along the robot's x axis, metres.
@@ -27,13 +27,13 @@ pub struct Odometry {
 /// An obstacle within sensing range, seen for the first time or again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sighting {
-    /// Its id; the sensor's tracker gives the same obstacle the same one.
+    /// The id of the obstacle; the sensor's tracker always assigns the same id to the same obstacle.
     pub id: ObstacleId,
-    /// Its outline in the robot frame: x ahead, y left, metres.
+    /// The outline in the robot frame: x ahead, y left, metres.
     pub shape_in_robot: Shape,
 }
 
-/// Everything sensed in one tick.
+/// All sensor readings of one tick.
 ///
 /// ```
 /// let readings = world::Readings::default();
@@ -51,7 +51,8 @@ pub struct Readings {
     pub sightings: Vec<Sighting>,
     /// Whether the bumper is pressed.
     pub contact: bool,
-    /// Length of tether that the reel has paid out, by its encoder, metres; `None` without a tether or an encoder.
+    /// Length of tether that the reel has paid out, measured by its encoder, metres; `None` without a tether or an
+    /// encoder.
     #[serde(default)]
     pub paid_out_m: Option<f64>,
     /// Gauge pressure at the hull, pascals; `None` without a pressure sensor.

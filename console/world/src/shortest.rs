@@ -1,13 +1,14 @@
-//! The exact shortest path of a disc among discs, polygons and polylines.
+//! Computes the exact shortest path of a disc among discs, polygons and polylines.
 //!
-//! Everything solid is grown by the distance that the centre of the robot keeps from it, so that the robot is a point:
-//! discs stay discs, corners become arcs. The shortest path then consists of common tangents of those circles and of arcs
-//! between them (the visibility graph of round obstacles). Tangents are constructed only where A* arrives, and tested
-//! only when they come first in its queue. Nothing is rasterised, so a search that finds nothing proves that there is no
-//! path.
+//! All solids are grown by the distance that the centre of the robot keeps from them, so that the robot becomes a
+//! point: discs stay discs, corners become arcs. The shortest path then consists of common tangents of these circles
+//! and of arcs between them (the visibility graph of round obstacles). Tangents are constructed only where A*
+//! arrives, and tested only when they come first in its queue. Nothing is rasterised, so a search that finds nothing
+//! proves that no path exists.
 //!
-//! Frame: the tank frame, metres, radians. Outlines may overlap. The robot may pass along two that touch, not between them.
-//! Cost: about `n` tangents for every arc that the search turns about, `n` the number of discs and corners.
+//! Frame: the tank frame, metres, radians. Outlines may overlap. The robot may pass beside two outlines that touch,
+//! but not between them. Cost: about `n` tangents for every arc in the search, where `n` is the number of discs and
+//! corners.
 
 mod bar;
 mod corner;
@@ -24,16 +25,17 @@ use corner::Corner;
 use geometry::{Point, polyline::nearest_on_segment};
 use search::Search;
 
-/// The first length within which a shortest path is looked for: this share of the straight way, and so many metres more.
+/// The length limit of the first search is this multiple of the straight distance, plus `FIRST_M` metres.
 const FIRST_SHARE: f64 = 1.2;
 const FIRST_M: f64 = 1.0;
-/// A search among less than this fraction of all corners is worth a try.
+/// A restricted search is tried only if it uses fewer than one in this many corners.
 const FEW: usize = 8;
-/// More than rounding may do to the length of a path, metres.
+/// A difference in path length that exceeds any rounding error, metres.
 const SURE_M: f64 = 1e-6;
 
 impl GrownFloor {
-    /// The shortest path from a start to a goal; `keep_going` is asked now and then whether the answer is still wanted.
+    /// Finds the shortest path from a start to a goal. The search stops if `keep_going`, which it calls from time to
+    /// time, returns false.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};
@@ -44,7 +46,7 @@ impl GrownFloor {
     /// ```
     ///
     /// # Errors
-    /// [`NoWay`]: the robot does not fit at an end, there is no path, or the caller stopped the search.
+    /// [`NoWay`]: the robot does not fit at one end, no path exists, or the caller stopped the search.
     pub fn shortest(
         &self,
         start: Point,
@@ -52,8 +54,8 @@ impl GrownFloor {
         keep_going: &mut dyn FnMut() -> bool,
     ) -> Result<Way, NoWay> {
         self.check_ends(start, goal)?;
-        // Among many corners those far from both ends are left out first: a way that is shorter than any way to them is the
-        // shortest of all.
+        // With many corners, those far from both ends are left out at first. A path shorter than any path by way of
+        // the omitted corners is the shortest of all.
         let mut within_m = FIRST_SHARE * (goal - start).norm() + FIRST_M;
         loop {
             let near = self.corners_within(within_m, start, goal);
@@ -70,7 +72,7 @@ impl GrownFloor {
         self.search(start, goal, &all, keep_going)
     }
 
-    /// The corners about which a way of this length can turn, metres.
+    /// Returns the corners that a path of this length can turn about, metres.
     fn corners_within(&self, within_m: f64, start: Point, goal: Point) -> Vec<usize> {
         let least_m = |Corner { center, radius_m, .. }: &Corner| {
             (center - start).norm() + (goal - center).norm() - 2.0 * radius_m
@@ -78,9 +80,10 @@ impl GrownFloor {
         (0..self.corners.len()).filter(|index| least_m(&self.corners[*index]) <= within_m).collect()
     }
 
-    /// A path pulled taut: the shortest one that turns only about discs and corners within `reach_m` of it.
+    /// Pulls a path taut: returns the shortest path that turns only about discs and corners within `reach_m` of the
+    /// given one.
     ///
-    /// The path itself may touch anything; only its ends and its neighbourhood matter.
+    /// The given path may pass through anything; only its ends and its neighbourhood matter.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};
@@ -91,7 +94,7 @@ impl GrownFloor {
     /// ```
     ///
     /// # Errors
-    /// As [`GrownFloor::shortest`], but [`NoWay::Unreachable`] means only that the neighbourhood was too small.
+    /// As for [`GrownFloor::shortest`], but [`NoWay::Unreachable`] only means that the neighbourhood was too small.
     pub fn pulled_taut(
         &self,
         path: &[Point],
@@ -113,7 +116,7 @@ impl GrownFloor {
     }
 
     fn check_ends(&self, start: Point, goal: Point) -> Result<(), NoWay> {
-        // A point that is not a number fits nowhere.
+        // A point with a NaN coordinate fits nowhere.
         let short_m = |at: Point| Some(-self.spare_m(at)).filter(|by_m| *by_m > TOUCH_M || by_m.is_nan());
         if let Some(by_m) = short_m(start) {
             return Err(NoWay::StartBlocked { at: start, by_m });

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 /// An inward, counter-clockwise Archimedean spiral about the tank's centre.
 ///
 /// `theta_i = i * step_rad`, `r_i = outer_radius_m - pitch_m * theta_i / (2 pi)`. The paper prints the radius without
-/// the index, which would be a circle; its Section 3.3 uses the form given here.
+/// the index, which would be a circle; its Section 3.3 uses the formula above.
 ///
 /// ```
 /// use world::spiral::Spiral;
@@ -18,11 +18,11 @@ use std::f64::consts::TAU;
 pub struct Spiral {
     /// Radius of the first point, metres.
     pub outer_radius_m: f64,
-    /// Radius below which the list of points ends, metres (0.1 in the paper).
+    /// The points end at the first radius below this, metres (0.1 in the paper).
     pub inner_radius_m: f64,
-    /// Distance between neighbouring turns, metres.
+    /// Distance between adjacent turns, metres.
     pub pitch_m: f64,
-    /// Angle between neighbouring points, radians.
+    /// Angle between consecutive points, radians.
     pub step_rad: f64,
 }
 
@@ -35,7 +35,7 @@ impl Spiral {
         step_rad: 0.02,
     };
 
-    /// The preset points, tank frame: all with `r_i >= inner_radius_m` and the first one below it.
+    /// Returns the preset points, tank frame: all points with `r_i >= inner_radius_m`, and the first one below it.
     ///
     /// ```
     /// assert_eq!(world::spiral::Spiral::WANG_2023.points().len(), 2477);

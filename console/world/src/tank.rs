@@ -3,24 +3,24 @@
 use geometry::{Boundary, Point, Shape};
 use serde::{Deserialize, Serialize};
 
-/// Identifies an obstacle within one world.
+/// Identifies an obstacle within a world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ObstacleId(pub u32);
 
-/// Something the robot must not touch.
+/// An object that the robot must not touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Obstacle {
     /// Unique within the world.
     pub id: ObstacleId,
-    /// Its name on the drawing, for people.
+    /// The name on the drawing, for people.
     pub name: String,
-    /// Its outline, tank frame.
+    /// The outline, tank frame.
     pub shape: Shape,
-    /// Whether it is on the drawing; the robot must discover the others.
+    /// Whether the obstacle is on the drawing; the robot must discover the others.
     pub known: bool,
 }
 
-/// Identifies an acoustic-emission station within one world.
+/// Identifies an acoustic-emission station within a world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct StationId(pub u32);
 
@@ -29,17 +29,17 @@ pub struct StationId(pub u32);
 pub struct Station {
     /// Unique within the world.
     pub id: StationId,
-    /// Its name on the drawing, for people.
+    /// The name on the drawing, for people.
     pub name: String,
     /// Surveyed position, metres, tank frame.
     pub position: Point,
 }
 
-/// What is special about a part of the floor.
+/// The special property of a part of the floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ZoneKind {
-    /// The robot must not enter.
+    /// Floor that the robot must not enter.
     NoGo,
     /// Dry floor.
     Land,
@@ -50,11 +50,11 @@ pub enum ZoneKind {
 /// A part of the floor with special properties.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
-    /// Its name on the drawing.
+    /// The name on the drawing.
     pub name: String,
-    /// What is special about it.
+    /// The special property of the zone.
     pub kind: ZoneKind,
-    /// Its outline, tank frame.
+    /// The outline, tank frame.
     pub shape: Shape,
 }
 
@@ -71,7 +71,7 @@ pub struct Zone {
 pub struct World {
     /// The wall.
     pub boundary: Boundary,
-    /// Columns, pipes, sumps, in order of their ids.
+    /// Obstacles such as columns, pipes and sumps, in order of their ids.
     pub obstacles: Vec<Obstacle>,
     /// Acoustic-emission stations, in order of their ids.
     pub stations: Vec<Station>,
@@ -80,7 +80,7 @@ pub struct World {
 }
 
 impl World {
-    /// The tank as drawn: without the obstacles that must be discovered.
+    /// Returns the tank as drawn, without the obstacles that must be discovered.
     ///
     /// ```
     /// use world::{Boundary, Obstacle, ObstacleId, Point, Shape, World};

@@ -1,11 +1,13 @@
 //! The tether: a taut cable from an anchor to the robot, among columns, pipes and walls.
 //!
-//! Model: the cable cannot stretch; a reel at the anchor takes up all slack; friction does not change its shape; it may
-//! touch obstacles; the floor is flat. The cable is then the one shortest line that can be reached from the path driven
-//! without lifting it over an obstacle. The model does not bound slack or dragged tether.
+//! Model: the cable cannot stretch; a reel at the anchor takes up all slack; friction does not change the cable's
+//! shape; the cable may touch obstacles; the floor is flat. The cable is then the only shortest line into which the
+//! path driven can be deformed without lifting it over an obstacle. The model gives no bounds for slack or dragged
+//! tether.
 //!
-//! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (what it can bear on), `certify` (what a
-//! whole path does to it), `homotopy` (the cheap second answer), `geodesic` (the shortest cable that would do).
+//! Read the files in this order: `cable` (the exact taut line), `cable_obstacles` (the obstacles that it can bear
+//! on), `certify` (the effect of a whole path on it), `homotopy` (the cheap cross-check), `geodesic` (the shortest
+//! cable that would suffice).
 
 mod cable;
 mod cable_obstacles;

@@ -1,17 +1,17 @@
-//! One value for every cell of a grid, in square tiles: a copy shares the tiles that neither side has changed since.
+//! One value for every cell of a grid, in square tiles. A copy shares all tiles that neither side has changed since.
 
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
-/// Cells along the edge of a tile, as a power of two.
+/// The number of cells along the edge of a tile, as a power of two.
 const SHIFT: usize = 5;
-/// Cells along the edge of a tile.
+/// The number of cells along the edge of a tile.
 const EDGE: usize = 1 << SHIFT;
-/// Cells of a tile.
+/// The number of cells of a tile.
 const AREA: usize = EDGE * EDGE;
 
-/// One value for every cell of a grid, row by row. What a robot passes over in a while touches few tiles, whichever way it
-/// drives, so that many copies of a grid that fills up cost little more than one.
+/// One value for every cell of a grid, row by row. In a short time a robot passes over few tiles, whatever its
+/// direction. Many copies of a grid that gradually fills up therefore cost little more than one.
 ///
 /// ```
 /// use world::Tiles;
@@ -30,7 +30,7 @@ pub struct Tiles<T> {
     squares: Vec<Arc<[T; AREA]>>,
 }
 
-/// The same without tiles.
+/// The values without tiles.
 #[derive(Serialize, Deserialize)]
 struct Flat<T> {
     width: usize,
@@ -38,15 +38,15 @@ struct Flat<T> {
 }
 
 impl<T: Copy> Tiles<T> {
-    /// The same value for each of so many cells, so many in a row.
+    /// Creates `len` cells with the same value, `width` in a row.
     pub fn new(width: usize, len: usize, value: T) -> Self {
         let width = width.max(1);
         let tiles = width.div_ceil(EDGE) * len.div_ceil(width).div_ceil(EDGE);
-        // All are one and the same until they change.
+        // All tiles are the same until they change.
         Self { width, len, squares: std::iter::repeat_n(Arc::new([value; AREA]), tiles).collect() }
     }
 
-    /// Which tile a cell is in, and where.
+    /// Returns the tile of a cell, and the position in it.
     #[inline]
     fn place(&self, index: usize) -> (usize, usize) {
         assert!(index < self.len, "cell {index} of {}", self.len);
@@ -55,28 +55,29 @@ impl<T: Copy> Tiles<T> {
         (tile, ((row % EDGE) << SHIFT) + column % EDGE)
     }
 
-    /// The value of a cell. Panics beyond the last one, as a slice does.
+    /// Returns the value of a cell. Panics beyond the last cell, as a slice does.
     #[inline]
     pub fn at(&self, index: usize) -> T {
         let (tile, cell) = self.place(index);
         self.squares[tile][cell]
     }
 
-    /// The value of a cell, to be changed. Panics beyond the last one, as a slice does.
+    /// Returns the value of a cell for changing it. Panics beyond the last cell, as a slice does.
     #[inline]
     pub fn at_mut(&mut self, index: usize) -> &mut T {
         let (tile, cell) = self.place(index);
         &mut Arc::make_mut(&mut self.squares[tile])[cell]
     }
 
-    /// The values of some cells, piece by piece, each with the index of its first. Panics beyond the last one, as a slice does.
+    /// Iterates over the values of some cells, piece by piece, each with the index of its first cell. Panics beyond
+    /// the last cell, as a slice does.
     #[inline]
     pub fn slices(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, &[T])> {
         self.pieces(cells).map(|(first, tile, cells)| (first, &self.squares[tile][cells]))
     }
 
-    /// Has the values of some cells changed, piece by piece, each with the index of its first. Panics beyond the last one, as a
-    /// slice does.
+    /// Calls `change` on the values of some cells, piece by piece, each with the index of its first cell. Panics
+    /// beyond the last cell, as a slice does.
     #[inline]
     pub fn change(&mut self, cells: Range<usize>, mut change: impl FnMut(usize, &mut [T])) {
         for (first, tile, cells) in self.pieces(cells) {
@@ -84,7 +85,8 @@ impl<T: Copy> Tiles<T> {
         }
     }
 
-    /// Pieces of some cells that each lie in one row of one tile: index of the first, tile, places in it.
+    /// Splits some cells into pieces that each lie in one row of one tile: index of the first cell, tile, positions
+    /// in the tile.
     #[inline]
     fn pieces(&self, cells: Range<usize>) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<T> {
         assert!(cells.end <= self.len, "cell {} of {}", cells.end, self.len);
@@ -106,17 +108,17 @@ impl<T: Copy> Tiles<T> {
         })
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The values, row by row.
+    /// Iterates over the values, row by row.
     pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
         (0..self.len).map(|index| self.at(index))
     }

@@ -1,4 +1,4 @@
-//! Lengths as keys of a priority queue.
+//! Lengths as the keys of a priority queue.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! The planner: offline on the known map, and tick by tick.
+//! The planner: it plans on the known map and drives tick by tick.
 
 use crate::{
     hybrid::{Decision, Hybrid, HybridSettings, State, distances_m, route, run},
@@ -22,16 +22,16 @@ use steering::{
 };
 use world::{Pace, Pose, Zone};
 
-/// Steps allowed for a plan, as a multiple of the straight way at the slower pace, and some more.
+/// Maximum steps of a plan, as a multiple of those of the straight path at the slower pace, plus a constant.
 const DETOUR: f64 = 6.0;
 const SPARE_STEPS: usize = 2500;
-/// Of an arc to be flown the velocity over this time is compared with others when something moves, seconds.
+/// When obstacles move, an arc is represented by its mean velocity over this time, seconds.
 const WISH_S: f64 = 1.0;
 
-/// What is said to whom it leaves without a way.
-const INSTEAD: &str = "choose shortest or navfn, which find a way wherever there is one";
+/// Advice logged when the planner finds no path.
+const INSTEAD: &str = "choose shortest or navfn, which find a path wherever one exists";
 
-/// The hybrid of potential field and dynamic window, for land and water.
+/// A hybrid of potential field and dynamic window, for land and water.
 pub(crate) struct ApfDwa {
     settings: HybridSettings,
     hybrid: Hybrid,
@@ -48,8 +48,9 @@ pub(crate) struct ApfDwa {
 impl Planner for ApfDwa {
     const ID: &'static str = "apf-dwa";
     const NAME: &'static str = "Field and dynamic window";
-    const ABOUT: &'static str = "A potential field with virtual goals steers a dynamic window with limits by land and \
-                                 water, after Yang et al. 2021; evades what moves.";
+    const ABOUT: &'static str = "A potential field with virtual goals steers a dynamic window with \
+                                 separate limits on land and under water, after Yang et al. 2021. Evades \
+                                 moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 
@@ -84,7 +85,7 @@ impl Planner for ApfDwa {
         } else {
             ctx.log(
                 LogLevel::Info,
-                "on a map of this size the plan is the shortest way; the window flies it",
+                "on a map of this size the plan is the shortest path; the dynamic window follows it",
             );
             route(&map, start.position, goal, self.settings.field.keep_m, || ctx.check())?
         };
@@ -162,7 +163,7 @@ impl ApfDwa {
         let guide = self.hybrid.guide();
         if guide.used() > self.used {
             self.used = guide.used();
-            ctx.log(LogLevel::Info, "in a minimum: goes for a virtual goal");
+            ctx.log(LogLevel::Info, "in a local minimum: heading for a virtual goal");
         }
         if !ctx.wants_drawing() {
             return;
@@ -174,18 +175,19 @@ impl ApfDwa {
         ctx.polyline(Layer::Other, &arc(pose, twist));
     }
 
-    /// A twist; for a robot that moves in any direction at once the velocity along its arc.
+    /// Converts a twist to a drive command. A robot that can move in any direction gets the velocity along the arc.
     fn drive(&self, pose: &Pose, twist: Twist) -> Drive {
         if self.limits.motion == Motion::Unicycle {
             return Drive::Twist { v_m_per_s: twist.v_m_per_s, w_rad_per_s: twist.w_rad_per_s };
         }
         let dt_s = self.settings.window.dt_s;
         let turned = moved(pose, Twist { v_m_per_s: 0.0, ..twist }, dt_s);
-        // A point robot looks where it goes: it cannot turn on the spot.
+        // A point robot faces the direction in which it moves: it cannot turn on the spot.
         Drive::Velocity(turned.direction() * twist.v_m_per_s.max(1e-3))
     }
 
-    /// The same, or the velocity nearest to the arc's that stays clear of what moves.
+    /// Returns the drive command for a decision, or the velocity closest to its arc that stays clear of moving
+    /// obstacles.
     fn past(
         &self,
         movers: &[Mover],

@@ -1,4 +1,4 @@
-//! Where the field is to pull: the paper's virtual goals, or the next corner of the shortest way.
+//! Chooses the target of the field's pull: the paper's virtual goals, or the next corner of the shortest path.
 
 use crate::surroundings::{Changed, Surroundings};
 use field::{
@@ -9,54 +9,56 @@ use std::collections::VecDeque;
 use steering::{Forces, Nearby};
 use world::{Point, Vector};
 
-/// Steps over which the robot must have come on (the paper's loop looks at 60).
+/// Number of steps over which the robot must make progress (the paper's loop uses 60).
 const STALL_STEPS: usize = 60;
-/// It has not when it moved less than this, metres.
+/// A smaller movement over these steps counts as no progress, metres.
 const STALL_M: f64 = 0.12;
-/// A corner nearer than this is passed, metres.
+/// A corner closer than this counts as passed, metres.
 const PASSED_M: f64 = 0.35;
-/// Room beside the way at first, besides what the window keeps, metres; halved until there is a way.
+/// Initial room beside the path, in addition to the distance that the window keeps, metres; halved until a path is
+/// found.
 const ROOM_M: f64 = 0.25;
-/// Attempts with less and less room.
+/// Number of attempts with less and less room.
 const ATTEMPTS: u32 = 6;
-/// Whether the way is still free is checked after so many steps; it is replanned when it is not, and whenever the map
-/// changes.
+/// Interval between checks whether the path is still free, steps. The path is replanned if it is not free, and whenever
+/// the map changes.
 const LOOK_STEPS: usize = 20;
-/// It is replanned after so many steps in any case: the robot has moved aside.
+/// The path is replanned after this many steps in any case, because the robot has moved sideways.
 const FRESH_STEPS: usize = 40;
-/// A place further along the plan than the end of the way by this makes the way too short, metres.
+/// If the place to aim for is this far beyond the end of the path, the path is too short, metres.
 const AIM_MOVED_M: f64 = 1.0;
-/// What moves is seen to stand in the way after so many steps.
+/// Interval between checks whether a moving obstacle blocks the path, steps.
 const MOVING_STEPS: usize = 5;
-/// A way counts as free with this much less room than the window keeps, metres.
+/// A path counts as free with this much less room than the window keeps, metres.
 const SLACK_M: f64 = 0.03;
-/// On a map of many parts a push is at most this share of the pull: against the way, and across it.
+/// On a map of many parts, the push is limited to these shares of the pull: against the direction of the pull, and
+/// across it.
 const BACK_SHARE: f64 = 0.5;
 const ACROSS_SHARE: f64 = 1.0;
 
-/// Where virtual goals come from.
+/// The source of virtual goals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GuideBy {
-    /// Four on a square round the goal, used in a minimum (Yang et al. 2021).
+    /// Four goals on a square around the goal, used in a local minimum (Yang et al. 2021).
     Square,
-    /// The corners of the shortest way over the known map, whenever the straight way is blocked; ours.
+    /// The corners of the shortest path over the known map, whenever the straight path is blocked; our addition.
     Corners,
 }
 
-/// The field that is followed.
+/// The field to follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Field {
     /// The pull.
     pub square: SquareLaw,
     /// The push.
     pub push: GoalLaw,
-    /// Where virtual goals come from.
+    /// The source of virtual goals.
     pub by: GuideBy,
-    /// Distance that the middle of the robot keeps from outlines, metres.
+    /// Distance that the robot's centre keeps from outlines, metres.
     pub keep_m: f64,
 }
 
-/// What is remembered of virtual goals from step to step.
+/// The virtual goals and what is remembered of them from step to step.
 #[derive(Debug, Clone)]
 pub struct Guide {
     goals: VirtualGoals,
@@ -66,19 +68,19 @@ pub struct Guide {
     age: usize,
 }
 
-/// Where a robot is and where it is to go.
+/// The positions of a robot and of its destination.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trip {
-    /// Where it is.
+    /// The robot's position.
     pub at: Point,
-    /// The end of the way.
+    /// The end of the trip.
     pub goal: Point,
-    /// Where to go first: the goal, or a place on the plan that is nearer than what is left out of the map.
+    /// The next destination: the goal, or a point of the plan inside the part of the map that is kept.
     pub aim: Point,
 }
 
 impl Guide {
-    /// For a field.
+    /// Creates a guide for a field.
     pub fn new(field: &Field, hull_m: f64) -> Self {
         Self {
             goals: VirtualGoals::default(),
@@ -89,7 +91,7 @@ impl Guide {
         }
     }
 
-    /// The map has changed.
+    /// Takes note of a change of the map.
     pub fn take_change(&mut self, changed: Changed) {
         if changed.parts {
             self.nearby.forget();
@@ -104,17 +106,17 @@ impl Guide {
         self.goals.current()
     }
 
-    /// What is left of the shortest way, the goal last.
+    /// The rest of the shortest path, ending with the goal.
     pub fn way(&self) -> &[Point] {
         &self.way
     }
 
-    /// How many virtual goals of the square have been used.
+    /// The number of virtual goals on the square used so far.
     pub fn used(&self) -> u32 {
         self.goals.used
     }
 
-    /// The forces at a place; a step is `step_m` long.
+    /// The forces at a position; a step is `step_m` long.
     pub fn forces(&mut self, field: &Field, around: &Surroundings, trip: &Trip, step_m: f64) -> Forces {
         let map = around.map();
         let forces = field.push.forces(trip.at, trip.goal, map, &mut self.nearby, &mut Sides::default());
@@ -141,14 +143,14 @@ impl Guide {
         let stalled = self.stalled(at);
         let force = if stalled { Vector::zeros() } else { without };
         if self.goals.needs_one(law, at, goal, force, step_m) {
-            // The goal may lie beyond what is kept of the map.
+            // The goal may lie beyond the part of the map that is kept.
             let map = if around.is_everything() { around.map() } else { around.charted() };
             self.goals.take_best(law, at, goal, push, map);
         }
         law.attraction(at, goal, self.goals.current())
     }
 
-    /// Toward the first corner of the shortest way that is not passed yet, as strongly as toward a goal.
+    /// The pull toward the first corner of the shortest path not yet passed, as strong as that of a goal.
     fn toward_corner(&mut self, field: &Field, around: &Surroundings, trip: &Trip) -> Vector {
         let (map, at) = (around.map(), trip.at);
         if self.age == usize::MAX || self.leads_elsewhere(trip) {
@@ -195,10 +197,10 @@ impl Guide {
     }
 }
 
-/// What is left of a push beside a way that is known to be free, along which a pull points.
+/// Limits a push beside a path that is known to be free. The pull points along the path.
 ///
-/// A wall of a map is many parts, each of which pushes: together they would close every door. So the push may bend the way and
-/// not turn it back; what is too near is left to the window.
+/// A wall on a map consists of many parts, and each of them pushes; together they would block every door. The push may
+/// therefore deflect the robot but not turn it back. The window takes care of anything too close.
 fn beside_way(push: Vector, pull: Vector) -> Vector {
     let Some(ahead) = pull.try_normalize(1e-9) else { return push };
     let along = push.dot(&ahead);
@@ -208,7 +210,8 @@ fn beside_way(push: Vector, pull: Vector) -> Vector {
     ahead * along.max(-BACK_SHARE * pull.norm()) + across
 }
 
-/// The corners of the shortest way from a place, the goal last; none if there is none, or if `keep_going` ends the search.
+/// The corners of the shortest path from a position, ending with the goal. Returns `None` if there is no path, or if
+/// `keep_going` ends the search.
 pub fn shortest_way(
     around: &Surroundings,
     at: Point,
@@ -218,11 +221,11 @@ pub fn shortest_way(
 ) -> Option<Vec<Point>> {
     let map = around.map();
     let ends_m = map.clearance_m(at).min(map.clearance_m(goal)) + map.hull_m;
-    // A step on a large map can afford half of the attempts.
+    // A step on a large map has time for only half of the attempts.
     let first = if around.is_everything() { 0..ATTEMPTS } else { ATTEMPTS / 2..ATTEMPTS };
     for attempt in first {
         let room_m = if attempt + 1 == ATTEMPTS { 0.0 } else { ROOM_M / f64::from(1 << attempt) };
-        // A robot that stands, or is to stand, nearer than that finds a way with less room.
+        // A robot whose start or goal is closer to an obstacle than this finds a path in an attempt with less room.
         let wished_m = keep_m + room_m;
         if wished_m > ends_m + 1e-6 {
             continue;

@@ -9,50 +9,51 @@ use crate::{
 use steering::{Forces, KnownMap};
 use world::{Amphibious, Medium, Mode, Pace, Point, Pose, Zone, polyline};
 
-/// Near the goal, or a place to pass, the robot does not go faster than it can turn there.
+/// Within this distance of the goal, or of a point to pass, the robot drives no faster than it can turn there, metres.
 const TURNING_M: f64 = 1.2;
-/// A robot that looks away from where it is to go by more than this turns first, radians.
+/// A robot whose heading is off its target by more than this turns first, radians.
 const ASIDE_RAD: f64 = 0.35;
-/// The reference leaves a little of every speed, so that the window is never empty, metres per second.
+/// The speed limit near the goal never falls below this while the robot faces the goal, so that the window is never
+/// empty, metres per second.
 const SLOWEST_M_PER_S: f64 = 0.02;
 
-/// Spacing of the points of a way over a large map, metres.
+/// Spacing of the points of a path over a large map, metres.
 const ROUTE_M: f64 = 0.25;
 
-/// Everything that the loop needs besides the map.
+/// All settings of the loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridSettings {
-    /// How it walks and swims.
+    /// The robot's limits on land and under water.
     pub robot: Amphibious,
     /// The window.
     pub window: Window,
     /// The field.
     pub field: Field,
-    /// Steps of a plan at most; 0 lets the length of the trip decide.
+    /// Maximum steps of a plan; 0: derived from the length of the trip.
     pub steps_max: usize,
 }
 
-/// Where a robot is and how it moves.
+/// The robot's position and motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Its pose.
+    /// The robot's pose.
     pub pose: Pose,
     /// Its speed and turn rate.
     pub twist: Twist,
 }
 
-/// What was decided in a step.
+/// The decision in one step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decision {
-    /// How to move until the next step.
+    /// Motion until the next step.
     pub twist: Twist,
-    /// The forces that point there.
+    /// The forces behind the decision.
     pub forces: Forces,
-    /// The limits that hold now.
+    /// The limits that apply now.
     pub pace: Pace,
 }
 
-/// The loop and what it remembers.
+/// The loop and its state.
 #[derive(Debug, Clone)]
 pub struct Hybrid {
     settings: HybridSettings,
@@ -61,48 +62,48 @@ pub struct Hybrid {
     guide: Guide,
 }
 
-/// How many distances are reported: as many as the paper plots.
+/// Number of distances reported: as many as the paper plots.
 const N_DISTANCES: usize = 10;
 
 impl Hybrid {
-    /// A loop that has not begun.
+    /// Creates a loop that has not yet started.
     pub fn new(settings: HybridSettings, zones: Vec<Zone>, hull_m: f64) -> Self {
         Self { guide: Guide::new(&settings.field, hull_m), settings, zones, mode: None }
     }
 
-    /// What it is set to.
+    /// The settings of the loop.
     pub fn settings(&self) -> &HybridSettings {
         &self.settings
     }
 
-    /// A command takes effect for so long from now on, seconds.
+    /// Sets the time for which a command takes effect, seconds.
     pub fn set_tick(&mut self, tick_s: f64) {
         self.settings.window.dt_s = tick_s;
     }
 
-    /// What it remembers of virtual goals.
+    /// The guide and its virtual goals.
     pub fn guide(&self) -> &Guide {
         &self.guide
     }
 
-    /// Share of swimming, 0 to 1.
+    /// The share of the swimming mode, 0 to 1.
     pub fn mode(&self) -> Option<f64> {
         self.mode.map(Mode::weight)
     }
 
-    /// The map has changed.
+    /// Takes note of a change of the map.
     pub fn take_change(&mut self, changed: Changed) {
         self.guide.take_change(changed);
     }
 
-    /// How far away things can matter to the next step, metres.
+    /// The distance within which obstacles can affect the next step, metres.
     pub fn reach_m(&self) -> f64 {
         let Amphibious { land, underwater, .. } = self.settings.robot;
         let reach_m = |pace| self.settings.window.reach_m(pace);
         reach_m(land).max(reach_m(underwater)).max(self.settings.field.push.rho_m)
     }
 
-    /// Decides how to move in the next tick; `ahead` is the plan for the next metres, if there is one.
+    /// Decides how to move in the next tick. `ahead` is the next part of the plan, if there is a plan.
     pub fn decide(&mut self, state: &State, goal: Point, ahead: &[Point], around: &Surroundings) -> Decision {
         let pace = self.adapt(state.pose.position);
         let window = &self.settings.window;
@@ -116,7 +117,7 @@ impl Hybrid {
         Decision { twist, forces, pace }
     }
 
-    /// The limits by the floor under the robot; one step of the transition each time.
+    /// Updates the limits for the floor under the robot, by one step of the transition per call.
     fn adapt(&mut self, at: Point) -> Pace {
         let robot = &self.settings.robot;
         let medium = Medium::at(&self.zones, at);
@@ -127,8 +128,8 @@ impl Hybrid {
     }
 }
 
-/// The largest speed at which an arc at the largest turn rate still reaches the goal, when the goal is near: a
-/// robot that is faster circles round it for ever.
+/// The maximum speed near the goal from which an arc at the maximum turn rate still reaches the goal. A faster robot
+/// would circle around the goal forever.
 fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
     let way = goal - state.pose.position;
     let missing_m = way.norm();
@@ -143,7 +144,7 @@ fn drivable(state: &State, goal: Point, pace: Pace) -> f64 {
     slow.min(pace.v_max_m_per_s)
 }
 
-/// Distances from the hull to the nearest outlines, up to ten, nearest first, metres.
+/// The distances from the hull to the nearest outlines, up to ten, nearest first, metres.
 pub fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
     let mut all: Vec<f64> = map.solids.iter().map(|s| s.distance(at).0 - map.hull_m).collect();
     if all.len() > N_DISTANCES {
@@ -154,21 +155,21 @@ pub fn distances_m(map: &KnownMap, at: Point) -> Vec<f64> {
     all
 }
 
-/// A run of the loop in thought, at the exact pose.
+/// A simulated run of the loop at the exact pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// The place at every tick, the start first.
+    /// The position at every tick, starting with the start.
     pub path: Vec<Point>,
     /// Whether the goal was reached.
     pub arrived: bool,
-    /// Furthest above the limit of the moment, metres per second.
+    /// Largest excess of the robot's speed over the limit that applied, metres per second.
     pub overspeed_m_per_s: f64,
 }
 
-/// Runs the loop over the known map; `check` ends it early.
+/// Simulates the loop over the known map. `check` can end it early.
 ///
 /// # Errors
-/// What `check` says.
+/// The error that `check` returns.
 pub fn run<E>(
     hybrid: &mut Hybrid,
     start: Pose,
@@ -201,11 +202,11 @@ pub fn run<E>(
     Ok(run)
 }
 
-/// The shortest way over a map that is too large to be flown in thought; the start alone if there is none. `check` ends it
-/// early.
+/// The shortest path over a map too large to be simulated; only the start if there is no path. `check` can end the
+/// search early.
 ///
 /// # Errors
-/// What `check` says.
+/// The error that `check` returns.
 pub fn route<E>(
     map: &KnownMap,
     start: Point,

@@ -1,15 +1,15 @@
-//! What is near enough to matter within the horizon of a window.
+//! The objects close enough to matter within the horizon of a window.
 
 use geometry::{convex::Part, polyline::edges};
 use steering::{KnownMap, Solid};
 use world::{Boundary, Point, Vector};
 
-/// A round thing.
+/// A round object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Its middle.
+    /// The centre.
     pub center: Point,
-    /// Its radius, metres.
+    /// The radius, metres.
     pub radius_m: f64,
 }
 
@@ -18,13 +18,13 @@ pub struct Disc {
 pub struct Bar {
     from: Point,
     along: Vector,
-    /// One over its squared length; 0 for a bar without length.
+    /// One over the squared length; 0 for a bar without length.
     inverse: f64,
     half_width_m: f64,
 }
 
 impl Bar {
-    /// Everything within a distance of a segment.
+    /// Creates the bar of all points within `half_width_m` of a segment.
     pub fn new(a: Point, b: Point, half_width_m: f64) -> Self {
         let along = b - a;
         let squared = along.norm_squared();
@@ -32,7 +32,7 @@ impl Bar {
         Self { from: a, along, inverse, half_width_m }
     }
 
-    /// Squared distance of a point from its middle line.
+    /// The squared distance of a point from the bar's centre line.
     fn squared(&self, point: Point) -> f64 {
         let off = point - self.from;
         let share = (off.dot(&self.along) * self.inverse).clamp(0.0, 1.0);
@@ -40,19 +40,19 @@ impl Bar {
     }
 }
 
-/// Everything that a robot might come near to within the horizon.
+/// All objects that a robot might approach within the horizon.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NearThings {
-    /// Round ones.
+    /// Round objects.
     pub discs: Vec<Disc>,
-    /// Straight ones: sides of polygons and pieces of a straight wall among them.
+    /// Straight objects, including sides of polygons and pieces of a straight wall.
     pub bars: Vec<Bar>,
     /// Radius of a round wall, metres, if it is near.
     pub round_wall_m: Option<f64>,
 }
 
 impl NearThings {
-    /// What is within reach.
+    /// Collects the objects within reach.
     pub fn of(map: &KnownMap, at: Point, reach_m: f64) -> Self {
         let mut near = Self::default();
         for solid in map.solids.iter().filter(|s| !s.is_beyond(at, reach_m)) {
@@ -76,20 +76,20 @@ impl NearThings {
                 self.discs.push(Disc { center: solid.center, radius_m: solid.radius_m });
             }
             Part::Capsule { a, b, half_width_m } => self.bars.push(Bar::new(*a, *b, *half_width_m)),
-            // The hull is wider than the way between two points, so none jumps over a side.
+            // The hull is wider than the distance between two points, so no point can jump across a side.
             Part::Polygon { vertices } => {
                 self.bars.extend(edges(vertices).map(|(a, b)| Bar::new(a, b, 0.0)));
             }
         }
     }
 
-    /// The least distance from points that lie close together to everything, metres; no more than `cap_m`.
+    /// The smallest distance from a group of neighbouring points to any object, metres; at most `cap_m`.
     pub fn distance_m(&self, points: &[Point], cap_m: f64) -> f64 {
         let mut least = cap_m;
         let Some(first) = points.first() else { return least };
         let span_m = points.iter().map(|p| (p - first).norm_squared()).fold(0.0, f64::max).sqrt();
         for disc in &self.discs {
-            // Nothing that is too far from the first point for the others to come near.
+            // Skip objects so far from the first point that no other point can come close to them.
             let reach_m = least + span_m + disc.radius_m;
             if (first - disc.center).norm_squared() <= reach_m * reach_m {
                 let squared = points.iter().map(|p| (p - disc.center).norm_squared());

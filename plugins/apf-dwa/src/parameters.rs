@@ -1,4 +1,4 @@
-//! The parameters, and how they become settings.
+//! The parameters and their conversion to settings.
 
 use crate::{
     guide::{Field, GuideBy},
@@ -15,81 +15,75 @@ const WINDOW: &str = "Window";
 
 const GUIDE: ParamSpec = choice("guide", "Virtual goals", &["square", "corners"], 1)
     .help(
-        "square: in a minimum, one of four on a square round the goal, as published. corners: those of the shortest way \
-         over the known map, whenever the straight way is blocked.",
+        "square: in a local minimum, one of four on a square around the goal, as published. corners: those \
+         of the shortest path over the known map, whenever the straight path is blocked.",
     )
     .group(FIELD);
 const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0, 15.0)
     .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
-    .help("Push of obstacles; Table 2 of the paper has 5.")
+    .help("Gain of the push of obstacles; Table 2 of the paper has 5.")
     .group(FIELD);
-const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 1.0)
-    .help("Distance between hull and obstacle at which obstacles begin to push.")
+const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 1.0)
+    .help("Distance from the hull at which obstacles begin to push.")
     .group(FIELD);
-const D_0: ParamSpec = float("d_0_m", "Range of the goal", "m", 0.0, 100.0, 3.0)
-    .help("Nearer than this the pull is constant and no virtual goal of the square is used.")
+const D_0: ParamSpec = float("d_0_m", "Goal range", "m", 0.0, 100.0, 3.0)
+    .help("Closer to the goal than this, the pull is constant and no virtual goal on the square is used.")
     .group(FIELD);
-const SQUARE: ParamSpec = float("square_m", "Distance of virtual goals", "m", 0.1, 100.0, 4.0)
-    .help("How far from the goal the four virtual goals lie; the paper gives no number.")
+const SQUARE: ParamSpec = float("square_m", "Virtual goal distance", "m", 0.1, 100.0, 4.0)
+    .help("Distance of the four virtual goals from the goal; the paper gives no value.")
     .group(FIELD);
-const HOLD: ParamSpec = int("hold_steps", "Steps with a virtual goal", "", 1, 100_000, 300)
-    .help("A virtual goal is kept for this many steps at most; the paper gives no number.")
+const HOLD: ParamSpec = int("hold_steps", "Virtual goal duration", "", 1, 100_000, 300)
+    .help("Largest number of steps for which a virtual goal is kept; the paper gives no value.")
     .group(FIELD);
 const LAND_SPEED: ParamSpec = float("land_speed_max_m_per_s", "Speed on land", "m/s", 0.0, 10.0, 0.0)
-    .help("Largest speed on dry floor; 0 takes the robot's own. Table 1 of the paper has 0.13.")
+    .help("Maximum speed on dry floor; 0: the robot's own limit. Table 1 of the paper has 0.13.")
     .group(ROBOT);
 const LAND_TURN: ParamSpec = float("land_turn_rad_per_s", "Turn rate on land", "rad/s", 0.0, 10.0, 0.0)
-    .help("Largest turn rate on dry floor; 0 takes the robot's own. Table 1 of the paper has 0.12.")
+    .help("Maximum turn rate on dry floor; 0: the robot's own limit. Table 1 of the paper has 0.12.")
     .group(ROBOT);
-const WATER_SPEED: ParamSpec = float(
-    "underwater_speed_max_m_per_s",
-    "Speed under water",
-    "m/s",
-    0.0,
-    10.0,
-    0.0,
-)
-.help("Largest speed in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.23.")
-.group(ROBOT);
-const WATER_TURN: ParamSpec = float(
-    "underwater_turn_rad_per_s",
-    "Turn rate under water",
-    "rad/s",
-    0.0,
-    10.0,
-    0.0,
-)
-.help("Largest turn rate in zones that are flooded; 0 takes the robot's own. Table 1 of the paper has 0.31.")
-.group(ROBOT);
-const TRANSITION: ParamSpec = int("transition_steps", "Steps of transition", "", -1, 10_000, -1)
-    .help("Steps in which the limits of one mode change into those of the other; 0 is at once, -1 the robot's own.")
+const WATER_SPEED: ParamSpec =
+    float("underwater_speed_max_m_per_s", "Speed under water", "m/s", 0.0, 10.0, 0.0)
+        .help("Maximum speed in flooded zones; 0: the robot's own limit. Table 1 of the paper has 0.23.")
+        .group(ROBOT);
+const WATER_TURN: ParamSpec =
+    float("underwater_turn_rad_per_s", "Turn rate under water", "rad/s", 0.0, 10.0, 0.0)
+        .help("Maximum turn rate in flooded zones; 0: the robot's own limit. Table 1 of the paper has 0.31.")
+        .group(ROBOT);
+const TRANSITION: ParamSpec = int("transition_steps", "Transition steps", "", -1, 10_000, -1)
+    .help(
+        "Number of steps over which the limits change from one mode to the other; 0: immediately, -1: \
+           the robot's own value.",
+    )
     .group(ROBOT);
 const ACCELERATION: ParamSpec = float("acceleration_m_per_s2", "Acceleration", "m/s2", 0.0, 100.0, 0.0)
-    .help("Largest change of speed; 0 takes the robot's own. The paper gives none.")
+    .help("Maximum acceleration and braking; 0: the robot's own limit. The paper gives no value.")
     .group(ROBOT);
 const TURN_ACCELERATION: ParamSpec =
     float("turn_acceleration_rad_per_s2", "Turn acceleration", "rad/s2", 0.0, 100.0, 0.0)
-        .help("Largest change of turn rate; 0 reaches the turn rate on land in 0.3 s. The paper gives none.")
+        .help(
+            "Maximum change of turn rate; 0: reaches the turn rate on land in 0.3 s. The paper gives no \
+               value.",
+        )
         .group(ROBOT);
-const HEADING: ParamSpec = float("weight_heading", "Weight of the heading", "", 0.0, 100.0, 0.2)
-    .help("Looking along the force at the end of an arc; Table 2 of the paper has 0.2.")
+const HEADING: ParamSpec = float("weight_heading", "Heading weight", "", 0.0, 100.0, 0.2)
+    .help("Weight of pointing along the force at the end of an arc; Table 2 of the paper has 0.2.")
     .group(WINDOW);
-const DISTANCE: ParamSpec = float("weight_distance", "Weight of the distance", "", 0.0, 100.0, 0.1)
-    .help("Room beside an arc; Table 2 of the paper has 0.1.")
+const DISTANCE: ParamSpec = float("weight_distance", "Distance weight", "", 0.0, 100.0, 0.1)
+    .help("Weight of the clearance along an arc; Table 2 of the paper has 0.1.")
     .group(WINDOW);
-const VELOCITY: ParamSpec = float("weight_velocity", "Weight of the speed", "", 0.0, 100.0, 0.1)
-    .help("Speed on an arc; Table 2 of the paper has 0.1.")
+const VELOCITY: ParamSpec = float("weight_velocity", "Speed weight", "", 0.0, 100.0, 0.1)
+    .help("Weight of the speed on an arc; Table 2 of the paper has 0.1.")
     .group(WINDOW);
 const STEP_S: ParamSpec = float("step_s", "Step", "s", 0.01, 1.0, 0.1)
     .help("Length of a step when planning; Table 2 of the paper has 0.1 s.")
     .group("Plan");
-const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 50_000, 0)
-    .help("Steps of a plan; 0 lets the length of the trip decide.")
+const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 50_000, 0)
+    .help("Largest number of steps in a plan; 0: derived from the length of the trip.")
     .group("Plan");
 
-/// Every parameter of the planner.
+/// All parameters of the planner.
 pub(crate) const PARAMS: &[ParamSpec] = &[
     GUIDE,
     K_ATT,
@@ -116,12 +110,14 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
     p::EVADE,
 ];
 
-/// The robot of Table 1 turns by 0.12 rad/s on land; with 0.4 rad/s2 the paper's figures come out.
+/// Default turn acceleration. The robot of Table 1 turns at 0.12 rad/s on land; 0.4 rad/s2 reproduces the paper's
+/// figures.
 const TURNING_S: f64 = 0.12 / 0.4;
-/// The window keeps this much more than is demanded: arcs are looked at in places, metres.
+/// Distance that the window keeps in addition to the required clearance, because arcs are checked only at points,
+/// metres.
 const SPARE_M: f64 = 0.02;
 
-/// Settings for a site.
+/// Reads the settings for a site.
 pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     let keep_m = site.limits.radius_m + config.float("guard_m").max(site.clearance_m) + SPARE_M;
     let square = SquareLaw {
@@ -160,7 +156,7 @@ pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>) -> HybridSettings {
     }
 }
 
-/// How the robot walks and swims, never faster than the robot itself.
+/// The robot's limits on land and under water, never above its own.
 fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
     let own = Pace { v_max_m_per_s: site.limits.v_max_m_per_s, w_max_rad_per_s: site.limits.w_max_rad_per_s };
     let own =
@@ -177,7 +173,7 @@ fn robot(config: &Config<'_>, site: &Site<'_>) -> Amphibious {
     }
 }
 
-/// A limit that is set, never above the robot's own, or the robot's own.
+/// Returns the configured limit, capped at the robot's own, or the robot's own limit if none is configured.
 fn or_own(set: f64, own: f64) -> f64 {
     if set > 0.0 { set.min(own) } else { own }
 }

@@ -1,7 +1,8 @@
-//! The part of the map that matters to the next steps: as many parts as a step can afford, however large the map.
+//! The part of the map that matters to the next steps: as many parts as a step has time for, however large the map.
 //!
-//! A map of a building has thousands of parts. What is drawn near the robot is looked up again after a metre, and what is
-//! sensed stands where it is sensed, so a step costs as much as a floor of a few hundred parts.
+//! A map of a building has thousands of parts. The part of the drawing near the robot is looked up again after a metre,
+//! and sensed obstacles stay where they are sensed. A step therefore costs as much as on a floor of a few hundred
+//! parts.
 
 use geometry::polyline::{edges, nearest_on_segment};
 use planner_api::Site;
@@ -9,20 +10,20 @@ use std::collections::HashSet;
 use steering::{Body, KnownMap, Solid};
 use world::{Boundary, Point, Shape, shortest::GrownFloor};
 
-/// Parts of the drawing that are kept at most, unless the window reaches more.
+/// Maximum number of parts of the drawing that are kept, unless the window reaches more.
 const PARTS_MOST: usize = 100;
-/// What is near is looked up again after this distance, metres.
+/// The nearby parts are looked up again after this distance, metres.
 const SLACK_M: f64 = 1.0;
-/// Far enough for a wall that is not to matter, metres.
+/// Distance at which a wall has no effect, metres.
 const FAR_M: f64 = 1e6;
 
-/// The map about a robot.
+/// The map around a robot.
 #[derive(Debug, Clone)]
 pub struct Surroundings {
-    /// As drawn, or as the console's chart had it when it asked for a plan.
+    /// The map as drawn, or as on the console's chart when it requested a plan.
     charted: KnownMap,
     charted_ids: HashSet<u32>,
-    /// What is sensed, and what was found before that stands still and is on no drawing.
+    /// The obstacles sensed now, and stationary obstacles found earlier that are not on the drawing.
     sensed: Vec<Sensed>,
     here: KnownMap,
     cut: Option<Cut>,
@@ -34,7 +35,7 @@ struct Sensed {
     moves: bool,
 }
 
-/// What of the drawing is near.
+/// The part of the drawing near the robot.
 #[derive(Debug, Clone)]
 struct Cut {
     from: Point,
@@ -42,34 +43,34 @@ struct Cut {
     indices: Vec<usize>,
 }
 
-/// What a look changed.
+/// Changes found by [`Surroundings::look`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Changed {
-    /// Whether the parts of the map are others, or lie elsewhere.
+    /// Whether parts of the map were added, removed or moved.
     pub parts: bool,
-    /// Whether a way that was free may be blocked.
+    /// Whether a path that was free may now be blocked.
     pub ways: bool,
 }
 
 impl Surroundings {
-    /// About a robot on a map, before it has looked.
+    /// Creates the surroundings of a robot on a map; call [`Surroundings::look`] before use.
     pub fn new(charted: KnownMap) -> Self {
         let here = KnownMap { solids: Vec::new(), ..charted.clone() };
         let charted_ids = charted.solids.iter().map(|solid| solid.id).collect();
         Self { charted, charted_ids, sensed: Vec::new(), here, cut: None }
     }
 
-    /// Whether a map is never cut down.
+    /// Whether a map is small enough to be kept whole.
     pub fn is_small(map: &KnownMap) -> bool {
         map.solids.len() <= PARTS_MOST
     }
 
-    /// About a robot at a site; what moves counts only while it is sensed.
+    /// Creates the surroundings of a robot at a site. Moving obstacles count only while they are sensed.
     pub fn of_site(site: &Site<'_>) -> Self {
         Self::new(KnownMap::standing(site))
     }
 
-    /// The whole of a map, for a search that may take its time.
+    /// Creates surroundings that hold a whole map, for a search without a time limit per step.
     pub fn whole(charted: KnownMap) -> Self {
         let mut whole = Self::new(charted);
         let indices = (0..whole.charted.solids.len()).collect();
@@ -78,7 +79,7 @@ impl Surroundings {
         whole
     }
 
-    /// What is known hereabouts.
+    /// The map near the robot.
     pub fn map(&self) -> &KnownMap {
         &self.here
     }
@@ -88,13 +89,14 @@ impl Surroundings {
         &self.charted
     }
 
-    /// Whether nothing was left out.
+    /// Whether the map near the robot is the whole map.
     pub fn is_everything(&self) -> bool {
         self.cut.as_ref().is_some_and(|cut| cut.reach_m.is_infinite())
     }
 
-    /// Looks about from a place, at least as far as the window reaches. What moves, or is on the drawing, is forgotten
-    /// when it is no longer among what is sensed, and what seemed to stand as soon as it is known to move.
+    /// Updates the surroundings for a position, at least as far as the window reaches. An obstacle that moves, or is on
+    /// the drawing, is forgotten once it is no longer sensed. One that seemed stationary is forgotten as soon as it is
+    /// known to move.
     pub fn look(&mut self, at: Point, least_m: f64, sensed: &[Body], moves: impl Fn(u32) -> bool) -> Changed {
         let ways = sensed.iter().any(|body| self.is_news(body));
         let is_cut = self.update_cut(at, least_m);
@@ -111,7 +113,7 @@ impl Surroundings {
         Changed { parts: true, ways }
     }
 
-    /// The floor hereabouts for a robot that keeps a distance, metres.
+    /// The nearby floor for a robot that keeps a distance, metres.
     pub fn floor(&self, keep_m: f64) -> GrownFloor {
         let mut shapes: Vec<Shape> = self.here.solids.iter().map(|solid| solid.part.to_shape()).collect();
         let (Some(cut), Boundary::Polygon { vertices }) = (&self.cut, &self.here.wall) else {
@@ -131,7 +133,7 @@ impl Surroundings {
         !self.charted_ids.contains(&body.id) && self.sensed.iter().all(|known| known.body.id != body.id)
     }
 
-    /// Whether the parts of the drawing that are near were looked up again.
+    /// Looks up the nearby parts of the drawing again if necessary. Returns whether it did.
     fn update_cut(&mut self, at: Point, least_m: f64) -> bool {
         let still_holds =
             |cut: &Cut| cut.reach_m.is_infinite() || (cut.from - at).norm_squared() < SLACK_M * SLACK_M;
@@ -145,7 +147,8 @@ impl Surroundings {
         true
     }
 
-    /// How far the parts that can be afforded reach, metres; infinitely far where there are no more of them.
+    /// The distance that the affordable number of parts covers, metres; infinite if the map has no more parts than
+    /// that.
     fn affordable_m(&self, at: Point) -> f64 {
         if Self::is_small(&self.charted) {
             return f64::INFINITY;
@@ -156,7 +159,7 @@ impl Surroundings {
     }
 
     fn fill_here(&mut self) {
-        let cut = self.cut.as_ref().expect("it was made by the look");
+        let cut = self.cut.as_ref().expect("the update created it");
         let is_sensed = |id: u32| self.sensed.iter().any(|known| known.body.id == id);
         let drawn = cut.indices.iter().map(|index| &self.charted.solids[*index]);
         self.here.solids.clear();

@@ -4,34 +4,34 @@ use crate::near::NearThings;
 use geometry::Braking;
 use world::{Pace, Point, Pose, Vector};
 
-/// Speeds looked at.
+/// Number of speeds tried.
 const N_SPEEDS: usize = 7;
-/// Turn rates looked at.
+/// Number of turn rates tried.
 const N_TURNS: usize = 21;
 /// An arc is followed for this long, seconds.
 const HORIZON_S: f64 = 3.0;
-/// Distance between the places looked at on an arc, seconds.
+/// Time between the points checked on an arc, seconds.
 const STEP_S: f64 = 0.2;
-/// Places on an arc.
+/// Number of points checked on an arc.
 const N_PLACES: usize = 15;
-/// Distances beyond what is kept count up to this much, metres.
+/// Distances beyond the one to keep are capped at this value, metres.
 const CAP_M: f64 = 1.0;
-/// Turn rate when no arc is allowed, as a share of the largest.
+/// Turn rate when no arc is allowed, as a share of the maximum.
 const TURN_SHARE: f64 = 0.3;
 
-/// How a unicycle moves.
+/// The motion of a unicycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
-    /// Speed ahead, metres per second.
+    /// Forward speed, metres per second.
     pub v_m_per_s: f64,
     /// Turn rate, radians per second.
     pub w_rad_per_s: f64,
 }
 
-/// Weights of the cost of an arc; each term is divided by its sum over all arcs that are allowed.
+/// Weights of the terms in the score of an arc; each term is divided by its sum over all allowed arcs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
-    /// Looking where the reference points at the end of the arc.
+    /// Pointing along the reference at the end of the arc.
     pub heading: f64,
     /// Room beside the arc.
     pub distance: f64,
@@ -39,16 +39,16 @@ pub struct Weights {
     pub velocity: f64,
 }
 
-/// The choice of the next twist.
+/// Settings for choosing the next twist.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Largest change of speed, metres per second squared; the paper gives none.
+    /// Maximum change of speed, metres per second squared; the paper gives no value.
     pub acceleration_m_per_s2: f64,
-    /// Largest change of turn rate, radians per second squared; the paper gives none.
+    /// Maximum change of turn rate, radians per second squared; the paper gives no value.
     pub turn_acceleration_rad_per_s2: f64,
     /// Weights of the terms.
     pub weights: Weights,
-    /// Distance that the middle of the robot keeps from outlines, metres.
+    /// Distance that the robot's centre keeps from outlines, metres.
     pub keep_m: f64,
     /// Length of a tick, seconds.
     pub dt_s: f64,
@@ -61,13 +61,14 @@ struct Candidate {
 }
 
 impl Window {
-    /// How far away things can matter, metres.
+    /// The distance within which objects can matter, metres.
     pub fn reach_m(&self, pace: Pace) -> f64 {
         pace.v_max_m_per_s * HORIZON_S + CAP_M + self.keep_m
     }
 
-    /// The best twist for the next tick: within the limits and what the drives can do, and such that the robot can stop
-    /// before it touches anything. Where no arc is allowed it brakes and turns slowly toward the reference.
+    /// Returns the best twist for the next tick: within the limits and the reach of the drives, and such that the robot
+    /// can stop before it touches anything. If no arc is allowed, the robot brakes and turns slowly toward the
+    /// reference.
     pub fn choose(&self, pose: &Pose, now: Twist, pace: Pace, reference: Vector, near: &NearThings) -> Twist {
         let (speeds, turns) = (self.speeds(now, pace), self.turns(now, pace));
         let here_m = self.spare_m(near, &[pose.position]);
@@ -89,12 +90,13 @@ impl Window {
         self.best(&candidates).unwrap_or_else(|| turned_on_the_spot(pose, speeds, turns, pace, reference))
     }
 
-    /// Room beyond what is kept, on the way over some places, metres; no more than counts.
+    /// The room beyond the distance to keep at some points, metres, capped.
     fn spare_m(&self, near: &NearThings, points: &[Point]) -> f64 {
         near.distance_m(points, CAP_M + self.keep_m) - self.keep_m
     }
 
-    /// Whether it can stop in time. A robot that is too near already may move where it does not get nearer.
+    /// Whether the robot can stop in time. A robot that is already too close may make any move that does not bring it
+    /// closer.
     fn is_allowed(&self, v_m_per_s: f64, distance_m: f64, here_m: f64) -> bool {
         if here_m < 0.0 {
             return distance_m >= here_m - 1e-9;
@@ -116,11 +118,11 @@ impl Window {
         candidates.iter().max_by(|a, b| score(a).total_cmp(&score(b))).map(|c| c.twist)
     }
 
-    /// Speeds that the drives reach within a tick; a robot faster than its limit brakes as hard as it can.
+    /// The range of speeds that the drives can reach within a tick. A robot above its limit brakes as hard as it can.
     fn speeds(&self, now: Twist, pace: Pace) -> (f64, f64) {
         let change = self.acceleration_m_per_s2 * self.dt_s;
         let low = (now.v_m_per_s - change).max(0.0);
-        // From more than this it does not stop within the way that is looked at.
+        // Above this speed, the robot could not stop within the checked distance.
         let most = pace.v_max_m_per_s.min(self.acceleration_m_per_s2 * HORIZON_S);
         (low, (now.v_m_per_s + change).min(most).max(low))
     }
@@ -133,7 +135,7 @@ impl Window {
     }
 }
 
-/// Braking, and turning slowly toward the reference.
+/// Brakes, and turns slowly toward the reference.
 fn turned_on_the_spot(
     pose: &Pose,
     speeds: (f64, f64),
@@ -146,12 +148,12 @@ fn turned_on_the_spot(
     Twist { v_m_per_s: speeds.0, w_rad_per_s: wanted.clamp(turns.0, turns.1) }
 }
 
-/// Numbers from the first to the last, evenly.
+/// Evenly spaced numbers from the first to the last.
 fn spread<const N: usize>((low, high): (f64, f64)) -> [f64; N] {
     std::array::from_fn(|k| low + (high - low) * k as f64 / (N - 1) as f64)
 }
 
-/// Offsets of the places on an arc per metre per second of speed.
+/// Offsets of the points on an arc per metre per second of speed.
 fn arc_per_speed(pose: &Pose, w_rad_per_s: f64) -> [Vector; N_PLACES] {
     let mut offset = Vector::zeros();
     std::array::from_fn(|k| {
@@ -161,12 +163,12 @@ fn arc_per_speed(pose: &Pose, w_rad_per_s: f64) -> [Vector; N_PLACES] {
     })
 }
 
-/// Where a robot is after a tick of a twist.
+/// The pose of a robot after one tick of a twist.
 pub fn moved(pose: &Pose, twist: Twist, dt_s: f64) -> Pose {
     pose.moved(twist.v_m_per_s * dt_s, 0.0, twist.w_rad_per_s * dt_s)
 }
 
-/// The places of an arc, for drawing.
+/// The points of an arc, for drawing.
 pub fn arc(pose: &Pose, twist: Twist) -> Vec<Point> {
     let offsets = arc_per_speed(pose, twist.w_rad_per_s);
     std::iter::once(pose.position).chain(offsets.map(|o| pose.position + o * twist.v_m_per_s)).collect()

@@ -3,9 +3,9 @@
 use field::{FieldSettings, ForcePilot, offline, params as p};
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 
-/// Attraction and repulsion of Khatib 1986, toward a goal and along a preset path alike.
+/// Attraction and repulsion after Khatib 1986, both toward a goal and along a preset path.
 ///
-/// It has no answer to a local minimum: it says so.
+/// It cannot escape from a local minimum, and reports when it is in one.
 pub struct Apf {
     settings: FieldSettings,
     pilot: ForcePilot,
@@ -14,8 +14,8 @@ pub struct Apf {
 impl Planner for Apf {
     const ID: &'static str = "apf";
     const NAME: &'static str = "Artificial potential field";
-    const ABOUT: &'static str = "Attraction and repulsion after Khatib 1986, toward a goal or along a preset path; \
-                                 stays in local minima, evades what moves.";
+    const ABOUT: &'static str = "Attraction and repulsion after Khatib 1986, toward a goal or along a \
+                                 preset path. Gets stuck in local minima. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] = &[
         p::K_ATT,

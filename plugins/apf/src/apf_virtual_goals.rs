@@ -1,4 +1,4 @@
-//! The improved field with virtual goals.
+//! The improved potential field with virtual goals.
 
 use crate::goal_flight::GoalFlight;
 use field::{
@@ -12,14 +12,14 @@ use planner_api::{
 use steering::{Forces, KnownMap, Nearby};
 use world::{Point, Vector};
 
-/// Attraction, repulsion and, in a minimum, a virtual goal on a square round the goal (Yang et al. 2021).
+/// Attraction and repulsion, and in a local minimum a virtual goal on a square around the goal (Yang et al. 2021).
 pub(crate) struct ApfVirtualGoals {
     law: Law,
     flight: GoalFlight,
     goals: VirtualGoals,
 }
 
-/// The field and the way it is walked.
+/// The field and its step rule.
 #[derive(Debug, Clone, Copy)]
 struct Law {
     square: SquareLaw,
@@ -35,38 +35,42 @@ const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 1000.0,
     .help("Pull toward the goal per metre of distance; Table 2 of the paper has 15.")
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 5.0)
-    .help("Push of obstacles; Table 2 of the paper has 5.")
+    .help("Gain of the push of obstacles; Table 2 of the paper has 5.")
     .group(FIELD);
-const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 1.0)
-    .help("Distance between hull and obstacle at which obstacles begin to act.")
+const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 1.0)
+    .help("Distance from the hull at which obstacles begin to act.")
     .group(FIELD);
-const D_0: ParamSpec = float("d_0_m", "Range of the goal", "m", 0.0, 100.0, 3.0)
-    .help("Nearer than this the pull is constant and no virtual goal is used.")
+const D_0: ParamSpec = float("d_0_m", "Goal range", "m", 0.0, 100.0, 3.0)
+    .help("Closer to the goal than this, the pull is constant and no virtual goal is used.")
     .group(GOALS);
-const SQUARE: ParamSpec = float("square_m", "Distance of virtual goals", "m", 0.1, 100.0, 2.0)
-    .help("How far from the goal the four virtual goals lie; the paper gives no number.")
+const SQUARE: ParamSpec = float("square_m", "Virtual goal distance", "m", 0.1, 100.0, 2.0)
+    .help("Distance of the four virtual goals from the goal; the paper gives no value.")
     .group(GOALS);
 const IMPROVED: ParamSpec = flag("improved", "Improved", true)
-    .help("Without it is the traditional field that the paper compares with.")
+    .help("Turned off, the planner is the traditional field that the paper compares with.")
     .group(GOALS);
-const HOLD: ParamSpec = int("hold_steps", "Steps with a virtual goal", "", 1, 10_000, 30)
-    .help("A virtual goal is kept for this many steps at most; the paper gives no number.")
+const HOLD: ParamSpec = int("hold_steps", "Virtual goal duration", "", 1, 10_000, 30)
+    .help("Largest number of steps for which a virtual goal is kept; the paper gives no value.")
     .group(GOALS);
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.1)
-    .help("Longest move when planning; the paper's time step of 0.1 s.")
+    .help("Longest step when planning; corresponds to the paper's time step of 0.1 s.")
     .group("Plan");
-const STEP_RULE: ParamSpec = choice("step_rule", "Step rule", &["fixed", "proportional"], 1)
-    .help("proportional: shorter where the force is smaller than the attraction gain, nearer to the paper's tables.")
+const STEP_RULE: ParamSpec = choice("step_rule", "Step length rule", &["fixed", "proportional"], 1)
+    .help(
+        "proportional: steps are shorter where the force is weaker than the attraction gain, which comes \
+         closer to the paper's tables.",
+    )
     .group("Plan");
-const STEPS: ParamSpec = int("steps_max", "Steps at most", "", 0, 1_000_000, 0)
-    .help("Iterations of a plan; the paper has 200. 0 lets the length of the trip decide.")
+const STEPS: ParamSpec = int("steps_max", "Maximum steps", "", 0, 1_000_000, 0)
+    .help("Largest number of steps in a plan; the paper has 200. 0: derived from the length of the trip.")
     .group("Plan");
 
 impl Planner for ApfVirtualGoals {
     const ID: &'static str = "apf-virtual-goals";
     const NAME: &'static str = "Field with virtual goals";
-    const ABOUT: &'static str = "Leaves minima toward virtual goals on a square round the goal and keeps its pull near \
-                                 the goal, after Yang et al. 2021; evades what moves.";
+    const ABOUT: &'static str = "Leaves local minima toward virtual goals on a square around the goal and \
+                                 keeps its pull near the goal, after Yang et al. 2021. Evades moving \
+                                 obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = &[
         K_ATT,
@@ -113,12 +117,13 @@ impl Planner for ApfVirtualGoals {
         };
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
         if goals.used > 0 {
-            ctx.log(LogLevel::Info, &format!("the way uses {} virtual goals", goals.used));
+            ctx.log(LogLevel::Info, &format!("the path uses {} virtual goals", goals.used));
         }
         ctx.scalar("virtual_goals", f64::from(goals.used), "");
         let instead = format!(
-            "virtual goals lie {:.1} m from the goal (square_m) and lead out of single minima, not round the {} parts of this \
-             map: choose shortest or navfn, which find a way wherever there is one",
+            "virtual goals {:.1} m from the goal (square_m) lead out of single local minima, but not \
+             around the {} parts of this map: choose shortest or navfn, which find a path wherever one \
+             exists",
             law.square.square_m,
             map.solids.len(),
         );
@@ -132,7 +137,7 @@ impl Planner for ApfVirtualGoals {
             law.forces(at, sensed.target, map, nearby, goals)
         })?;
         if self.goals.used > used {
-            ctx.log(LogLevel::Info, "in a minimum: goes for a virtual goal");
+            ctx.log(LogLevel::Info, "in a local minimum: heading for a virtual goal");
         }
         if let Some(corner) = self.goals.current() {
             ctx.circle(Layer::Virtual, corner, 0.2);
@@ -143,7 +148,7 @@ impl Planner for ApfVirtualGoals {
 }
 
 impl Law {
-    /// The forces at a place; a virtual goal is taken when the robot is in a minimum.
+    /// The forces at a position. In a local minimum, a virtual goal is chosen first.
     fn forces(
         &self,
         at: Point,

@@ -1,34 +1,34 @@
-//! What the goal planners of this crate share: checks of a plan, the map as it is known, the flight along a force.
+//! Code shared by the goal planners of this crate: checks of a request, the known map, and flight along a force.
 
 use field::{ends, goal_walk::Trip, outcome::Walk, params};
 use planner_api::{Command, Config, Ctx, Plan, PlanRequest, Result, Sensed, Site, Status};
 use steering::{Decision, Flight, Forces, KnownMap, Nearby, Pilot, Tick, drawing, evade};
 use world::{Point, Vector};
 
-/// Steps allowed for a plan, as a multiple of those of the straight way, and some more for short ways.
+/// Maximum steps of a plan, as a multiple of those of the straight path, plus a constant for short paths.
 const DETOUR: f64 = 10.0;
 const SPARE_STEPS: usize = 2000;
 
-/// A map and somebody who flies over it.
+/// A map and a pilot that flies over it.
 pub(crate) struct GoalFlight {
-    /// The map as far as it is known.
+    /// The map as known so far.
     pub map: KnownMap,
-    /// What of it is near the robot.
+    /// The parts of the map near the robot.
     pub nearby: Nearby,
     flight: Flight,
     evades: bool,
     pilot: Pilot,
 }
 
-/// A plan's task, checked.
+/// A checked task for a plan.
 pub(crate) struct Checked {
-    /// From where to where.
+    /// The start and the goal.
     pub trip: Trip,
     demanded_m: f64,
 }
 
 impl GoalFlight {
-    /// A flight over a site as configured, for a law that reaches so far.
+    /// Creates a flight over a site as configured, for a law with this reach.
     pub(crate) fn new(site: &Site<'_>, config: &Config<'_>, reach_m: f64) -> Self {
         let evades = config.flag("evade");
         let map = map_of(site, evades);
@@ -36,7 +36,7 @@ impl GoalFlight {
         Self { nearby: Nearby::new(reach_m + map.hull_m), map, flight, evades, pilot }
     }
 
-    /// Takes the map of a request and checks its ends; `id` names the planner.
+    /// Loads the map of a request and checks start and goal. `id` names the planner in messages.
     ///
     /// # Errors
     /// Those of [`ends::single_goal`].
@@ -50,10 +50,11 @@ impl GoalFlight {
         Ok(Checked { trip, demanded_m: request.site.clearance_m })
     }
 
-    /// Takes what is sensed, and flies along the force that `force` gives for the place and the map.
+    /// Updates the map with the sensed obstacles, then flies along the force that `force` returns for the position and
+    /// the map.
     ///
     /// # Errors
-    /// When the console wants it to stop.
+    /// When the console requests a stop.
     pub(crate) fn step(
         &mut self,
         sensed: &Sensed<'_>,
@@ -63,7 +64,7 @@ impl GoalFlight {
     ) -> Result<Command> {
         ctx.check()?;
         let (movers, standing) = evade::sorted_if(self.evades, sensed, self.pilot.bodies(sensed));
-        // At first sight what moves seems to stand.
+        // A moving obstacle appears stationary when it is first seen.
         let forgot = self.map.forget(&movers.iter().map(|mover| mover.body.id).collect::<Vec<_>>());
         if self.map.learn(&standing) || forgot {
             self.nearby.forget();
@@ -82,13 +83,13 @@ impl GoalFlight {
     }
 }
 
-/// The map of a site; what is evaded is not on it.
+/// The map of a site, without obstacles that are evaded in flight.
 fn map_of(site: &Site<'_>, evades: bool) -> KnownMap {
     if evades { KnownMap::standing(site) } else { KnownMap::new(site) }
 }
 
 impl Checked {
-    /// A walk as a plan; what is wrong with it is logged, and what to do `instead`.
+    /// Turns a walk into a plan. Logs what is wrong with it, followed by the advice `instead`.
     pub(crate) fn plan_of(&self, walk: Walk, map: &KnownMap, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let clearance_m = map.path_clearance_m(&walk.path, self.demanded_m + 1.0);
         walk.into_plan_or(clearance_m, self.demanded_m, instead, ctx)

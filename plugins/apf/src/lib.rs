@@ -1,4 +1,4 @@
-//! Artificial potential field planners: the classical one, the tangent field and the field with virtual goals.
+//! Artificial potential field planners: the classical field, the tangent field and the field with virtual goals.
 #![forbid(unsafe_code)]
 
 pub mod apf;

@@ -6,9 +6,10 @@ use planner_api::{
     Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site, choice, float,
 };
 
-/// Attraction, repulsion and a force along the tangent of obstacles, as Xu et al. 2022 compare with.
+/// Attraction, repulsion and a force along the tangent of obstacles: the method that Xu et al. 2022 compare theirs
+/// with.
 ///
-/// It passes single obstacles in the way; in a trap it stops and says so.
+/// It passes single obstacles in the way; in a trap it stops and reports that it is stuck.
 pub(crate) struct Tapf {
     law: GoalLaw,
     step_m: f64,
@@ -19,40 +20,43 @@ pub(crate) struct Tapf {
 
 const FIELD: &str = "Field";
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
-    .help("Push and tangent force of obstacles; the paper's mu.")
+    .help("Gain of the push and the tangent force of obstacles; mu in the paper.")
     .group(FIELD);
-const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 2.0)
-    .help("Distance between hull and obstacle at which obstacles begin to act.")
+const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0)
+    .help("Distance from the hull at which obstacles begin to act.")
     .group(FIELD);
 const TANGENT: ParamSpec = choice("tangent", "Tangent force", &["off", "always", "blocking"], 2)
     .help(
-        "always: toward the left tangent of everything in range; it gives the stop printed in the paper at a weight of \
-         0.02 about a radius of 1 m, or of 1 about one of 3.2 to 3.55 m (both fitted). blocking: round what blocks the way to the goal. off: the classical field.",
+        "always: toward the left tangent of every obstacle in range. Gives the stop printed in the paper \
+         at a weight of 0.02 around an obstacle of 1 m radius, or at a weight of 1 around one of 3.2 to \
+         3.55 m (both fitted). blocking: around whatever blocks the path to the goal. off: the classical \
+         field.",
     )
     .group(FIELD);
-const WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
+const WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
     .help("Tangent force as a multiple of the repulsion gain.")
     .group(FIELD);
-/// With the share of other planners, whose repulsion gain is a five-hundredth, the wall would push the robot back from goals
-/// that lie a metre before it.
+/// The wall's share of the repulsion gain is 1/500 of the other planners' share, because this planner's gain is much
+/// larger. With theirs, the wall would push the robot back from goals a metre away from it.
 const WALL: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.001)
     .help(
-        "Push of the wall as a share of the repulsion gain, within half its range. The paper has no wall: 0.",
+        "Push of the wall as a share of the repulsion gain, within half the obstacle range. The paper has \
+         no wall: 0.",
     )
     .group(FIELD)
     .live();
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
-    .help("Length of a move when planning; the paper prints none.")
+    .help("Length of a step when planning; the paper gives no value.")
     .group("Plan");
-const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 50.0, 2.0)
-    .help("The field counts as trapped when the last moves of this length lead hardly anywhere.")
+const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
+    .help("The field counts as trapped when the latest steps, over this length, make almost no headway.")
     .group("Plan");
 
 impl Planner for Tapf {
     const ID: &'static str = "tapf";
     const NAME: &'static str = "Tangent potential field";
-    const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022; stays in traps that are \
-                                 half closed, evades what moves.";
+    const ABOUT: &'static str = "Attraction, repulsion and a tangent force, after Xu et al. 2022. Gets \
+                                 stuck in half-closed traps. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = &[
         p::K_ATT,
@@ -103,12 +107,7 @@ impl Planner for Tapf {
         let force = |at| law.forces(at, trip.goal, map, &mut nearby, &mut sides).resultant();
         let next = goal_walk::descent(&trip, self.step_m, self.window_m, force);
         let walk = goal_walk::walk(&trip, next, || ctx.check())?;
-        Ok(checked.plan_of(
-            walk,
-            map,
-            "choose shortest or navfn, which find a way wherever there is one",
-            ctx,
-        ))
+        Ok(checked.plan_of(walk, map, "choose shortest or navfn, which find a path wherever one exists", ctx))
     }
 
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {

@@ -1,7 +1,7 @@
-//! Mode pre: a way that begins its detours before it enters a trap, walked in thought and pulled taut.
+//! Mode pre: a path that begins its detours before the robot enters a trap, found by simulation and pulled taut.
 //!
-//! Where the walk is trapped, the simpler modes try in turn, and at last the outlines are followed from the start; on maps of many parts
-//! the outlines come before the simpler modes.
+//! If the simulated walk is trapped, the simpler modes are tried in turn, and last the outlines are followed from the
+//! start. On maps of many parts the outlines come before the simpler modes.
 
 use crate::{
     machine::{Machine, News},
@@ -12,58 +12,59 @@ use crate::{
 use std::fmt;
 use world::{Point, polyline};
 
-/// How a way is looked for.
+/// A method of searching for a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
-    /// A walk in thought, in coarse steps.
+    /// A simulated walk in coarse steps.
     Thought,
-    /// A walk in steps of the length that is set, in another mode.
+    /// A walk with the configured step length, in a different mode.
     Mode(Mode),
-    /// With a hand on the outlines from the start.
+    /// Following the outlines from the start.
     Outlines,
 }
 
-/// What is tried, in this order.
+/// The attempts, in this order.
 const ATTEMPTS: [By; 5] =
     [By::Thought, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal), By::Outlines];
 
-/// The order on a map of many parts, where each of the simpler modes takes a long time to find out that a room holds it.
+/// The order on a map of many parts. There each simpler mode takes a long time to find out that it is trapped in a
+/// room.
 const ATTEMPTS_IN_ROOMS: [By; 5] =
     [By::Thought, By::Outlines, By::Mode(Mode::Rollout), By::Mode(Mode::Hull), By::Mode(Mode::Literal)];
-/// A map of more parts than this has many.
+/// A map with more parts than this counts as one of many parts.
 const MANY_PARTS: usize = 200;
 
-/// Where the outlines were followed on a map of up to so many parts, the paper's own result is shown beside.
+/// Up to this number of parts, the paper's own result is shown as well if the outlines were followed.
 const SHOWN_PARTS: usize = 1000;
 
-/// How an attempt came out.
+/// The outcome of an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tried {
-    /// What was tried.
+    /// The kind of attempt.
     pub by: By,
     /// Whether the goal was reached.
     pub arrived: bool,
     /// Length of the walk, metres.
     pub length_m: f64,
-    /// Where it ended.
+    /// The end of the walk.
     pub end: Point,
 }
 
-/// The way, and how it was found.
+/// The path, and the attempts behind it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ahead {
-    /// The way that arrives, pulled taut; if none does, the first walk.
+    /// The path that reaches the goal, pulled taut; if there is none, the first walk.
     pub walked: Walked,
-    /// Every attempt.
+    /// All attempts.
     pub tried: Vec<Tried>,
-    /// What happened in the one that is taken.
+    /// The events of the chosen attempt.
     pub news: Vec<News>,
 }
 
-/// Looks for a way on the map of a machine that has not moved yet; `check` ends it early.
+/// Searches for a path on the map of a machine that has not moved yet. `check` can end the search early.
 ///
 /// # Errors
-/// What `check` says.
+/// The error that `check` returns.
 pub fn of_traps<E>(
     machine: &Machine,
     start: Point,
@@ -73,7 +74,7 @@ pub fn of_traps<E>(
 ) -> Result<Ahead, E> {
     let mut tried = Vec::new();
     let mut first = None;
-    // All attempts share the steps that may be walked in thought for a choice of side.
+    // All attempts share the step budget of the simulations that choose a side.
     let mut thought_left = machine.thought_left;
     let attempts = if machine.map.solids.len() > MANY_PARTS { ATTEMPTS_IN_ROOMS } else { ATTEMPTS };
     for by in attempts {
@@ -88,13 +89,13 @@ pub fn of_traps<E>(
             let paper = By::Mode(Mode::Literal);
             tried.push(attempt(paper, machine, start, goal, tolerance_m, &mut thought_left, &mut check)?.0);
         }
-        // A goal too near to something is reached within its tolerance.
+        // A goal too close to an obstacle is reached within its tolerance.
         let end = walked.path[walked.path.len() - 1];
         walked.path.extend(Some(goal).filter(|goal| machine.map.is_free(end, *goal, 0.0)));
         walked.path = taut::pulled(&walked.path, &machine.map, machine.settings.taut_margin_m);
         return Ok(Ahead { walked, tried, news });
     }
-    let (walked, news) = first.expect("something was tried");
+    let (walked, news) = first.expect("at least one attempt was made");
     Ok(Ahead { walked, tried, news })
 }
 
@@ -136,13 +137,13 @@ impl By {
 impl fmt::Display for Tried {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.by {
-            By::Thought => write!(f, "the walk in thought ")?,
+            By::Thought => write!(f, "simulated walk ")?,
             By::Mode(mode) => write!(f, "mode {} ", mode.name())?,
-            By::Outlines => write!(f, "a hand on the outlines ")?,
+            By::Outlines => write!(f, "following the outlines ")?,
         }
         let Self { length_m, end, .. } = self;
         if self.arrived {
-            return write!(f, "arrives after {length_m:.2} m");
+            return write!(f, "reaches the goal after {length_m:.2} m");
         }
         write!(f, "ends at ({:.2}, {:.2}) after {length_m:.2} m", end.x, end.y)
     }

@@ -1,4 +1,4 @@
-//! The planner: offline on the known map, and tick by tick.
+//! The planner: it plans on the known map and drives tick by tick.
 
 use crate::{
     ahead::{self, Ahead},
@@ -23,17 +23,17 @@ use steering::{
 };
 use world::Point;
 
-/// On its way back the robot aims this far ahead, metres.
+/// During a retreat the robot aims this far ahead, metres.
 const BACK_AHEAD_M: f64 = 0.2;
-/// In flight the window of oscillation is this many times as long: the robot slows down and turns.
+/// In flight, the oscillation window is multiplied by this factor, because the robot slows down and turns.
 const FLIGHT_WINDOWS: f64 = 1.5;
 
-/// Larger maps are refused: every part is compared with every other, and the way is walked in thought.
+/// Larger maps are refused, because every part is compared with every other and the path is simulated.
 const PARTS_MOST: usize = 4000;
-/// What is said to whom it leaves without a way.
-const INSTEAD: &str = "in rooms choose shortest or navfn, which find a way wherever there is one";
+/// Advice logged when the planner finds no path.
+const INSTEAD: &str = "in rooms choose shortest or navfn, which find a path wherever one exists";
 
-/// The potential field of Xu et al. 2022 that builds virtual obstacles.
+/// The potential field of Xu et al. 2022 with virtual obstacles.
 pub(crate) struct BvoApf {
     settings: MachineSettings,
     flight: Flight,
@@ -43,7 +43,7 @@ pub(crate) struct BvoApf {
     flying: Option<Flying>,
 }
 
-/// What is kept from tick to tick; lost in a swap, it is built up again.
+/// State kept from tick to tick. If it is lost in a change of planner, it is built up again.
 struct Flying {
     goal: Point,
     machine: Machine,
@@ -53,8 +53,9 @@ struct Flying {
 impl Planner for BvoApf {
     const ID: &'static str = "bvo-apf";
     const NAME: &'static str = "Field with virtual obstacles";
-    const ABOUT: &'static str = "Leaves traps, closes them with virtual obstacles and goes round, after Xu et al. 2022; \
-                                 by default the detour begins before the trap is entered. Evades what moves.";
+    const ABOUT: &'static str = "Backs out of traps, seals them with virtual obstacles and goes around \
+                                 them, after Xu et al. 2022. By default the detour begins before the robot \
+                                 enters the trap. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] = parameters::PARAMS;
 
@@ -87,7 +88,7 @@ impl Planner for BvoApf {
         ctx.check()?;
         let (movers, standing) = evade::sorted(sensed, self.pilot.bodies(sensed));
         if let Some(flying) = &mut self.flying {
-            // At first sight what moves seems to stand.
+            // A moving obstacle appears stationary when it is first seen.
             flying.machine.forget(&movers.iter().map(|mover| mover.body.id).collect::<Vec<_>>());
         }
         let tick = Tick::toward_target(sensed, &standing);
@@ -115,14 +116,14 @@ impl Planner for BvoApf {
     }
 }
 
-/// Refuses a map that it cannot plan on in time.
+/// Refuses a map that is too large to plan on in time.
 fn check_size(n_parts: usize) -> Result<()> {
     if n_parts <= PARTS_MOST {
         return Ok(());
     }
     let what = format!(
-        "bvo-apf compares every part of a map with every other and takes {PARTS_MOST} at most; this map has {n_parts}: \
-         choose shortest, navfn or apf-dwa, or simplify the map (map_tolerance_m)"
+        "bvo-apf compares every part of a map with every other and accepts at most {PARTS_MOST}; this map \
+         has {n_parts}: choose shortest, navfn or apf-dwa, or simplify the map (map_tolerance_m)"
     );
     Err(PlannerError::new(Code::Unsupported, what))
 }
@@ -149,7 +150,7 @@ impl BvoApf {
         Ok(Walked { path, ..ahead.walked })
     }
 
-    /// Where to go now and by what forces; `None` when it has given up.
+    /// Returns the next target and the forces behind it; `None` if the planner has given up.
     fn aim(&mut self, sensed: &Sensed<'_>, tick: &Tick<'_>, ctx: &Ctx<'_>) -> Option<(Point, Forces)> {
         let at = sensed.pose.position;
         if self.settings.mode == Mode::Pre
@@ -168,7 +169,7 @@ impl BvoApf {
         next.map(|aim| (aim, flying.machine.forces))
     }
 
-    /// What is kept between ticks, reset for another goal.
+    /// The state kept between ticks; reset for a new goal.
     fn flying(&mut self, sensed: &Sensed<'_>) -> &mut Flying {
         let goal = sensed.target;
         let fits = self.flying.as_ref().is_some_and(|flying| (flying.goal - goal).norm() < 1e-6);
@@ -180,7 +181,7 @@ impl BvoApf {
             let machine = Machine::new(settings, self.map.clone());
             self.flying = Some(Flying { goal, machine, back: None });
         }
-        self.flying.as_mut().expect("it has just been made")
+        self.flying.as_mut().expect("it has just been created")
     }
 }
 
@@ -221,7 +222,7 @@ fn report(news: &[News], ctx: &Ctx<'_>) {
     }
 }
 
-/// Says how a way was found that is not the method's own.
+/// Logs how a path was found if not by the configured method.
 fn report_attempts(ahead: &Ahead, ctx: &Ctx<'_>) {
     let follows = ahead.news.iter().filter(|item| matches!(item, News::Follows { .. }));
     let said: Vec<String> = follows.map(ToString::to_string).collect();
@@ -245,7 +246,7 @@ fn show_virtual(machine: &Machine, ctx: &Ctx<'_>) {
     }
 }
 
-/// The plan, and what is wrong with it in the log.
+/// Turns a walk into a plan, and logs what is wrong with it.
 fn plan_of(
     walked: Walked,
     machine: &Machine,

@@ -1,4 +1,4 @@
-//! Which solids leave no passage between them: the semi-closed obstacles of Xu et al. 2022.
+//! Groups solids that leave no passage between them: the semi-closed obstacles of Xu et al. 2022.
 
 use std::collections::BTreeSet;
 use steering::{KnownMap, Solid};
@@ -10,14 +10,15 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// Joins solids whose gap is narrower than the hull and a margin on both sides; costs `n^2` once per map.
+    /// Joins solids whose gap is narrower than the hull plus a margin on both sides. Costs `n^2` once per map.
     pub fn new(map: &KnownMap, margin_m: f64) -> Self {
         let mut clusters = Self { of: Vec::new() };
         clusters.take_in(map, margin_m);
         clusters
     }
 
-    /// Joins the solids that were added at the end of the map since; costs the number of the new ones times all.
+    /// Joins the solids added at the end of the map since the last call. Costs the number of new solids times the
+    /// number of all solids.
     pub fn take_in(&mut self, map: &KnownMap, margin_m: f64) {
         let passage_m = 2.0 * (map.hull_m + margin_m);
         for new in self.of.len()..map.solids.len() {
@@ -30,25 +31,25 @@ impl Clusters {
                 }
             }
         }
-        // A root never has a larger index than what hangs on it.
+        // The index of a root is never larger than those of its members.
         for index in 0..self.of.len() {
             self.of[index] = self.of[self.of[index]];
         }
     }
 
-    /// Every solid in the cluster of a solid.
+    /// All solids in the cluster of a solid.
     pub fn members(&self, index: usize) -> Vec<usize> {
         (0..self.of.len()).filter(|other| self.of[*other] == self.of[index]).collect()
     }
 
-    /// Every solid in the clusters of the obstacles with these ids.
+    /// All solids in the clusters of the obstacles with these ids.
     pub fn closure(&self, map: &KnownMap, ids: &BTreeSet<u32>) -> Vec<usize> {
         let named = (0..self.of.len()).filter(|index| ids.contains(&map.solids[*index].id));
         let roots: BTreeSet<usize> = named.map(|index| self.of[index]).collect();
         (0..self.of.len()).filter(|index| roots.contains(&self.of[*index])).collect()
     }
 
-    /// Whether two solids belong together.
+    /// Whether two solids belong to the same cluster.
     pub fn are_joined(&self, a: usize, b: usize) -> bool {
         self.of[a] == self.of[b]
     }
@@ -61,7 +62,7 @@ fn root(of: &[usize], mut index: usize) -> usize {
     index
 }
 
-/// Gap between two outlines, metres; exact only below `enough_m`.
+/// The gap between two outlines, metres; exact only below `enough_m`.
 pub fn gap_m(a: &Solid, b: &Solid, enough_m: f64) -> f64 {
     let around_m = (a.center - b.center).norm() - a.radius_m - b.radius_m;
     let are_discs = a.corners().len() == 1 && b.corners().len() == 1;

@@ -1,4 +1,4 @@
-//! Going round a trap.
+//! Going around a trap.
 
 use crate::{clusters::Clusters, settings::Mode, view::View};
 use std::{collections::BTreeSet, f64::consts::PI};
@@ -7,21 +7,22 @@ use world::{Point, Vector};
 
 /// The hull of the group is recomputed after this distance, metres.
 const LOOK_M: f64 = 0.25;
-/// What lies further ahead on the way to the tangent point is left for later, metres.
+/// Solids further ahead on the way to the tangent point are ignored for now, metres.
 const AHEAD_M: f64 = 4.0;
-/// How much of the distance kept is corrected along the way, per metre.
+/// Rate at which the distance to the group is corrected along the way, per metre.
 const HUG_PER_M: f64 = 2.0;
-/// After this many times round the group it is followed closely: the way on lies in one of its bays.
+/// After this many times around the group, its outline is followed closely, because the way out must be in one of its
+/// bays.
 const ROUNDS: f64 = 1.3;
 
-/// A group of solids being gone round.
+/// A group of solids that the robot goes around.
 #[derive(Debug, Clone)]
 pub struct Escape {
     /// Ids of the obstacles and virtual circles in the group.
     pub ids: BTreeSet<u32>,
-    /// On which side it is passed.
+    /// The side on which the group is passed.
     pub side: Side,
-    /// The same as indices of the map.
+    /// The members of the group as indices into the map.
     members: Vec<usize>,
     circle: (Point, f64),
     hugs: bool,
@@ -29,20 +30,20 @@ pub struct Escape {
     walked_m: f64,
     looked: Option<(Point, Look)>,
     checked_m: f64,
-    /// The member that barred the straight way when that was last examined: it is asked first.
+    /// The member that last blocked the straight path to the goal; it is checked first.
     barring: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Look {
-    /// Outside the hull: this corner is its end.
+    /// Outside the hull: the corner at its end.
     Toward((Point, f64)),
-    /// In a bay.
+    /// Inside a bay.
     Within,
 }
 
 impl Escape {
-    /// Goes round the clusters of these solids.
+    /// Starts going around the clusters of these solids.
     pub fn new(map: &KnownMap, members: Vec<usize>, side: Side) -> Self {
         let mut escape = Self {
             ids: members.iter().map(|index| map.solids[*index].id).collect(),
@@ -60,7 +61,7 @@ impl Escape {
         escape
     }
 
-    /// The map has changed: finds its members again.
+    /// Finds the members again after the map has changed.
     pub fn regroup(&mut self, map: &KnownMap, clusters: &Clusters) {
         self.members = clusters.closure(map, &self.ids);
         self.measure(map);
@@ -71,28 +72,28 @@ impl Escape {
         self.hugs = true;
     }
 
-    /// Goes on until the goal is nearer than this, metres.
+    /// Continues until the robot is closer to the goal than this, metres.
     pub fn gain(&mut self, until_m: f64) {
         self.until_m = until_m;
     }
 
-    /// Tries the other side.
+    /// Changes to the other side.
     pub fn turn_back(&mut self) {
         self.side = self.side.other();
         self.looked = None;
     }
 
-    /// The circle about the group, for drawing.
+    /// The circle around the group, for drawing.
     pub fn circle(&self) -> (Point, f64) {
         self.circle
     }
 
-    /// Way round the circle about the group, metres.
+    /// The circumference of the circle around the group, metres.
     pub fn round_m(&self) -> f64 {
         2.0 * PI * self.circle.1
     }
 
-    /// Whether the straight way to the goal clears the group; looked at every few centimetres.
+    /// Whether the straight path to the goal clears the group; checked every few centimetres.
     pub fn is_over(&mut self, at: Point, goal: Point, map: &KnownMap, margin_m: f64, step_m: f64) -> bool {
         self.walked_m += step_m;
         if self.walked_m < self.checked_m {
@@ -106,7 +107,7 @@ impl Escape {
         (goal - at).norm() < self.until_m && !self.is_barred(at, goal, map, keep_m)
     }
 
-    /// Whether a member comes nearer than this to the straight way.
+    /// Whether a member is closer than this to the straight path.
     fn is_barred(&mut self, at: Point, goal: Point, map: &KnownMap, keep_m: f64) -> bool {
         let bars = |m: &usize| map.solids[*m].segment_distance_m(at, goal, keep_m) < keep_m;
         if self.members.get(self.barring).is_some_and(bars) {
@@ -117,7 +118,7 @@ impl Escape {
         first.is_some()
     }
 
-    /// Unit vector of the way round.
+    /// The unit vector of the way around the group.
     pub fn direction(
         &mut self,
         at: Point,
@@ -167,14 +168,14 @@ impl Escape {
 
     fn look_once(&self, at: Point, map: &KnownMap, margin_m: f64) -> Look {
         let reach_m = map.hull_m + margin_m;
-        // A little less than the margin that is kept, so that a robot beside the hull is outside.
+        // Slightly less than the margin that is kept, so that a robot beside the hull counts as outside.
         match View::of(at, map, &self.members, 0.9 * reach_m) {
             Some(view) if view.gap_rad >= PI => Look::Toward(view.edge(self.side).corner),
             _ => Look::Within,
         }
     }
 
-    /// Something else in the way to the tangent point.
+    /// Finds another solid on the way to the tangent point.
     fn blocker(&self, at: Point, corner: (Point, f64), map: &KnownMap, margin_m: f64) -> Option<usize> {
         let reach_m = map.hull_m + margin_m;
         let tangent = tangents::to_disc(at, corner.0, corner.1 + reach_m, self.side);
@@ -190,7 +191,7 @@ impl Escape {
             .map(|(index, _)| index)
     }
 
-    /// Along the outline of the nearest member, at the margin.
+    /// The direction along the outline of the nearest member, at the margin.
     fn along_nearest(&self, at: Point, map: &KnownMap, margin_m: f64) -> Vector {
         let distances = self.members.iter().map(|index| map.solids[*index].distance(at));
         let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));

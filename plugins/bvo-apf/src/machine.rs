@@ -18,59 +18,59 @@ use geometry::Braking;
 use steering::{Body, Contact, Forces, KnownMap, Nearby, Side, guard, wall_contacts};
 use world::{Point, Vector};
 
-/// A way round may take this many times the circle about the group before it counts as leading nowhere.
+/// Maximum length of a detour, as a multiple of the circle around the group; a longer detour counts as leading nowhere.
 const ROUNDS: f64 = 2.5;
-/// Steps of rollouts on one map: about a second where many parts are near.
+/// Maximum number of rollout steps on one map: about a second where many parts are near.
 const THOUGHT_MOST: usize = 30_000;
-/// Steps of the rollouts for one choice of side.
+/// Maximum number of rollout steps for one choice of side.
 const CHOICE_MOST: usize = 4_000;
-/// A robot in thought stops at once.
+/// A simulated robot stops instantly.
 const IN_THOUGHT: Braking = Braking { acceleration_m_per_s2: 1e3, tick_s: 0.0 };
 
-/// What the machine is doing.
+/// The current phase of the machine.
 #[derive(Debug, Clone)]
 pub enum Phase {
     /// Moving by the field.
     Approach,
-    /// Going back along its own way, out of a trap.
+    /// Going back along its own track, out of a trap.
     Retreat(Retreat),
-    /// Going round what trapped it.
+    /// Going around the trap.
     Escape(Escape),
-    /// Following the outlines to the goal: the wall holds it.
+    /// Following the outlines to the goal, because the wall is part of the trap.
     Follow(Follow),
     /// Given up.
     Stuck,
 }
 
-/// Where to move next.
+/// The next move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Next {
-    /// By this much at most a step, metres.
+    /// A displacement, at most one step long, metres.
     By(Vector),
-    /// Back to a place of the own way.
+    /// Back to a point of the robot's own track.
     Back(Point),
-    /// Nowhere: it has given up.
+    /// No move: the machine has given up.
     Nowhere,
 }
 
-/// The planner's whole state on a map.
+/// The complete state of the planner on a map.
 #[derive(Debug, Clone)]
 pub struct Machine {
-    /// What it is set to.
+    /// The settings.
     pub settings: MachineSettings,
     /// The map, virtual circles included.
     pub map: KnownMap,
     /// The forces of the last step.
     pub forces: Forces,
-    /// How often it has retreated.
+    /// Number of retreats.
     pub retreats: u32,
-    /// How often it has gone round something.
+    /// Number of escapes.
     pub escapes: u32,
-    /// What happened since somebody last took it out.
+    /// Events that have not been taken out yet.
     pub news: Vec<News>,
     phase: Phase,
     clusters: Clusters,
-    /// Made when it is first needed on a map.
+    /// The outlines of the map; computed when first needed.
     outline: Option<Outline>,
     trail: Vec<Point>,
     began: Vec<(Point, Side)>,
@@ -78,14 +78,14 @@ pub struct Machine {
     nearby: Nearby,
     sides: Sides,
     next_id: u32,
-    /// Whether this is a rollout: it asks for no further ones.
+    /// Whether this is a rollout; a rollout starts no further rollouts.
     in_thought: bool,
-    /// Steps of rollouts that are left; without any the side is not chosen in thought.
+    /// Number of rollout steps left. With none left, the side is chosen without simulation.
     pub(crate) thought_left: usize,
 }
 
 impl Machine {
-    /// A machine that has not moved yet.
+    /// Creates a machine that has not moved yet.
     pub fn new(settings: MachineSettings, map: KnownMap) -> Self {
         let next_id = map.solids.iter().filter(|s| is_virtual(s)).map(|s| s.id + 1).max();
         Self {
@@ -109,13 +109,14 @@ impl Machine {
         }
     }
 
-    /// The same machine, which has not moved, with other settings but for the margin.
+    /// Returns a copy of this machine, which must not have moved, with different settings. The margin must be the same.
     #[must_use]
     pub fn set_to(&self, settings: MachineSettings) -> Self {
         Self { settings, oscillation: Oscillation::new(settings.window_m, settings.step_m), ..self.clone() }
     }
 
-    /// The same machine in thought: it takes coarser steps, remembers no way back and keeps to a side.
+    /// Returns a copy of this machine for simulation. The copy takes coarser steps, does not remember its track and
+    /// keeps to one side.
     #[must_use]
     pub fn thought(&self, step_m: f64) -> Self {
         let mut thought = self.clone();
@@ -130,12 +131,12 @@ impl Machine {
         thought
     }
 
-    /// What it is doing.
+    /// The current phase.
     pub fn phase(&self) -> &Phase {
         &self.phase
     }
 
-    /// Makes it go round on a side instead, if it is going round anything.
+    /// Sets the side of the detour in progress, if there is one.
     pub fn take_side(&mut self, side: Side) {
         match &mut self.phase {
             Phase::Escape(escape) if escape.side != side => escape.turn_back(),
@@ -144,7 +145,7 @@ impl Machine {
         }
     }
 
-    /// The side on which it goes round something, if it does, and the way once round that, metres.
+    /// The side of the detour in progress, and the distance once around the group, metres.
     pub fn going_round(&self) -> Option<(Side, f64)> {
         match &self.phase {
             Phase::Escape(escape) => Some((escape.side, escape.round_m())),
@@ -155,12 +156,12 @@ impl Machine {
         }
     }
 
-    /// The circles that it made up.
+    /// The virtual circles.
     pub fn virtual_circles(&self) -> impl Iterator<Item = (Point, f64)> + '_ {
         self.map.solids.iter().filter(|s| is_virtual(s)).map(|s| (s.center, s.radius_m))
     }
 
-    /// Takes what is sensed; the group being gone round is recomputed if that changes the map.
+    /// Takes over the sensed bodies. If that changes the map, the group of the detour is recomputed.
     pub fn learn(&mut self, bodies: &[Body]) {
         if self.map.learn(bodies) {
             self.outline = None;
@@ -168,7 +169,7 @@ impl Machine {
         }
     }
 
-    /// Takes off the map what was found to move.
+    /// Removes obstacles found to be moving from the map.
     pub fn forget(&mut self, movers: &[u32]) {
         if self.map.forget(movers) {
             self.outline = None;
@@ -191,7 +192,7 @@ impl Machine {
         }
     }
 
-    /// Decides the next step of a robot at a place that is bound for a goal.
+    /// Decides the next step of a robot at a position, bound for a goal.
     pub fn next(&mut self, at: Point, goal: Point) -> Next {
         match self.phase {
             Phase::Retreat(_) => return self.retreat(at, goal),
@@ -231,7 +232,7 @@ impl Machine {
         self.step_along(at, way, self.settings.step_m.min(missing_m))
     }
 
-    /// A step along a direction that leaves the distance kept.
+    /// A step along a direction that keeps the distance to all solids.
     fn step_along(&mut self, at: Point, way: Vector, length_m: f64) -> Next {
         let keep_m = self.settings.keep_m;
         let reach_m = keep_m + 2.0 * length_m;
@@ -245,7 +246,8 @@ impl Machine {
         if contacts.is_empty() {
             return Next::By(way * length_m);
         }
-        // The guard lets a distance be used up in half a second: a step of it is one at twice the speed.
+        // The guard allows a distance to be used up in half a second, so the step is passed to it as a speed of twice
+        // its length per second.
         let speed = 2.0 * length_m;
         let slid = guard::slide(way * speed, &contacts, keep_m, speed, &IN_THOUGHT) * 0.5;
         let full = slid.try_normalize(1e-9).map_or(slid, |along| along * length_m);
@@ -257,7 +259,7 @@ impl Machine {
     fn answer_oscillation(&mut self, at: Point, goal: Point) {
         self.oscillation.forget();
         match &mut self.phase {
-            // This side leads nowhere.
+            // Turn back: this side leads nowhere.
             Phase::Escape(escape) => {
                 escape.turn_back();
                 escape.hug();

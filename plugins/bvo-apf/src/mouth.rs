@@ -1,38 +1,39 @@
-//! The mouth of a trap: when the robot has withdrawn from it, and the virtual circles that close it.
+//! The mouth of a trap: whether the robot has withdrawn from it, and the virtual circles that close it.
 
 use crate::view::{Edge, View};
 use std::f64::consts::PI;
 use steering::{KnownMap, Solid};
 use world::{Point, Vector};
 
-/// Gain of the least angle at an edge circle, per metre of its radius (the paper's `N delta`).
+/// Gain of the minimum angle at an edge circle, per metre of its radius (the paper's `N delta`).
 const THETA_PER_M: f64 = 0.15;
-/// Room that the seal needs before the robot is out of its way, besides the edge's radius and the hull twice, metres.
+/// Room that the seal needs before the robot, in addition to the edge's radius and twice the hull radius, metres.
 const ROOM_M: f64 = 0.5;
-/// From a place with a wider opening than this the robot is as good as outside.
+/// If the opening is wider than this, the robot counts as outside, radians.
 const OPEN_RAD: f64 = 0.98 * PI;
-/// A mouth that is seen under a smaller angle is the inside of a spiral.
+/// A mouth seen under a smaller angle is the inside of a spiral, radians.
 const NARROW_RAD: f64 = 0.15;
-/// A spiral is left when its opening is wider than this.
+/// A spiral has been left when its opening is wider than this, radians.
 const OUT_RAD: f64 = 1.1 * PI;
-/// Any trap is left when its opening is wider than this.
+/// Any trap has been left when its opening is wider than this, radians.
 const FAR_OUT_RAD: f64 = 1.3 * PI;
-/// Virtual circles are not smaller than this, metres.
+/// Minimum radius of virtual circles, metres.
 const SMALLEST_M: f64 = 0.15;
-/// Two circles overlap at least this much, so that a seal of any length stays finite and closed.
+/// Maximum number of intervals between the virtual circles of a seal. Neighbouring circles are at most one radius apart
+/// unless this limit applies.
 const MOST_CIRCLES: usize = 400;
 
-/// Virtual circles have ids from here on.
+/// First id of virtual circles.
 pub const FIRST_VIRTUAL: u32 = 0x8000_0000;
-/// The last id of a virtual circle; no-go zones count down from the largest number.
+/// Last id of virtual circles; ids of no-go zones count down from the largest number.
 pub const LAST_VIRTUAL: u32 = 0xf000_0000;
 
-/// Whether a solid is made up.
+/// Whether a solid is virtual.
 pub fn is_virtual(solid: &Solid) -> bool {
     (FIRST_VIRTUAL..LAST_VIRTUAL).contains(&solid.id)
 }
 
-/// The two edges of a trap as seen from where the robot was stuck.
+/// The two edges of a trap, as seen from where the robot was stuck.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mouth {
     edges: [(Point, f64); 2],
@@ -40,7 +41,7 @@ pub struct Mouth {
 }
 
 impl Mouth {
-    /// The mouth of a group as seen from within; `None` inside a spiral, where none is seen.
+    /// The mouth of a group as seen from inside; `None` inside a spiral, where no mouth is visible.
     pub fn seen(stuck: Point, view: &View) -> Option<Self> {
         (view.gap_rad >= NARROW_RAD).then(|| Self::between(stuck, view.leftmost, view.rightmost))
     }
@@ -54,11 +55,12 @@ impl Mouth {
         Self { edges, outward: outward.try_normalize(1e-9).unwrap_or_else(Vector::zeros) }
     }
 
-    /// Whether the robot has withdrawn far enough to close the mouth before it.
+    /// Whether the robot has withdrawn far enough to close the mouth in front of it.
     ///
-    /// The paper's angle theta (eq. 14 is a cotangent of a cosine, of an angle that never changes sign) is read as
-    /// that between the mouth and the robot at an edge, negative inside; its bound (eq. 17 can never hold) as
-    /// `N R delta`. An angle alone leaves a hole beside the robot, so there must also be room for the seal.
+    /// The paper's angle theta (eq. 14) is a cotangent of a cosine, for an angle that never changes sign. We read it as
+    /// the angle between the mouth and the robot at an edge, negative inside. The paper's bound (eq. 17) can never
+    /// hold; we read it as `N R delta`. An angle alone leaves a hole beside the robot, so there must also be room for
+    /// the seal.
     pub fn is_withdrawn(&self, at: Point, hull_m: f64, gap_rad: f64) -> bool {
         let along = (self.edges[1].0 - self.edges[0].0).try_normalize(1e-9).unwrap_or_else(Vector::x);
         let beyond = |(edge, radius_m): &(Point, f64)| {
@@ -70,20 +72,21 @@ impl Mouth {
         gap_rad >= OPEN_RAD && self.edges.iter().all(beyond)
     }
 
-    /// The mouth of a spiral that has been left, if it has; further out if another mouth had been seen from within.
+    /// The mouth of a spiral that the robot has left, if it has. If a different mouth was seen from inside, the robot
+    /// must be further out.
     pub fn left_behind(at: Point, view: &View, had_seen: bool) -> Option<Self> {
         let out_rad = if had_seen { FAR_OUT_RAD } else { OUT_RAD };
         (view.gap_rad > out_rad).then(|| Self::from_outside(at, view))
     }
 
-    /// Between the outermost solids as seen from outside.
+    /// The mouth between the outermost solids, as seen from outside.
     pub fn from_outside(at: Point, view: &View) -> Self {
         let mut mouth = Self::between(at, view.leftmost, view.rightmost);
         mouth.outward = -mouth.outward;
         mouth
     }
 
-    /// Virtual circles along the mouth, none of them on the robot or the goal.
+    /// Virtual circles along the mouth; none of them covers the robot or the goal.
     pub fn circles(&self, map: &KnownMap, at: Point, goal: Point, first_id: u32) -> Vec<Solid> {
         let [(from, r_1), (to, r_2)] = self.edges;
         let radius_m = f64::midpoint(r_1, r_2).max(SMALLEST_M);

@@ -1,51 +1,51 @@
-//! What the operator wants to know of a walk.
+//! Events of a walk that the operator should see.
 
 use planner_api::{Ctx, LogLevel};
 use std::fmt;
 use steering::Side;
 use world::Point;
 
-/// Something that happened on the way.
+/// An event during a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum News {
-    /// The field oscillates in a trap: it goes back.
+    /// The field oscillates in a trap, and the robot retreats.
     Retreats {
-        /// Where.
+        /// The robot's position.
         at: Point,
     },
-    /// The mouth was closed.
+    /// The mouth of a trap was sealed.
     Sealed {
-        /// With so many virtual circles.
+        /// Number of virtual circles.
         circles: usize,
     },
-    /// It goes round.
+    /// The robot starts a detour.
     Escapes {
-        /// Where from.
+        /// The robot's position.
         at: Point,
-        /// On this side.
+        /// The side of the detour.
         side: Side,
     },
-    /// The tank's outline holds it: it follows whatever stands in the way.
+    /// The wall holds the robot, which now follows the outlines.
     Follows {
-        /// Where from.
+        /// The robot's position.
         at: Point,
     },
-    /// The way to the goal is clear of what was gone round.
+    /// The path to the goal is clear of the bypassed obstacle.
     Resumes {
-        /// Where.
+        /// The robot's position.
         at: Point,
     },
-    /// It has tried often enough.
+    /// The planner gives up after the maximum number of escapes.
     GivesUp {
-        /// Where.
+        /// The robot's position.
         at: Point,
-        /// After so many escapes.
+        /// Number of escapes.
         escapes: u32,
     },
 }
 
 impl News {
-    /// Puts it into the log.
+    /// Writes the event to the log.
     pub fn report(&self, ctx: &Ctx<'_>) {
         let level = if matches!(self, Self::GivesUp { .. }) { LogLevel::Warn } else { LogLevel::Info };
         ctx.log(level, &self.to_string());
@@ -56,17 +56,17 @@ impl fmt::Display for News {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let word = |side: &Side| if *side == Side::Left { "left" } else { "right" };
         match self {
-            Self::Retreats { at } => write!(f, "trapped at ({:.2}, {:.2}): retreats", at.x, at.y),
-            Self::Sealed { circles } => write!(f, "seals the trap with {circles} virtual circles"),
+            Self::Retreats { at } => write!(f, "trapped at ({:.2}, {:.2}): retreating", at.x, at.y),
+            Self::Sealed { circles } => write!(f, "sealing the trap with {circles} virtual circles"),
             Self::Escapes { at, side } => {
-                write!(f, "goes round on the {} from ({:.2}, {:.2})", word(side), at.x, at.y)
+                write!(f, "going around on the {} from ({:.2}, {:.2})", word(side), at.x, at.y)
             }
             Self::Follows { at } => {
-                write!(f, "trapped by the wall at ({:.2}, {:.2}): follows the outlines", at.x, at.y)
+                write!(f, "trapped by the wall at ({:.2}, {:.2}): following the outlines", at.x, at.y)
             }
             Self::Resumes { at } => write!(f, "clear of the obstacle at ({:.2}, {:.2})", at.x, at.y),
             Self::GivesUp { at, escapes } => {
-                write!(f, "gives up at ({:.2}, {:.2}) after {escapes} escapes", at.x, at.y)
+                write!(f, "giving up at ({:.2}, {:.2}) after {escapes} escapes", at.x, at.y)
             }
         }
     }

@@ -1,9 +1,10 @@
-//! Out of a trap that the tank's outline makes: straight to the goal, and along whatever stands in the way.
+//! Finds the way out of a trap formed by the tank's outline: straight toward the goal, and along whatever stands in the
+//! way.
 //!
-//! Xu et al. 2022 know obstacles that stand free. The outline encloses the robot and its goal: it has no mouth to seal
-//! and no circle to go round. So the robot keeps one hand on what stops it, and lets go where it is nearer to the goal
-//! than ever before and nothing stops it there. That ends at the goal if there is a way (Class1 in Ng and Bräunl 2007,
-//! after Lumelsky and Stepanov 1987).
+//! Xu et al. 2022 consider only free-standing obstacles. The tank's outline encloses the robot and its goal: it has no
+//! mouth to seal and no circle to go around. So the robot follows the outline of whatever stops it. It leaves the
+//! outline where it is closer to the goal than ever before and nothing stops it there. That method reaches the goal if
+//! there is a path (Class1 in Ng and Bräunl 2007, after Lumelsky and Stepanov 1987).
 
 use crate::{
     clusters::{Clusters, gap_m},
@@ -18,38 +19,40 @@ use std::{
 use steering::{KnownMap, Nearby, Side, Solid};
 use world::{Boundary, Point, Vector, polyline::edges};
 
-/// A round wall has this many edges: in a tank of 10 m they lie 1 mm inside it.
+/// Number of edges of a round wall: in a tank of 10 m they are at most 1 mm inside the circle.
 const ROUND_EDGES: u32 = 256;
-/// The id of the edges of the wall; obstacles count up, no-go zones down from the largest number.
+/// Id of the edges of the wall. Ids of obstacles count up; ids of no-go zones count down from the largest number.
 const WALL: u32 = LAST_VIRTUAL;
 
-/// The hand finds an outline that is this much further off than the distance kept, metres.
+/// The robot detects an outline up to this much beyond the distance to keep, metres.
 const HAND_M: f64 = 0.2;
-/// Where it finds none, it reaches back this far from the last move, radians.
+/// If it detects none, it turns back by this angle from its last move, radians.
 const HAND_RAD: f64 = 0.6 * PI;
-/// Directions that are tried.
+/// Number of directions tried.
 const DIRECTIONS: u32 = 96;
-/// Places that count as equally near, metres.
+/// Difference below which distances to the goal count as equal, metres.
 const ROUNDING_M: f64 = 1e-9;
-/// A robot that comes no nearer in this many times the length of all outlines finds no way, whatever it remembers.
+/// If the robot comes no closer to the goal over this many times the length of all outlines, it gives up, whatever else
+/// it remembers.
 const ROUNDS: f64 = 2.0;
-/// After this way without coming nearer, being where it came nearest means that it has gone round, metres.
+/// After this distance without progress, a return to the point closest to the goal means that the robot has gone all
+/// the way around, metres.
 const ROUND_LEAST_M: f64 = 1.0;
 
-/// Everything real that stands on the floor, the wall among it.
+/// The outlines of all real solids on the floor and of the wall.
 #[derive(Debug, Clone)]
 pub struct Outline {
-    /// The wall's edges as solids besides the obstacles.
+    /// The solids and the edges of the wall.
     map: KnownMap,
     nearby: Nearby,
-    /// Obstacles that leave no passage to the wall, by themselves or by what they are joined with.
+    /// Obstacles with no passage to the wall, directly or through their clusters.
     held: BTreeSet<u32>,
     length_m: f64,
 }
 
 impl Outline {
-    /// The outlines of a map, whose solids are joined in clusters by a margin, for a robot that steps and keeps its
-    /// distance within this reach, metres.
+    /// Creates the outlines of a map whose solids are clustered with a margin. `reach_m` is the largest distance at
+    /// which a robot that keeps its distance looks for outlines, metres.
     pub fn new(map: &KnownMap, clusters: &Clusters, margin_m: f64, reach_m: f64) -> Self {
         let walls = edges_of(&map.wall);
         let passage_m = 2.0 * (map.hull_m + margin_m);
@@ -69,30 +72,30 @@ impl Outline {
         self.map.solids.iter().filter(|solid| solid.id == WALL)
     }
 
-    /// Whether an obstacle hangs on the wall.
+    /// Whether an obstacle is connected to the wall.
     pub fn holds(&self, id: u32) -> bool {
         self.held.contains(&id)
     }
 
-    /// Way along all outlines, metres; at least that.
+    /// A lower bound for the length of all outlines, metres.
     pub fn length_m(&self) -> f64 {
         self.length_m
     }
 
-    /// Distance from a place to the nearest outline, metres.
+    /// The distance from a position to the nearest outline, metres.
     fn distance_m(&self, at: Point) -> f64 {
         self.map.clearance_m(at) + self.map.hull_m
     }
 
-    /// The ways out of what is nearer than this, metres, as unit vectors.
+    /// Unit vectors away from all outlines within this distance, metres.
     fn ways_out(&mut self, at: Point, reach_m: f64) -> impl Iterator<Item = Vector> + '_ {
         let (map, nearby) = (&self.map, &mut self.nearby);
         let near = nearby.update(map, at).iter().map(move |index| map.solids[*index].distance(at));
         near.filter(move |(distance_m, _)| *distance_m < reach_m).map(|(_, away)| away)
     }
 
-    /// Which steps of a length from a place keep a distance from every outline, both in metres, or lead away from what
-    /// is nearer.
+    /// Returns a test for steps of a length from a position. A step passes if it keeps a distance from every outline,
+    /// or leads away from those that are closer; both are in metres.
     fn steps(&mut self, at: Point, step_m: f64, keep_m: f64) -> impl Fn(&Vector) -> bool + use<'_> {
         let (map, nearby) = (&self.map, &mut self.nearby);
         let near = nearby.update(map, at).iter().map(|index| &map.solids[*index]);
@@ -125,35 +128,35 @@ fn edges_of(wall: &Boundary) -> Vec<Solid> {
     edges(&corners).map(|(a, b)| Solid::new(WALL, Part::segment(a, b))).collect()
 }
 
-/// Way round a solid at a distance, metres.
+/// The length of the path around a solid at a given distance from it, metres.
 fn round_m(solid: &Solid, distance_m: f64) -> f64 {
     let corners: Vec<Point> = solid.corners().iter().map(|(corner, _)| *corner).collect();
     let widest_m = solid.corners().iter().map(|(_, radius_m)| *radius_m).fold(0.0, f64::max);
     edges(&corners).map(|(a, b)| (b - a).norm()).sum::<f64>() + TAU * (widest_m + distance_m)
 }
 
-/// The side is chosen anew where the robot meets something this far from where it last chose, metres.
+/// If the robot meets an obstacle this far from its last choice of side, it chooses the side again, metres.
 const CHOICE_M: f64 = 1.0;
 
-/// A robot with its hand on the outlines.
+/// A robot that follows outlines.
 #[derive(Debug, Clone)]
 pub struct Follow {
-    /// On which side it passes what stops it.
+    /// The side on which the robot passes what stops it.
     pub side: Side,
     keep_m: f64,
-    /// The direction of the last move, while the hand is on an outline.
+    /// The direction of the last move, while the robot follows an outline.
     along: Option<Vector>,
-    /// Where the side was chosen last.
+    /// The position of the last choice of side.
     pub met: Option<Point>,
     nearest_m: f64,
-    /// Where it came nearest to the goal, and its move from there.
+    /// The position closest to the goal so far, and the move from there.
     nearest: Option<(Point, Vector)>,
     without_gain_m: f64,
 }
 
 impl Follow {
-    /// Bound for a goal, at a distance of the robot's middle from every outline between the two given, metres: as much
-    /// as the goal leaves.
+    /// Starts toward a goal. The robot's centre keeps as much distance from every outline as the goal has, within the
+    /// two given limits, metres.
     pub fn new(goal: Point, outline: &Outline, side: Side, least_m: f64, most_m: f64) -> Self {
         let keep_m = outline.distance_m(goal).clamp(least_m, most_m);
         Self {
@@ -167,11 +170,11 @@ impl Follow {
         }
     }
 
-    /// The next move, at most as long as a step, metres; `None` when there is no way.
+    /// The next move, at most one step long, metres; `None` if there is no path.
     pub fn step(&mut self, at: Point, goal: Point, outline: &mut Outline, step_m: f64) -> Option<Vector> {
         let missing_m = (goal - at).norm();
         let Some(ahead) = (goal - at).try_normalize(1e-12) else { return Some(Vector::zeros()) };
-        // Shorter steps than the distance kept, so that the hand stays where it is.
+        // Steps are shorter than the distance to keep, so that the robot stays on the same outline.
         let step_m = step_m.min(self.keep_m / 2.0).min(missing_m);
         let is_nearer = missing_m < self.nearest_m - ROUNDING_M;
         self.without_gain_m = if is_nearer { 0.0 } else { self.without_gain_m + step_m };
@@ -196,27 +199,28 @@ impl Follow {
         Some(way * step_m)
     }
 
-    /// Whether it is again where it came nearest, and on the same way.
+    /// Whether the robot is back at its closest position to the goal and moving the same way.
     fn has_gone_round(&self, at: Point, step_m: f64) -> bool {
         let Some(((place, way), along)) = self.nearest.zip(self.along) else { return false };
         let is_there = (place - at).norm() < 2.0 * step_m && way.dot(&along) > 0.5;
         self.without_gain_m > ROUND_LEAST_M && is_there
     }
 
-    /// Whether the last step, before which it was as given, met something that calls for a choice of side.
+    /// Whether the step since `before` met an obstacle that requires a new choice of side.
     pub fn meets_something(&self, before: &Self, at: Point) -> bool {
         let is_far = self.met.is_none_or(|met| (met - at).norm() > CHOICE_M);
         self.along.is_some() && before.along.is_none() && is_far
     }
 
-    /// Toward the outline under the hand: of those in reach the one that the last move was along.
+    /// The direction toward the outline that the robot follows: of those in reach, the one that best matches the last
+    /// move.
     fn hand(&self, at: Point, way: Vector, outline: &mut Outline) -> Vector {
         let share = |away: &Vector| self.side.along(*away).dot(&way);
         let out = outline.ways_out(at, self.keep_m + HAND_M).max_by(|a, b| share(a).total_cmp(&share(b)));
         out.map_or_else(|| self.turned(way, -HAND_RAD), |away| -away)
     }
 
-    /// A direction turned away from what it passes, radians.
+    /// A direction turned by an angle away from the outline, radians.
     fn turned(&self, way: Vector, angle_rad: f64) -> Vector {
         Rotation2::new(self.side.sign() * angle_rad) * way
     }

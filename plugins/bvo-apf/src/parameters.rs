@@ -1,4 +1,4 @@
-//! The parameters, and how they become settings.
+//! The parameters and their conversion to settings.
 
 use crate::settings::{MachineSettings, Mode};
 use field::{GoalLaw, NearLaw, Pull, TangentUse, open_points as o, params as p};
@@ -10,51 +10,70 @@ const FIELD: &str = "Field";
 const MODES: [&str; 4] = [Mode::Literal.name(), Mode::Hull.name(), Mode::Rollout.name(), Mode::Pre.name()];
 const MODE: ParamSpec = choice("mode", "Mode", &MODES, 3)
     .help(
-        "literal: round a circle about the trap, on the left, as published. hull: along the hull of the trap. rollout: \
-         on the side that is shorter when walked in thought. pre: the detour begins before the trap is entered.",
+        "literal: around a circle enclosing the trap, on the left, as published. hull: along the convex \
+         hull of the trap. rollout: along the hull, on the side that is shorter in simulation. pre: the \
+         detour begins before the robot enters the trap.",
     )
     .group(TRAP);
 const M: ParamSpec = float("m", "Pull", "N", 0.001, 1000.0, 10.0)
-    .help("Pull of the goal at the start; the paper's m. Only its ratio to the repulsion gain matters.")
+    .help("Pull of the goal at the start; m in the paper. Only its ratio to the repulsion gain matters.")
     .group(FIELD);
-const RHO_1: ParamSpec = float("rho_1_m", "Range of the near law", "m", 0.01, 100.0, 1.0)
-    .help("Distance from the goal at which the near law of the pull takes over.")
+const RHO_1: ParamSpec = float("rho_1_m", "Near-law range", "m", 0.01, 100.0, 1.0)
+    .help("Distance from the goal below which the near law of the pull applies.")
     .group(FIELD);
 const NEAR_LAW: ParamSpec = choice("near_law", "Near law", &["corrected", "printed"], 0)
-    .help("corrected: the pull grows at the goal, as the paper says. printed: it vanishes there, as its formula has it.")
+    .help(
+        "corrected: the pull grows toward the goal, as the paper's text says. printed: it vanishes \
+           there, as in the paper's formula.",
+    )
     .group(FIELD);
-const K: ParamSpec = float("k", "Base of the logarithm", "", 0.0, 1e6, 0.0)
-    .help("The paper's k of eq. 4. Up to 1: the distance from start to goal and one, so that the pull falls from m.")
+const K: ParamSpec = float("k", "Logarithm base", "", 0.0, 1e6, 0.0)
+    .help(
+        "k in eq. 4 of the paper. Up to 1: the distance from start to goal plus one, so that the pull \
+           starts at m and falls.",
+    )
     .group(FIELD);
 const N: ParamSpec = float("n", "Pull near the goal", "N", 0.0, 1e6, 0.0)
-    .help("Gain of the near law; the paper's n of eq. 4, which it calls adaptive. 0: as large as makes the two laws meet.")
+    .help(
+        "Gain of the near law; n in eq. 4 of the paper, which calls it adaptive. 0: chosen so that the \
+           two laws meet.",
+    )
     .group(FIELD);
 const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 10.0)
-    .help("Push and tangent force of obstacles; the papers' mu.")
+    .help("Gain of the push and the tangent force of obstacles; mu in the papers.")
     .group(FIELD);
-const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 50.0, 2.0)
-    .help("Distance between hull and obstacle at which obstacles begin to act.")
+const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 50.0, 2.0)
+    .help("Distance from the hull at which obstacles begin to act.")
     .group(FIELD);
-const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Weight of the tangent force", "", 0.0, 100.0, 1.0)
-    .help("Tangent force round what blocks the way to the goal, as a multiple of the repulsion gain; 0 turns it off.")
+const TANGENT_WEIGHT: ParamSpec = float("tangent_weight", "Tangent force weight", "", 0.0, 100.0, 1.0)
+    .help(
+        "Tangent force around whatever blocks the path to the goal, as a multiple of the repulsion gain; \
+           0 turns it off.",
+    )
     .group(FIELD);
 const STEP: ParamSpec = float("goto_step_m", "Step", "m", 0.001, 1.0, 0.05)
-    .help("Length of a move when planning; the paper prints none; its step count fits 0.0071.")
+    .help("Length of a step when planning. The paper gives no value; 0.0071 fits its step count.")
     .group("Plan");
-const MARGIN: ParamSpec = float("margin_m", "Margin of a detour", "m", 0.02, 5.0, 0.14)
-    .help("Distance kept from what is gone round. Gaps that leave less on both sides of the hull count as closed.")
+const MARGIN: ParamSpec = float("margin_m", "Detour margin", "m", 0.02, 5.0, 0.14)
+    .help(
+        "Distance from whatever the robot bypasses. Gaps that leave less than this on either side of the \
+           hull count as closed.",
+    )
     .group(TRAP);
-const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Margin of a taut path", "m", 0.0, 5.0, 0.05)
-    .help("Mode pre: distance between the hull and what the path is pulled around; at least a little more than the clearance.")
+const TAUT_MARGIN: ParamSpec = float("taut_margin_m", "Taut path margin", "m", 0.0, 5.0, 0.05)
+    .help(
+        "Mode pre: distance between the hull and whatever the path is pulled taut around; always \
+           slightly more than the clearance.",
+    )
     .group(TRAP);
-const WINDOW: ParamSpec = float("window_m", "Window of oscillation", "m", 0.1, 50.0, 2.0)
-    .help("The robot counts as trapped when its last moves of this length lead hardly anywhere.")
+const WINDOW: ParamSpec = float("window_m", "Oscillation window", "m", 0.1, 50.0, 2.0)
+    .help("The robot counts as trapped when its latest steps, over this length, make almost no headway.")
     .group(TRAP);
-const ESCAPES: ParamSpec = int("escapes_max", "Escapes at most", "", 1, 1000, 12)
-    .help("After so many escapes the planner gives up.")
+const ESCAPES: ParamSpec = int("escapes_max", "Maximum escapes", "", 1, 1000, 12)
+    .help("Number of escapes after which the planner gives up.")
     .group(TRAP);
 
-/// Every parameter of the planner.
+/// All parameters of the planner.
 pub(crate) const PARAMS: &[ParamSpec] = &[
     MODE,
     M,
@@ -79,10 +98,10 @@ pub(crate) const PARAMS: &[ParamSpec] = &[
     p::STUCK,
 ];
 
-/// No step goes nearer to anything than the clearance that is demanded and this, metres.
+/// Distance that every step keeps in addition to the required clearance, metres.
 const SPARE_M: f64 = 0.02;
 
-/// Settings for a site and a trip of some length from start to goal, metres.
+/// Reads the settings for a site and a trip of some length from start to goal, metres.
 pub(crate) fn settings(config: &Config<'_>, site: &Site<'_>, trip_m: f64) -> MachineSettings {
     let near = if config.choice("near_law") == "printed" { NearLaw::Printed } else { NearLaw::Corrected };
     let tangent_weight = config.float("tangent_weight");

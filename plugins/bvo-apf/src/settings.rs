@@ -1,25 +1,27 @@
-//! What the planner can be set to.
+//! The settings of the planner.
 
 use field::{GoalLaw, Pull};
 
-/// How a trap is gone round.
+/// How the robot goes around a trap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Round one circle about the whole trap, always on the left, after walking in: the paper, where it can be read.
+    /// Around one circle that encloses the whole trap, always on the left, after walking in: as in the paper, where it
+    /// is clear.
     Literal,
     /// Along the hull of the trap instead of the circle, always on the left.
     Hull,
-    /// Along the hull, on the side whose detour is shorter when walked in thought.
+    /// Along the hull, on the side with the shorter simulated detour.
     Rollout,
-    /// Rolled out, pulled taut and begun before the trap is entered; where that finds no way, by the others.
+    /// As a rollout, pulled taut and begun before the robot enters the trap. If that finds no path, the other modes are
+    /// tried.
     Pre,
 }
 
 impl Mode {
-    /// All modes, as they are ordered where one is chosen.
+    /// All modes, in the order of the options of the parameter.
     pub const ALL: [Self; 4] = [Self::Literal, Self::Hull, Self::Rollout, Self::Pre];
 
-    /// Its name where one is chosen.
+    /// The name of the mode as an option of the parameter.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Literal => "literal",
@@ -30,29 +32,31 @@ impl Mode {
     }
 }
 
-/// Everything that a machine needs besides the map.
+/// All settings of a machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MachineSettings {
-    /// How a trap is gone round.
+    /// How the robot goes around a trap.
     pub mode: Mode,
     /// The field.
     pub law: GoalLaw,
     /// Length of a step, metres.
     pub step_m: f64,
-    /// Distance kept from what is gone round, metres. Gaps that leave less than this on both sides count as closed.
+    /// Distance kept from what the robot goes around, metres. Gaps that leave less than this on both sides count as
+    /// closed.
     pub margin_m: f64,
-    /// Distance between the hull and what a path is pulled taut around, metres.
+    /// Distance between the hull and the solids around which a path is pulled taut, metres.
     pub taut_margin_m: f64,
-    /// Distance that no step goes below, metres.
+    /// Minimum distance that every step keeps, metres.
     pub keep_m: f64,
-    /// Way over which an oscillation is looked for, metres.
+    /// Distance over which an oscillation is detected, metres.
     pub window_m: f64,
-    /// Escapes after which the planner gives up.
+    /// Number of escapes after which the planner gives up.
     pub escapes_max: u32,
 }
 
 impl MachineSettings {
-    /// The same for a trip of some length from start to goal, metres: the base of the logarithm depends on it.
+    /// Adapts the settings to a trip of some length from start to goal, metres: the base of the logarithm depends on
+    /// it.
     #[must_use]
     pub fn for_trip(&self, length_m: f64) -> Self {
         let mut pull = self.law.pull;

@@ -1,19 +1,19 @@
-//! Pulling a way taut: shortcuts first, then corners cut until nothing is gained.
+//! Pulls a path taut: first by shortcuts, then by cutting corners until nothing is gained.
 
 use std::cell::Cell;
 use steering::{KnownMap, Solid};
 use world::{Point, polyline};
 
-/// Distance between the places from which shortcuts are looked for, metres.
+/// Distance between the points from which shortcuts are tried, metres.
 const SPACING_M: f64 = 0.25;
-/// Times that every corner is cut.
+/// Number of times that every corner is cut.
 const ROUNDS: usize = 6;
-/// Halvings when a corner is cut.
+/// Number of bisections when a corner is cut.
 const HALVINGS: usize = 10;
 
-/// A shorter way from the first to the last point that keeps a margin between the hull and everything real.
+/// Returns a shorter path from the first to the last point that keeps a margin between the hull and all real solids.
 ///
-/// Pieces of the way that do not keep it themselves are left as they are.
+/// Parts of the path that do not keep the margin themselves are left as they are.
 pub fn pulled(path: &[Point], map: &KnownMap, margin_m: f64) -> Vec<Point> {
     let sight = Sight { map, margin_m, last: Cell::new(0) };
     let is_free = |a: Point, b: Point| sight.is_free(a, b);
@@ -25,7 +25,8 @@ pub fn pulled(path: &[Point], map: &KnownMap, margin_m: f64) -> Vec<Point> {
     shortcut(&way, 1, is_free)
 }
 
-/// Whether one place is seen from another; what was in the way last is mostly in the way again.
+/// Whether one point is visible from another. The solid that last blocked the view is checked first, because it usually
+/// blocks it again.
 struct Sight<'a> {
     map: &'a KnownMap,
     margin_m: f64,
@@ -47,7 +48,7 @@ impl Sight<'_> {
     }
 }
 
-/// From every corner on to the furthest place that is seen from there, of those a stride apart.
+/// From every corner, skips to the furthest visible point among those a stride apart.
 fn shortcut(path: &[Point], stride: usize, is_free: impl Fn(Point, Point) -> bool) -> Vec<Point> {
     let mut way = Vec::new();
     let mut from = 0;
@@ -59,13 +60,13 @@ fn shortcut(path: &[Point], stride: usize, is_free: impl Fn(Point, Point) -> boo
     way
 }
 
-/// Every corner replaced by the longest free cut across it.
+/// Replaces every corner by the longest free cut across it.
 fn corners_cut(path: &[Point], is_free: impl Fn(Point, Point) -> bool) -> Vec<Point> {
     let Some((first, last)) = path.first().zip(path.last()) else { return Vec::new() };
     let mut way = vec![*first];
     for corner in path.windows(3) {
         let (before, here, after) = (way[way.len() - 1], corner[1], corner[2]);
-        // The next corner is cut from the middle of the side between, so that no side is used twice.
+        // The next corner is cut from the middle of the side between the two, so that no side is used twice.
         let middle = nalgebra::center(&here, &after);
         let share =
             largest_share(|share| is_free(here + (before - here) * share, here + (middle - here) * share));
@@ -80,7 +81,7 @@ fn corners_cut(path: &[Point], is_free: impl Fn(Point, Point) -> bool) -> Vec<Po
     way
 }
 
-/// The largest share of a cut that is free, by halving.
+/// The largest share of a cut that is free, by bisection.
 fn largest_share(is_free: impl Fn(f64) -> bool) -> f64 {
     if is_free(1.0) {
         return 1.0;
@@ -93,9 +94,9 @@ fn largest_share(is_free: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// The way in steps of one length, the last one shorter.
+/// The path in steps of one length; the last step is shorter.
 ///
-/// Where the way bends a step is the chord, so the path is a hair shorter than the way.
+/// At bends a step is the chord, so the result is slightly shorter than the path.
 pub fn paced(way: &[Point], step_m: f64) -> Vec<Point> {
     let mut path: Vec<Point> = way.first().copied().into_iter().collect();
     let mut left_m = step_m;

@@ -1,4 +1,4 @@
-//! Walking in thought: a machine over the known map, and the shorter side of a detour.
+//! Simulates a machine over the known map, and finds the shorter side of a detour.
 
 use crate::machine::{Machine, Next, Phase};
 use steering::Side;
@@ -6,27 +6,28 @@ use world::Point;
 
 /// Rollouts take steps of at least this length, metres.
 pub(crate) const COARSE_M: f64 = 0.1;
-/// A rollout is given up after this many times the way round the group and to the goal.
+/// A rollout is abandoned when it is this many times as long as the distance around the group and to the goal.
 const PATIENCE: f64 = 4.0;
-/// A walk may be this many times as long as the straight way, and some more for short ways.
+/// Maximum length of a walk, as a multiple of the straight path, plus a constant for short paths.
 const DETOUR: f64 = 15.0;
 const SPARE_M: f64 = 60.0;
-/// Whether to stop is asked after this many steps, each of which may walk two detours in thought.
+/// `check` is called once per this many steps; each of them may simulate two detours.
 const CHECKED_STEPS: usize = 16;
 
-/// A walk as it came out.
+/// The result of a walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walked {
-    /// Every place, the start first.
+    /// All positions, starting with the start.
     pub path: Vec<Point>,
     /// Whether the goal was reached.
     pub arrived: bool,
 }
 
-/// Walks a machine from a place until it comes within a tolerance of the goal or gives up; `check` ends it early.
+/// Walks a machine from a position until it is within a tolerance of the goal or gives up. `check` can end the walk
+/// early.
 ///
 /// # Errors
-/// What `check` says.
+/// The error that `check` returns.
 pub fn walk<E>(
     machine: &mut Machine,
     start: Point,
@@ -57,12 +58,13 @@ pub fn walk<E>(
     Ok(Walked { path, arrived: false })
 }
 
-/// The side on which the detour that begins now is shorter: until it is over, and straight on from there; and the steps
-/// that finding out took, at most `steps_most`. Where neither side is over by then it is the left one.
+/// Finds the side on which the detour that begins now is shorter, including the straight path from its end to the goal.
+/// Also returns the number of steps simulated, at most `steps_most`. If neither side ends within them, the left side is
+/// returned.
 pub fn shorter_side(machine: &Machine, at: Point, goal: Point, steps_most: usize) -> (Side, usize) {
     let mut sides = [Side::Left, Side::Right].map(|side| Detour::new(machine, at, side));
     let mut steps = 0;
-    // Both sides step by turns: when one is over, the other need not go on for longer than that.
+    // Both sides step in turns. When one of them ends, the other need not be simulated beyond that length.
     while steps < steps_most {
         let costs_m = sides.each_ref().map(|detour| detour.cost_m.unwrap_or(f64::INFINITY));
         let least_m = costs_m[0].min(costs_m[1]);
@@ -80,7 +82,7 @@ pub fn shorter_side(machine: &Machine, at: Point, goal: Point, steps_most: usize
     (if right_m < left_m { Side::Right } else { Side::Left }, steps)
 }
 
-/// A detour on one side, walked in thought.
+/// A simulated detour on one side.
 struct Detour {
     thought: Machine,
     side: Side,
@@ -88,7 +90,7 @@ struct Detour {
     step_m: f64,
     walked_m: f64,
     most_m: f64,
-    /// Its length once it is over, and the straight way from there, metres; infinite if it leads nowhere.
+    /// The length of the finished detour plus the straight path from its end, metres; infinite if it leads nowhere.
     cost_m: Option<f64>,
 }
 
@@ -102,7 +104,7 @@ impl Detour {
         Self { thought, side, at, step_m, walked_m: 0.0, most_m, cost_m: None }
     }
 
-    /// What it costs at least, metres.
+    /// A lower bound for the length, metres.
     fn at_least_m(&self, goal: Point) -> f64 {
         self.walked_m + (goal - self.at).norm()
     }

@@ -1,26 +1,26 @@
-//! What a group of solids looks like from a place: its widest opening and the edges beside it.
+//! A group of solids as seen from a position: its widest opening and the edges of that opening.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use steering::{KnownMap, Side};
 use world::{Point, geometry::wrap_angle_rad};
 
-/// The widest free angle of a group as seen from a place.
+/// The widest free angle in a group, as seen from a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Its width, radians; at least half a turn when the place lies outside the hull of the group.
+    /// The width, radians; at least half a turn if the position is outside the hull of the group.
     pub gap_rad: f64,
-    /// The solid and corner on its right, which is the leftmost of the group for one who looks at the group.
+    /// The solid and corner on the right of the opening: the leftmost of the group for a robot that faces the group.
     pub leftmost: Edge,
-    /// The solid and corner on its left.
+    /// The solid and corner on the left of the opening.
     pub rightmost: Edge,
 }
 
 /// An end of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// Which solid.
+    /// Index of the solid.
     pub index: usize,
-    /// Its corner there: middle and radius, metres.
+    /// The corner at that end: centre and radius, metres.
     pub corner: (Point, f64),
 }
 
@@ -32,12 +32,12 @@ struct Span {
 }
 
 impl View {
-    /// Looks at some solids, grown by a margin; `None` if there are none.
+    /// Views some solids, grown by a margin; `None` if there are none.
     pub fn of(at: Point, map: &KnownMap, members: &[usize], margin_m: f64) -> Option<Self> {
         let mut spans: Vec<Span> = members.iter().map(|index| span(at, map, *index, margin_m)).collect();
         spans.sort_by(|a, b| a.from_rad.total_cmp(&b.from_rad));
         let first = spans.first()?;
-        // A span may reach past the western direction and over those that come first.
+        // A span may extend across the western direction and overlap the first spans.
         let wrapped = spans.iter().map(|span| (span.to_rad - TAU, span.to));
         let later = |a: (f64, Edge), b: (f64, Edge)| if b.0 > a.0 { b } else { a };
         let mut end = wrapped.fold((first.to_rad, first.to), later);
@@ -54,7 +54,7 @@ impl View {
         widest.map(|view| Self { gap_rad: view.gap_rad.max(0.0), ..view })
     }
 
-    /// The edge on a side, as seen when looking at the group.
+    /// The edge on a side, as seen by a robot that faces the group.
     pub fn edge(&self, side: Side) -> Edge {
         if side == Side::Left { self.leftmost } else { self.rightmost }
     }
@@ -84,7 +84,7 @@ fn span(at: Point, map: &KnownMap, index: usize, margin_m: f64) -> Span {
             (span.to_rad, span.to) = (off_rad + half_rad, edge(*corner));
         }
     }
-    // Every span begins within one turn, so that the order of their beginnings is that around the place.
+    // Every span begins within one turn, so sorting by the beginning gives the order around the position.
     let width_rad = (span.to_rad - span.from_rad).min(TAU);
     let from_rad = wrap_angle_rad(middle_rad + span.from_rad);
     Span { from_rad, to_rad: from_rad + width_rad, ..span }

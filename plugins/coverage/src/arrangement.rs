@@ -1,7 +1,7 @@
-//! The border of a union: of rings around solid things, the pieces that lie in no other ring.
+//! The border of a union of convex rings: the pieces of their outlines that no other ring covers.
 //!
-//! Floors from maps are made of hundreds of convex pieces whose grown outlines overlap nearly everywhere. What lies within
-//! another outline bounds nothing: it would only make triangles that nobody uses.
+//! A floor from a map has hundreds of convex obstacles, and their grown outlines overlap nearly everywhere. A piece inside
+//! another outline bounds no floor; it would only add unused triangles.
 
 use world::{Point, polyline::edges, shape::bounds_of};
 
@@ -12,45 +12,48 @@ pub(crate) struct Border {
     pub is_closed: bool,
 }
 
-/// The border of convex counter-clockwise rings; where pieces of two rings lie within `near_m` of each other, there is one of
-/// them only, and pieces that meet may end so far apart.
+/// The border of convex counter-clockwise rings. Where edges of two rings lie within `near_m` of each other, only the edge of
+/// the first ring counts, so pieces that meet may end up to `near_m` apart.
 pub(crate) fn border(rings: &[Vec<Point>], near_m: f64) -> Vec<Border> {
     let boxes: Vec<(Point, Point)> = rings.iter().map(|ring| bounds_of(ring)).collect();
-    let mut borders = Vec::new();
-    for (own, ring) in rings.iter().enumerate() {
-        // Of two pieces in one place that of the first ring counts.
-        let others = (0..rings.len()).filter(|k| *k != own && may_meet(boxes[own], boxes[*k], near_m));
-        let others: Vec<_> =
-            others.map(|k| (&rings[k], boxes[k], if k < own { -near_m } else { near_m })).collect();
-        let uncovered = |a: Point, b: Point| {
-            let near = others.iter().filter(|(_, around, _)| may_meet(bounds_of(&[a, b]), *around, near_m));
-            open_parts(near.filter_map(|(ring, _, deep_m)| share_within(ring, a, b, *deep_m)).collect())
+    let border_of = |(own, ring): (usize, &Vec<Point>)| {
+        let is_near = |k: &usize| *k != own && may_meet(boxes[own], boxes[*k], near_m);
+        let cover = |k: usize| Cover {
+            ring: &rings[k],
+            bounds: boxes[k],
+            depth_m: if k < own { -near_m } else { near_m },
         };
-        let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
-        for (a, b) in edges(ring) {
-            for (from, to) in uncovered(a, b) {
-                let at = |share: f64| if share < 1.0 { a + (b - a) * share } else { b };
-                let line =
-                    lines.last_mut().filter(|line| from == 0.0 && line.last().is_none_or(|last| *last == a));
-                match line {
-                    Some(line) if line.is_empty() => line.extend([a, at(to)]),
-                    Some(line) => line.push(at(to)),
-                    None => lines.push(vec![at(from), at(to)]),
-                }
-            }
-        }
-        lines.retain(|line| !line.is_empty());
-        let n_sides: usize = lines.iter().map(|line| line.len() - 1).sum();
-        if let ([line], true) = (&mut lines[..], n_sides == ring.len())
-            && line.last() == line.first()
-        {
-            line.pop();
-            borders.push(Border { line: std::mem::take(line), is_closed: true });
-            continue;
-        }
-        borders.extend(lines.into_iter().map(|line| Border { line, is_closed: false }));
-    }
-    borders
+        border_under(ring, &(0..rings.len()).filter(is_near).map(cover).collect::<Vec<_>>(), near_m)
+    };
+    rings.iter().enumerate().flat_map(border_of).collect()
+}
+
+/// A ring that may cover edges of another one.
+struct Cover<'a> {
+    ring: &'a [Point],
+    bounds: (Point, Point),
+    /// It covers what lies deeper than this within it; negative: also what lies that near outside it.
+    depth_m: f64,
+}
+
+/// What some covers leave of the outline of a ring.
+fn border_under(ring: &[Point], covers: &[Cover<'_>], near_m: f64) -> Vec<Border> {
+    let uncovered = |(a, b): (Point, Point)| {
+        let near = covers.iter().filter(move |cover| may_meet(bounds_of(&[a, b]), cover.bounds, near_m));
+        let covered = near.filter_map(|cover| share_within(cover.ring, a, b, cover.depth_m)).collect();
+        let at = move |share: f64| if share < 1.0 { a + (b - a) * share } else { b };
+        open_parts(covered).into_iter().map(move |(from, to)| (at(from), at(to)))
+    };
+    let pieces: Vec<(Point, Point)> = edges(ring).flat_map(uncovered).collect();
+    pieces.chunk_by(|piece, next| piece.1 == next.0).map(|chain| joined(chain, ring.len())).collect()
+}
+
+/// Pieces that follow each other, as one; closed if they are all the edges of their ring.
+fn joined(chain: &[(Point, Point)], n_edges: usize) -> Border {
+    let (begin, end) = (chain[0].0, chain[chain.len() - 1].1);
+    let is_closed = chain.len() == n_edges && begin == end;
+    let corners = chain.iter().map(|(from, _)| *from);
+    Border { line: corners.chain((!is_closed).then_some(end)).collect(), is_closed }
 }
 
 fn may_meet(a: (Point, Point), b: (Point, Point), near_m: f64) -> bool {
@@ -58,7 +61,7 @@ fn may_meet(a: (Point, Point), b: (Point, Point), near_m: f64) -> bool {
     gap.x <= near_m && gap.y <= near_m
 }
 
-/// The share of a segment that lies deeper than this in a convex ring, metres.
+/// The share of a segment that lies deeper than `deep_m` in a convex ring, as the fractions at which it begins and ends.
 fn share_within(ring: &[Point], a: Point, b: Point, deep_m: f64) -> Option<(f64, f64)> {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (p, q) in edges(ring) {
@@ -74,7 +77,7 @@ fn share_within(ring: &[Point], a: Point, b: Point, deep_m: f64) -> Option<(f64,
     (from < to).then_some((from, to))
 }
 
-/// What some shares of a whole leave of it.
+/// The intervals of 0 to 1 that the covered ones leave open.
 fn open_parts(mut covered: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     covered.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut open, mut at) = (Vec::new(), 0.0);

@@ -1,4 +1,4 @@
-//! What the tests of the coverage planners share.
+//! Helpers shared by the tests of the coverage planners.
 
 use planner_api::testing::Bench;
 use planner_api::{Plan, PlanRequest, Planner, PoseEstimate, Reason, Result, Task, TetherLimits};
@@ -18,7 +18,7 @@ pub(crate) fn plan<P: Planner>(
     (plan, bench)
 }
 
-/// Plans what is left of a tank from somewhere in it.
+/// Plans the rest of a tank from a position inside it.
 pub(crate) fn plan_from<P: Planner>(tank: &Tank, start: Point) -> Result<Plan> {
     let (bench, obstacles) = (Bench::new(), tank.obstacles());
     let mut planner: P = bench.configure(&[], &tank.site(&obstacles)).unwrap();
@@ -37,7 +37,7 @@ pub(crate) fn assert_progress_rises(bench: &Bench) {
     assert!(progress.iter().all(|(_, what)| !what.is_empty() && what.len() <= 80), "{progress:?}");
 }
 
-/// A planner with its plan of a tank.
+/// A planner, together with its plan for a tank.
 pub(crate) fn planned<P: Planner>(tank: &Tank, values: &[(&str, f64)]) -> (P, Plan, Bench) {
     let bench = Bench::new();
     let obstacles = tank.obstacles();

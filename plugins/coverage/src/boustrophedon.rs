@@ -19,17 +19,20 @@ use planner_api::{
 use steering::params as p;
 use world::Point;
 
-const DIRECTION: ParamSpec = float("direction_deg", "Direction of lanes", "deg", -180.0, 180.0, 0.0)
+const DIRECTION: ParamSpec = float("direction_deg", "Lane direction", "deg", -180.0, 180.0, 0.0)
     .help("Direction of the lanes, counter-clockwise from east.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
+    .help("Edge length of the cells used to count floor when unreachable floor is reported.")
     .group("Plan");
 const SHELL_LAP: ParamSpec = flag("shell_lap", "Shell lap", false)
-    .help("A lap along the shell after the lanes, as near as hull and clearance allow. Rooms always get one.")
+    .help(
+        "A lap along the shell after the lanes, as close as hull and clearance allow. Floors between \
+           inner walls always get one.",
+    )
     .group("Plan");
 
-/// Lanes to and fro.
+/// Parallel lanes, driven to and fro.
 pub struct Boustrophedon {
     direction_rad: f64,
     has_shell_lap: bool,
@@ -40,8 +43,9 @@ pub struct Boustrophedon {
 impl Planner for Boustrophedon {
     const ID: &'static str = "boustrophedon";
     const NAME: &'static str = "Boustrophedon";
-    const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor in order, round columns by the shorter \
-                                 side; it knows nothing of a tether and takes what moves as standing.";
+    const ABOUT: &'static str = "Traditional: parallel lanes over the whole floor in order, around columns \
+                                 on the shorter side. Ignores the tether and treats moving obstacles as \
+                                 stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
         &[DIRECTION, SHELL_LAP, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -65,9 +69,9 @@ impl Planner for Boustrophedon {
         let (laps, rows) = self.lanes(&domain, &floor, scope.regions)?;
         let ways = UntetheredPaths::new(&workspace, ctx)?;
         let ends = (domain.start(scope.start), workspace.home);
-        let stage = stages.next(0.25, "ways between lanes");
+        let stage = stages.next(0.25, "connectors between lanes");
         let pieces = self.in_order(&rows, laps, &ways, ends, &stage)?;
-        stages.next(1.0, "floor out of reach").begin();
+        stages.next(1.0, "unreachable floor").begin();
         let scan = Scan::new(pieces, domain, floor);
         let mut plan = scan.plan(scope.start, &[]);
         plan.complete = scan.reports_all(&scope, ctx);
@@ -81,7 +85,7 @@ impl Planner for Boustrophedon {
 }
 
 impl Boustrophedon {
-    /// The lanes over the floor that is asked for: between inner walls a lap along them, and straight ones.
+    /// The lanes over the requested floor: straight lanes, and between inner walls a lap along the walls.
     fn lanes(
         &self,
         domain: &SlitDomain<'_>,
@@ -113,7 +117,8 @@ impl Boustrophedon {
         Ok((laps, rows))
     }
 
-    /// The lanes row by row, every other row backward, then the nearest lap each time, with ways between and home.
+    /// Orders the lanes row by row, every other row backward; then the nearest lap each time. Adds the connectors and
+    /// the way home.
     fn in_order(
         &self,
         lanes: &[Lane],
@@ -123,7 +128,7 @@ impl Boustrophedon {
         stage: &Stage<'_>,
     ) -> Result<Vec<Piece>> {
         let ahead = direction(self.direction_rad);
-        // Lanes within five millimetres of each other across their direction are in one row.
+        // Lanes within five millimetres of each other across their direction belong to the same row.
         let row = |lane: &Lane| (ahead.perp(&lane[0].coords) * 1e3).round() as i64;
         let along = |lane: &Lane| lane[0].coords.dot(&ahead);
         let mut sorted: Vec<&Lane> = lanes.iter().collect();

@@ -1,8 +1,8 @@
-//! A spatial index: what may lie near a place, without a look at everything.
+//! A spatial index that finds the objects near a position without examining all of them.
 
 use world::Point;
 
-/// Numbers of things by place: each is listed in every square bucket that its box meets.
+/// Indices of objects, by position: each index is in every square bucket that the object's bounding box touches.
 pub(crate) struct Buckets {
     low: Point,
     edge_m: f64,
@@ -12,7 +12,7 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// Sorts boxes, grown by a margin, into buckets with this edge, metres.
+    /// Sorts bounding boxes, grown by a margin, into buckets with this edge length, metres.
     pub(crate) fn new(edge_m: f64, margin_m: f64, boxes: &[(Point, Point)]) -> Self {
         let far = f64::INFINITY;
         let low = boxes.iter().fold(Point::new(far, far), |low, (from, _)| low.inf(from));
@@ -28,14 +28,15 @@ impl Buckets {
         buckets
     }
 
-    /// The numbers in the bucket of a place, in order.
+    /// The indices in the bucket of a position, in order.
     pub(crate) fn at(&self, at: Point) -> &[u32] {
         let (x, y) = ((at.x - self.low.x) / self.edge_m, (at.y - self.low.y) / self.edge_m);
         let is_inside = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
         if is_inside { &self.numbers[y as usize * self.columns + x as usize] } else { &[] }
     }
 
-    /// The numbers of all points within a distance of a place, and of some more; those of larger things may come twice.
+    /// The indices of all points within a distance of a position, and of some further points. Larger objects may appear
+    /// twice.
     pub(crate) fn near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = usize> {
         self.meeting(at, at, reach_m).flat_map(|bucket| &self.numbers[bucket]).map(|number| *number as usize)
     }

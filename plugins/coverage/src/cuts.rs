@@ -1,8 +1,8 @@
-//! Cuts: lines from every obstacle outward, so that wall, obstacles and cuts hang together and the rest of the floor
-//! is simply connected.
+//! Cuts: lines outward from every obstacle, so that wall, obstacles and cuts are connected and the rest of the floor is
+//! simply connected.
 //!
-//! A robot that never crosses a cut can take its tether back from anywhere by the way it came or by any other: they
-//! are the same to the tether. The cuts form a forest that is rooted at the wall.
+//! A robot that never crosses a cut can take its tether back from anywhere by any path: for the tether all paths are
+//! equivalent. The cuts form a forest rooted at the wall.
 
 mod cluster;
 mod extension;
@@ -20,9 +20,9 @@ pub(crate) use forest::CutRule;
 use forest::{Ban, cuts};
 use world::{Point, polyline};
 
-/// The domain between the cuts of a workspace; `None` where there is no room at home.
+/// The domain between the cuts of a workspace; `None` if there is no room at home.
 ///
-/// Where cuts seal floor off, the last one made of those around the sealed region has to end somewhere else.
+/// If cuts seal floor off, the last-made cut around the sealed region must end elsewhere.
 pub(crate) fn domain<'a>(
     workspace: &'a Workspace,
     pattern: &Pattern,
@@ -45,22 +45,22 @@ pub(crate) fn domain<'a>(
     Some(domain)
 }
 
-/// The domain of a floor between inner walls: every island is cut where the shortest ways from home on either side of it
-/// meet, so no cable is much longer than it has to be. `None` where there is no room at home.
+/// The domain of a floor between inner walls. Every island is cut where the shortest paths from home around its two
+/// sides meet, so the cable is never much longer than necessary. `None` if there is no room at home.
 pub(crate) fn domain_between_walls(workspace: &Workspace) -> Option<SlitDomain<'_>> {
     let mut domain = SlitDomain::new(workspace, Vec::new())?;
     domain.close_up();
     Some(domain)
 }
 
-/// How many lanes the cuts of a workspace would break, about: what a pattern costs, before anything is laid.
+/// Estimates how many lanes the cuts of a workspace would break: the cost of a pattern before any lanes are laid.
 pub(crate) fn broken_lanes(workspace: &Workspace, pattern: &Pattern, rule: &CutRule) -> f64 {
     let broken = |side: &[Point]| pattern.broken_lanes(&workspace.wall, side[0], side[1], workspace.swath_m);
     let cuts = cuts(workspace, pattern, rule, &[]);
     cuts.iter().flat_map(|cut| cut.windows(2)).map(broken).sum()
 }
 
-/// The last cut made of those that keep the robot out of sealed floor.
+/// The last-made of the cuts that keep the robot out of sealed floor.
 fn last_at_rim<'a>(cuts: &'a [Vec<Point>], sealed: &SealedRegion) -> Option<&'a [Point]> {
     let is_at_rim = |cut: &&[Point]| sealed.rim.iter().any(|p| polyline::distance_m(cut, *p) < SNAPPED_M);
     cuts.iter().map(Vec::as_slice).rev().find(is_at_rim)

@@ -1,4 +1,4 @@
-//! From lanes to a path: a first tour, enough to estimate what a candidate will be worth, and the finished path.
+//! From lanes to a path: a first tour, good enough to estimate the value of a candidate, and the finished path.
 
 use crate::floor::{Grain, ReachableFloor, SweptFloor};
 use crate::jobs::Job;
@@ -15,24 +15,24 @@ use planner_api::Result;
 use std::f64::consts::TAU;
 use world::{Point, polyline};
 
-/// A candidate as far as the first tour.
+/// A candidate with its first tour.
 pub(crate) struct Draft<'a> {
     scope: Scope<'a>,
     effort: Effort,
     domain: SlitDomain<'a>,
-    /// The floor to scan, without what was swept: with it a large one takes many megabytes.
+    /// The floor to scan, without sweep counts: with them, a large floor takes many megabytes.
     floor: ReachableFloor,
     lanes: Vec<Lane>,
-    /// What connectors between their ends cost, as far as it is known.
+    /// The known costs of connectors between lane ends.
     costs: Costs,
     pieces: Vec<Piece>,
-    /// Length, with what is still to scan, metres.
+    /// Length of the path plus estimated touch-ups, metres.
     length_m: f64,
     turns: f64,
 }
 
 impl<'a> Draft<'a> {
-    /// The first tour of a candidate.
+    /// Creates a candidate with its first tour.
     pub(crate) fn new(
         pattern: &Pattern,
         domain: SlitDomain<'a>,
@@ -60,17 +60,17 @@ impl<'a> Draft<'a> {
         &self.domain
     }
 
-    /// The first tour.
+    /// The path of the first tour.
     pub(crate) fn path(&self) -> Vec<Point> {
         joined(&self.pieces)
     }
 
-    /// Estimated cost of the finished path, metres, at this price of a whole turn.
+    /// The estimated cost of the finished path, metres, at this price per whole turn.
     pub(crate) fn estimate_m(&self, turn_m: f64) -> f64 {
         self.length_m + turn_m * self.turns
     }
 
-    /// The lanes in a good order, with the ways between.
+    /// The lanes in a good order, with the connectors between them.
     fn toured(&mut self, share_of_kicks: f64, job: &Job) -> Result<Vec<Piece>> {
         let effort = self.effort;
         let effort = Effort { kicks_per_lane: effort.kicks_per_lane * share_of_kicks, ..effort };
@@ -105,7 +105,7 @@ impl<'a> Draft<'a> {
         lanes.iter().flat_map(|lane| wanted_pieces(lane, is_wanted)).collect()
     }
 
-    /// The candidate with lanes over large missed places, shortened wherever that pays, in coarse cells.
+    /// Adds lanes over large missed areas, then polishes the path in coarse cells.
     pub(crate) fn roughed(mut self, job: &Job) -> Result<Self> {
         job.stage(0.02);
         let swath_m = self.domain.workspace.swath_m;
@@ -116,7 +116,7 @@ impl<'a> Draft<'a> {
         let large = missed.iter().take_while(|group| group.len() > least);
         let fresh = large.flat_map(|group| touch_up(&self.domain, &swept, group)).collect();
         self.lanes.extend(self.wanted(fresh));
-        // The draft was quick; from here on the order matters.
+        // The first tour used little effort; from here on the order matters.
         job.stage(0.4);
         let pieces = self.toured(1.0, job)?;
         job.stage(0.5);
@@ -130,7 +130,7 @@ impl<'a> Draft<'a> {
         Ok(self)
     }
 
-    /// A candidate that was roughed, with the last touches.
+    /// Polishes a candidate in fine cells, after it was polished in coarse cells.
     pub(crate) fn finished(self, job: &Job) -> Result<Scan<'a>> {
         let is_wanted = |at| self.scope.is_in_reach(&self.domain, at);
         let terms = Terms::of(&self.scope, self.effort, self.domain.workspace.swath_m, &is_wanted, job);
@@ -143,7 +143,7 @@ impl<'a> Draft<'a> {
         Ok(Scan { pieces, domain: self.domain, swept })
     }
 
-    /// Length and turns of the path so far, with what it misses.
+    /// Measures length and turns of the current path, including what it misses.
     fn measure(&mut self, swept: &SweptFloor) {
         let path = joined(&self.pieces);
         let missed_m2 = (self.scope.enough - swept.coverage()).max(0.0) * swept.floor.area_m2();
@@ -153,7 +153,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Edge of the cells for everything but the last touches, metres.
+/// Edge length of the cells used before finishing, metres.
 fn rough_m(scope: &Scope<'_>) -> f64 {
     scope.cell_m * tuning::polish::ROUGH
 }
@@ -162,7 +162,7 @@ fn joined(pieces: &[Piece]) -> Vec<Point> {
     pieces.iter().flat_map(|piece| piece.points.iter().copied()).collect()
 }
 
-/// Sum of the changes of heading along a path, in whole turns.
+/// The sum of the changes of heading along a path, in whole turns.
 pub(crate) fn rotation_turns(path: &[Point]) -> f64 {
     polyline::turns_rad(path).sum::<f64>() / TAU
 }

@@ -1,4 +1,4 @@
-//! What a path scans, cell by cell.
+//! Counts cell by cell what a path scans.
 
 mod bar;
 mod raster;
@@ -12,18 +12,18 @@ use raster::Raster;
 pub(crate) use reachable::ReachableFloor;
 use world::Point;
 
-/// What the count of a cell begins at that the tool cannot reach: it is never 0 nor 1, so nobody has to ask.
+/// Initial count of a cell that the tool cannot reach. The count never becomes 0 or 1, so no extra check is needed.
 const OUT_OF_REACH: u16 = 1 << 15;
 
 /// Reachable floor with the number of times that each cell was swept.
 #[derive(Clone)]
 pub(crate) struct SweptFloor {
     pub floor: ReachableFloor,
-    /// How often each cell was swept, from [`OUT_OF_REACH`] on where the tool cannot reach it.
+    /// Number of times each cell was swept; from [`OUT_OF_REACH`] on for cells that the tool cannot reach.
     swept: Vec<u16>,
     /// Number of reachable cells that were swept.
     n_swept: usize,
-    /// For each cell the last quick look that came upon it, and the number of these looks.
+    /// For each cell, the number of the last quick check that touched it; and the number of checks so far.
     stamps: Vec<u32>,
     n_looks: u32,
     /// Number of exchanges so far.
@@ -31,7 +31,7 @@ pub(crate) struct SweptFloor {
 }
 
 impl SweptFloor {
-    /// A floor with nothing swept.
+    /// Creates a floor with nothing swept.
     pub(crate) fn new(floor: ReachableFloor) -> Self {
         let n = floor.cells.len();
         let begin = |is_reachable: &bool| if *is_reachable { 0 } else { OUT_OF_REACH };
@@ -50,19 +50,19 @@ impl SweptFloor {
         self.n_swept as f64 / self.floor.n.max(1) as f64
     }
 
-    /// Number of cells that may be lost while this share stays swept.
+    /// The number of cells that may be lost while this share stays swept.
     pub(crate) fn spare(&self, share: f64) -> i64 {
         (self.n_swept as f64 - share * self.floor.n as f64).floor().max(0.0) as i64
     }
 
-    /// Swept share of a part of the floor.
+    /// The swept share of a part of the floor.
     pub(crate) fn coverage_of(&self, part: &ReachableFloor) -> f64 {
         let swept =
             self.swept.iter().zip(part.cells.iter()).filter(|(n, is_meant)| **n > 0 && **is_meant).count();
         swept as f64 / part.n.max(1) as f64
     }
 
-    /// Number of reachable cells outside a part of the floor that were swept.
+    /// The number of swept reachable cells outside a part of the floor.
     pub(crate) fn n_swept_beside(&self, part: &ReachableFloor) -> usize {
         let is_swept = |n: u16| (1..OUT_OF_REACH).contains(&n);
         self.swept
@@ -72,28 +72,29 @@ impl SweptFloor {
             .count()
     }
 
-    /// Groups of neighbouring cells that the tool could reach and has not swept, largest first.
+    /// Groups of neighbouring cells that are reachable but not swept, largest first.
     pub(crate) fn missed(&self) -> Vec<Vec<usize>> {
         self.raster().groups(|cell| self.is_missed(cell))
     }
 
-    /// Whether the tool could reach a cell and has not swept it.
+    /// Whether a cell is reachable but not swept.
     pub(crate) fn is_missed(&self, cell: usize) -> bool {
         self.swept[cell] == 0
     }
 
-    /// Where the cells lie.
+    /// The raster of the cells.
     pub(crate) fn raster(&self) -> &Raster {
         &self.floor.raster
     }
 
-    /// Whether a place is reachable floor that was swept just once.
+    /// Whether a position is reachable floor that was swept exactly once.
     pub(crate) fn is_swept_once(&self, at: Point) -> bool {
         let cell = self.raster().cell_at(at);
         cell.is_some_and(|cell| self.swept[cell] == 1)
     }
 
-    /// Number of reachable cells under some runs that were swept so often; those under several runs count several times.
+    /// The number of reachable cells under some runs that were swept this often. Cells under several runs count several
+    /// times.
     pub(crate) fn count(&self, often: u16, runs: &[Run]) -> u32 {
         let count = |cells: std::ops::Range<usize>| {
             self.swept[cells].iter().map(|n| u16::from(*n == often)).sum::<u16>()
@@ -101,7 +102,7 @@ impl SweptFloor {
         runs.iter().map(|run| u32::from(count(run.cells()))).sum()
     }
 
-    /// Number of reachable cells that a path would sweep for the first time.
+    /// The number of reachable cells that a path would sweep for the first time.
     pub(crate) fn would_gain(&self, path: &[Point]) -> usize {
         let mut seen = std::collections::BTreeSet::new();
         self.raster().along(path, |cells| seen.extend(cells.filter(|cell| self.is_missed(*cell))));
@@ -109,26 +110,26 @@ impl SweptFloor {
     }
 }
 
-/// What an exchange does to the floor.
+/// The effect of an exchange on the floor.
 struct Exchanged {
-    /// Reachable cells that are lost, net.
+    /// Net number of reachable cells lost.
     lost: i64,
-    /// Whether every reachable cell was swept whenever that was taken back.
+    /// Whether no reachable cell's count was reduced below zero.
     is_sound: bool,
 }
 
 impl SweptFloor {
-    /// Takes one sweep back and makes another; the number of reachable cells that are lost, net.
+    /// Removes one sweep and adds another. Returns the net number of reachable cells lost.
     pub(crate) fn exchange(&mut self, old: &[Run], new: &[Run]) -> i64 {
         self.exchanged(old, new).lost
     }
 
-    /// What [`Self::exchange`] would lose: it is made and taken back.
+    /// The result of [`Self::exchange`], which is made and then undone.
     pub(crate) fn lost_by(&mut self, old: &[Run], new: &[Run]) -> i64 {
         let before = self.n_swept;
         let Exchanged { lost, is_sound } = self.exchanged(old, new);
         if !is_sound {
-            // More was taken back than there was, so it has to be counted on the way back as well.
+            // Some cells were removed more often than they had been swept, so undoing must count them as well.
             self.exchanged(new, old);
             return lost;
         }
@@ -145,7 +146,7 @@ impl SweptFloor {
     fn exchanged(&mut self, old: &[Run], new: &[Run]) -> Exchanged {
         self.n_exchanges += 1;
         let (mut won, mut left, mut unswept) = (0_usize, 0_usize, 0_usize);
-        // The cells of a run fit into 16 bits: the shorter the number, the more of them are added at a time.
+        // The number of cells in a run fits into 16 bits; narrower counters let more additions run in parallel.
         for cells in new.iter().map(|run| run.cells()) {
             let mut fresh = 0_u16;
             for n in &mut self.swept[cells] {
@@ -168,8 +169,8 @@ impl SweptFloor {
         Exchanged { lost: left as i64 - won as i64, is_sound: left == unswept }
     }
 
-    /// Whether one sweep in place of another certainly loses more than so many reachable cells, net: a quick look that
-    /// stops as soon as it is sure. The old one comes side by side.
+    /// Whether replacing one sweep by another certainly loses more than `most` reachable cells, net. A quick check that
+    /// stops as soon as it is certain. The old sweep is given side by side.
     pub(crate) fn loses_more<'a>(
         &mut self,
         old: impl IntoIterator<Item = &'a [Run]>,

@@ -1,8 +1,8 @@
-//! Flying a plan: straight along it, slower where it bends, and never across a cut.
+//! Follows a plan: straight along it, slower at bends, and never across a cut.
 //!
-//! Lanes end at cuts, so the scatter of the position shows the robot a little beyond one every now and then. That winds
-//! nothing as long as it comes back the way it went: what counts is not whether the line to the path crosses a cut but
-//! whether it ends on the side on which the path is.
+//! Lanes end at cuts, so position noise occasionally shows the robot a little beyond a cut. That winds nothing as long
+//! as the robot comes back the way it went. What counts is therefore not whether the line to the path crosses a cut,
+//! but whether it ends on the same side as the path.
 
 mod steer;
 
@@ -13,28 +13,28 @@ use planner_api::{
 use steering::{Flight, Pilot, Tick, params as p, pilot::position_sigma_m};
 use world::{Boundary, Point, polyline, tether::crossings};
 
-/// How far ahead on the path the robot aims, metres.
+/// Distance along the path to the point at which the robot aims, metres.
 const LOOK_M: f64 = 0.25;
-/// The path is looked at this far for obstacles, metres.
+/// The path is checked for obstacles this far ahead, metres.
 const WATCH_M: f64 = 1.0;
-/// An obstacle counts as standing on the path if it does with the path off by so many standard deviations.
+/// An obstacle counts as blocking the path if it still does with the path shifted by this many standard deviations.
 const PATH_SIGMAS: f64 = 2.0;
-/// Distance at which the robot has come to where the cuts hold from, metres.
+/// Distance at which the robot counts as having reached the point from which the cuts apply, metres.
 const THERE_M: f64 = 0.3;
-/// Largest share of the mission's clearance that the guard keeps: a path is planned with all of it, and a guard that
-/// asks for as much pushes the robot off lanes beside walls and columns.
+/// Largest share of the mission's clearance that the guard keeps. A path is planned with the full clearance; a guard
+/// that also asked for all of it would push the robot off lanes beside walls and columns.
 const GUARD_SHARE: f64 = 0.75;
-/// What a pilot adds to the clearance, metres.
+/// Distance that a pilot adds to the clearance, metres.
 const PILOT_SPARE_M: f64 = 0.02;
 
-/// Follows the path ahead; stops in front of what was discovered on it, so that the mission replans.
+/// Follows the path. Stops in front of obstacles discovered on it, so that the mission replans.
 pub(crate) struct Follow {
     flight: Flight,
     pilot: Pilot,
     wall: Boundary,
     keep_m: f64,
     cuts: Vec<Cut>,
-    /// Where the path is bound to the cuts from; `None` once the robot has been there.
+    /// The point of the path from which the cuts apply; `None` once the robot has been there.
     from: Option<Point>,
     seen_at: Option<Point>,
     has_reported: bool,
@@ -43,7 +43,7 @@ pub(crate) struct Follow {
 /// A line that the path does not cross.
 struct Cut {
     line: Vec<Point>,
-    /// Whether the robot has come to its other side.
+    /// Whether the robot has crossed to the other side.
     is_beyond: bool,
 }
 
@@ -55,7 +55,7 @@ impl Cut {
 }
 
 impl Follow {
-    /// A follower for a site.
+    /// Creates a follower for a site.
     pub(crate) fn new(config: &Config<'_>, site: &Site<'_>) -> Self {
         let flight = p::flight(config);
         let guard_m = flight.guard_m.min(GUARD_SHARE * site.clearance_m);
@@ -71,7 +71,7 @@ impl Follow {
         }
     }
 
-    /// Takes over the cuts of a new plan; they hold from the end of its return path on, if it begins with one.
+    /// Adopts the cuts of a new plan. If the plan begins with a return path, they apply from the end of that path.
     pub(crate) fn take(&mut self, plan: &Plan, workspace: &Workspace) {
         let cut = |line: &Vec<Point>| Cut { line: workspace.rooted(line), is_beyond: false };
         self.cuts = plan.cuts.iter().map(cut).collect();
@@ -81,13 +81,13 @@ impl Follow {
         self.has_reported = false;
     }
 
-    /// Keeps account of the side of every cut on which the robot is.
+    /// Updates the side of every cut on which the robot is.
     fn look(&mut self, at: Point) {
         let before = self.seen_at.replace(at);
         if self.from.is_some_and(|from| (at - from).norm() > THERE_M) {
             return;
         }
-        // On the way there the cuts meant nothing.
+        // The robot ignored the cuts on the way there.
         let Some(before) = before.filter(|_| self.from.is_none()) else {
             self.from = None;
             return;
@@ -97,18 +97,18 @@ impl Follow {
         }
     }
 
-    /// Whether a straight move ends on the sides of all cuts on which the path is.
+    /// Whether a straight move ends on the path's side of every cut.
     fn comes_right(&self, at: Point, target: Point) -> bool {
         self.from.is_some() || self.cuts.iter().all(|cut| cut.is_beyond == cut.is_crossed(at, target))
     }
 
-    /// The velocity until the next tick.
+    /// Returns the velocity until the next tick.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let at = sensed.pose.position;
         self.look(at);
         let bodies = self.pilot.bodies(sensed);
-        // What is seen stands right beside the robot, but the path is off by the position error.
+        // Obstacles are sensed relative to the robot, so the path is shifted by the position error against them.
         let off_m = (PATH_SIGMAS * position_sigma_m(&sensed.pose)).min(0.5 * self.keep_m);
         let is_blocked = |p: &Point| {
             let too_near_m = self.keep_m - off_m;
@@ -118,7 +118,7 @@ impl Follow {
         let way: Vec<Point> = std::iter::once(at).chain(sensed.path_ahead.iter().copied()).collect();
         let n_near = polyline::stations_m(&way).partition_point(|station_m| *station_m <= WATCH_M) + 1;
         let near = polyline::resampled(&way[..n_near.min(way.len())], 0.1);
-        // The place where the robot is does not count, however near it is to something.
+        // The robot's own position is not checked, however close it is to an obstacle.
         if near.iter().skip(1).filter(|p| (*p - at).norm() > 0.2).any(is_blocked) {
             return Ok(self.stopped(ctx, "an obstacle blocks the path; replanning is required"));
         }
@@ -149,7 +149,7 @@ impl Follow {
     }
 }
 
-/// The point of the path that is a little ahead; a corner is driven to before it is turned.
+/// The point of the path slightly ahead; at corners the robot drives to the corner before turning.
 fn aim(at: Point, sensed: &Sensed<'_>) -> Point {
     let Some(first) = sensed.path_ahead.first() else { return sensed.target };
     let mut aim = *first;

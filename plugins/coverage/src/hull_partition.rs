@@ -28,14 +28,17 @@ use steering::params as p;
 use world::{Boundary, Point, Vector, polyline};
 
 const BACKTRACKING: ParamSpec = choice("backtracking", "Backtracking", &["tree", "direct"], 0)
-    .help("The paper names backtracking and gives no algorithm. Tree: back through the cells as they were entered. \
-           Direct: the shortest way from cell to cell, which entangles.")
+    .help(
+        "The paper mentions backtracking but gives no algorithm. Tree: back through the cells in the \
+           order in which they were entered. Direct: the shortest path from cell to cell, which winds the \
+           tether around columns.",
+    )
     .group("Plan");
 const ORDER: ParamSpec = choice("order", "Order of cells", &["genetic", "exact"], 0)
     .help("The published genetic algorithm, or the exact order for up to 13 cells.")
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.05)
-    .help("Edge of the cells in which floor is counted, to report what cannot be reached.")
+    .help("Edge length of the cells used to count floor when unreachable floor is reported.")
     .group("Plan");
 /// The published planner.
 pub struct HullPartition {
@@ -48,8 +51,9 @@ pub struct HullPartition {
 impl Planner for HullPartition {
     const ID: &'static str = "hull-partition";
     const NAME: &'static str = "Hull partition";
-    const ABOUT: &'static str = "Pan 2025: convex cells between the hull rings of the columns, visited in an order by a \
-                                 genetic algorithm, with backtracking; takes what moves as standing.";
+    const ABOUT: &'static str = "Pan 2025: convex cells between the hull rings of the columns, visited \
+                                 with backtracking in an order found by a genetic algorithm. Treats moving \
+                                 obstacles as stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] =
         &[BACKTRACKING, ORDER, CELL, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -75,14 +79,14 @@ impl Planner for HullPartition {
         if self.is_tree && !division.domain.is_simple {
             ctx.log(
                 LogLevel::Warn,
-                "columns too near to each other leave a way round, which the method does not rule out: closed by a cut \
-                 of our own",
+                "columns too close together leave a way around them, which the method does not rule out: \
+                 closed by an added cut",
             );
             division.domain.close_up();
         }
         let floor = ReachableFloor::new(&division.domain, scope.cell_m);
         let pieces = self.pieces(&division, &floor, &scope, &mut stages, request.site.seed)?;
-        stages.next(1.0, "floor out of reach").begin();
+        stages.next(1.0, "unreachable floor").begin();
         let scan = Scan::new(pieces, division.domain, floor);
         let mut plan = scan.plan(scope.start, &[]);
         plan.complete = scan.reports_all(&scope, ctx);
@@ -92,7 +96,7 @@ impl Planner for HullPartition {
             plan.complete = false;
             ctx.log(
                 LogLevel::Warn,
-                &format!("the cells leave no gate to {sealed_m2:.2} m²; choose tether-safe"),
+                &format!("no gate leads to {sealed_m2:.2} m² of floor; choose tether-safe"),
             );
         }
         self.follow.take(&plan, &workspace);
@@ -105,7 +109,7 @@ impl Planner for HullPartition {
 }
 
 impl HullPartition {
-    /// Lanes cell by cell, and connectors between them: through the gates, or the shortest.
+    /// The lanes cell by cell, and the connectors between them: through the gates, or by the shortest path.
     fn pieces(
         &self,
         Division { cells, first, domain }: &Division<'_>,
@@ -122,7 +126,7 @@ impl HullPartition {
             None => domain.path(a, b).unwrap_or_else(|| vec![a, b]),
         };
         let within = floor.clone().within(scope.regions);
-        // A lane that ends on a cut would end on neither side of it.
+        // If a lane ended on a cut, it would be on neither side of the cut.
         let is_off_cuts = |at: Point| domain.cuts.iter().all(|cut| polyline::distance_m(cut, at) > INSIDE_M);
         let is_open = |at: Point| {
             domain.contains(at) && is_off_cuts(at) && (scope.regions.is_empty() || within.is_near(at))
@@ -144,7 +148,7 @@ impl HullPartition {
         Ok(pieces)
     }
 
-    /// The order of the cells by the distances of their centres.
+    /// The order of the cells, based on the distances between their centres.
     fn order(&self, cells: &[Cell], first: usize, seed: u64, stage: &Stage<'_>) -> Vec<usize> {
         let names: Vec<usize> =
             std::iter::once(first).chain((0..cells.len()).filter(|k| *k != first)).collect();
@@ -156,7 +160,7 @@ impl HullPartition {
     }
 }
 
-/// Why there are no hull rings, if so.
+/// The reason why there can be no hull rings, if so.
 fn no_rings(workspace: &Workspace) -> Option<String> {
     let n = workspace.parts.len();
     match &workspace.wall {
@@ -164,15 +168,15 @@ fn no_rings(workspace: &Workspace) -> Option<String> {
             Some("hull rings need a convex wall; choose tether-safe".to_owned())
         }
         _ if workspace.is_room && n > MOST_COLUMNS => Some(format!(
-            "hull rings are made of columns, and between the walls there are {n} convex obstacles; at most {MOST_COLUMNS} can be \
-             planned: choose tether-safe"
+            "hull rings are built from columns, and there are {n} convex obstacles between the walls; at \
+             most {MOST_COLUMNS} can be planned: choose tether-safe"
         )),
         _ => None,
     }
 }
 
-/// Lanes of a cell along the long side of its smallest rectangle, to and fro, first on the side of the corner that is
-/// nearest to the centre (as published); where the floor is not open they are broken.
+/// The lanes of a cell, driven to and fro along the long side of its smallest rectangle. The first lane is on the side
+/// of the corner nearest to the centre (as published). Lanes are broken where the floor is not open.
 fn lanes(cell: &Cell, workspace: &Workspace, is_open: impl Fn(Point) -> bool) -> Vec<Vec<Point>> {
     let hull = cell.hull();
     let Some((ahead, (low, high))) = smallest_rectangle(&hull) else { return Vec::new() };
@@ -204,7 +208,7 @@ fn lanes(cell: &Cell, workspace: &Workspace, is_open: impl Fn(Point) -> bool) ->
     lanes
 }
 
-/// Long direction and extent across of the smallest rectangle around a convex polygon.
+/// The long direction and the extent across it of the smallest rectangle around a convex polygon.
 fn smallest_rectangle(hull: &[Point]) -> Option<(Vector, (f64, f64))> {
     let spread = |way: Vector| extent(hull.iter().map(|p| p.coords.dot(&way)));
     let rectangle = |along: Vector| {

@@ -1,19 +1,20 @@
-//! Wall and obstacles grown by the distance that the middle of the hull keeps from them, as polygons.
+//! Wall and obstacles, grown by the distance that the hull centre keeps from them, as polygons.
 
 use crate::plane::direction;
 use geometry::convex::Part;
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, polyline::edges};
 
-/// Slack between what is planned and what the mission demands, metres.
+/// Tolerance between the planned distance and the one that the mission requires, metres.
 pub(crate) const SLACK_M: f64 = 2e-3;
-/// Largest angle between neighbouring tangents of an outline, radians: wider ones keep the tool off columns by a centimetre at
-/// their corners, which adds up where many stand close together.
+/// Largest angle between neighbouring tangents of an outline, radians. Larger angles keep the tool off columns by a
+/// centimetre at their corners, which adds up where many columns are close together.
 const FACET_RAD: f64 = TAU / 24.0;
-/// How far a facet of a round wall may lie from the circle, metres.
+/// Largest distance of a facet of a round wall from the circle, metres.
 const WALL_SAGITTA_M: f64 = 2e-3;
 
-/// What bounds the floor for the middle of the hull: one ring within a round wall, a ring around every edge of a straight one.
+/// The boundary of the floor for the hull centre: one ring inside a round wall, or a ring around every edge of a
+/// straight wall.
 pub(crate) fn wall_rings(wall: &Boundary, keep_m: f64) -> Vec<Vec<Point>> {
     match wall {
         Boundary::Circle { radius_m } => {
@@ -28,7 +29,7 @@ pub(crate) fn wall_rings(wall: &Boundary, keep_m: f64) -> Vec<Vec<Point>> {
     }
 }
 
-/// Convex outline of a part with the distance to keep, drawn around the exact one.
+/// A convex outline of a part grown by the distance to keep, drawn around the exact outline.
 pub(crate) fn outline(part: &Part, keep_m: f64) -> Vec<Point> {
     let corners = part.corners();
     let radius_m = corners.first().map_or(0.0, |c| c.1) + keep_m + SLACK_M / 2.0;
@@ -37,7 +38,8 @@ pub(crate) fn outline(part: &Part, keep_m: f64) -> Vec<Point> {
     around(&points, radius_m)
 }
 
-/// Polygon around everything within `radius_m` of a convex polygon, a segment or a point; it never cuts in.
+/// A polygon around everything within `radius_m` of a convex polygon, a segment or a point. It never cuts inside the
+/// exact outline.
 fn around(corners: &[Point], radius_m: f64) -> Vec<Point> {
     let n = corners.len();
     if n == 1 {

@@ -7,33 +7,33 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::{collections::VecDeque, thread, time::Duration};
 
-/// How often the console is asked whether it cancels.
+/// Interval at which the console is asked whether it cancels.
 const ASK: Duration = Duration::from_millis(2);
 
-/// Work on one item: whether it is cancelled and how far it is, for threads that cannot ask the console themselves.
+/// The work on one item: its progress and whether it is cancelled, for threads that cannot ask the console themselves.
 #[derive(Default)]
 pub(crate) struct Job {
     end: OnceLock<PlannerError>,
-    /// Shares of the item, as bits: where the stage at hand begins, where it ends, and how far all is.
+    /// Shares of the item, as bits: start and end of the current stage, and overall progress.
     from: AtomicU64,
     to: AtomicU64,
     at: AtomicU64,
 }
 
 impl Job {
-    /// Fails once the console has cancelled: call it in every loop.
+    /// Returns an error once the console has cancelled. Call this in every loop.
     pub(crate) fn check(&self) -> Result<()> {
         self.end.get().map_or(Ok(()), |error| Err(error.clone()))
     }
 
-    /// The stage before is done, and what follows leads up to this share of the item.
+    /// Ends the previous stage and starts one that leads up to this share of the item.
     pub(crate) fn stage(&self, to: f64) {
         self.reached(1.0);
         self.from.store(self.to.load(Ordering::Relaxed), Ordering::Relaxed);
         self.to.store(to.to_bits(), Ordering::Relaxed);
     }
 
-    /// So much of the stage at hand is done, 0 to 1. The item never goes back.
+    /// Sets the progress within the current stage, 0 to 1. The item's progress never decreases.
     pub(crate) fn reached(&self, share: f64) {
         let [from, to, at] =
             [&self.from, &self.to, &self.at].map(|bits| f64::from_bits(bits.load(Ordering::Relaxed)));
@@ -41,17 +41,17 @@ impl Job {
         self.at.store(now.to_bits(), Ordering::Relaxed);
     }
 
-    /// How far the item is, 0 to 1.
+    /// The progress of the item, 0 to 1.
     fn at(&self) -> f64 {
         f64::from_bits(self.at.load(Ordering::Relaxed))
     }
 }
 
-/// Works on all items, as many at a time as there are cores; the results are in the order of the items. Meanwhile
-/// reports their progress as a stage of the plan.
+/// Works on all items, with one thread per core; the results are in the order of the items. Reports their progress as a
+/// stage of the plan.
 ///
 /// # Errors
-/// The first error of any item, in their order.
+/// The first error of any item, in the order of the items.
 pub(crate) fn run_all<T: Send, R: Send>(
     items: Vec<T>,
     stage: &Stage<'_>,
@@ -77,7 +77,7 @@ pub(crate) fn run_all<T: Send, R: Send>(
                     }
                 }
             };
-            // Where a thread cannot be started the others do the work, or this one below.
+            // If a thread cannot be started, its work is done by the other threads or by the loop below.
             let _ = thread::Builder::new().spawn_scoped(scope, worker);
         }
         drop(sender);

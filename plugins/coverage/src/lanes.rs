@@ -10,20 +10,20 @@ use world::{Point, Vector, polyline, shape::bounds_of};
 
 /// Sampling step along lanes, metres.
 const STEP_M: f64 = 0.04;
-/// So many samples are looked at together: few fences are near all of them.
+/// Number of samples examined together: only a few fences are close to any of them.
 const STRETCH: usize = 64;
 
-/// A lane in the direction in which it was made: at least two points.
+/// A lane in the direction in which it was created: at least two points.
 pub(crate) type Lane = Vec<Point>;
 
-/// The lanes of a pattern, and a corridor beside every cut across them; shorter ones are left out.
+/// The lanes of a pattern, and a corridor beside every cut across them. Lanes shorter than the minimum are left out.
 pub(crate) fn lanes(domain: &SlitDomain<'_>, pattern: &Pattern, least_m: f64) -> Vec<Lane> {
     let (mut lanes, rows) = laps_and_rows(domain, pattern, least_m);
     lanes.extend(rows);
     lanes
 }
 
-/// The same, those along walls and cuts apart from the straight rows.
+/// The same, with lanes along walls and cuts separate from the straight rows.
 pub(crate) fn laps_and_rows(
     domain: &SlitDomain<'_>,
     pattern: &Pattern,
@@ -49,8 +49,8 @@ pub(crate) fn laps_and_rows(
     (along, rows.iter().flat_map(|line| clip(line, &fences, spare_m)).collect())
 }
 
-/// Lines along one side of every cut across the lanes, the same side everywhere, so that what was swept outward is left
-/// inward. Beside a cut along the lanes there is a lane anyway.
+/// Lines along every cut across the lanes, always on its left as seen from its start. A cut along the lanes already has
+/// a lane beside it.
 fn corridors(domain: &SlitDomain<'_>, pattern: &Pattern, swath_m: f64) -> Vec<Vec<Point>> {
     let corridor = |cut: &Vec<Point>| {
         let (a, b) = (cut[cut.len() - 2], cut[cut.len() - 1]);
@@ -62,7 +62,7 @@ fn corridors(domain: &SlitDomain<'_>, pattern: &Pattern, swath_m: f64) -> Vec<Ve
     domain.cuts.iter().filter_map(corridor).collect()
 }
 
-/// A line with the distance that lanes keep from it, and the box of what may be too near.
+/// A line with the distance that lanes keep from it, and the bounding box of what may be too close.
 #[derive(Clone, Copy)]
 struct Fence<'a> {
     line: &'a [Point],
@@ -78,7 +78,7 @@ impl<'a> Fence<'a> {
         Self { line, far_m, low: low - far, high: high + far }
     }
 
-    /// Whether anything within a box may be too near.
+    /// Whether anything inside a box may be too close.
     fn may_bar(&self, (low, high): (Point, Point)) -> bool {
         self.low.x < high.x && self.high.x > low.x && self.low.y < high.y && self.high.y > low.y
     }
@@ -92,7 +92,7 @@ fn fences(lines: &[Vec<Point>], far_m: f64) -> Vec<Fence<'_>> {
     lines.iter().map(|line| Fence::new(line, far_m)).collect()
 }
 
-/// The pieces of a line that can be driven with some room to spare and keep off the fences, but for short ones.
+/// The pieces of a line that can be driven with some room to spare and keep away from the fences, except short pieces.
 fn clipped(
     domain: &SlitDomain<'_>,
     line: &[Point],
@@ -117,14 +117,14 @@ fn clipped(
     if is_ring {
         begin_behind_a_break(&mut points, &mut spots);
     }
-    // A gap that counts as closed may be open on both sides of its narrowest place.
+    // The line may be open on both sides of a gap that is closed only at its narrowest point.
     let sees = |a: Spot, b: Option<Spot>| b.is_some_and(|b| domain.sees_between(a, b));
     let last_open =
         |open: Spot, closed: Point| last_open(open.at, closed, &|at| sees(open, spot_among(&near, at)));
     let piece = |run: Range<usize>| {
         let (first, last) = (spots[run.start]?, spots[run.end - 1]?);
         let before = run.start.checked_sub(1).map(|k| points[k]);
-        // A ring that is open all round ends a little beyond its beginning.
+        // A ring that is open all the way around ends slightly beyond its beginning.
         let after = points.get(run.end).or(is_ring.then(|| &points[1]));
         let mut lane: Vec<Point> = before.map(|out| last_open(first, out)).into_iter().collect();
         lane.extend(&points[run]);
@@ -135,7 +135,7 @@ fn clipped(
     lanes.filter(|lane| polyline::length_m(lane) >= least_m).collect()
 }
 
-/// Turns a closed ring so that no lane is broken where the ring was closed.
+/// Rotates a closed ring so that no lane is broken at the ring's closing point.
 fn begin_behind_a_break(points: &mut Vec<Point>, spots: &mut Vec<Option<Spot>>) {
     points.pop();
     spots.pop();
@@ -146,7 +146,7 @@ fn begin_behind_a_break(points: &mut Vec<Point>, spots: &mut Vec<Option<Spot>>) 
     spots.push(spots[0]);
 }
 
-/// The last open place between an open and a closed one.
+/// The last open position between an open and a closed one.
 fn last_open(open: Point, closed: Point, is_open: &dyn Fn(Point) -> bool) -> Point {
     let (mut from, mut to) = (0.0, 1.0);
     for _ in 0..7 {
@@ -160,7 +160,7 @@ fn last_open(open: Point, closed: Point, is_open: &dyn Fn(Point) -> bool) -> Poi
     open + (closed - open) * from
 }
 
-/// The pieces of a lane that are wanted.
+/// The wanted pieces of a lane.
 pub(crate) fn wanted_pieces(lane: &Lane, is_wanted: impl Fn(Point) -> bool) -> Vec<Lane> {
     let fine = polyline::resampled(lane, 0.1);
     let wanted: Vec<bool> = fine.iter().map(|p| is_wanted(*p)).collect();
@@ -181,7 +181,7 @@ fn runs<T>(items: &[T], is_together: impl Fn(&T, &T) -> bool) -> impl Iterator<I
     })
 }
 
-/// The same line with fewer points: it passes those left out within a millimetre.
+/// The same line with fewer points; it passes within a millimetre of those left out.
 pub(crate) fn thinned(points: &[Point]) -> Lane {
     if points.len() < 3 {
         return points.to_vec();
@@ -206,7 +206,7 @@ fn is_straight(run: &[Point]) -> bool {
     run.iter().all(|p| {
         let offset = p - a;
         let (ahead, aside) = (along.dot(&offset), along.perp(&offset));
-        // Most points are clearly near, which can be seen without a division.
+        // For most points a check without a division shows that they are close.
         let is_clear = (0.0..=squared).contains(&ahead) && aside * aside < 0.99 * near_m * near_m * squared;
         is_clear || (p - polyline::nearest_on_segment(a, b, *p)).norm() < near_m
     })

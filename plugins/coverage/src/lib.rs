@@ -1,9 +1,10 @@
-//! Planners that scan the whole floor: with regard to the tether, as published, and without.
+//! Planners that scan the whole floor: with consideration of the tether, as published, and without a tether.
 //!
-//! How a tether-safe plan comes about: the `workspace` of the site is divided by `cuts` into a `slit_domain` that has no way
-//! round an obstacle; `lanes` are laid into it, put into an order (`tour`) and joined to a path (`draft`), which is shortened
-//! and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does so for several patterns of lanes and
-//! chooses. What is found on the way changes the plan only round itself (`repair`). `tuning` holds the numbers.
+//! A tether-safe plan is made as follows. `cuts` divide the `workspace` of the site into a `slit_domain`, which has no
+//! way around an obstacle. `lanes` are laid into it, ordered (`tour`) and joined to a path (`draft`). The path is
+//! shortened and bent until it sweeps enough of the `floor` (`polish`). [`tether_safe`] does this for several patterns
+//! of lanes and chooses the best. If obstacles are found during the mission, `repair` changes the plan only around
+//! them. `tuning` holds the numbers.
 #![forbid(unsafe_code)]
 
 pub mod boustrophedon;

@@ -12,26 +12,26 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Sampling step along rows, metres.
 const STEP_M: f64 = 0.04;
-/// Chord of a lane along a round wall, metres.
+/// Chord length of a lane along a round wall, metres.
 const CHORD_M: f64 = 0.15;
-/// Width from which on a sliver along the wall counts, metres.
+/// Width above which a sliver along the wall counts, metres.
 const LEAST_SLIVER_M: f64 = 0.02;
 
-/// How lanes lie on the floor.
+/// The layout of lanes on the floor.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Pattern {
-    /// At even distances from the wall.
+    /// At equal distances from the wall.
     Contours,
-    /// Straight, inside some contours along the wall.
+    /// Straight lanes, inside some contours along the wall.
     Straight {
         rows: Rows,
-        /// Contours along the wall around them.
+        /// Contours along the wall around the straight lanes.
         laps: usize,
     },
 }
 
 impl Pattern {
-    /// How many lanes a straight cut would break.
+    /// The number of lanes that a straight cut would break.
     pub(crate) fn broken_lanes(&self, wall: &Boundary, a: Point, b: Point, swath_m: f64) -> f64 {
         match self {
             Self::Contours => {
@@ -47,13 +47,14 @@ impl Pattern {
         }
     }
 
-    /// Direction of the lanes, if they are straight.
+    /// The direction of the lanes, if they are straight.
     pub(crate) fn ahead(&self) -> Option<Vector> {
         let Self::Straight { rows, .. } = self else { return None };
         Some(rows.ahead())
     }
 
-    /// Where a cut that runs with the lanes shall leave its obstacle, so as to lie between two lanes.
+    /// The point where a cut that runs with the lanes should bend after leaving its obstacle, so that it lies between
+    /// two lanes.
     pub(crate) fn bend(&self, foot: Point, end: Point) -> Option<Point> {
         let Self::Straight { rows, .. } = self else { return None };
         let along = (end - foot).try_normalize(1e-9)?;
@@ -61,7 +62,7 @@ impl Pattern {
         is_along.then(|| foot + rows.to_gap(foot) + along * 0.05)
     }
 
-    /// How far from the outermost lap along the wall straight lanes begin, metres.
+    /// The distance from the outermost lap along the wall at which straight lanes begin, metres.
     pub(crate) fn within_laps_m(&self, swath_m: f64) -> f64 {
         match self {
             Self::Straight { laps: laps @ 1.., .. } => (*laps as f64 - INTO_LAP) * swath_m,
@@ -69,8 +70,8 @@ impl Pattern {
         }
     }
 
-    /// The unbroken lines of the pattern: those along walls, and straight ones. Between inner walls, one lap runs along all of
-    /// them and around every obstacle.
+    /// The unbroken lines of the pattern: those along walls, and straight ones. Between inner walls, one lap runs along
+    /// all walls and around every obstacle.
     pub(crate) fn lines(&self, domain: &SlitDomain<'_>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
         let workspace = domain.workspace;
         let start_m = workspace.keep_m + SLACK_M;
@@ -86,7 +87,7 @@ impl Pattern {
     }
 }
 
-/// A closed ring with every side moved to its left.
+/// A closed ring with every side shifted to its left.
 fn moved_left(ring: &[Point], by_m: f64) -> Vec<Point> {
     let sides: Vec<Vector> = ring.windows(2).map(|w| left_of((w[1] - w[0]).normalize())).collect();
     let mut moved: Vec<Point> = (0..sides.len())
@@ -99,7 +100,8 @@ fn moved_left(ring: &[Point], by_m: f64) -> Vec<Point> {
     moved
 }
 
-/// Lines at even distances from the wall, outermost first; in a round tank the last is a small circle about its middle.
+/// Lines at equal distances from the wall, outermost first. In a round tank the last is a small circle around the
+/// centre.
 fn contours(workspace: &Workspace, start_m: f64, most: usize) -> Vec<Vec<Point>> {
     let swath_m = workspace.swath_m;
     let offsets = (0..most.min(10_000)).map(|k| start_m + k as f64 * swath_m);
@@ -117,10 +119,10 @@ fn circle(radius_m: f64) -> Vec<Point> {
     (0..=n as usize).map(|k| Point::origin() + direction(TAU * k as f64 / n) * radius_m).collect()
 }
 
-/// A polygon with its edges moved inward, closed; `None` once it is used up. Good for convex walls.
+/// A polygon with its edges shifted inward, closed; `None` once it has vanished. Suitable for convex walls.
 fn inset(vertices: &[Point], offset_m: f64) -> Option<Vec<Point>> {
     let n = vertices.len();
-    // A place on every edge that was moved, and its direction.
+    // A point on every shifted edge, and the direction of the edge.
     let moved = polyline::edges(vertices).map(|(a, b)| {
         let along = (b - a).normalize();
         (a + left_of(along) * offset_m, along)
@@ -142,14 +144,14 @@ fn inset(vertices: &[Point], offset_m: f64) -> Option<Vec<Point>> {
 pub(crate) struct Rows {
     /// Direction of the lanes, radians from east.
     pub angle_rad: f64,
-    /// Place of the first lane across the direction, metres.
+    /// Position of the first lane across the direction, metres.
     shift_m: f64,
     /// Distance between lanes, metres.
     pub spacing_m: f64,
 }
 
 impl Rows {
-    /// Rows through the middle of a round tank, even ones between straight walls.
+    /// Rows through the centre of a round tank, or evenly spaced rows between straight walls.
     pub(crate) fn new(workspace: &Workspace, angle_rad: f64) -> Self {
         match workspace.wall {
             Boundary::Circle { .. } => {
@@ -159,7 +161,7 @@ impl Rows {
         }
     }
 
-    /// Rows at even distances from wall to wall.
+    /// Evenly spaced rows from wall to wall.
     pub(crate) fn even(workspace: &Workspace, angle_rad: f64) -> Self {
         let side = direction(angle_rad + PI / 2.0);
         let (low, high) = match &workspace.wall {
@@ -168,17 +170,18 @@ impl Rows {
         };
         let margin_m = workspace.keep_m + SLACK_M;
         let width_m = (high - low - 2.0 * margin_m).max(workspace.swath_m);
-        // A floor that is slightly wider than a whole number of swaths gets no further lane.
+        // A floor slightly wider than a whole number of swaths gets no additional lane.
         let n = (width_m / workspace.swath_m - 0.02).ceil().max(1.0);
         Self { angle_rad, shift_m: low + margin_m, spacing_m: width_m / n }
     }
 
-    /// The same rows moved aside by a share of their distance.
+    /// The same rows, shifted sideways by a share of their spacing.
     pub(crate) fn aside(self, share: f64) -> Self {
         Self { shift_m: self.shift_m + share * self.spacing_m, ..self }
     }
 
-    /// How many rows obstacles break, about; one that would only graze an obstacle and bends round it counts as a part.
+    /// Estimates how many rows obstacles break. A row that an obstacle would only graze bends around it and counts as a
+    /// fraction.
     pub(crate) fn broken(&self, workspace: &Workspace) -> f64 {
         let side = left_of(self.ahead());
         let by = |part: &Part| {
@@ -191,7 +194,7 @@ impl Rows {
         workspace.parts.iter().map(by).sum()
     }
 
-    /// Length of the slivers that rows inside a lap leave along a round wall, metres.
+    /// The length of the slivers that rows inside a lap leave along a round wall, metres.
     pub(crate) fn slivers_m(&self, workspace: &Workspace) -> f64 {
         let Boundary::Circle { radius_m } = workspace.wall else { return 0.0 };
         let half_m = workspace.swath_m / 2.0;
@@ -205,12 +208,12 @@ impl Rows {
         beyond(self.shift_m) + beyond(-self.shift_m)
     }
 
-    /// Unit vector along the lanes.
+    /// The unit vector along the lanes.
     pub(crate) fn ahead(&self) -> Vector {
         direction(self.angle_rad)
     }
 
-    /// The nearest line between two lanes, as seen from a place: the way to it, metres.
+    /// The displacement from a position to the nearest line midway between two lanes, metres.
     pub(crate) fn to_gap(self, from: Point) -> Vector {
         let side = left_of(self.ahead());
         let place = (from.coords.dot(&side) - self.shift_m) / self.spacing_m;
@@ -218,7 +221,7 @@ impl Rows {
         side * ((gap - place) * self.spacing_m)
     }
 
-    /// The lines of the rows as far as they are no nearer to the wall than `edge_m`.
+    /// The lines of the rows, except parts closer to the wall than `edge_m`.
     pub(crate) fn lines(&self, wall: &Boundary, edge_m: f64) -> Vec<Vec<Point>> {
         let (ahead, side) = (self.ahead(), left_of(self.ahead()));
         let (low, high) = wall.bounds();

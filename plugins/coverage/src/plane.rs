@@ -1,9 +1,9 @@
-//! Plane geometry that several steps of planning share.
+//! Plane geometry shared by several planning steps.
 
 use geometry::convex::crossing;
 use world::{Boundary, Point, Vector};
 
-/// Unit vector of an angle, radians from east.
+/// The unit vector at an angle, radians from east.
 pub(crate) fn direction(angle_rad: f64) -> Vector {
     Vector::new(angle_rad.cos(), angle_rad.sin())
 }
@@ -13,17 +13,17 @@ pub(crate) fn left_of(ahead: Vector) -> Vector {
     Vector::new(-ahead.y, ahead.x)
 }
 
-/// Angle between two unit vectors, radians, from 0 to pi.
+/// The angle between two unit vectors, radians, from 0 to pi.
 pub(crate) fn angle_rad(a: Vector, b: Vector) -> f64 {
     a.perp(&b).atan2(a.dot(&b)).abs()
 }
 
-/// Least and greatest of some numbers; plus and minus infinity where there are none.
+/// The minimum and maximum of some numbers; plus and minus infinity if there are none.
 pub(crate) fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
     numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)))
 }
 
-/// Direction in which the wall recedes fastest.
+/// The direction in which the wall recedes fastest.
 pub(crate) fn inward(wall: &Boundary, at: Point) -> Vector {
     let step = 1e-4;
     let d = |offset: Vector| wall.wall_distance_m(at + offset);
@@ -34,12 +34,12 @@ pub(crate) fn inward(wall: &Boundary, at: Point) -> Vector {
     slope.try_normalize(1e-12).unwrap_or_else(Vector::x)
 }
 
-/// Whether the straight way between two places meets a line.
+/// Whether the straight path between two points meets a line.
 pub(crate) fn meets(line: &[Point], a: Point, b: Point) -> bool {
     line.windows(2).any(|side| crossing(a, b, side[0], side[1]).is_some())
 }
 
-/// Length and turning of a way.
+/// Length and turning of a path.
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
     /// Length, metres.
@@ -49,7 +49,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// The course of a way that is entered with one heading and left with another, as far as these are known.
+    /// Measures a path, including the turns at its ends if the headings before and after are known.
     pub(crate) fn of(entered: Option<Vector>, way: &[Point], left: Option<Vector>) -> Self {
         let (mut heading, mut length_m, mut turn_rad) = (entered, 0.0, 0.0);
         for leg in way.windows(2).map(|w| w[1] - w[0]) {
@@ -64,7 +64,7 @@ impl Course {
         Self { length_m, turn_rad }
     }
 
-    /// What it costs more than another, metres, with turns at this price.
+    /// The extra cost compared with another course, metres, with turns at this price.
     pub(crate) fn excess_m(self, other: Self, turn_m_per_rad: f64) -> f64 {
         self.length_m - other.length_m + turn_m_per_rad * (self.turn_rad - other.turn_rad)
     }

@@ -1,5 +1,5 @@
-//! Making a path shorter and straighter without losing floor: what other parts of the path sweep as well need not be
-//! swept here, and what was missed is worth a detour only if it is large enough.
+//! Makes a path shorter and straighter without losing floor. Floor that other parts of the path also sweep need not be
+//! swept here, and missed floor is worth a detour only if it is large enough.
 
 mod bends;
 pub(crate) mod shell;
@@ -14,12 +14,13 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 pub(crate) use track::{Terms, Track};
 
-/// How far a round of polish is when the path is shortened and when it is bent, as shares of its time, about.
+/// Approximate progress of a round when the path has been shortened, and when it has been bent, as shares of the
+/// round's time.
 const SHORTENED: f64 = 0.63;
 const BENT: f64 = 0.92;
 
-/// Shortens a path, bends it to floor that it misses, and ties in short lanes where that is not enough. A second round pays:
-/// what was bent and tied in sweeps floor on its way that other parts need not sweep any more. `time` is the share of the
+/// Shortens a path, bends it to floor that it misses, and ties in short lanes if that is not enough. A second round
+/// pays: new bends and lanes sweep floor on their way that other parts then need not sweep. `time` is the share of the
 /// candidate's time that the round takes.
 pub(crate) fn polish(
     track: &mut Track<'_>,
@@ -34,7 +35,7 @@ pub(crate) fn polish(
     track.reopen();
     track.shorten(terms)?;
     if let Some(whole) = whole.filter(|whole| track.coverage() < tuning::KEPT * whole.coverage()) {
-        // A little floor far away is not worth its way, but nothing else was asked for.
+        // A little floor far away is not worth the distance, but here it is all that was requested.
         *track = whole;
         track.shorten(&careful)?;
     }
@@ -44,8 +45,8 @@ pub(crate) fn polish(
     track.pass_along_shell(terms)
 }
 
-/// Brings the coverage, counted in other cells than the path was fitted to, to what is enough: by bends and ties, or by shortcuts as long as
-/// it is more than that.
+/// Brings the coverage to the required value, counted in cells other than those to which the path was fitted. Bends and
+/// ties raise it; shortcuts lower it while it is too high.
 pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &ReachableFloor) -> Result<()> {
     let enough = track.enough_here(terms.enough, other);
     let terms = Terms { enough, keep: enough, ..*terms };
@@ -62,8 +63,8 @@ pub(crate) fn settle(track: &mut Track<'_>, terms: &Terms<'_>, other: &Reachable
     track.pass_along_shell(&terms)
 }
 
-/// Where much is still missing, as in slivers around many columns that stand close together, the path is bent to dearer and dearer
-/// floor.
+/// If much is still missing, as in slivers around many columns that are close together, pays higher and higher prices
+/// to bend the path to it.
 fn scan_dear_floor(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>) -> Result<()> {
     let enough = terms.enough - tuning::LEFT;
     for times in tuning::DEARER {
@@ -77,8 +78,8 @@ fn scan_dear_floor(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>
     Ok(())
 }
 
-/// The same for a path that was polished before and has changed in places: what it does along the shell stays, and what was
-/// scanned there already is not scanned again.
+/// The same for a path that was polished before and has changed in places. What it does along the shell stays, and
+/// floor already scanned there is not scanned again.
 pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<()> {
     let careful = Terms { floor_m_per_m2: tuning::CAREFUL_M_PER_M2, ..*terms };
     let at = |share: f64| share;
@@ -88,7 +89,7 @@ pub(crate) fn polish_again(track: &mut Track<'_>, terms: &Terms<'_>) -> Result<(
     tie(track, terms, &careful, &at)
 }
 
-/// Bends the path, and shortens what is new, until nothing pays any more.
+/// Bends the path and shortens the new parts, until nothing more pays.
 fn bend(
     track: &mut Track<'_>,
     terms: &Terms<'_>,
@@ -112,8 +113,8 @@ fn bend(
     Ok(())
 }
 
-/// Ties in short lanes, and shortens what is new, until the coverage is reached. Late rounds are content with a little less,
-/// but take smaller places; when nothing large is left they come at once.
+/// Ties in short lanes and shortens the new parts, until the required coverage is reached. Late rounds accept slightly
+/// less coverage but use smaller places. If nothing large is left, the late rounds start immediately.
 fn tie(track: &mut Track<'_>, terms: &Terms<'_>, careful: &Terms<'_>, at: &dyn Fn(f64) -> f64) -> Result<()> {
     let late = Terms { enough: terms.enough - tuning::LATE_SHARE, ..*terms };
     let (mut share, mut is_late) = (BENT, false);

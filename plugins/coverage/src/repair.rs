@@ -1,9 +1,9 @@
-//! Repair of a plan under way: what was found on the way changes it only round itself.
+//! Repair of the current plan: obstacles found during the mission change the plan only around them.
 //!
-//! The cuts stay, and an obstacle that none of them holds gets one of its own, laid where it crosses the rest of the path
-//! least. What can still be driven of that rest stays as it is, in sections: long ones far away, single lanes near what has
-//! changed. The sections are reordered, starting from the order in which they were to be flown, and the ways between them are
-//! polished as those of any path.
+//! The cuts stay. An obstacle not connected by any cut gets a new cut, placed where it crosses the rest of the path
+//! least. Parts of the path that can still be driven are kept as sections: long sections far away, single lanes near
+//! the change. The sections are reordered, starting from their planned order. The connectors between them are polished
+//! like those of any path.
 
 mod current;
 
@@ -21,7 +21,7 @@ pub(crate) use current::{CurrentPlan, Side};
 use planner_api::Result;
 use world::{Point, polyline};
 
-/// What a repair starts from.
+/// The input of a repair.
 pub(crate) struct Repair<'a, 'f> {
     pub workspace: &'a Workspace,
     pub scope: Scope<'a>,
@@ -31,7 +31,7 @@ pub(crate) struct Repair<'a, 'f> {
     pub tether: Vec<Point>,
 }
 
-/// The domain of a plan under way with cuts for what was found.
+/// The domain of the current plan with additional cuts for the found obstacles.
 pub(crate) struct Extended<'a> {
     domain: SlitDomain<'a>,
     new_cuts: Vec<Vec<Point>>,
@@ -40,17 +40,17 @@ pub(crate) struct Extended<'a> {
 /// A repaired path.
 pub(crate) struct Repaired<'a> {
     pub scan: Scan<'a>,
-    /// Share of the floor left that is enough: what the first plan might leave of all floor, or would have left of this, and a
-    /// little more about what was found.
+    /// The required coverage of the remaining floor: the lower of the requested coverage and what the current plan
+    /// would have achieved, less a small allowance for the found obstacles.
     pub enough: f64,
 }
 
-/// A repaired path before it is polished.
+/// A repaired path before polishing.
 pub(crate) struct Laid<'a> {
     pub domain: SlitDomain<'a>,
-    /// Its pieces, each with whether it is new.
+    /// The pieces of the path, each with whether it is new.
     pieces: Vec<(Piece, bool)>,
-    /// Length of the lanes that the plan before had and this one has not, metres.
+    /// Length of lanes of the previous plan that are missing from this one, metres.
     lost_m: f64,
 }
 
@@ -60,14 +60,14 @@ impl Laid<'_> {
         self.pieces.iter().flat_map(|(piece, _)| piece.points.iter().copied()).collect()
     }
 
-    /// Length that it will have about when what it misses has been tied in, metres.
+    /// The estimated length once missed floor has been tied in, metres.
     pub(crate) fn estimate_m(&self) -> f64 {
         polyline::length_m(&self.path()) + tuning::touch_ups::MISSED * self.lost_m
     }
 }
 
 impl<'a> Repair<'a, '_> {
-    /// The repaired path in one of these domains before it is polished; `None` where the robot stands outside it.
+    /// The repaired path in a domain, before polishing; `None` if the robot is outside the domain.
     pub(crate) fn laid(
         &self,
         Extended { domain, new_cuts }: Extended<'a>,
@@ -81,12 +81,12 @@ impl<'a> Repair<'a, '_> {
         Ok(Some(Laid { domain, pieces, lost_m }))
     }
 
-    /// A repaired path in its final form.
+    /// Polishes a repaired path to its final form.
     pub(crate) fn polished(&self, laid: Laid<'a>, job: &Job) -> Result<Repaired<'a>> {
         let Laid { domain, pieces, .. } = laid;
         let scope = &self.scope;
         let floor = ReachableFloor::new(&domain, scope.cell_m).within(scope.regions);
-        // What the robot has missed so far was to be left anyway.
+        // Floor that the previous plan would have missed anyway need not be scanned.
         let mut as_before = SweptFloor::new(floor.clone());
         as_before.sweep(&self.current.path());
         let enough = scope.enough.min(as_before.coverage()) - scope.whole * tuned::MORE_LEFT;
@@ -99,19 +99,21 @@ impl<'a> Repair<'a, '_> {
         Ok(Repaired { scan: Scan { pieces, domain, swept }, enough })
     }
 
-    /// The domains that a repair may use, with different cuts for what was found; none where all of them seal floor off.
+    /// The domains that a repair may use, with different cuts for the found obstacles. Empty if all of them seal floor
+    /// off.
     pub(crate) fn domains(&self) -> Vec<Extended<'a>> {
         let cuts = &self.current.cuts;
         let domains = self.domains_between(cuts);
         if !domains.is_empty() {
             return domains;
         }
-        // What was found may stand in a cut and plug the way between that and another one, or the wall: the cut ends there then.
+        // A found obstacle may stand in a cut and plug the passage to another cut or the wall. Then the cut ends at the
+        // obstacle.
         let shortened = cuts_up_to_found(self.workspace, cuts).into_iter();
         shortened.flat_map(|cuts| self.domains_between(&cuts)).collect()
     }
 
-    /// The domains between some cuts, with different ones for what these do not hold.
+    /// The domains between some cuts, with different additional cuts for unconnected obstacles.
     fn domains_between(&self, cuts: &[Vec<Point>]) -> Vec<Extended<'a>> {
         let path: Vec<(Point, Point)> =
             self.current.sides().iter().map(|side| (side.from, side.to)).collect();
@@ -128,7 +130,7 @@ impl<'a> Repair<'a, '_> {
         (domain.sealed.area_m2 <= SLIVER_M2).then_some(Extended { domain, new_cuts })
     }
 
-    /// Sections and ways between them in a good order, from the start to home; each with whether it is new.
+    /// Sections and connectors in a good order, from the start to home; each with whether it is new.
     fn joined(
         &self,
         domain: &SlitDomain<'_>,
@@ -153,7 +155,7 @@ impl<'a> Repair<'a, '_> {
     }
 }
 
-/// What can still be driven of a path, without what joins lanes near what has changed.
+/// The sections of a path that can still be driven, without connectors near the change.
 fn sections(domain: &SlitDomain<'_>, rest: &[Side], new_cuts: &[Vec<Point>]) -> Vec<Vec<Side>> {
     let mut bits: Vec<(Side, bool)> = Vec::with_capacity(rest.len());
     for side in rest {
@@ -176,7 +178,7 @@ fn sections(domain: &SlitDomain<'_>, rest: &[Side], new_cuts: &[Vec<Point>]) -> 
     runs.filter(|section: &Vec<Side>| polyline::length_m(&points(section)) >= least_m).collect()
 }
 
-/// Length of the lanes among some sides, metres.
+/// The length of the lanes among some sides, metres.
 fn lanes_m(sides: &[Side]) -> f64 {
     sides.iter().filter(|side| side.is_lane).map(|side| (side.to - side.from).norm()).sum()
 }
@@ -185,7 +187,7 @@ fn points(section: &[Side]) -> Vec<Point> {
     section.first().map(|side| side.from).into_iter().chain(section.iter().map(|side| side.to)).collect()
 }
 
-/// A section in pieces of one kind, the other way round if so.
+/// The pieces of a section, reversed if required.
 fn pieces(section: &[Side], is_reversed: bool) -> Vec<Piece> {
     let piece = |run: &[Side]| Piece { points: points(run), is_lane: run[0].is_lane };
     let mut pieces: Vec<Piece> = section.chunk_by(|a, b| a.is_lane == b.is_lane).map(piece).collect();

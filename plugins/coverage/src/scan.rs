@@ -1,4 +1,4 @@
-//! A path over the floor, and the plan that is made of it.
+//! A path over the floor, and the plan made from it.
 
 use crate::floor::{ReachableFloor, SweptFloor};
 use crate::scope::Scope;
@@ -11,36 +11,35 @@ use world::{Point, coverage::percent_text, polyline};
 /// A piece of a path.
 pub(crate) struct Piece {
     pub points: Vec<Point>,
-    /// Whether it is a lane; otherwise a way between lanes.
+    /// Whether the piece is a lane; otherwise it is a connector.
     pub is_lane: bool,
 }
 
 /// A path over the floor.
 pub(crate) struct Scan<'a> {
-    /// Lanes and ways in turn.
+    /// Lanes and connectors in turn.
     pub pieces: Vec<Piece>,
-    /// Where it stays, and the cuts that it does not cross.
+    /// The domain in which the path stays, with the cuts that it does not cross.
     pub domain: SlitDomain<'a>,
-    /// What it sweeps.
+    /// The floor that the path sweeps.
     pub swept: SweptFloor,
 }
 
 impl<'a> Scan<'a> {
-    /// The scan of a path.
+    /// Creates the scan of a path.
     pub(crate) fn new(pieces: Vec<Piece>, domain: SlitDomain<'a>, floor: ReachableFloor) -> Self {
         let mut scan = Self { pieces, domain, swept: SweptFloor::new(floor) };
         scan.swept.sweep(&scan.path());
         scan
     }
 
-    /// Reports what a plan without touch-ups leaves out; whether it is complete, but for slivers.
+    /// Logs what a plan without touch-ups leaves out. Returns whether the plan is complete except for slivers.
     pub(crate) fn reports_all(&self, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool {
         let is_all_in_reach = unreachable::report(self, scope, ctx);
         let share = self.swept.coverage_of(&self.swept.floor.clone().within(scope.regions));
         let is_enough = share >= COMPLETE_WITH_SLIVERS;
         if !is_enough {
-            let scanned =
-                format!("the plan scans {} % of the floor that is to be scanned", percent_text(share, 1));
+            let scanned = format!("the plan scans {} % of the requested floor", percent_text(share, 1));
             ctx.log(
                 LogLevel::Warn,
                 &format!("{scanned}: the rest lies beside its lanes; choose tether-safe"),
@@ -60,7 +59,7 @@ impl<'a> Scan<'a> {
         path
     }
 
-    /// The plan from where the robot is, after a way on which the cable is taken in.
+    /// The plan from the robot's position. It begins with `retract`, a return path along the cable, which may be empty.
     pub(crate) fn plan(&self, start: Point, retract: &[Point]) -> Plan {
         let mut plan = Plan { path: vec![start], complete: true, ..Plan::default() };
         add_leg(&mut plan, LegTag::Retract, retract);

@@ -1,4 +1,4 @@
-//! What is to be scanned.
+//! The scope of a plan: the floor to scan and its limits.
 
 use crate::floor::{ReachableFloor, SweptFloor};
 use crate::slit_domain::SlitDomain;
@@ -7,42 +7,44 @@ use crate::workspace::Workspace;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Task, TetherLimits};
 use world::Point;
 
-/// What is to be scanned, from where, how far the robot may go, and how much is enough.
+/// The floor to scan, the start, how far the robot may go, and the required coverage.
 #[derive(Clone, Copy)]
 pub(crate) struct Scope<'a> {
-    /// Where the robot is.
+    /// Position of the robot.
     pub start: Point,
-    /// Where the tether comes in, and its limits.
+    /// Where the tether enters the tank, and its limits.
     pub anchor: Point,
     pub tether: Option<TetherLimits>,
-    /// Longest way from home, metres.
+    /// Longest path from home, metres.
     pub reel_length_m: f64,
-    /// Distance at which the robot is back, metres.
+    /// Distance from home at which the robot counts as back, metres.
     pub tolerance_m: f64,
     /// Polygons still to scan; all floor if empty.
     pub regions: &'a [&'a [Point]],
-    /// Coverage that is enough, as a share of the reachable floor that is left.
+    /// Required coverage, as a share of the remaining reachable floor.
     pub enough: f64,
-    /// All floor that is or was to be scanned, as a multiple of what is left.
+    /// All floor that is or was to be scanned, as a multiple of the remaining floor.
     pub whole: f64,
-    /// Edge of a cell of the floor, metres.
+    /// Edge length of a cell of the floor, metres.
     pub cell_m: f64,
 }
 
 impl<'a> Scope<'a> {
-    /// All that a request asks for, as if there were no tether, if it is to cover floor; `id` is the planner that is asked.
+    /// The scope of a request for coverage, as if there were no tether. `id` is the planner's, for messages.
     ///
     /// # Errors
-    /// Another task, or a start that is not a number.
+    /// The task is not coverage, or the coordinates of the start are not finite.
     pub(crate) fn of(request: &PlanRequest<'a>, id: &str, cell_m: f64) -> Result<Self> {
         let start = request.start.position;
         if !(start.x.is_finite() && start.y.is_finite()) {
-            return Err(PlannerError::new(Code::Invalid, "the start is not a number"));
+            return Err(PlannerError::new(Code::Invalid, "start coordinates must be finite numbers"));
         }
         let Task::Cover { anchor, regions, tether, tolerance_m } = request.task else {
             return Err(PlannerError::new(
                 Code::Unsupported,
-                format!("{id} covers floors; for this mission choose a planner for goals or preset paths"),
+                format!(
+                    "{id} only covers floors; for this mission choose a planner for goals or preset paths"
+                ),
             ));
         };
         Ok(Self {
@@ -58,7 +60,7 @@ impl<'a> Scope<'a> {
         })
     }
 
-    /// The same for a robot that has flown a path already: what it scanned belongs to the whole.
+    /// The same for a robot that has already driven a path: the floor that it scanned counts toward the whole.
     pub(crate) fn after(self, flown: &[Point], workspace: &Workspace) -> Self {
         if self.regions.is_empty() || flown.is_empty() {
             return self;
@@ -72,13 +74,13 @@ impl<'a> Scope<'a> {
         Self { whole: n_whole as f64 / left.n.max(1) as f64, ..self }
     }
 
-    /// The share of the floor left that is enough where a share of the whole is: late in a mission, when little is left, more
-    /// of it may be missed.
+    /// Converts a required share of the whole floor to a share of the remaining floor. Late in a mission, when little
+    /// is left, a larger share of the rest may be missed.
     pub(crate) fn of_rest(&self, enough_of_whole: f64) -> f64 {
         (1.0 - self.whole * (1.0 - enough_of_whole)).max(KEPT.min(enough_of_whole))
     }
 
-    /// Whether the reel lets the robot be at a place of a domain.
+    /// Whether the reel lets the robot reach a position of a domain.
     pub(crate) fn is_in_reach(&self, domain: &SlitDomain<'_>, at: Point) -> bool {
         let way_m = || domain.way_home_m(at);
         self.reel_length_m.is_infinite() || way_m().is_some_and(|way_m| way_m <= self.reel_length_m)

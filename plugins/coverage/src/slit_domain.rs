@@ -1,8 +1,8 @@
-//! The slit domain: the floor for the middle of the hull, less the cuts, in triangles.
+//! The slit domain: the floor for the hull centre, less the cuts, in triangles.
 //!
-//! With a cut from every obstacle to the wall the domain is simply connected, so the triangles form a tree, and the
-//! shortest path between two places is a funnel through the one sleeve that joins them: exact, without a search. Any
-//! two paths between the same ends are the same to the tether.
+//! With a cut from every obstacle to the wall the domain is simply connected, so the triangles form a tree. The
+//! shortest path between two points is then found by a funnel through the one sleeve that joins them: exact, without a
+//! search. For the tether, any two paths between the same ends are equivalent.
 
 mod funnel;
 #[cfg(test)]
@@ -17,27 +17,27 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use world::{Point, polyline};
 
-/// A path bends so far beside the end of a cut, metres: less than any two corners are apart. At the end itself it would be on
-/// both sides of the cut, and whatever goes on from there might go on from the other one.
+/// Distance by which a path passes beside the end of a cut, metres: less than the distance between any two corners. A
+/// path through the end itself would be on both sides of the cut, and could continue on the wrong side.
 const ASIDE_M: f64 = SNAP_M / 4.0;
 
-/// Triangles of the floor that can be reached from home without crossing a cut.
+/// The triangles of the floor that can be reached from home without crossing a cut.
 pub(crate) struct SlitDomain<'a> {
     pub workspace: &'a Workspace,
-    /// Lines that the robot does not cross, each from the middle of an obstacle to the wall or to another obstacle.
+    /// Lines that the robot does not cross, each from the centre of an obstacle to the wall or to another obstacle.
     pub cuts: Vec<Vec<Point>>,
     points: Vec<Point>,
     triangles: Vec<Triangle>,
     buckets: Buckets,
-    /// Corners at which cuts end or bend: the domain lies on both sides of each. In bits, because they are looked up.
+    /// Corners at which cuts end or bend; the domain lies on both sides of each. Stored as bits for lookup.
     hinges: BTreeSet<[u64; 2]>,
-    /// Whether the domain is simply connected: every way between two places is the same to the tether.
+    /// Whether the domain is simply connected, so that all paths between two points are equivalent for the tether.
     pub is_simple: bool,
-    /// Floor that only cuts keep the hull out of.
+    /// Floor from which only cuts keep the hull out.
     pub sealed: SealedRegion,
 }
 
-/// A place of the domain and the triangle that it lies in.
+/// A point of the domain and the triangle that contains it.
 #[derive(Clone, Copy)]
 pub(crate) struct Spot {
     pub at: Point,
@@ -45,7 +45,7 @@ pub(crate) struct Spot {
 }
 
 impl<'a> SlitDomain<'a> {
-    /// The domain between some cuts; `None` where there is no room at home.
+    /// Creates the domain between some cuts; `None` if there is no room at home.
     pub(crate) fn new(workspace: &'a Workspace, cuts: Vec<Vec<Point>>) -> Option<Self> {
         let walk = workspace.triangulation().walk(&cuts, workspace.home)?;
         let Walk { points, triangles, hinges, is_simple, sealed } = walk;
@@ -58,8 +58,8 @@ impl<'a> SlitDomain<'a> {
         Some(Self { workspace, cuts, points, triangles, buckets, hinges, is_simple, sealed })
     }
 
-    /// Adds cuts across the last ways round obstacles that are left, each where the ways from home on either side meet. No
-    /// floor is lost by it, and the domain is simply connected then.
+    /// Adds cuts across the remaining ways around obstacles, each where the paths from home on the two sides meet. No
+    /// floor is lost, and the domain becomes simply connected.
     pub(crate) fn close_up(&mut self) {
         if self.is_simple {
             return;
@@ -87,7 +87,7 @@ impl<'a> SlitDomain<'a> {
         self.is_simple = true;
     }
 
-    /// Rebuilds the tree of triangles by the lengths of the shortest ways from home (Dijkstra 1959).
+    /// Rebuilds the tree of triangles by the lengths of the shortest paths from home (Dijkstra 1959).
     fn reach_nearest_first(&mut self) {
         let Some(home) = self.spot(self.workspace.home) else { return };
         let mut is_reached = vec![false; self.triangles.len()];
@@ -124,7 +124,7 @@ impl<'a> SlitDomain<'a> {
         (0..self.triangles.len()).map(|triangle| self.corners(triangle))
     }
 
-    /// What bounds the domain, cuts left out: closed rings with the domain on their left.
+    /// The boundary of the domain, ignoring cuts: closed rings with the domain on their left.
     pub(crate) fn rings(&self) -> Vec<Vec<Point>> {
         let is_cut = |a: Point, b: Point| self.cuts.iter().any(|cut| cut[..] == [a, b] || cut[..] == [b, a]);
         let mut onward: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -147,7 +147,7 @@ impl<'a> SlitDomain<'a> {
         rings
     }
 
-    /// A place with its triangle; `None` outside the domain.
+    /// A point with its triangle; `None` outside the domain.
     pub(crate) fn spot(&self, at: Point) -> Option<Spot> {
         let mut best = (f64::NEG_INFINITY, usize::MAX);
         for triangle in self.buckets.at(at) {
@@ -155,7 +155,7 @@ impl<'a> SlitDomain<'a> {
             if side >= best.0 {
                 best = (side, *triangle as usize);
             }
-            // Triangles do not overlap: it lies inside no other.
+            // Triangles do not overlap, so the point is inside no other triangle.
             if side > NEARLY {
                 break;
             }
@@ -167,18 +167,20 @@ impl<'a> SlitDomain<'a> {
         self.spot(at).is_some()
     }
 
-    /// Where a path from a place begins: there, beside it where that lies outside the domain, or else at home.
+    /// The start of a path from a position: the position itself, or the nearest point if it is outside the domain, or
+    /// else home.
     pub(crate) fn start(&self, at: Point) -> Point {
         self.beside(at).unwrap_or(self.workspace.home)
     }
 
-    /// A place, or the nearest one in the domain: a robot may stand a little too near to what it has just found.
+    /// The position, or the nearest point in the domain: a robot may be slightly too close to an obstacle that it has
+    /// just found.
     pub(crate) fn beside(&self, at: Point) -> Option<Point> {
         let is_open = |place: &Point| self.contains(*place) && !self.crosses_cut(at, *place);
         places_around(at, self.workspace.keep_m).find(is_open)
     }
 
-    /// The pieces of a line between the places where it would cross a cut.
+    /// The pieces of a line between the points where it would cross a cut.
     pub(crate) fn between_cuts(&self, line: &[Point]) -> Vec<Vec<Point>> {
         let runs = line.chunk_by(|a, b| !self.crosses_cut(*a, *b));
         runs.filter(|run| run.len() > 1).map(<[Point]>::to_vec).collect()
@@ -188,12 +190,12 @@ impl<'a> SlitDomain<'a> {
         self.cuts.iter().any(|cut| meets(cut, a, b))
     }
 
-    /// The shortest path between two places, both ends included; `None` where one lies outside the domain.
+    /// The shortest path between two points, including both; `None` if one is outside the domain.
     pub(crate) fn path(&self, a: Point, b: Point) -> Option<Vec<Point>> {
         Some(self.path_between(self.spot(a)?, self.spot(b)?))
     }
 
-    /// The shortest path between two spots; it bends a hair beside the ends of cuts.
+    /// The shortest path between two spots. It passes at a tiny distance from the ends of cuts.
     pub(crate) fn path_between(&self, a: Spot, b: Spot) -> Vec<Point> {
         if a.triangle == b.triangle {
             return vec![a.at, b.at];
@@ -208,15 +210,16 @@ impl<'a> SlitDomain<'a> {
         path
     }
 
-    /// Length of the shortest path home, metres.
+    /// The length of the shortest path home, metres.
     pub(crate) fn way_home_m(&self, from: Point) -> Option<f64> {
         self.path(self.workspace.home, from).map(|path| polyline::length_m(&path))
     }
 
-    /// Whether no corner of the domain is further from home than this, on the shortest path, metres.
+    /// Whether no corner of the domain is further from home than this on the shortest path, metres.
     ///
-    /// A corner of a cut has a way on either side; the one met first counts. That is a mild measure: of whole paths flown
-    /// along cuts, few ever go to the far side of the last corner, and what they do to the cable is certified anyway.
+    /// A corner on a cut can be reached on either side; the path found first counts. That is a lenient measure. Few
+    /// complete paths along cuts ever reach the far side of the last corner, and their effect on the cable is certified
+    /// anyway.
     pub(crate) fn is_all_within(&self, most_m: f64) -> bool {
         let Some(start) = self.spot(self.workspace.home) else { return most_m >= 0.0 };
         let mut seen = vec![false; self.points.len()];
@@ -231,7 +234,7 @@ impl<'a> SlitDomain<'a> {
         })
     }
 
-    /// Whether the straight way between two places stays in the domain.
+    /// Whether the straight line between two points stays in the domain.
     pub(crate) fn sees(&self, a: Point, b: Point) -> bool {
         matches!((self.spot(a), self.spot(b)), (Some(a), Some(b)) if self.sees_between(a, b))
     }
@@ -245,7 +248,7 @@ impl<'a> SlitDomain<'a> {
         a.triangle == b.triangle || is_straight()
     }
 
-    /// Left and right ends of the sides between two triangles, in order: up the tree from either one to where they meet.
+    /// The left and right ends of the sides between two triangles, in order: up the tree from both to where they meet.
     fn sleeve(&self, from: usize, to: usize) -> Vec<(Point, Point)> {
         let above = |triangle: usize| self.triangles[triangle].parent as usize;
         let depth = |triangle: usize| self.triangles[triangle].depth as usize;
@@ -273,10 +276,10 @@ impl<'a> SlitDomain<'a> {
         sleeve
     }
 
-    /// Left and right end of the side between a triangle and its neighbour, as seen from the triangle.
+    /// The left and right end of the side between a triangle and its neighbour, as seen from the triangle.
     fn side_between(&self, triangle: usize, neighbour: usize) -> (Point, Point) {
         let is_side = |k: &usize| self.triangles[triangle].next[*k] == neighbour as u32;
-        let side = (0..3).find(is_side).expect("neighbours share a side");
+        let side = (0..3).find(is_side).expect("neighbouring triangles share a side");
         // The corners run counter-clockwise, so a side seen from inside runs from right to left.
         (self.corner(triangle, side + 1), self.corner(triangle, side))
     }

@@ -2,17 +2,17 @@
 
 use planner_api::Ctx;
 
-/// The stages of a plan. Every stage takes a share of what is left, so that progress never goes back, however many
-/// follow.
+/// The stages of a plan. Every stage takes a share of the remaining progress, so progress never decreases, however many
+/// stages follow.
 pub(crate) struct Stages<'a> {
     /// The console.
     pub ctx: Ctx<'a>,
     done: f64,
-    /// Share of the plan to which the stages to come lead.
+    /// The share of the plan at which the coming stages end.
     pub end: f64,
 }
 
-/// One stage: where it begins and ends, as shares of the whole plan, and what is being done.
+/// A stage: its start and end as shares of the whole plan, and its name.
 pub(crate) struct Stage<'a> {
     /// The console.
     pub ctx: Ctx<'a>,
@@ -22,17 +22,17 @@ pub(crate) struct Stage<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// Nothing is done yet.
+    /// Creates the stages of a plan that has not started.
     pub(crate) fn new(ctx: &Ctx<'a>) -> Self {
         Self { ctx: *ctx, done: 0.0, end: 1.0 }
     }
 
-    /// This far along from what is done to a share of the plan.
+    /// The point that is this far along from the present progress to a share of the plan.
     pub(crate) fn toward(&self, end: f64, share: f64) -> f64 {
         self.done + (end - self.done) * share
     }
 
-    /// The next stage takes this share of what is left, 0 to 1.
+    /// Starts the next stage, which takes this share of the remaining progress, 0 to 1.
     pub(crate) fn next(&mut self, share_of_rest: f64, what: &'static str) -> Stage<'a> {
         let from = self.done;
         self.done = self.toward(self.end, share_of_rest).max(from);

@@ -1,4 +1,4 @@
-//! What a plan means to the tether.
+//! The effect of a plan on the tether.
 
 use crate::slit_domain::SlitDomain;
 use crate::workspace::Workspace;
@@ -7,10 +7,11 @@ use std::sync::Arc;
 use world::tether::{Cable, Case, Certificate, Ground, Limits, Strain, certify_on, strain};
 use world::{Boundary, Obstacle, ObstacleId, ObstacleMap, Point, Shape, tether};
 
-/// A cable that is no longer than this at the anchor is in, metres.
+/// A cable with at most this length outside the anchor counts as reeled in, metres.
 const IN_M: f64 = 1e-3;
 
-/// Longest straight way from the anchor to where the robot can be, about: the least cable that can do, metres.
+/// Approximately the longest straight line from the anchor to a position that the robot can reach: the minimum cable
+/// length, metres.
 pub(crate) fn least_cable_m(workspace: &Workspace) -> f64 {
     let Workspace { wall, anchor, keep_m, .. } = workspace;
     match wall {
@@ -22,7 +23,7 @@ pub(crate) fn least_cable_m(workspace: &Workspace) -> f64 {
     }
 }
 
-/// The cable as it lies after the path flown so far; none at the anchor.
+/// The cable as it lies after the path driven so far; `None` at the anchor.
 pub(crate) fn laid_cable(workspace: &Workspace, request: &PlanRequest<'_>) -> Option<Cable> {
     if request.previous.is_empty() {
         return None;
@@ -33,14 +34,15 @@ pub(crate) fn laid_cable(workspace: &Workspace, request: &PlanRequest<'_>) -> Op
     Some(cable)
 }
 
-/// Back along the cable, if the hull has room there.
+/// The return path along the cable, if the hull fits.
 pub(crate) fn return_path(workspace: &Workspace, site: &Site<'_>, cable: &Cable) -> Option<Vec<Point>> {
     let (obstacles, keep_m) = (obstacles(site), workspace.keep_m);
     let roomy = Arc::new(tether::CableObstacles::grown(&workspace.wall, &shapes(&obstacles), keep_m));
     cable.return_path(&roomy, &ObstacleMap::new(&workspace.wall, &obstacles), keep_m)
 }
 
-/// Whether a cable comes in when the robot drives home through a domain: if it lies across a cut it stays round an obstacle.
+/// Whether the cable is reeled in when the robot drives home through a domain. A cable that lies across a cut stays
+/// around an obstacle.
 pub(crate) fn comes_in(domain: &SlitDomain<'_>, cable: &Cable) -> bool {
     let Workspace { home, anchor, .. } = *domain.workspace;
     let start = domain.beside(cable.tip());
@@ -51,7 +53,7 @@ pub(crate) fn comes_in(domain: &SlitDomain<'_>, cable: &Cable) -> bool {
     left.length_m() < IN_M
 }
 
-/// A path that returns to the anchor, and how the cable lies at its start.
+/// A path that returns to the anchor, and the position of the cable at its start.
 #[derive(Clone, Copy)]
 pub(crate) struct Tethered<'a> {
     pub domain: &'a SlitDomain<'a>,
@@ -60,7 +62,7 @@ pub(crate) struct Tethered<'a> {
 }
 
 impl Tethered<'_> {
-    /// What the path means to the tether.
+    /// The certificate of the path.
     pub(crate) fn certificate(&self, site: &Site<'_>, limits: Limits) -> Certificate {
         let obstacles = obstacles(site);
         let certificate = certify_on(self.ground(&obstacles), &self.case(&obstacles, limits));
@@ -73,7 +75,7 @@ impl Tethered<'_> {
         })
     }
 
-    /// What the path does to the cable itself; `None` where no cable can lie.
+    /// The strain that the path puts on the cable; `None` where no cable can lie.
     pub(crate) fn strain(&self, site: &Site<'_>, limits: Limits) -> Option<Strain> {
         let obstacles = obstacles(site);
         strain(self.ground(&obstacles), &self.case(&obstacles, limits)).ok()
@@ -100,7 +102,7 @@ impl Tethered<'_> {
     }
 }
 
-/// The obstacles of a site, no-go zones left out: they stop the robot, not its cable.
+/// The obstacles of a site without no-go zones: those stop the robot but not its cable.
 fn obstacles(site: &Site<'_>) -> Vec<Obstacle> {
     let obstacle = |o: &planner_api::Obstacle<'_>| Obstacle {
         id: ObstacleId(o.id),

@@ -1,4 +1,5 @@
-//! The tether-safe planner: lanes of a slit domain, so that the cable comes in whatever the order, with a certificate.
+//! The tether-safe planner: lanes of a slit domain, so that the cable can be reeled in whatever their order, with a
+//! certificate.
 
 mod candidate;
 mod parameters;
@@ -26,20 +27,21 @@ use planner_api::{
 };
 use world::{Point, coverage::percent_text};
 
-/// Plans in the slit domain.
+/// The tether-safe planner; it plans in the slit domain.
 pub struct TetherSafe {
     preferences: Preferences,
     follow: Follow,
-    /// Whether the tether of the plan that was given last was as short and straight as is preferred.
+    /// Whether the last plan returned met the preferences for the tether's length and wrap.
     is_preferred: bool,
 }
 
 impl Planner for TetherSafe {
     const ID: &'static str = "tether-safe";
     const NAME: &'static str = "Tether-safe coverage";
-    const ABOUT: &'static str = "Scans all reachable floor and never crosses a cut, so that the tether can always be reeled in: \
-                                 lanes of a simply connected domain, toured by local search, with a certificate; \
-                                 takes what moves as standing.";
+    const ABOUT: &'static str = "Scans all reachable floor and never crosses a cut, so the tether can \
+                                 always be reeled in. Orders the lanes of a simply connected domain by \
+                                 local search and certifies the plan. Treats moving obstacles as \
+                                 stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::COVERAGE);
     const PARAMS: &'static [ParamSpec] = parameters::ALL;
 
@@ -75,7 +77,7 @@ impl Planner for TetherSafe {
                     Some((worth, Repaired { scan, enough })) => {
                         ctx.log(
                             LogLevel::Info,
-                            &worth.summary("repaired after all, for the new plan is longer"),
+                            &worth.summary("the repair is used after all: the new plan is longer"),
                         );
                         (worth, scan, Vec::new(), enough)
                     }
@@ -84,20 +86,20 @@ impl Planner for TetherSafe {
             }
         };
         stages.end = 1.0;
-        stages.next(1.0, "floor out of reach").begin();
+        stages.next(1.0, "unreachable floor").begin();
         let is_all_in_reach = unreachable::report(&scan, &scope, ctx);
         if ctx.wants_drawing() {
             scan.domain.cuts.iter().for_each(|cut| ctx.polyline(Layer::Tether, cut));
         }
         let mut plan = scan.plan(scope.start, &lead_in);
-        // A reel near the least that can do may still reach all there is.
+        // A reel of barely the minimum length may still reach all floor.
         let complete = if workspace.is_room { rooms::COMPLETE } else { COMPLETE };
         let least = if scope.reel_length_m.is_finite() { enough - BY_REEL } else { scope.of_rest(complete) };
         let scans_enough = worth.coverage >= enough.min(least) && is_all_in_reach;
         warn(&worth, preferences, &scope, scans_enough, ctx);
         plan.complete = scans_enough && worth.is_safe(scope.tether.is_some());
         if workspace.is_room && scope.tether.is_none() {
-            // There is no cable for which a robot a little off its path would have to come back on the right side of a cut.
+            // Without a cable, a robot slightly off its path need not return to the correct side of a cut.
             plan.cuts.clear();
         }
         self.follow.take(&plan, workspace);
@@ -110,7 +112,7 @@ impl Planner for TetherSafe {
     }
 }
 
-/// A scope as far as the reel goes, in cells that are no smaller than a large tank allows.
+/// The scope limited by the reel, with cells no smaller than allowed for a large tank.
 fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preferences) -> Scope<'a> {
     let (low, high) = workspace.wall.bounds();
     let least_cell_m = ((high.x - low.x) * (high.y - low.y) / MOST_CELLS).sqrt();
@@ -124,8 +126,8 @@ fn limited<'a>(scope: Scope<'a>, workspace: &Workspace, preferences: &Preference
     Scope { reel_length_m, cell_m: scope.cell_m.max(least_cell_m), ..scope }
 }
 
-/// The candidates from where the robot is, or, where the cable as it lies rules all of them out, from home after a way back
-/// along the cable.
+/// The candidates from the robot's position. If the cable as it lies rules all of them out, the candidates from home
+/// after a return along the cable.
 fn tried_from_here_or_home<'a>(
     pipeline: &Pipeline<'a>,
     stages: &mut Stages<'_>,
@@ -133,23 +135,25 @@ fn tried_from_here_or_home<'a>(
     let Pipeline { site, workspace, scope, cable, .. } = *pipeline;
     let away_m = (scope.start - workspace.home).norm();
     let is_away = away_m > scope.tolerance_m;
-    // Under way the cable may lie as no cut of the new map allows: then it is taken in first.
+    // During a mission, the cable may lie across the cuts of every new plan. Then it is reeled in first.
     let way = cable.filter(|_| is_away).and_then(|cable| return_path(workspace, site, cable));
-    // A cable that is well out may have to, and then all is tried again.
+    // A cable that is far out may have to be reeled in, and then everything is computed again.
     let is_far_out = cable.is_some() && away_m > FAR * workspace.swath_m;
     stages.end = if is_far_out { 0.49 } else { 0.98 };
     let tried = Pipeline { must_come_in: way.is_some(), ..*pipeline }.run(stages)?;
     let Some(way) = way.filter(|_| !tried.is_certified()) else { return Ok((tried, Vec::new())) };
-    stages
-        .ctx
-        .log(LogLevel::Warn, "the tether lies across a cut of the new plan: back along the tether first");
+    stages.ctx.log(
+        LogLevel::Warn,
+        "the tether lies across a cut of the new plan: the robot first returns along \
+                              the tether",
+    );
     stages.end = 0.98;
     let from_home = Scope { start: workspace.home, ..scope };
     let tried = Pipeline { scope: from_home, cable: None, ..*pipeline }.run(stages)?;
     Ok((tried, way))
 }
 
-/// Why not even one lane can be planned, if so: the swath is wider than the floor, or the reel does not reach one.
+/// Why not even one lane can be planned, if so: the swath is wider than the floor, or the reel does not reach a lane.
 fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
     let Workspace { swath_m, home, anchor, .. } = *workspace;
     let (low, high) = workspace.wall.bounds();
@@ -159,37 +163,35 @@ fn no_lane(workspace: &Workspace, reel_length_m: f64) -> Option<String> {
             "the swath of {swath_m:.2} m is wider than the floor of {floor_m:.2} m; it must be narrower"
         ));
     }
-    // The nearest lane that is not at the anchor itself lies a swath away; a robot beside the anchor is out already.
+    // The nearest lane that is not at the anchor itself is a swath away; a robot beside the anchor is already away from
+    // it.
     let farthest_m = least_cable_m(workspace);
     let needed_m = (home - anchor).norm() + swath_m.min(farthest_m);
     (reel_length_m < needed_m).then(|| {
         format!(
-            "the reel holds {reel_length_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, the farthest floor is \
-             {farthest_m:.1} m from the anchor"
+            "the reel holds {reel_length_m:.2} m of cable; the nearest lanes need {needed_m:.2} m, and the \
+             farthest floor is {farthest_m:.1} m from the anchor"
         )
     })
 }
 
-/// Warns of what is wrong with a plan. The last warning is the reason why it is not complete, if it is not.
+/// Warns of deficiencies of a plan. If the plan is not complete, the last warning gives the reason.
 fn warn(worth: &Worth, preferences: &Preferences, scope: &Scope<'_>, scans_enough: bool, ctx: &Ctx<'_>) {
     let warn = |message: &str| ctx.log(LogLevel::Warn, message);
     let (share, has_reel) = (percent_text(worth.coverage, 1), scope.reel_length_m.is_finite());
     if !scans_enough && !has_reel {
-        warn(&format!("the plan scans {share} % of the floor that is to be scanned"));
+        warn(&format!("the plan scans {share} % of the requested floor"));
     }
     if !worth.certificate.certified {
         warn(&format!("not certified: {}", worth.certificate.reasons.join("; ")));
     } else if !worth.meets(preferences) {
-        warn("no candidate keeps the cable as short and straight as the parameters ask");
+        warn("no candidate keeps the cable within the preferred length and wrap");
     }
-    let scanned = format!("the plan scans {share} % of the floor in reach");
+    let scanned = format!("the plan scans {share} % of the reachable floor");
     match (scans_enough, has_reel) {
         (true, _) => {}
         (false, true) => {
-            warn(&format!(
-                "{scanned} of a reel of {:.1} m, which is too short for all of it",
-                scope.reel_length_m
-            ));
+            warn(&format!("{scanned}: the reel of {:.1} m is too short for all of it", scope.reel_length_m));
         }
         (false, false) => warn(&format!("{scanned}: the rest is left out")),
     }

@@ -1,4 +1,4 @@
-//! Touch-ups: short lanes over what the tour has missed.
+//! Touch-ups: short lanes over floor that the tour has missed.
 
 use crate::floor::SweptFloor;
 use crate::inflation::SLACK_M;
@@ -10,12 +10,12 @@ use world::{Point, Vector, polyline};
 
 /// Sampling step along touch-ups, metres.
 const STEP_M: f64 = 0.05;
-/// Lanes over a group of missed cells, as long as it is and as many as it is wide.
+/// Lanes over a group of missed cells: as long as the group, and as many as its width requires.
 pub(crate) fn touch_up(domain: &SlitDomain<'_>, swept: &SweptFloor, group: &[usize]) -> Vec<Lane> {
     let points: Vec<Point> = group.iter().map(|cell| swept.raster().center(*cell)).collect();
     let (middle, along) = axis(&points);
     let across = left_of(along);
-    // Of every cell its place along and across the axis.
+    // The position of every cell along and across the axis.
     let cells: Vec<(f64, f64)> =
         points.iter().map(|p| p - middle).map(|offset| (offset.dot(&along), offset.dot(&across))).collect();
     let whole = extent(cells.iter().map(|cell| cell.0));
@@ -45,7 +45,7 @@ pub(crate) fn touch_up(domain: &SlitDomain<'_>, swept: &SweptFloor, group: &[usi
     lanes
 }
 
-/// Mean and main direction of some points.
+/// The mean and the main direction of some points.
 fn axis(points: &[Point]) -> (Point, Vector) {
     let n = points.len().max(1) as f64;
     let middle = Point::from(points.iter().map(|p| p.coords).sum::<Vector>() / n);
@@ -58,7 +58,7 @@ fn axis(points: &[Point]) -> (Point, Vector) {
     (middle, direction((2.0 * xy).atan2(xx - yy) / 2.0))
 }
 
-/// The nearest place with room, by walking out of what is in the way.
+/// The nearest position with room, found by moving away from whatever is in the way.
 fn with_room(domain: &SlitDomain<'_>, from: Point) -> Option<Point> {
     let workspace = domain.workspace;
     let mut at = from;
@@ -67,7 +67,7 @@ fn with_room(domain: &SlitDomain<'_>, from: Point) -> Option<Point> {
         let mut worst = (wall_m, inward(&workspace.wall, at));
         for (part, keep_m) in workspace.room.parts_near(at) {
             let (distance_m, away) = part.distance(at);
-            // Facets stand out a little.
+            // The facets of the outline protrude slightly.
             let spare_m = distance_m - keep_m * 1.025 - SLACK_M;
             if spare_m < worst.0 {
                 worst = (spare_m, away);
@@ -82,7 +82,7 @@ fn with_room(domain: &SlitDomain<'_>, from: Point) -> Option<Point> {
     (is_clear && domain.contains(at)).then_some(at)
 }
 
-/// A place that is too near to a cut, moved away from it: a strip along a cut is scanned from beside the cut.
+/// Moves a position that is too close to a cut away from it: a strip along a cut is scanned from beside the cut.
 fn beside_cuts(cuts: &[Vec<Point>], at: Point) -> Point {
     let sides = cuts.iter().flat_map(|cut| cut.windows(2));
     let Some((nearest, side)) = sides
@@ -100,7 +100,7 @@ fn beside_cuts(cuts: &[Vec<Point>], at: Point) -> Point {
 fn pieces(domain: &SlitDomain<'_>, points: impl Iterator<Item = Point>) -> Vec<Lane> {
     let mut lanes: Vec<Vec<Point>> = vec![Vec::new()];
     for p in points {
-        let current = lanes.last_mut().expect("there is always one");
+        let current = lanes.last_mut().expect("there is always at least one point");
         match current.last() {
             Some(last) if (p - last).norm() < 1e-3 => {}
             Some(last)

@@ -1,6 +1,6 @@
-//! The order of the lanes: a closed tour from home over every lane, either way round, by local search.
+//! The order of the lanes: a closed tour from home over every lane, in either direction, found by local search.
 //!
-//! Greedy joining first, then 2-opt and Or-opt over neighbour lists, then small kicks that are kept when they help. Any
+//! First greedy joining, then 2-opt and Or-opt over neighbour lists, then small kicks that are kept if they help. Any
 //! order is safe for the tether; only length and turns depend on it.
 
 mod connectors;

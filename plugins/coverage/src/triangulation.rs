@@ -1,5 +1,5 @@
-//! The floor for the middle of the hull in triangles: a constrained Delaunay triangulation of the grown outlines and of cuts,
-//! and the walk through them from home.
+//! The floor for the hull centre in triangles: a constrained Delaunay triangulation of the grown outlines and of the
+//! cuts, and the walk through them from home.
 
 use crate::arrangement::{Border, border};
 use crate::buckets::Buckets;
@@ -10,13 +10,13 @@ use spade::{CdtEdge, ConstrainedDelaunayTriangulation, Point2 as Vertex, Triangu
 use std::collections::BTreeMap;
 use world::{Boundary, Point, polyline::edges, shape::bounds_of};
 
-/// Corners are moved to multiples of this, so that those of outlines that touch coincide instead of lying a hair apart,
-/// metres.
+/// Corners are snapped to multiples of this, so that corners of touching outlines coincide instead of lying slightly
+/// apart, metres.
 pub(crate) const SNAP_M: f64 = 1.0 / 65536.0;
-/// What was snapped lies at most this far from where it was, and so do the pieces of lines that were split, metres.
+/// Maximum displacement by snapping or by splitting lines, metres.
 pub(crate) const SNAPPED_M: f64 = 8.0 * SNAP_M;
 
-/// Edge of the buckets in which outlines are looked up, metres.
+/// Edge length of the buckets in which outlines are looked up, metres.
 const BUCKET_M: f64 = 1.0;
 /// A point this far outside a triangle still counts as inside, square metres of signed area.
 pub(crate) const NEARLY: f64 = 1e-9;
@@ -26,14 +26,14 @@ pub(crate) const NONE: u32 = u32::MAX;
 type Cdt = ConstrainedDelaunayTriangulation<Vertex<f64>>;
 type Face<'a> = FaceHandle<'a, InnerTag, Vertex<f64>, (), CdtEdge<()>, ()>;
 
-/// Wall and obstacles in triangles before there are cuts: the same for all the cuts that are tried.
+/// Wall and obstacles in triangles before cuts are added: the same for all cuts tried.
 pub(crate) struct Triangulation {
     cdt: Cdt,
     wall: Boundary,
     keep_m: f64,
-    /// Obstacles with the distance to keep.
+    /// Obstacles grown by the distance to keep.
     outlines: Vec<Vec<Point>>,
-    /// The same by place.
+    /// The obstacles by position.
     buckets: Buckets,
 }
 
@@ -57,7 +57,7 @@ impl Triangulation {
         Self { cdt, wall: wall.clone(), keep_m, outlines, buckets: Buckets::new(BUCKET_M, 0.0, &boxes) }
     }
 
-    /// What can be reached from home without crossing a cut; `None` where there is no room at home.
+    /// The floor that can be reached from home without crossing a cut; `None` if there is no room at home.
     pub(crate) fn walk(&self, cuts: &[Vec<Point>], home: Point) -> Option<Walk> {
         let mut cdt = self.cdt.clone();
         for cut in cuts {
@@ -94,7 +94,7 @@ fn constrain(cdt: &mut Cdt, line: &[Point], is_closed: bool) {
     }
 }
 
-/// Least signed area between a point and the sides of a triangle; not below zero inside.
+/// The smallest signed area between a point and the sides of a triangle; not below zero inside.
 pub(crate) fn least_side([a, b, c]: [Point; 3], at: Point) -> f64 {
     let side = |p: Point, q: Point| (q - p).perp(&(at - p));
     side(a, b).min(side(b, c)).min(side(c, a))
@@ -102,50 +102,50 @@ pub(crate) fn least_side([a, b, c]: [Point; 3], at: Point) -> f64 {
 
 /// A triangle that can be reached.
 pub(crate) struct Triangle {
-    /// Its vertices, counter-clockwise.
+    /// The vertices, counter-clockwise.
     pub corners: [u32; 3],
-    /// The triangle across each side, side `k` from corner `k` on, or [`NONE`].
+    /// The triangle across each side, or [`NONE`]; side `k` starts at corner `k`.
     pub next: [u32; 3],
-    /// The triangle from which the walk came, or [`NONE`] at home.
+    /// The triangle from which the walk entered, or [`NONE`] at home.
     pub parent: u32,
-    /// Number of triangles between it and home.
+    /// Number of triangles between this triangle and home.
     pub depth: u32,
 }
 
-/// Floor that only cuts keep the middle of the hull out of.
+/// Floor from which only cuts keep the hull centre out.
 #[derive(Default)]
 pub(crate) struct SealedRegion {
     pub area_m2: f64,
-    /// Middles of the sides of triangles at which cuts keep the hull out.
+    /// Midpoints of the triangle sides at which cuts keep the hull out.
     pub rim: Vec<Point>,
 }
 
-/// Everything that can be reached without crossing a cut, breadth first.
+/// All triangles that can be reached without crossing a cut, breadth first.
 pub(crate) struct Walk {
     /// The vertices of all triangles.
     pub points: Vec<Point>,
     /// The triangles in the order in which they were reached.
     pub triangles: Vec<Triangle>,
-    /// Numbers of the vertices at which cuts end or bend; some may come several times.
+    /// Indices of the vertices at which cuts end or bend; some may appear several times.
     pub hinges: Vec<u32>,
-    /// Whether there is just one way to each of them.
+    /// Whether there is exactly one path to each triangle.
     pub is_simple: bool,
     pub sealed: SealedRegion,
 }
 
-/// The triangles between cuts by number, and which of them the middle of the hull may use.
+/// The triangles between cuts by index, and which of them the hull centre may use.
 struct Faces<'a> {
     all: Vec<Face<'a>>,
     numbers: BTreeMap<usize, usize>,
     free: Vec<bool>,
 }
 
-/// A free triangle beside another one.
+/// A free triangle adjacent to another triangle.
 struct Beside {
     face: usize,
-    /// The side between them: from this corner of the other triangle to the next one.
+    /// The common side: from this corner of the other triangle to the next.
     side: usize,
-    /// Middle of that side.
+    /// Midpoint of that side.
     middle: Point,
     is_cut: bool,
 }
@@ -162,7 +162,7 @@ impl<'a> Faces<'a> {
         Self { all, numbers, free }
     }
 
-    /// Vertices of a triangle, counter-clockwise: side `k` runs from corner `k` to the next one.
+    /// The vertices of a triangle, counter-clockwise: side `k` runs from corner `k` to the next.
     fn corners(&self, face: usize) -> [u32; 3] {
         self.all[face].adjacent_edges().map(|edge| edge.from().index() as u32)
     }
@@ -202,7 +202,7 @@ impl<'a> Faces<'a> {
             }
             own += 1;
         }
-        // Every link was counted from either end, and a tree has one fewer than triangles.
+        // Every link was counted from both ends, and a tree has one link fewer than triangles.
         let is_simple = n_links / 2 + 1 == triangles.len();
         let sealed = self.sealed(|face| numbers[face] != NONE);
         Walk { points, triangles, hinges, is_simple, sealed }

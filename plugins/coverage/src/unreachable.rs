@@ -1,4 +1,4 @@
-//! The report of floor that cannot be scanned, and why.
+//! Reports the floor that cannot be scanned, and why.
 
 use crate::floor::ReachableFloor;
 use crate::plane::direction;
@@ -13,15 +13,16 @@ use world::{
     shape::{mean_of, ring_area_m2},
 };
 
-/// Floor out of reach below this is not worth a line, square metres.
+/// Smaller unreachable areas are not reported, square metres.
 const LEAST_M2: f64 = 0.05;
-/// A rim along the shell, and open stretches of it, below which they are not worth a line, metres.
+/// Smaller widths of an unreachable rim along the shell, and shorter open stretches of the shell, are not reported,
+/// metres.
 const LEAST_RIM_M: f64 = 0.005;
 const LEAST_OPEN_M: f64 = 0.1;
-/// Places listed one by one.
+/// Maximum number of areas listed individually.
 const MOST_PLACES: usize = 8;
 
-/// Logs which floor cannot be scanned, and why; whether all regions that are asked for hold floor in reach.
+/// Logs which floor cannot be scanned, and why. Returns whether all requested regions contain reachable floor.
 pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool {
     let Workspace { swath_m, keep_m, .. } = *scan.domain.workspace;
     let raster = scan.swept.raster();
@@ -31,7 +32,7 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         let worth: Vec<&Vec<usize>> = groups.iter().filter(|group| area_m2(group) > LEAST_M2).collect();
         for group in worth.iter().take(MOST_PLACES) {
             let (area_m2, at) = (area_m2(group), raster.center(group[group.len() / 2]));
-            let place = format!("{area_m2:.2} m² of floor about ({:.1}, {:.1})", at.x, at.y);
+            let place = format!("{area_m2:.2} m² of floor around ({:.1}, {:.1})", at.x, at.y);
             ctx.log(LogLevel::Warn, &format!("{place} {why} (hull and clearance {keep_m:.2} m)"));
         }
         if let Some(rest @ [_, ..]) = worth.get(MOST_PLACES..) {
@@ -47,21 +48,22 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
             && scan.domain.workspace.is_floor(raster.center(cell))
     };
     let is_margin = |cell: usize| is_shell_margin(scan, raster.center(cell));
-    let margin = format!("along the shell is beyond lanes of {swath_m:.2} m from where the hull fits");
+    let margin = format!("along the shell is out of reach of lanes {swath_m:.2} m wide");
     log(&margin, &|cell| is_closed(cell) && is_margin(cell));
     for line in shell_left(scan, scope) {
         ctx.log(LogLevel::Warn, &line);
     }
-    let gaps = "cannot be reached: gaps are narrower than hull and clearance need";
+    let gaps = "cannot be reached: the gaps are too narrow for hull and clearance";
     log(gaps, &|cell| is_closed(cell) && !is_margin(cell));
     if scope.reel_length_m.is_finite() {
         let is_far =
             |at: Point| scan.domain.way_home_m(at).is_none_or(|way_m| way_m > scope.reel_length_m - swath_m);
-        let why = format!("is beyond the reel of {:.1} m", scope.reel_length_m);
+        let why = format!("is out of reach of the reel ({:.1} m)", scope.reel_length_m);
         log(&why, &|cell| scan.swept.is_missed(cell) && is_far(raster.center(cell)));
     }
     let whole = ReachableFloor::new(&scan.domain, scope.cell_m);
-    // Under way what is left comes in blocks of cells, slivers among them that only the whole width of the tool reaches.
+    // During a mission, the rest comes in blocks of cells. Some are slivers that only the full width of the tool
+    // reaches.
     let least_m2 = if scope.whole > 1.0 { LEAST_M2 } else { 0.0 };
     let closed: Vec<Point> = scope
         .regions
@@ -70,8 +72,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
         .map(|ring| mean_of(ring))
         .collect();
     for at in closed.iter().take(MOST_PLACES) {
-        let place = format!("the area to be scanned about ({:.1}, {:.1})", at.x, at.y);
-        ctx.log(LogLevel::Warn, &format!("{place} is left out: the tool cannot reach any floor in it"));
+        let place = format!("the requested area around ({:.1}, {:.1})", at.x, at.y);
+        ctx.log(LogLevel::Warn, &format!("{place} is left out: the tool cannot reach any of its floor"));
     }
     if let Some(n) = closed.len().checked_sub(MOST_PLACES + 1) {
         ctx.log(LogLevel::Warn, &format!("{} more areas are left out for the same reason", n + 1));
@@ -79,8 +81,8 @@ pub(crate) fn report(scan: &Scan<'_>, scope: &Scope<'_>, ctx: &Ctx<'_>) -> bool 
     closed.is_empty()
 }
 
-/// What a pass along the shell does not scan, and why: the rim that the tool cannot reach from anywhere, and where the path is
-/// farther from the shell than hull and clearance ask.
+/// What a pass along the shell does not scan, and why: the rim that the tool cannot reach from anywhere, and stretches
+/// where the path is farther from the shell than hull and clearance require.
 fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
     let workspace = scan.domain.workspace;
     let Workspace { hull_m, keep_m, swath_m, .. } = *workspace;
@@ -88,8 +90,8 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
     let rim_m = keep_m - swath_m / 2.0;
     if rim_m > LEAST_RIM_M {
         lines.push(format!(
-            "shell: {rim_m:.2} m along it not reachable: hull radius {hull_m:.2} m + clearance {:.2} m - half of lanes of {swath_m:.2} \
-             m, the swath less the overlap",
+            "shell: {rim_m:.2} m along it not reachable: hull radius {hull_m:.2} m + clearance {:.2} m - \
+             half the lane width of {swath_m:.2} m (swath less overlap)",
             keep_m - hull_m
         ));
     }
@@ -108,23 +110,24 @@ fn shell_left(scan: &Scan<'_>, scope: &Scope<'_>) -> Vec<String> {
         *sum_m += stretch.length_m;
     }
     let causes = [
-        (no_room_m, "where hull and clearance have no room before it"),
+        (no_room_m, "where hull and clearance do not fit"),
         (cut_m, "at cuts, which the tether must not cross"),
-        (left_m, "where no way leads along it"),
+        (left_m, "where no lane runs along it"),
     ];
     let open_m: f64 = causes.iter().map(|(length_m, _)| length_m).sum();
     if open_m > LEAST_OPEN_M {
         let causes = causes.iter().filter(|(length_m, _)| *length_m >= 0.05);
         let causes: Vec<String> = causes.map(|(length_m, why)| format!("{length_m:.1} m {why}")).collect();
         lines.push(format!(
-            "shell: not scanned up to the usual distance along {open_m:.1} m: {}",
+            "shell: {open_m:.1} m of it not scanned to the usual distance: {}",
             causes.join(", ")
         ));
     }
     lines
 }
 
-/// Whether floor that is not in reach lies along the wall, beside floor that is, with no gap between wall and obstacle.
+/// Whether a position of unreachable floor lies along the wall, next to reachable floor, and not in a gap between wall
+/// and obstacle.
 fn is_shell_margin(scan: &Scan<'_>, at: Point) -> bool {
     let Workspace { wall, parts, keep_m, swath_m, .. } = scan.domain.workspace;
     let edge_m = wall.wall_distance_m(at);

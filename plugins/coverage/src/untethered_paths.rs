@@ -1,4 +1,4 @@
-//! Paths for a robot without a tether: the shortest, on either side of whatever stands between.
+//! Paths for a robot without a tether: the shortest path, on either side of any obstacle.
 
 use crate::inflation::SLACK_M;
 use crate::workspace::Workspace;
@@ -9,12 +9,12 @@ use world::{Point, Shape, shortest::GrownFloor};
 /// The floor of a robot that may go anywhere.
 pub(crate) struct UntetheredPaths {
     floor: GrownFloor,
-    /// The same without spare room, for ends that have none.
+    /// The same floor without spare room, for ends that have none.
     tight: GrownFloor,
 }
 
 impl UntetheredPaths {
-    /// Paths through a workspace.
+    /// Creates the paths through a workspace.
     pub(crate) fn new(workspace: &Workspace, ctx: &Ctx<'_>) -> Result<Self> {
         ctx.check()?;
         let shapes: Vec<Shape> = workspace.parts.iter().map(Part::to_shape).collect();
@@ -25,7 +25,7 @@ impl UntetheredPaths {
         Ok(Self { floor: floor(keep_m + SLACK_M / 4.0), tight: floor(keep_m - SLACK_M / 4.0) })
     }
 
-    /// The shortest path; straight where an end is too near to something for any.
+    /// The shortest path; a straight line if an end is too close to something.
     pub(crate) fn path(&self, from: Point, to: Point) -> Vec<Point> {
         let path = |floor: &GrownFloor| {
             if floor.is_free(from, to) {

@@ -1,4 +1,4 @@
-//! The tank as a coverage planner sees it: wall, solid parts, and where the middle of the hull may be.
+//! The tank as a coverage planner sees it: wall, solid parts, and the room for the hull centre.
 
 use crate::floor::{Grain, ReachableFloor};
 use crate::inflation::SLACK_M;
@@ -18,43 +18,44 @@ use world::{
     tether::Ground,
 };
 
-/// A cut is led on into solids that are no further from its ends than this multiple of the distance to keep: outlines are
-/// drawn around the exact ones.
+/// A cut is extended into solids that are no further from its ends than this multiple of the distance to keep, because
+/// outlines are drawn around the exact ones.
 const ROOT_SHARE: f64 = 1.1;
-/// How far it is led into them, metres.
+/// Depth to which a cut is extended into solids, metres.
 const ROOT_M: f64 = 0.01;
 
-/// Wall and obstacles of a site with the distances to keep.
+/// Wall and obstacles of a site, and the distances to keep from them.
 pub(crate) struct Workspace {
     pub wall: Boundary,
-    /// Convex parts of everything solid, no-go zones included.
+    /// Convex parts of all solids, no-go zones included.
     pub parts: Vec<Part>,
     /// Radius of the hull, metres.
     pub hull_m: f64,
-    /// Distance between the middle of the hull and anything solid, metres.
+    /// Distance between the hull centre and any solid, metres.
     pub keep_m: f64,
     /// Width of the floor scanned in one pass, metres.
     pub swath_m: f64,
     pub anchor: Point,
-    /// Where the robot starts and ends: the anchor, or the nearest place with room beside it.
+    /// Where the robot starts and ends: the anchor, or the nearest position with room.
     pub home: Point,
-    /// Exact distances.
+    /// The room for the hull centre, with exact distances.
     pub room: Room,
-    /// Whether inner walls bend the way to floor: a straight wall has inward corners, something solid stands at it, or there are
-    /// more obstacles than columns.
+    /// Whether inner walls bend paths on the floor: a straight wall has inward corners, an obstacle touches it, or
+    /// there are too many obstacles for columns.
     pub is_room: bool,
     triangulation: OnceLock<Triangulation>,
-    /// The floor that the tool can reach if no cut seals any off, in different cells; made when it is first asked for.
+    /// The floor that the tool can reach if no cut seals any off, for several cell sizes; computed when first
+    /// requested.
     pub floors: [OnceLock<(Grain, ReachableFloor)>; 3],
-    /// What the cable lies on; made when it is first asked for.
+    /// The map for the cable; computed when first requested.
     pub ground: OnceLock<Ground>,
 }
 
 impl Workspace {
-    /// The workspace of a site for a robot on a tether from `anchor`.
+    /// Creates the workspace of a site for a robot on a tether from `anchor`.
     ///
     /// # Errors
-    /// An anchor outside the floor or in an obstacle, and a swath of no width.
+    /// The anchor is outside the floor or in an obstacle, or the swath has no width.
     pub(crate) fn new(site: &Site<'_>, anchor: Point) -> Result<Self> {
         let (swath_m, keep_m) = (site.swath_m, site.limits.radius_m + site.clearance_m);
         let (wall, hull_m) = (site.boundary.to_owned(), site.limits.radius_m);
@@ -86,26 +87,27 @@ impl Workspace {
         })
     }
 
-    /// The floor for the middle of the hull in triangles; made when it is first asked for.
+    /// The floor for the hull centre in triangles; computed when first requested.
     pub(crate) fn triangulation(&self) -> &Triangulation {
         self.triangulation.get_or_init(|| Triangulation::new(&self.wall, &self.parts, self.keep_m))
     }
 
-    /// Whether so many obstacles stand in a tank that fewer candidates are worth their time.
+    /// Whether a tank has so many obstacles that fewer candidates are worth their time.
     pub(crate) fn is_crowded(&self) -> bool {
         !self.is_room && self.parts.len() > CROWDED
     }
 
-    /// Whether the middle of the hull may be at a place, as far as wall and obstacles go.
+    /// Whether wall and obstacles allow the hull centre at a position.
     pub(crate) fn is_free(&self, at: Point) -> bool {
         self.room.spare_m(at) >= 0.0
     }
 
-    /// Whether the middle of the hull may be within a distance of a place, straight away from the solid that is nearest to it.
+    /// Whether there is room for the hull centre within a distance of a position, in the direction straight away from
+    /// the nearest solid.
     pub(crate) fn is_in_reach(&self, at: Point, reach_m: f64) -> bool {
-        /// Step of the differences by which the direction away is found, metres.
+        /// Step of the differences used to find the direction away, metres.
         const STEP_M: f64 = 1e-4;
-        /// Rounding of the differences, metres.
+        /// Rounding error of the differences, metres.
         const TOLERANCE_M: f64 = 1e-4;
         let lacks_m = -self.room.spare_m(at);
         if lacks_m <= 0.0 || lacks_m > reach_m {
@@ -116,20 +118,20 @@ impl Workspace {
         away.try_normalize(0.0).is_some_and(|away| self.room.spare_m(at + away * lacks_m) >= -TOLERANCE_M)
     }
 
-    /// Whether a place is floor: inside the wall and outside everything solid.
+    /// Whether a position is floor: inside the wall and outside all solids.
     pub(crate) fn is_floor(&self, at: Point) -> bool {
         !self.room.is_solid(at)
     }
 
-    /// A cut from solid to solid: one that ends where the room of a wall or an obstacle begins is led on into that. So
-    /// nobody gets round its end, however little the robot cuts a corner there.
+    /// Extends a cut from solid to solid: if it ends at the edge of the room of a wall or an obstacle, it is continued
+    /// into the solid. A robot that cuts a corner slightly can then not get around its end.
     pub(crate) fn rooted(&self, cut: &[Point]) -> Vec<Point> {
         let before = cut.first().and_then(|end| self.root(*end));
         let behind = cut.last().and_then(|end| self.root(*end));
         before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
     }
 
-    /// Where the solid begins from which a place keeps off just as far as the hull has to, a little inside.
+    /// A point slightly inside the solid from which a position keeps exactly the hull's distance.
     fn root(&self, at: Point) -> Option<Point> {
         let of_parts = self.parts.iter().map(|part| part.distance(at));
         let (distance_m, away) = of_parts.chain(self.wall_beside(at)).min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -137,7 +139,7 @@ impl Workspace {
         is_beside.then(|| at - away * (distance_m + ROOT_M))
     }
 
-    /// Distance from the nearest straight wall, metres, and the direction away from it.
+    /// The distance from the nearest straight wall, metres, and the direction away from it.
     fn wall_beside(&self, at: Point) -> Option<(f64, Vector)> {
         let Boundary::Polygon { vertices } = &self.wall else { return None };
         let off = |(a, b): (Point, Point)| at - polyline::nearest_on_segment(a, b, at);
@@ -145,20 +147,20 @@ impl Workspace {
         Some((off.norm(), off.try_normalize(1e-9)?))
     }
 
-    /// The refusal where the robot has no room.
+    /// The error returned when the robot has no room.
     pub(crate) fn no_room(&self) -> PlannerError {
         let Self { keep_m, anchor, .. } = self;
         PlannerError::new(
             Code::StartOccupied,
             format!(
-                "there is no room for hull and clearance ({keep_m:.2} m) within 2 m of the anchor ({:.2}, {:.2})",
+                "no room for hull and clearance ({keep_m:.2} m) within 2 m of the anchor ({:.2}, {:.2})",
                 anchor.x, anchor.y
             ),
         )
     }
 }
 
-/// Why a floor between inner walls is too large or too much cut up to be planned in time, if it is.
+/// Why a floor between inner walls is too large or too fragmented to be planned in time, if it is.
 fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
     let Boundary::Polygon { vertices } = wall else { return None };
     let solid_m2: f64 = parts.iter().map(area_m2).sum();
@@ -166,14 +168,15 @@ fn too_large(wall: &Boundary, parts: &[Part], swath_m: f64) -> Option<String> {
     let most_m2 = MOST_LANES_M * swath_m;
     if floor_m2 > most_m2 {
         return Some(format!(
-            "the floor of {floor_m2:.0} m² between walls is too large: at lanes of {swath_m:.2} m at most {most_m2:.0} m² can be \
-             planned; divide the map, close parts of it by no-go zones, or choose a wider swath"
+            "the floor of {floor_m2:.0} m² between walls is too large: with lanes of {swath_m:.2} m at \
+             most {most_m2:.0} m² can be planned; divide the map, close parts of it with no-go zones, or \
+             choose a wider swath"
         ));
     }
     (parts.len() > MOST_PARTS).then(|| {
         format!(
-            "the floor is cut up by {} convex obstacles; at most {MOST_PARTS} can be planned: divide the map, or let it be \
-             simplified by a larger map_tolerance_m",
+            "the floor is broken up by {} convex obstacles; at most {MOST_PARTS} can be planned: divide \
+             the map, or increase map_tolerance_m to simplify it",
             parts.len()
         )
     })
@@ -192,7 +195,7 @@ fn has_inner_walls(wall: &Boundary, parts: &[Part], keep_m: f64) -> bool {
     parts.len() > FEW_PARTS || reflex_corners(vertices).next().is_some() || parts.iter().any(is_at_wall)
 }
 
-/// Room between wall and part, metres; not above zero where the part reaches the wall.
+/// The room between wall and part, metres; zero or negative if the part reaches the wall.
 pub(crate) fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
     let corners = part.corners();
     let ends = corners.iter().map(|c| wall.wall_distance_m(c.0) - c.1).fold(f64::INFINITY, f64::min);
@@ -200,7 +203,7 @@ pub(crate) fn wall_gap_m(wall: &Boundary, part: &Part) -> f64 {
     edges(vertices).map(|(a, b)| part.segment_distance_m(a, b)).fold(ends, f64::min)
 }
 
-/// How far a part reaches from its middle, metres.
+/// The extent of a part from its centre, metres.
 pub(crate) fn reach_m(part: &Part) -> f64 {
     let at = part.middle();
     part.corners().iter().map(|c| (c.0 - at).norm() + c.1).fold(0.0, f64::max)
@@ -208,11 +211,11 @@ pub(crate) fn reach_m(part: &Part) -> f64 {
 
 fn refused_figures(swath_m: f64, keep_m: f64, anchor: Point) -> Option<(Code, String)> {
     if !(swath_m.is_finite() && swath_m > 0.0) {
-        Some((Code::Config, format!("the swath is {swath_m} m wide; it must be above 0")))
+        Some((Code::Config, format!("a swath of {swath_m} m is invalid; it must be above 0")))
     } else if !(keep_m.is_finite() && keep_m >= 0.0) {
-        Some((Code::Config, format!("hull and clearance of {keep_m} m make no sense")))
+        Some((Code::Config, format!("hull and clearance of {keep_m} m are invalid")))
     } else if !(anchor.x.is_finite() && anchor.y.is_finite()) {
-        Some((Code::Invalid, "the anchor is not a number".to_owned()))
+        Some((Code::Invalid, "anchor coordinates must be finite numbers".to_owned()))
     } else {
         None
     }
@@ -221,21 +224,22 @@ fn refused_figures(swath_m: f64, keep_m: f64, anchor: Point) -> Option<(Code, St
 fn refused_anchor(wall: &Boundary, parts: &[Part], anchor: Point) -> Option<(Code, String)> {
     let place = format!("the anchor ({:.2}, {:.2}) lies", anchor.x, anchor.y);
     if wall.wall_distance_m(anchor) < 0.0 {
-        let message = format!("{place} outside the floor; set it at a hatch or manhole of this tank");
+        let message = format!("{place} outside the floor; place it at a hatch or manhole of this tank");
         return Some((Code::StartOutside, message));
     }
     let at = parts.iter().find(|part| part.distance(anchor).0 < 0.0)?.middle();
-    let message = format!("{place} inside the obstacle at ({:.2}, {:.2}); set it on free floor", at.x, at.y);
+    let message =
+        format!("{place} inside the obstacle at ({:.2}, {:.2}); place it on free floor", at.x, at.y);
     Some((Code::StartOccupied, message))
 }
 
-/// The anchor, or the nearest place with room on circles around it, up to 2 m away.
+/// The anchor, or the nearest position with room on circles around it, up to 2 m away.
 fn home(room: &Room, anchor: Point) -> Point {
     let is_roomy = |at: &Point| room.spare_m(*at) >= SLACK_M;
     places_around(anchor, 2.0).find(is_roomy).unwrap_or(anchor)
 }
 
-/// A place, and places on circles around it, nearest first, up to a distance, metres.
+/// A position, and positions on circles around it, nearest first, up to a distance, metres.
 pub(crate) fn places_around(at: Point, far_m: f64) -> impl Iterator<Item = Point> {
     let circles = (1..=(far_m / 0.025).round() as u32).map(|k| f64::from(k) * 0.025);
     let bearings = || (0..72).map(|k| direction(TAU * f64::from(k) / 72.0));

@@ -1,11 +1,11 @@
-//! The faults, one function each where it takes more than a line.
+//! The faults: one function for each that takes more than a line.
 
 use nalgebra::Point2;
 use planner_api::{Code, Ctx, Layer, PlannerError, Result};
 use std::hint::{black_box, spin_loop};
 use std::time::Duration;
 
-/// Every fault there is.
+/// All faults.
 pub(crate) const FAULTS: &[&str] = &[
     "none",
     "panic",
@@ -41,19 +41,19 @@ pub(crate) const FAULTS: &[&str] = &[
     "replan_long",
 ];
 
-/// Longer than a tick of usual length, and no fault.
+/// Longer than a tick of the usual length, but not a fault.
 const NAP: Duration = Duration::from_millis(150);
-/// Within a tick of usual length, but so much that a mission takes seconds.
+/// Fits within a tick of the usual length, but adds up to seconds over a mission.
 const DAWDLE: Duration = Duration::from_millis(50);
-/// Long enough for an operator to do something meanwhile.
+/// Long enough for an operator to act meanwhile.
 const LONG: Duration = Duration::from_millis(2500);
 
-/// Whether a fault happens once; the others happen in every step from then on.
+/// Whether a fault happens only once; the other faults recur in every later step.
 pub(crate) fn happens_once(kind: &str) -> bool {
     kind == "nap"
 }
 
-/// Does what the word says; returns when the fault is one that can be survived.
+/// Commits the fault of this name. Returns only if the fault can be survived.
 pub(crate) fn commit(kind: &str, ctx: &Ctx<'_>) -> Result<()> {
     match kind {
         "panic" => look_up_nothing(),
@@ -94,7 +94,7 @@ fn panic_elsewhere() -> Result<()> {
     thread.join().map_err(|_| PlannerError::new(Code::Internal, "a thread of the planner panicked"))
 }
 
-#[expect(unconditional_recursion, reason = "to use up the stack is the point")]
+#[expect(unconditional_recursion, reason = "using up the stack is the point")]
 #[inline(never)]
 fn deeper(depth: u64) -> u64 {
     let frame = black_box([depth; 64]);
@@ -105,7 +105,7 @@ fn deeper(depth: u64) -> u64 {
 fn hoard() {
     let mut hoard: Vec<Vec<u8>> = Vec::new();
     loop {
-        // Never written to, so that the limit is met before the deadline however slow the machine is.
+        // Never written to, so the memory limit is reached before the deadline even on a slow machine.
         hoard.push(Vec::with_capacity(64 << 20));
         black_box(&hoard);
     }
@@ -137,7 +137,7 @@ fn report_progress_endlessly(ctx: &Ctx<'_>) {
     }
 }
 
-#[expect(clippy::print_stdout, clippy::print_stderr, reason = "to spam the terminal is the point")]
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "spamming the terminal is the point")]
 fn print_flood() {
     for i in 0..5000 {
         println!("\x1b[2Jspam {i}");
@@ -147,7 +147,7 @@ fn print_flood() {
 
 #[cfg(unix)]
 mod process {
-    //! What takes unsafe code; the numbers are those of Linux, SIGSTOP differs on macOS.
+    //! The faults that need unsafe code. The numbers are those of Linux; SIGSTOP has a different number on macOS.
 
     pub(super) const SIGKILL: i32 = 9;
     pub(super) const SIGSTOP: i32 = if cfg!(target_os = "macos") { 17 } else { 19 };
@@ -163,13 +163,13 @@ mod process {
     }
 
     pub(super) fn write_to_nowhere() {
-        // SAFETY: none; an invalid write is the point.
+        // SAFETY: none; the invalid write is intended.
         unsafe { std::ptr::without_provenance_mut::<u32>(8).write_volatile(1) };
     }
 
     pub(super) fn close_everything() {
         for fd in 0..1024 {
-            // SAFETY: none for the owners of these descriptors; that is the point.
+            // SAFETY: none for the owners of these descriptors; this is intended.
             unsafe { close(fd) };
         }
     }
@@ -177,7 +177,7 @@ mod process {
 
 #[cfg(not(unix))]
 mod process {
-    //! Elsewhere these faults are plain aborts.
+    //! On other systems these faults simply abort.
 
     pub(super) const SIGKILL: i32 = 9;
     pub(super) const SIGSTOP: i32 = 19;

@@ -1,8 +1,8 @@
 //! A planner that misbehaves in every way the tests can think of.
 //!
-//! It drives straight to the target like an honest one, until its own step number `at_step`; then it commits the
-//! fault that the parameter `fault` names. Faults that begin with `configure_` or `plan_` come in those calls,
-//! those that begin with `replan_` in every plan after the first.
+//! The planner drives straight to the target, as a correct one would, until its step number `at_step`. Then it
+//! commits the fault named by the parameter `fault`. Faults whose names begin with `configure_` or `plan_` occur in
+//! those calls; those that begin with `replan_` occur in every plan after the first.
 
 mod faults;
 
@@ -13,7 +13,7 @@ use planner_api::{
     Task, choice, export_planners, int,
 };
 
-/// Drives to the target until it is time to fail.
+/// Drives to the target until the step of the fault.
 struct Faulty {
     fault: &'static str,
     at_step: i64,
@@ -27,8 +27,9 @@ impl Planner for Faulty {
     const ABOUT: &'static str = "Drives straight to the target and then fails in a chosen way; for tests.";
     const CAPS: Caps = Caps::LOCAL;
     const PARAMS: &'static [ParamSpec] = &[
-        choice("fault", "Fault", FAULTS, 0).help("What goes wrong."),
-        int("at_step", "Step of the fault", "", 0, 1_000_000, 5).help("How many steps go well before."),
+        choice("fault", "Fault", FAULTS, 0).help("The fault to commit."),
+        int("at_step", "Step of the fault", "", 0, 1_000_000, 5)
+            .help("The number of good steps before the fault."),
     ];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, ctx: &Ctx<'_>) -> Result<Self> {

@@ -1,4 +1,4 @@
-//! Descending a law toward one goal, in steps of constant length.
+//! Follows a law toward one goal, in steps of constant length.
 
 use crate::{
     outcome::{Shortfall, Walk},
@@ -10,17 +10,17 @@ use crate::{
 use geometry::Point;
 use planner_api::{Ctx, Result};
 
-/// With a rotating force, moves without coming nearer to the goal before it is given up.
+/// With a rotating force, the goal is given up after this many moves without coming closer to it.
 const PATIENCE_MOVES: usize = 2000;
-/// Moves allowed at most, as a multiple of those of the straight way.
+/// Maximum number of moves, as a multiple of those of the straight path.
 const DETOUR: f64 = 20.0;
 
 /// A goal and how to walk there.
 #[derive(Debug, Clone, Copy)]
 pub struct Descent {
-    /// Where the robot is.
+    /// The start.
     pub start: Point,
-    /// Where to.
+    /// The goal.
     pub goal: Point,
     /// Length of a move, metres.
     pub step_m: f64,
@@ -31,7 +31,7 @@ pub struct Descent {
 /// Walks until the goal is reached, the law is trapped or the moves are used up.
 ///
 /// # Errors
-/// When the console wants it to stop.
+/// When the console requests a stop.
 pub fn descend(scene: &Scene, settings: &FieldSettings, trip: &Descent, ctx: &Ctx<'_>) -> Result<Walk> {
     let mut walker = Walker::new(scene, settings, trip.start);
     let moves = (DETOUR * (trip.goal - trip.start).norm() / trip.step_m) as usize + PATIENCE_MOVES;

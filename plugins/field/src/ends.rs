@@ -1,30 +1,31 @@
-//! Checks of where a way begins and ends.
+//! Checks of the start and the goal of a path.
 
 use crate::scene::Scene;
 use geometry::Point;
 use planner_api::{Code, PlanRequest, PlannerError, Result, Site, Task};
 use steering::evade;
 
-/// Outside the floor by no more than this is rounding, metres.
+/// Outside the floor by at most this much counts as rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// The goal of a request and its tolerance, metres, with both ends checked; `id` names the planner.
+/// Returns the goal of a request and its tolerance, metres, after checking start and goal. `id` names the planner in
+/// messages.
 ///
 /// # Errors
 /// [`Code::Unsupported`] for a preset path, and those of [`check_start`] and [`check_goal`].
 pub fn single_goal(request: &PlanRequest<'_>, id: &str) -> Result<(Point, f64)> {
     let Task::Goto { goal, tolerance_m } = request.task else {
-        let message = format!("{id} goes to single goals; for preset paths choose apf or rpf");
+        let message = format!("{id} plans to single goals; for preset paths choose apf or rpf");
         return Err(PlannerError::new(Code::Unsupported, message));
     };
-    // What passes over the goal now will be gone when the robot arrives.
+    // An obstacle moving over the goal now will be gone when the robot arrives.
     let scene = Scene::new(&Site { obstacles: &evade::standing(request.site), ..*request.site });
     check_start(&scene, request.start.position, request.site.limits.radius_m)?;
     check_goal(&scene, goal, tolerance_m)?;
     Ok((goal, tolerance_m))
 }
 
-/// Refuses a start outside the tank or deep in an obstacle.
+/// Refuses a start outside the tank or deep inside an obstacle.
 ///
 /// # Errors
 /// [`Code::StartOutside`], [`Code::StartOccupied`].
@@ -33,7 +34,7 @@ pub fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
     if scene.wall_clearance_m(start) + radius_m < -ROUNDING_M {
         return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
     }
-    // The estimated start may be off a little: only a hull that is half inside is refused.
+    // The estimated start may be slightly wrong, so it is refused only if half of the hull is inside.
     let depth_m = -scene.hull_clearance_m(start);
     if depth_m > radius_m / 2.0 {
         let message = format!("at {place} the hull is {depth_m:.2} m inside an obstacle");
@@ -42,7 +43,7 @@ pub fn check_start(scene: &Scene, start: Point, radius_m: f64) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a goal that lies out of reach by more than the tolerance.
+/// Refuses a goal that is out of reach by more than the tolerance.
 ///
 /// # Errors
 /// [`Code::GoalOutside`], [`Code::GoalOccupied`].

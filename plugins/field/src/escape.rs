@@ -1,7 +1,7 @@
-//! Ways out of a trap that add a force for a while: a virtual target, or a push to the side.
+//! Escapes from a trap that add a force for a while: a virtual target, or a sideways push.
 //!
-//! Wang et al. 2023 compare with both by name only; places, gains and times are reconstructed, so figures of these
-//! planners are not evidence about the originals.
+//! Wang et al. 2023 compare with both methods by name only. Positions, gains and durations here are reconstructed, so
+//! results of these planners are not evidence about the originals.
 
 use crate::law::{Law, nearest_obstacle};
 use geometry::{Point, Vector};
@@ -9,64 +9,65 @@ use steering::{Contact, Forces};
 
 /// A virtual target is given up after this many moves.
 const TARGET_MOVES: usize = 25;
-/// It lies this far from the obstacle, as a share of the range of obstacles.
+/// Distance of the virtual target from the obstacle, as a share of the obstacle range.
 const TARGET_OFF: f64 = 0.7;
-/// Its pull, in pulls of a target as far away as the range of obstacles.
+/// Pull of the virtual target, as a multiple of the pull of a target as far away as the obstacle range.
 const TARGET_PULL: f64 = 3.0;
-/// A push that is held lasts this many moves.
+/// Duration of a held push, moves.
 const PUSH_MOVES: usize = 5;
-/// Its strength, in pulls of the target.
+/// Strength of a held push, as a multiple of the target's pull.
 const PUSH: f64 = 2.0;
-/// Its part ahead.
+/// The component of a held push toward the target, as a multiple of the target's pull.
 const PUSH_AHEAD: f64 = 0.5;
-/// Strength of a push by half the pull, in pulls of the target.
+/// Strength of a half-pull push, as a multiple of the target's pull.
 const HALF: f64 = 0.5;
-/// State of the random sides at the start of every plan and flight.
+/// Seed of the random sides at the start of every plan and flight.
 const FIRST_RANDOM: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// What is done about a trap.
+/// The response to a trap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Escape {
-    /// Nothing.
+    /// None.
     None,
-    /// A target beside the nearest obstacle, on the side away from it as seen along the way, after Yang 2018.
+    /// A target beside the nearest obstacle, on the side away from the obstacle as seen along the path, after Yang
+    /// 2018.
     VirtualTarget,
-    /// A push to a side, after Zhao 2022; the side is chosen again in every trap, so it may alternate.
+    /// A sideways push, after Zhao 2022. The side is chosen again in every trap, so it may alternate.
     Push {
-        /// How strong it is, and how long it lasts.
+        /// Strength and duration of the push.
         strength: PushStrength,
-        /// To which side.
+        /// Side of the push.
         side: PushSide,
     },
 }
 
-/// How strong a push to the side is.
+/// The strength of a sideways push.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushStrength {
-    /// Twice the pull, half of it ahead, for five moves; ours.
+    /// Twice the pull, half of it ahead, for five moves; our choice.
     Held,
-    /// Half the pull of the target, across the way to it, for one move.
+    /// Half the pull of the target, across the path to it, for one move.
     HalfPull,
-    /// As strong as the pull of the target, across the way to it, for one move.
+    /// As strong as the pull of the target, across the path to it, for one move.
     Pull,
-    /// The pull of a target one metre off, across the way to it, for one move.
+    /// The pull of a target one metre away, across the path to it, for one move.
     UnitPull,
 }
 
-/// To which side it is pushed, as seen toward the target; Wang et al. 2023 do not say.
+/// The side of the push, as seen toward the target; Wang et al. 2023 do not specify it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PushSide {
-    /// To where obstacles push.
+    /// The side to which obstacles push.
     Repulsion,
-    /// To the right.
+    /// The right.
     Right,
-    /// At random; every plan and every flight begins with the same sequence.
+    /// Random; every plan and every flight uses the same sequence from its start.
     Random,
-    /// To the other side than the last time.
+    /// The opposite side from the last time.
     Alternating,
 }
 
-/// An escape under way.
+/// The escape in progress, if any.
 #[derive(Debug, Clone)]
 pub struct Escaping {
     rule: Escape,
@@ -79,25 +80,25 @@ pub struct Escaping {
 /// The situation at a move.
 #[derive(Debug, Clone, Copy)]
 pub struct Situation<'a> {
-    /// Where the robot is.
+    /// The robot's position.
     pub at: Point,
-    /// Where it is bound.
+    /// The goal of the move.
     pub goal: Point,
-    /// What acts on it.
+    /// The contacts that act on the robot.
     pub contacts: &'a [Contact],
-    /// By which law.
+    /// The law in force.
     pub law: &'a Law,
     /// Length of a move, metres.
     pub step_m: f64,
 }
 
 impl Escaping {
-    /// None under way.
+    /// Creates the state without an escape in progress.
     pub fn new(rule: Escape) -> Self {
         Self { rule, target: None, side: 1.0, random: FIRST_RANDOM, left: 0 }
     }
 
-    /// Takes the situation of the next move, and whether it is a trap; returns the force to add.
+    /// Takes over the situation of the next move, and whether it is a trap. Returns the force to add.
     pub fn update(&mut self, now: &Situation<'_>, is_trapped: bool) -> Vector {
         let Some(ahead) = (now.goal - now.at).try_normalize(1e-9) else { return Vector::zeros() };
         match self.rule {
@@ -118,7 +119,7 @@ impl Escaping {
         toward.map_or_else(Vector::zeros, |toward| toward * (TARGET_PULL * now.law.k_att * now.law.rho_0_m))
     }
 
-    /// The push of this move; a trap gives the rule for its side.
+    /// The push of this move. A new trap selects its side.
     fn push(
         &mut self,
         now: &Situation<'_>,
@@ -146,7 +147,7 @@ impl Escaping {
         }
     }
 
-    /// 1 for the left, -1 for the right.
+    /// 1 for left, -1 for right.
     fn chosen(&mut self, rule: PushSide, now: &Situation<'_>, left: Vector) -> f64 {
         let is_left = match rule {
             PushSide::Repulsion => now.without_rotation().repulsion.dot(&left) >= 0.0,

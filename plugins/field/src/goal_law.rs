@@ -1,4 +1,4 @@
-//! The field of the goal planners: a pull, Khatib's push, and a tangent force round what stands in the way.
+//! The field of the goal planners: a pull, Khatib's push, and a tangent force around obstacles in the way.
 
 use crate::{
     laws::{self, PushForm},
@@ -7,20 +7,21 @@ use crate::{
 use geometry::{Point, Vector};
 use steering::{Contact, Forces, KnownMap, Nearby, Side, wall_contacts};
 
-/// Repulsion never divides by less than this, metres.
+/// Smallest distance by which repulsion divides, metres.
 const CLOSEST_M: f64 = 1e-2;
-/// The tangent force never divides by less than this, metres.
+/// Smallest distance by which the tangent force divides, metres.
 const SHORTEST_M: f64 = 0.3;
 
-/// When the tangent force acts (Xu et al. 2022 do not say).
+/// When the tangent force acts (Xu et al. 2022 do not specify it).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TangentUse {
     /// Never.
     Off,
-    /// Toward the left tangent of everything in range, always: of what was tried, every set that gives the printed stop of
-    /// the tangent field has it, at a weight of 0.02 about a radius of 1 m or at the full weight about one of 3.2 to 3.55 m.
+    /// Always, toward the left tangent of every obstacle in range. Of the variants tried, every parameter set that
+    /// reproduces the printed stop of the tangent field uses this one: at a weight of 0.02 around an obstacle of 1 m
+    /// radius, or at full weight around one of 3.2 to 3.55 m.
     Always,
-    /// Round what blocks the way to the goal, on the side where its middle is not.
+    /// Around whatever blocks the path to the goal, on the side opposite its centre.
     Blocking,
 }
 
@@ -29,17 +30,17 @@ pub enum TangentUse {
 pub struct GoalLaw {
     /// The pull of the goal.
     pub pull: Pull,
-    /// Gain of push and tangent force, the papers' mu or `k_rep`.
+    /// Gain of push and tangent force; mu or `k_rep` in the papers.
     pub k_rep: f64,
-    /// How the push falls with the distance.
+    /// How the push falls with distance.
     pub push: PushForm,
-    /// Distance between hull and outline at which both begin, metres.
+    /// Distance between hull and outline at which both forces begin, metres.
     pub rho_m: f64,
     /// When the tangent force acts.
     pub tangent: TangentUse,
-    /// Its weight.
+    /// The weight of the tangent force.
     pub tangent_weight: f64,
-    /// Push of the wall as a share of `k_rep`, from half the range on; the papers have no wall.
+    /// Push of the wall as a share of `k_rep`, within half the range; the papers have no wall.
     pub wall_gain: f64,
 }
 
@@ -50,7 +51,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Forgets every choice.
+    /// Discards all choices of side.
     pub fn forget(&mut self) {
         self.kept.clear();
     }
@@ -73,7 +74,7 @@ impl Sides {
 }
 
 impl GoalLaw {
-    /// The forces on a robot at `at` that is bound for `goal`; `nearby` must reach as far as the law.
+    /// The forces on a robot at `at` bound for `goal`; `nearby` must reach as far as the law.
     pub fn forces(
         &self,
         at: Point,

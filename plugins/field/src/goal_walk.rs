@@ -1,4 +1,4 @@
-//! Walking toward one goal, step by step, by whatever decides the steps.
+//! Walks toward one goal, step by step; a callback chooses each step.
 
 use crate::{
     oscillation::Oscillation,
@@ -6,25 +6,25 @@ use crate::{
 };
 use geometry::{Point, Vector};
 
-/// From where to where.
+/// The start, the goal and the limits of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trip {
-    /// Where the robot is.
+    /// The start.
     pub start: Point,
-    /// Where to.
+    /// The goal.
     pub goal: Point,
     /// Distance at which the goal counts as reached, metres.
     pub tolerance_m: f64,
-    /// Steps allowed at most.
+    /// Maximum number of steps.
     pub steps_max: usize,
 }
 
-/// Walks until the goal is reached or `next` has nothing more to say; `check` ends it early.
+/// Walks until the goal is reached or `next` returns nothing more. `check` can end the walk early.
 ///
-/// The last step, if the goal is no further than `tolerance_m`, is left to the mission.
+/// If the goal is no further than `tolerance_m`, the last step is left to the mission.
 ///
 /// # Errors
-/// What `check` says.
+/// The error that `check` returns.
 pub fn walk<E>(
     trip: &Trip,
     mut next: impl FnMut(Point) -> Option<Vector>,
@@ -50,7 +50,7 @@ pub fn walk<E>(
     Ok(Walk { path, shortfall })
 }
 
-/// Steps of one length along a force, until they lead nowhere.
+/// Takes steps of one length along a force, until they make no more headway.
 pub fn descent<'a>(
     trip: &Trip,
     step_m: f64,

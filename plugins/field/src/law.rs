@@ -1,43 +1,43 @@
-//! A law with its gains, and the forces it gives at a place.
+//! A force law with its gains, and the forces it gives at a position.
 
 use crate::laws::{self, PushForm};
 use geometry::{Point, Vector};
 use steering::{Contact, Forces, Side, Source};
 
-/// Which repulsion.
+/// The form of repulsion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Repulsion {
     /// Khatib's.
     Classic,
-    /// Weighted with the distance to the goal, with a part toward it (Ge and Cui 2000).
+    /// Weighted with the distance to the goal, with a component toward it (Ge and Cui 2000).
     Improved {
-        /// Power of that distance.
+        /// Power of the distance to the goal.
         exponent: f64,
     },
-    /// Weighted with the distance to the goal, without that part; a reading of Wang et al. 2023.
+    /// Weighted with the distance to the goal, without that component; a reading of Wang et al. 2023.
     Scaled {
-        /// Power of that distance.
+        /// Power of the distance to the goal.
         exponent: f64,
     },
 }
 
-/// What acts beside a rotating force, or a push to the side, while it acts.
+/// The forces that act together with an active rotating force or sideways push.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
-    /// Pull and push, as the text of Wang et al. 2023 has it.
+    /// Pull and push, as in the text of Wang et al. 2023.
     All,
-    /// The pull alone: it replaces the push of obstacles.
+    /// Only the pull: the push of obstacles is replaced.
     Pull,
-    /// Nothing: it replaces both.
+    /// Nothing: pull and push are both replaced.
     Nothing,
 }
 
-/// Which rotating force.
+/// The form of the rotating force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RotationForm {
     /// Wang et al. 2023, eq. 3, with its jump at the range.
     Literal,
-    /// Ours, without the jump.
+    /// Our form, without the jump.
     Smooth,
 }
 
@@ -52,24 +52,25 @@ pub struct Law {
     pub k_rot: f64,
     /// Distance at which obstacles begin to act, metres.
     pub rho_0_m: f64,
-    /// The wall pushes with this share of `k_rep`, from half of `rho_0_m` on; the papers have no wall.
+    /// The wall pushes with this share of `k_rep`, within half of `rho_0_m`; the papers have no wall.
     pub wall_gain: f64,
-    /// Which repulsion.
+    /// The form of repulsion.
     pub repulsion: Repulsion,
-    /// How the push falls with the distance.
+    /// How the push falls with distance.
     pub form: PushForm,
-    /// Whether only the nearest obstacle pushes, and not all in range.
+    /// Whether only the nearest obstacle pushes, instead of all in range.
     pub nearest_only: bool,
-    /// Which rotating force.
+    /// The form of the rotating force.
     pub rotation: RotationForm,
-    /// What acts beside it.
+    /// The forces that act together with the rotating force.
     pub beside: Beside,
 }
 
 impl Law {
-    /// The forces on a robot at `at` that is bound for `goal`.
+    /// The forces on a robot at `at` bound for `goal`.
     ///
-    /// `side` says for each contact whether the rotating force acts, and on which side it leads past.
+    /// For each contact, `side` returns the side on which the rotating force leads past it, or `None` if the force does
+    /// not act.
     pub fn forces(
         &self,
         at: Point,
@@ -91,7 +92,7 @@ impl Law {
         self.beside.left_of(forces, forces.rotation != Vector::zeros())
     }
 
-    /// How far a contact acts, metres.
+    /// The distance within which a contact acts, metres.
     pub fn reach_m(&self, source: Source) -> f64 {
         if source == Source::Wall { self.rho_0_m / 2.0 } else { self.rho_0_m }
     }
@@ -120,7 +121,7 @@ impl Law {
 }
 
 impl Beside {
-    /// The forces without those that are replaced, if what replaces them acts.
+    /// The forces without those that are replaced while the rotating force or push acts.
     pub(crate) fn left_of(self, forces: Forces, acts: bool) -> Forces {
         if !acts {
             return forces;

@@ -4,7 +4,8 @@
 use geometry::{Point, Vector, direction_or};
 use steering::{Contact, Side};
 
-/// Smallest distance a law divides by, metres: a preset point may lie on an obstacle, and the laws are singular there.
+/// Smallest distance by which a law divides, metres. A preset point may coincide with an obstacle, and the laws are
+/// singular there.
 pub const FLOOR_M: f64 = 1e-6;
 
 /// Pull of a quadratic well, `k_att * rho(q, g)` toward the goal (Khatib 1986; Wang et al. 2023, section 2.1).
@@ -24,13 +25,13 @@ pub enum PushForm {
     Khatib,
     /// `1/rho - 1/rho_0`: a reading of Wang et al. 2023, whose text does not print the force.
     Inverse,
-    /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022, which has no range and by eq. 9 points toward
-    /// the obstacle; here it points away.
+    /// `1/rho`, which ends at `rho_0` with a jump: eq. 8 of Xu et al. 2022. The paper gives no range, and by its eq. 9
+    /// the force points toward the obstacle; here it points away.
     Hyperbola,
 }
 
 impl PushForm {
-    /// Its size for a gain of one, at a distance; zero from `rho_0` on.
+    /// The size of the force at a distance, for a gain of one; zero from `rho_0` on.
     fn strength(self, rho_0_m: f64, distance_m: f64) -> f64 {
         match self {
             Self::Khatib => khatib(rho_0_m, distance_m),
@@ -40,16 +41,16 @@ impl PushForm {
         }
     }
 
-    /// The push of a gain away from the outline.
+    /// The push away from the outline for a gain.
     pub fn repulsion(self, k_rep: f64, rho_0_m: f64, contact: &Contact) -> Vector {
         contact.away * (k_rep * self.strength(rho_0_m, contact.distance_m))
     }
 }
 
 /// Repulsion weighted with the distance to the goal, so that a goal beside an obstacle can be reached (GNRON, Ge and
-/// Cui 2000): `k_rep (1/rho - 1/rho_0) rho_g^n / rho^2` away from the outline plus
-/// `n/2 k_rep (1/rho - 1/rho_0)^2 rho_g^(n-1)` toward the goal. Wang et al. 2023 give no `n`; two is the textbook's.
-/// The form says how the first part falls with `rho`.
+/// Cui 2000): `k_rep (1/rho - 1/rho_0) rho_g^n / rho^2` away from the outline plus `n/2 k_rep (1/rho - 1/rho_0)^2
+/// rho_g^(n-1)` toward the goal. Wang et al. 2023 give no `n`; two is the textbook value. `form` states how the first
+/// part falls with `rho`.
 pub fn improved_repulsion(
     form: PushForm,
     k_rep: f64,
@@ -65,8 +66,8 @@ pub fn improved_repulsion(
     away + direction_or(to_goal, Vector::zeros()) * pull
 }
 
-/// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent. The paper's sense, counter-clockwise,
-/// passes on the right.
+/// The rotating force of Wang et al. 2023, eq. 3: `k_rot rho_0 / rho` along the tangent. The paper's direction,
+/// counter-clockwise, passes on the right.
 ///
 /// At `rho_0` it jumps from `k_rot` to zero.
 pub fn rotation(k_rot: f64, rho_0_m: f64, side: Side, contact: &Contact) -> Vector {

@@ -1,13 +1,13 @@
-//! Force laws shared by the potential-field planners, and the two ways to use them: walking a law over the known map
-//! to plan, and flying a robot along it tick by tick.
+//! Force laws shared by the potential-field planners, and two ways to use them: walking a law over the known map to
+//! plan, and flying a robot along it tick by tick.
 //!
-//! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline;
-//! a point obstacle and a robot of radius zero give the papers' point form.
-//! Cost: only obstacles within reach of a law are looked at, found through a bounding volume hierarchy.
+//! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline; a
+//! point obstacle and a robot of radius zero give the papers' point form. Cost: only obstacles within reach of a law
+//! are examined, and a bounding volume hierarchy finds them.
 //!
 //! Sources: Khatib 1986 (attraction, repulsion); Ge and Cui 2000 (improved repulsion); Wang et al. 2023 (rotation,
 //! lock-step targets, stop rules); Xu et al. 2022 (logarithmic pull, tangent force); Yang et al. 2021 (capped pull).
-//! Where those leave something open the item says what was chosen.
+//! Where these sources leave something open, the item states our choice.
 #![forbid(unsafe_code)]
 
 pub mod descent;

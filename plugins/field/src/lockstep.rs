@@ -1,5 +1,5 @@
-//! Following preset points in lock step: the target moves on with every move, reached or not; by one, unless it is read
-//! otherwise.
+//! Follows preset points in lock step: the target advances with every move, reached or not. It advances by one point
+//! unless configured otherwise.
 
 use crate::{
     descent::{self, Descent},
@@ -11,17 +11,18 @@ use crate::{
 use geometry::{Point, polyline};
 use planner_api::{Ctx, Result};
 
-/// The stop near the last point counts only within this share of the list's end; without it a push through the middle
-/// of a spiral ends the path early, as the paper's runs seem to do.
+/// Stopping near the last point is allowed only within this share of the end of the list. Otherwise a push through the
+/// middle of a spiral ends the path early, as seems to happen in the paper's runs.
 const TAIL_SHARE: f64 = 0.02;
 
 /// Walks along preset points (Wang et al. 2023, section 2).
 ///
-/// In lock step `path[k]` belongs to the k-th of `points`, counted from the first that is not the start itself; a start further off
-/// than a step is first brought to the first point. Ends within `tolerance_m` of the last point, or with the list.
+/// In lock step, `path[k]` belongs to the k-th of `points`, counted from the first that is not the start itself. If the
+/// start is more than a step away, the robot first moves to the first point. The walk ends within `tolerance_m` of the
+/// last point, or at the end of the list.
 ///
 /// # Errors
-/// When the console wants it to stop.
+/// When the console requests a stop.
 pub fn follow(
     scene: &Scene,
     settings: &FieldSettings,
@@ -71,14 +72,14 @@ pub fn follow(
     Ok(Walk { path: approach, shortfall })
 }
 
-/// Preset points and where the robot is.
+/// Preset points, and the start of the robot.
 #[derive(Debug, Clone, Copy)]
 pub struct PresetPath<'a> {
-    /// Where the robot is.
+    /// The start.
     pub start: Point,
-    /// The preset points, no two neighbours further apart than a step.
+    /// The preset points; no two neighbours are further apart than a step.
     pub points: &'a [Point],
-    /// Distance at which the last one counts as reached, metres.
+    /// Distance at which the last point counts as reached, metres.
     pub tolerance_m: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Planning by walking the law over the known map.
+//! Plans by walking the law over the known map.
 
 use crate::{
     descent::{self, Descent},
@@ -13,15 +13,15 @@ use geometry::{Point, polyline};
 use planner_api::{Code, Ctx, Plan, PlanRequest, PlannerError, Result, Site, Task};
 use steering::evade;
 
-/// More preset points than this after splitting long gaps are refused.
+/// Maximum number of preset points after long gaps are split.
 const MOST_POINTS: usize = 200_000;
 
-/// A path for the task; `complete` states whether it achieves all of it with the clearance demanded, and the log
-/// why not.
+/// Returns a path for the task. `complete` states whether it achieves the whole task with the required clearance; if
+/// not, the log gives the reason.
 ///
 /// # Errors
-/// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`],
-/// [`Code::Invalid`] for preset points that coincide or are missing, and whatever ends the call early.
+/// [`Code::StartOccupied`], [`Code::StartOutside`], [`Code::GoalOccupied`], [`Code::GoalOutside`], [`Code::Invalid`]
+/// for preset points that coincide or are missing, and any error that ends the call early.
 pub fn plan(settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan> {
     let standing = evade::standing(request.site);
     let obstacles = if settings.evades { standing.as_slice() } else { request.site.obstacles };
@@ -33,7 +33,7 @@ pub fn plan(settings: &FieldSettings, request: &PlanRequest<'_>, ctx: &Ctx<'_>) 
         Task::Cover { .. } => {
             return Err(PlannerError::new(
                 Code::Unsupported,
-                "it flies to points and along paths and does not cover floors",
+                "plans to goals and along preset paths, and does not cover floors",
             ));
         }
     }
@@ -68,29 +68,29 @@ fn walked(scene: &Scene, settings: &FieldSettings, request: &PlanRequest<'_>, ct
     }
 }
 
-/// The preset points up to the last one that is free, with long gaps split into steps.
+/// The preset points up to the last free one, with long gaps split into steps.
 fn course(scene: &Scene, step_m: f64, targets: &[Point]) -> Result<Vec<Point>> {
     let split = polyline::length_m(targets) / step_m + targets.len() as f64;
     if split > MOST_POINTS as f64 {
         let message =
-            format!("the preset path has {split:.0} steps of {step_m} m, {MOST_POINTS} are allowed");
+            format!("the preset path has {split:.0} steps of {step_m} m; at most {MOST_POINTS} are allowed");
         return Err(PlannerError::new(Code::Invalid, message));
     }
     let last = targets.iter().rposition(|p| scene.hull_clearance_m(*p) >= 0.0).unwrap_or(0);
-    // A hair more than the step, so that points one step apart are not split by rounding.
+    // Slightly more than the step, so that rounding does not split points one step apart.
     Ok(polyline::resampled(&targets[..=last], step_m * (1.0 + 1e-9)))
 }
 
 fn check_targets(scene: &Scene, targets: &[Point]) -> Result<()> {
     if targets.is_empty() {
-        return Err(PlannerError::new(Code::Invalid, "there is no preset point to follow"));
+        return Err(PlannerError::new(Code::Invalid, "the preset path has no points"));
     }
     if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
-        let message = format!("preset points {at} and {} coincide; give each point once", at + 1);
+        let message = format!("preset points {at} and {} coincide; remove one of them", at + 1);
         return Err(PlannerError::new(Code::Invalid, message));
     }
     if targets.iter().all(|p| scene.hull_clearance_m(*p) < 0.0) {
-        return Err(PlannerError::new(Code::NoPath, "every preset point lies in an obstacle"));
+        return Err(PlannerError::new(Code::NoPath, "every preset point is inside an obstacle"));
     }
     Ok(())
 }

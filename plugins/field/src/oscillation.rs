@@ -1,14 +1,15 @@
-//! When the robot counts as trapped. The paper says "oscillates" and gives no rule; this one is ours.
+//! Decides when the robot counts as trapped. The paper says "oscillates" and gives no rule; this rule is ours.
 
 use geometry::Point;
 use std::collections::VecDeque;
 
-/// It is an oscillation when the way covered leads less far than this share of it.
+/// An oscillation: the net displacement is below this share of the distance covered.
 const SHARE: f64 = 0.15;
-/// Without a new best distance to the goal it is one after this many windows, unless more are allowed.
+/// Number of windows without a new best distance to the goal after which the robot counts as trapped, unless more are
+/// allowed.
 const PATIENCE_WINDOWS: usize = 20;
 
-/// Looks back over a window of steps.
+/// Examines a sliding window of steps.
 #[derive(Debug, Clone)]
 pub struct Oscillation {
     n_steps: usize,
@@ -20,7 +21,7 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
-    /// A window of some length for steps of some length, metres.
+    /// Creates a window of a given length for steps of a given length, metres.
     pub fn new(window_m: f64, step_m: f64) -> Self {
         let n_steps = (window_m / step_m).ceil().max(8.0) as usize;
         Self {
@@ -33,7 +34,7 @@ impl Oscillation {
         }
     }
 
-    /// Takes a place and its distance to the goal; true when the steps lead nowhere.
+    /// Records a position and its distance to the goal. Returns true if the recent steps make no headway.
     pub fn record(&mut self, at: Point, missing_m: f64) -> bool {
         if missing_m < self.best_m {
             (self.best_m, self.without_gain) = (missing_m, 0);
@@ -55,7 +56,7 @@ impl Oscillation {
         self.patience = PATIENCE_WINDOWS * self.n_steps;
     }
 
-    /// Starts over and allows so many steps without a new best distance, if they are more than usual.
+    /// Starts over and allows this many steps without a new best distance, if that is more than usual.
     pub fn forget_for(&mut self, steps: usize) {
         self.forget();
         self.patience = self.patience.max(steps);

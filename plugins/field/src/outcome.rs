@@ -4,26 +4,26 @@ use geometry::{Point, polyline};
 use planner_api::{Ctx, LogLevel, Plan};
 use std::fmt;
 
-/// Slack for rounding in comparisons of lengths, metres.
+/// Tolerance for rounding in comparisons of lengths, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// A walk as it came out.
+/// The result of a walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walk {
-    /// Its points, the start first.
+    /// The points of the walk, starting with the start.
     pub path: Vec<Point>,
-    /// Why it does not achieve the task, if so.
+    /// Why the walk does not achieve its task, if it does not.
     pub shortfall: Option<Shortfall>,
 }
 
 impl Walk {
-    /// The plan, with the least distance between hull and anything solid along it and that demanded, metres; what is
-    /// wrong with it is logged, the first thing if there are several.
+    /// Converts the walk to a plan. `clearance_m` is the smallest distance between the hull and any solid along it, and
+    /// `demanded_m` the required distance, both in metres. If the plan is not complete, the first reason is logged.
     pub fn into_plan(self, clearance_m: f64, demanded_m: f64, ctx: &Ctx<'_>) -> Plan {
         self.into_plan_or(clearance_m, demanded_m, "", ctx)
     }
 
-    /// The same; where the walk falls short, the log says what to do `instead` in the same line, after a semicolon.
+    /// Like [`Self::into_plan`], but a logged reason is followed by a semicolon and the advice `instead`.
     pub fn into_plan_or(self, clearance_m: f64, demanded_m: f64, instead: &str, ctx: &Ctx<'_>) -> Plan {
         let is_close = clearance_m < demanded_m - ROUNDING_M;
         let close = is_close.then_some(Shortfall::Close { clearance_m, demanded_m });
@@ -46,30 +46,30 @@ impl Walk {
 pub enum Shortfall {
     /// The law was trapped.
     Trapped {
-        /// Where.
+        /// The position of the trap.
         at: Point,
     },
-    /// The path ends before its end.
+    /// The path ends before its target.
     Short {
-        /// Distance that is missing, metres.
+        /// Remaining distance to the target, metres.
         missing_m: f64,
-        /// Where it ends.
+        /// The end of the path.
         at: Point,
     },
-    /// It fell so far behind its preset point that it skips floor.
+    /// The path fell so far behind its preset point that it skips floor.
     Lagged {
-        /// Furthest distance to the preset point that was due, metres.
+        /// Largest distance from the preset point that was due, metres.
         most_m: f64,
         /// The distance allowed, metres.
         allowed_m: f64,
-        /// Where.
+        /// The position of the largest lag.
         at: Point,
     },
-    /// It passes something solid too closely.
+    /// The path passes a solid too closely.
     Close {
-        /// The least distance between hull and anything solid, metres.
+        /// The smallest distance between the hull and any solid, metres.
         clearance_m: f64,
-        /// The distance demanded, metres.
+        /// The required distance, metres.
         demanded_m: f64,
     },
 }
@@ -78,15 +78,15 @@ impl fmt::Display for Shortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Trapped { at } => {
-                write!(f, "the force field is trapped at ({:.2}, {:.2})", at.x, at.y)
+                write!(f, "the path is trapped at ({:.2}, {:.2})", at.x, at.y)
             }
             Self::Short { missing_m, at } => {
-                write!(f, "the path ends at ({:.2}, {:.2}), {missing_m:.2} m short of its end", at.x, at.y)
+                write!(f, "the path ends at ({:.2}, {:.2}), {missing_m:.2} m short of its target", at.x, at.y)
             }
             Self::Lagged { most_m, allowed_m, at } => write!(
                 f,
-                "at ({:.2}, {:.2}) the path lags {most_m:.2} m behind its preset point and skips floor \
-                 ({allowed_m:.2} m allowed)",
+                "at ({:.2}, {:.2}) the path lags {most_m:.2} m behind its preset point ({allowed_m:.2} m \
+                 allowed) and skips floor",
                 at.x, at.y
             ),
             Self::Close { clearance_m, .. } if *clearance_m < 0.0 => {
@@ -94,7 +94,8 @@ impl fmt::Display for Shortfall {
             }
             Self::Close { clearance_m, demanded_m } => write!(
                 f,
-                "the hull would pass an obstacle or the wall at {clearance_m:.2} m ({demanded_m:.2} m demanded)"
+                "the hull would pass an obstacle or the wall at {clearance_m:.2} m; {demanded_m:.2} m \
+                 required"
             ),
         }
     }

@@ -1,4 +1,5 @@
-//! The parameters that the potential-field planners share, those of flight among them, and how they become settings.
+//! The parameters that the potential-field planners share, including those for flight, and their conversion to
+//! settings.
 
 use crate::{
     escape::Escape,
@@ -23,90 +24,98 @@ pub const K_ATT: ParamSpec = float("k_att", "Attraction gain", "N/m", 0.001, 100
     .live();
 /// Gain of the push.
 pub const K_REP: ParamSpec = float("k_rep", "Repulsion gain", "N m3", 0.0, 1000.0, 0.02)
-    .help("Push of obstacles. More of it keeps further away and closes narrow passages.")
+    .help("Gain of the push of obstacles. A larger gain keeps further away and closes narrow passages.")
     .group(FIELD)
     .live();
 /// Range of the push.
-pub const RHO_0: ParamSpec = float("rho_0_m", "Range of obstacles", "m", 0.05, 10.0, 0.6)
-    .help("Distance between hull and obstacle at which obstacles begin to act.")
+pub const RHO_0: ParamSpec = float("rho_0_m", "Obstacle range", "m", 0.05, 10.0, 0.6)
+    .help("Distance from the hull at which obstacles begin to act.")
     .group(FIELD)
     .live();
-/// Which repulsion, Khatib's by default.
+/// The form of repulsion, by default Khatib's.
 pub const REPULSION_CLASSIC: ParamSpec =
     choice("repulsion", "Repulsion", REPULSIONS, 0).help(REPULSION_HELP).group(FIELD).live();
-/// Which repulsion, the improved one by default.
+/// The form of repulsion, by default the improved one.
 pub const REPULSION_IMPROVED: ParamSpec =
     choice("repulsion", "Repulsion", REPULSIONS, 1).help(REPULSION_HELP).group(FIELD).live();
 const REPULSIONS: &[&str] = &["classic", "improved", "scaled"];
-const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an obstacle can be \
-     reached; it passes obstacles more closely. Scaled fades as well, without the improved one's part toward the target.";
-/// Power of the goal's distance.
-pub const EXPONENT: ParamSpec = float("exponent", "Exponent of improved repulsion", "", 0.0, 4.0, 2.0)
-    .help("Power of the distance to the target by which improved or scaled repulsion fades.")
+const REPULSION_HELP: &str = "Improved repulsion fades near the target, so that a target beside an \
+                              obstacle can be reached; it passes obstacles more closely. Scaled fades too, \
+                              but lacks the improved form's component toward the target.";
+/// Power of the distance to the goal.
+pub const EXPONENT: ParamSpec = float("exponent", "Improved repulsion exponent", "", 0.0, 4.0, 2.0)
+    .help("Power of the distance to the target with which improved or scaled repulsion fades.")
     .group(FIELD)
     .live();
 /// Push of the wall.
 pub const WALL_GAIN: ParamSpec = float("wall_gain", "Wall repulsion", "", 0.0, 10.0, 0.1)
-    .help("Push of the wall as a share of the repulsion gain, within half its range. The papers have no wall: 0.")
+    .help(
+        "Push of the wall as a share of the repulsion gain, within half the obstacle range. The papers \
+           have no wall: 0.",
+    )
     .group(FIELD)
     .live();
 
 /// Gain of the rotating force.
 pub const K_ROT: ParamSpec = float("k_rot", "Rotation gain", "N", 0.0, 1000.0, 1.0)
-    .help("Rotating force about obstacles; the paper sets it equal to the attraction gain.")
+    .help("Gain of the rotating force around obstacles; the paper sets it equal to the attraction gain.")
     .group(FIELD)
     .live();
 /// Form of the rotating force.
 pub const ROTATION: ParamSpec = choice("rotation", "Rotating force", &["literal", "smooth"], 0)
     .help(
-        "Literal is the paper's eq. 3, which jumps at the range of obstacles; smooth begins there at zero. \
-           Steering by gaps is always smooth.",
+        "Literal: eq. 3 of the paper, which jumps at the obstacle range. Smooth: starts there at zero. \
+         When rotation steers by gaps, it is always smooth.",
     )
     .group(FIELD)
     .live();
 /// When the rotating force acts.
 pub const READING: ParamSpec = choice("reading", "Reading of the paper", &["literal", "gated"], 1)
     .help(
-        "Literal: the rotating force always acts. Gated: only while the gate is open, by default in a trap \
-           and ten moves on.",
+        "Literal: the rotating force always acts. Gated: it acts only while the gate is open, by default \
+         from a trap until ten moves later.",
     )
     .group(FIELD)
     .live();
-/// Which way round.
-pub const SENSE: ParamSpec = choice("sense", "Sense of rotation", &["counter-clockwise", "side-aware"], 0)
+/// Direction of the rotating force.
+pub const SENSE: ParamSpec = choice("sense", "Rotation direction", &["counter-clockwise", "side-aware"], 0)
     .help(
-        "The paper turns counter-clockwise always; side-aware turns toward the target and keeps to the side.",
+        "The paper always turns counter-clockwise. Side-aware turns toward the target and keeps to that \
+         side.",
     )
     .group(FIELD)
     .live();
 
 /// How a plan is made.
 pub const PLANNING: ParamSpec = choice("planning", "Planning", &["by-hull", "lock-step", "flight"], 0)
-    .help("Lock-step: the paper's moves, one per preset point. Flight: the known map flown in thought. By hull: \
-           lock-step for a robot without extent, as the paper's, flight for one with a hull.")
+    .help(
+        "Lock-step: the paper's moves, one per preset point. Flight: simulated flight over the known \
+           map. By hull: lock-step for a robot without extent, as in the paper; flight for one with a \
+           hull.",
+    )
     .group(PLAN)
     .live();
-/// Move toward a preset point.
+/// Longest move toward a preset point.
 pub const STEP: ParamSpec = float("step_m", "Step on a preset path", "m", 0.01, 1.0, 0.2)
-    .help("Longest move per preset point; the paper's step.")
+    .help("Longest move per preset point; the step in the paper.")
     .group(PLAN)
     .live();
-/// Move toward a goal.
+/// Length of a move toward a goal.
 pub const GOTO_STEP: ParamSpec = float("goto_step_m", "Step toward a goal", "m", 0.005, 1.0, 0.05)
     .help("Length of a move when planning toward a goal.")
     .group(PLAN)
     .live();
-/// Longer moves when behind.
+/// Whether moves may be longer while the robot lags.
 pub const FLEXIBLE: ParamSpec = flag("flexible_step", "Flexible step", false)
     .help("Moves may be twice as long while the robot lags behind its preset point.")
     .group(PLAN)
     .live();
 /// Limit of the change of heading.
 pub const TURN_LIMIT: ParamSpec = float("turn_limit_deg", "Turn limit per step", "deg", 0.0, 180.0, 0.0)
-    .help("Largest change of heading from one move to the next; 0 is no limit.")
+    .help("Largest change of heading from one move to the next; 0: no limit.")
     .group(PLAN)
     .live();
-/// When a plan skips floor.
+/// Lag from which a plan skips floor.
 pub const MAX_LAG: ParamSpec = float("max_lag_m", "Lag allowed", "m", 0.05, 20.0, 1.25)
     .help("A plan that falls further behind its preset point skips floor and is not complete.")
     .group(PLAN)
@@ -114,12 +123,14 @@ pub const MAX_LAG: ParamSpec = float("max_lag_m", "Lag allowed", "m", 0.05, 20.0
 
 /// Whether the flight follows the paper.
 pub const STEERING: ParamSpec = choice("steering", "Rotation in flight", &["paper", "gaps"], 1)
-    .help("Paper: as in the plan, and nothing is evaded. Gaps: about what blocks the way, on the side of the smaller \
-           detour, with narrow gaps closed.")
+    .help(
+        "Paper: as in the plan, and without evading moving obstacles. Gaps: around whatever blocks the \
+           path, on the side of the smaller detour, with narrow gaps closed.",
+    )
     .group(FLIGHT)
     .live();
 
-/// Settings of a law without a rotating force.
+/// Reads the settings of a law without a rotating force.
 pub fn settings(config: &Config<'_>) -> FieldSettings {
     let repulsion = match config.choice("repulsion") {
         "improved" => Repulsion::Improved { exponent: config.float("exponent") },
@@ -151,7 +162,7 @@ pub fn settings(config: &Config<'_>) -> FieldSettings {
     }
 }
 
-/// Settings of a law with the rotating force of Wang et al. 2023.
+/// Reads the settings of a law with the rotating force of Wang et al. 2023.
 pub fn rotating_settings(config: &Config<'_>) -> FieldSettings {
     let mut settings = settings(config);
     settings.law.k_rot = config.float("k_rot");

@@ -1,4 +1,5 @@
-//! Flying a robot by a law: the forces at its estimated position say where to, the pilot how fast and how near.
+//! Flies a robot by a law: the forces at its estimated position give the direction, and the pilot limits speed and
+//! distance.
 
 use crate::{
     escape::Situation,
@@ -14,8 +15,8 @@ use steering::{
     wall_contacts,
 };
 
-/// Where the force turns back, the robot goes on at this share of its speed; at this multiple where it does not; never slower
-/// than this share of what it is given.
+/// If the force reverses, the speed is multiplied by the first factor, otherwise by the second. It never falls below
+/// the third, a share of the speed that the pilot allows.
 const TURNED_BACK: f64 = 0.5;
 const GOES_ON: f64 = 1.2;
 const LEAST_SHARE: f64 = 0.02;
@@ -26,38 +27,38 @@ pub struct ForcePilot {
     pilot: Pilot,
     response: TrapResponse,
     settling: Settling,
-    /// When the next move of the plan would begin, seconds: the paper looks out for traps between moves.
+    /// The time at which the next move of the plan would begin, seconds: the paper checks for traps between moves.
     due_s: f64,
 }
 
-/// How the robot moves, and why.
+/// The motion of the robot, and the reasons for it.
 #[derive(Debug, Clone)]
 pub struct Reasoned {
-    /// How it moves.
+    /// The motion.
     pub decision: Decision,
-    /// The forces that led there.
+    /// The forces behind the motion.
     pub forces: Forces,
-    /// What is gone round, if anything.
+    /// The detour in progress, if any.
     pub detour: Option<Detour>,
 }
 
 impl ForcePilot {
-    /// A pilot for a site.
+    /// Creates a pilot for a site.
     pub fn new(settings: &FieldSettings, site: &Site<'_>) -> Self {
         let response = TrapResponse::new(settings);
         let settling = Settling { share: 1.0, last: Vector::zeros() };
         Self { pilot: Pilot::pursuing(site), response, settling, due_s: f64::NEG_INFINITY }
     }
 
-    /// Takes over changed settings on the way; what it remembers stays.
+    /// Applies changed settings during the flight, and keeps its state.
     pub fn reset(&mut self, settings: &FieldSettings) {
         self.response.turning = Turning::new(settings.reading, settings.rule, settings.gate);
     }
 
-    /// The velocity until the next tick, with the forces drawn.
+    /// Returns the velocity until the next tick, and draws the forces.
     ///
     /// # Errors
-    /// When the console wants it to stop.
+    /// When the console requests a stop.
     pub fn step(&mut self, settings: &FieldSettings, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let (movers, standing) = evade::sorted_if(settings.evades, sensed, self.pilot.bodies(sensed));
@@ -68,7 +69,7 @@ impl ForcePilot {
         Ok(self.pilot.past(&movers, decision, &tick, ctx))
     }
 
-    /// The same without a console: how the robot moves in this situation.
+    /// Decides the motion in a situation, without a console.
     pub fn decide(&mut self, settings: &FieldSettings, tick: &Tick<'_>) -> Reasoned {
         let flight = &settings.flight;
         let status = self.pilot.watch(flight, tick);
@@ -86,7 +87,7 @@ impl ForcePilot {
         Reasoned { decision: Decision { velocity, status }, forces, detour }
     }
 
-    /// What acts on the robot: the nearest part of every body, closed gaps of a detour, the wall.
+    /// The contacts that act on the robot: the nearest part of every body, the closed gaps of a detour, and the wall.
     fn contacts(&self, law: &Law, tick: &Tick<'_>, detour: Option<&Detour>) -> Vec<Contact> {
         let (at, hull_m) = (tick.pose.position, self.pilot.limits().radius_m);
         let mut contacts: Vec<Contact> = tick
@@ -98,7 +99,7 @@ impl ForcePilot {
         for &(a, b) in detour.map_or(&[][..], |detour| &detour.closed) {
             let (distance_m, away) = Part::segment(a, b).distance(at);
             let contact = Contact { source: Source::Gap, distance_m: distance_m - hull_m, away };
-            // A robot that already stands in the gap must get out of it either way.
+            // A robot that is already in the gap must be able to leave it on either side.
             if (0.0..law.rho_0_m).contains(&contact.distance_m) {
                 contacts.push(contact);
             }
@@ -147,9 +148,9 @@ impl ForcePilot {
     }
 }
 
-/// A tick is much longer than a move of a plan, so in a minimum a robot at full speed would go to and fro about the place where the
-/// plan stops, and along a wall far from it. Its speed is adapted by the sign of the force, as steps are by Riedmiller and Braun
-/// 1993.
+/// A tick is much longer than a move of a plan. In a local minimum, a robot at full speed would therefore oscillate
+/// around the point where the plan stops, and bounce along a wall far from it. Its speed is adapted by the sign of the
+/// force, as Riedmiller and Braun 1993 adapt steps.
 #[derive(Debug, Clone, Copy)]
 struct Settling {
     share: f64,
@@ -157,7 +158,7 @@ struct Settling {
 }
 
 impl Settling {
-    /// The share of the speed that is left, for the force that acts now.
+    /// The share of the speed to use, given the present force.
     fn share(&mut self, force: Vector) -> f64 {
         let turns_back = force.dot(&self.last) < 0.0;
         let share = self.share * if turns_back { TURNED_BACK } else { GOES_ON };
@@ -166,7 +167,7 @@ impl Settling {
     }
 }
 
-/// The forces without what holds against the rotation, so that nothing stops the robot on its way round.
+/// Removes the components of the forces that oppose the rotation, so that nothing stops the robot on its way around.
 fn unopposed(forces: Forces) -> Forces {
     let Some(around) = forces.rotation.try_normalize(1e-9) else { return forces };
     let along = |force: Vector| force - around * force.dot(&around).min(0.0);

@@ -1,17 +1,18 @@
-//! How a goal pulls: linearly, by a logarithm, or no further than a cap.
+//! The pull of a goal: linear, logarithmic, or capped.
 
 use geometry::{Point, Vector};
 use std::f64::consts::LN_2;
 
-/// Distances below this count as this, metres: the laws are singular at the goal.
+/// Smaller distances count as this distance, metres: the laws are singular at the goal.
 const FLOOR_M: f64 = 1e-9;
 
-/// How the logarithmic pull is read near the goal.
+/// The reading of the logarithmic pull near the goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NearLaw {
-    /// `n log2(1/rho + 1)`: grows beyond all bounds, as the text of Xu et al. claims.
+    /// `n log2(1/rho + 1)`: grows without bound toward the goal, as the text of Xu et al. claims.
     Corrected,
-    /// `n |log2(1 / (rho + 1))|`, as printed: vanishes at the goal, so an obstacle beside it wins.
+    /// `n |log2(1 / (rho + 1))|`, as printed: vanishes at the goal, so an obstacle beside the goal pushes the robot
+    /// away.
     Printed,
 }
 
@@ -23,26 +24,26 @@ pub enum Pull {
         /// Force per metre.
         k: f64,
     },
-    /// `m log_k(rho + 1)` far off and another logarithm near the goal (Xu et al. 2022, eq. 4).
+    /// `m log_k(rho + 1)` far from the goal and a different logarithm near it (Xu et al. 2022, eq. 4).
     Logarithm {
         /// Force at the start.
         m: f64,
         /// Distance from start to goal, metres.
         trip_m: f64,
-        /// The base; if none, one more than the trip, so that the force falls from `m` on the way.
+        /// The base of the logarithm. `None`: the trip distance plus one, so that the force starts at `m` and falls.
         k: Option<f64>,
-        /// Gain of the near law, newtons; if none, as large as makes the two laws meet.
+        /// Gain of the near law, newtons. `None`: chosen so that the two laws meet.
         n: Option<f64>,
-        /// Where the near law takes over, metres.
+        /// Distance from the goal below which the near law applies, metres.
         rho_1_m: f64,
-        /// Which near law.
+        /// The form of the near law.
         near: NearLaw,
     },
     /// `k rho`, but never more than `k d_0` (Yang et al. 2021, eq. 17 with its third case read as a constant force).
     Capped {
         /// Force per metre.
         k: f64,
-        /// Distance from which the force no longer grows, metres.
+        /// Distance beyond which the force no longer grows, metres.
         d_0_m: f64,
     },
 }
@@ -55,7 +56,7 @@ impl Pull {
         way / rho * self.strength(rho)
     }
 
-    /// Its size at a distance from the goal.
+    /// The size of the pull at a distance from the goal.
     pub fn strength(&self, rho_m: f64) -> f64 {
         let rho = rho_m.max(FLOOR_M);
         match *self {
@@ -83,7 +84,7 @@ impl NearLaw {
         }
     }
 
-    /// Force at `rho` as a multiple of that at `rho_1`: the two branches meet there.
+    /// The force at `rho` as a multiple of the force at `rho_1`, where the two branches meet.
     fn share(self, rho: f64, rho_1: f64) -> f64 {
         match self {
             Self::Corrected => (1.0 / rho).ln_1p() / (1.0 / rho_1).ln_1p(),

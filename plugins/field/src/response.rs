@@ -1,4 +1,4 @@
-//! What is done about traps along a walk or a flight: the rotating force, and the escape.
+//! The responses to traps during a walk or a flight: the rotating force, and the escape.
 
 use crate::{
     escape::{Escaping, Situation},
@@ -9,20 +9,20 @@ use crate::{
 use geometry::Vector;
 use steering::Source;
 
-/// Looks out for traps and answers them as the settings say.
+/// Detects traps and responds as configured.
 #[derive(Debug, Clone)]
 pub struct TrapResponse {
     gate: Gate,
     detector: TrapDetector,
     escaping: Escaping,
-    /// When and which way round the rotating force acts.
+    /// When the rotating force acts, and its direction.
     pub turning: Turning,
-    /// The force of the escape under way; zero without one.
+    /// The force of the escape in progress; zero if there is none.
     pub escape: Vector,
 }
 
 impl TrapResponse {
-    /// Of a robot that has not moved yet.
+    /// Creates the state of a robot that has not moved yet.
     pub fn new(settings: &FieldSettings) -> Self {
         Self {
             gate: settings.gate,
@@ -33,7 +33,7 @@ impl TrapResponse {
         }
     }
 
-    /// Takes the situation before a move; `expected_m` is what a free move would cover.
+    /// Processes the situation before a move; `expected_m` is the distance that an unobstructed move would cover.
     pub fn update(&mut self, now: &Situation<'_>, expected_m: f64) {
         let to_goal = now.goal - now.at;
         self.detector.record(now.at);

@@ -1,4 +1,4 @@
-//! Planning by flying the known map in thought.
+//! Plans by simulating a flight over the known map.
 
 use crate::{
     outcome::{Shortfall, Walk},
@@ -12,18 +12,19 @@ use steering::Tick;
 
 /// Distance covered in a tick at full speed, metres.
 const MOVE_M: f64 = 0.05;
-/// A preset point counts as passed at this distance, metres; the mission looks as far ahead.
+/// A preset point counts as passed at this distance, metres, which is how far the mission looks ahead.
 const LOOKAHEAD_M: f64 = 0.5;
-/// Obstacles further from the robot than this do not matter to the pilot, metres.
+/// Obstacles further from the robot than this do not affect the pilot, metres.
 const RANGE_M: f64 = 4.5;
-/// Ticks allowed, as a multiple of those of the straight way, and some more for short ways.
+/// Maximum number of ticks, as a multiple of those of the straight path, plus a constant for short paths.
 const DETOUR: f64 = 4.0;
 const SPARE_TICKS: usize = 4000;
 
-/// The path of a robot that moves as the pilot decides, at its exact position, in any direction at once.
+/// Returns the path of a robot that moves as the pilot decides, at its exact position. The robot can move in any
+/// direction.
 ///
 /// # Errors
-/// When the console wants it to stop.
+/// When the console requests a stop.
 pub fn fly(
     scene: &Scene,
     settings: &FieldSettings,
@@ -62,7 +63,7 @@ pub fn fly(
     Ok(Walk { path, shortfall: Some(Shortfall::Short { missing_m, at }) })
 }
 
-/// Targets in order; those that the robot cannot stand on are left out.
+/// Targets in order, without those that the robot cannot occupy.
 struct Targets {
     points: Vec<Point>,
     due: usize,
@@ -74,7 +75,7 @@ impl Targets {
         let demanded_m = request.site.clearance_m;
         let is_free = |p: &&Point| scene.hull_clearance_m(**p).min(scene.wall_clearance_m(**p)) >= demanded_m;
         let (points, tolerance_m) = match request.task {
-            // Covering is refused before it comes to this; of it only the return path is left.
+            // Coverage tasks are refused before this point, so only their return path can get here.
             Task::Goto { goal, tolerance_m } | Task::Cover { anchor: goal, tolerance_m, .. } => {
                 (vec![goal], tolerance_m)
             }

@@ -1,4 +1,4 @@
-//! The known map as a law sees it: contacts near a place, found through the world's bounding volume hierarchy.
+//! The known map for evaluating a law: contacts near a position, found through the world's bounding volume hierarchy.
 
 use crate::law::Law;
 use geometry::{Boundary, Point, convex::away_from};
@@ -17,7 +17,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The map of a site; costs `n log n` once.
+    /// Creates the map of a site; costs `n log n` once.
     pub fn new(site: &Site<'_>) -> Self {
         let wall = site.boundary.to_owned();
         let obstacles: Vec<Obstacle> = solids(site)
@@ -34,13 +34,14 @@ impl Scene {
         Self { map, wall, centers, bodies, hull_m: site.limits.radius_m }
     }
 
-    /// The obstacles within a range of a place, as if the robot sensed them from there.
+    /// The obstacles within a range of a position, as if the robot sensed them from there.
     pub fn bodies_within(&self, at: Point, range_m: f64) -> Vec<Body> {
         let near = self.map.within(at, range_m);
         near.iter().filter_map(|n| self.bodies[n.index].clone()).collect()
     }
 
-    /// What acts on a robot at a place by this law; cost grows with what is near, hardly with what there is.
+    /// The contacts that act by this law on a robot at a position. The cost depends on the number of nearby obstacles
+    /// and hardly on the total.
     pub fn contacts(&self, at: Point, law: &Law) -> Vec<Contact> {
         let near = self.map.within(at, law.rho_0_m + self.hull_m);
         let mut contacts: Vec<Contact> = near
@@ -57,17 +58,17 @@ impl Scene {
         contacts
     }
 
-    /// Distance from a hull at a place to the nearest obstacle, metres.
+    /// The distance from a hull at a position to the nearest obstacle, metres.
     pub fn hull_clearance_m(&self, at: Point) -> f64 {
         self.map.obstacle_distance_m(at) - self.hull_m
     }
 
-    /// Distance from a hull at a place to the wall, metres.
+    /// The distance from a hull at a position to the wall, metres.
     pub fn wall_clearance_m(&self, at: Point) -> f64 {
         self.wall.wall_distance_m(at) - self.hull_m
     }
 
-    /// The least distance between hull and anything solid along a path, metres.
+    /// The smallest distance between the hull and any solid along a path, metres.
     pub fn path_clearance_m(&self, path: &[Point]) -> f64 {
         let along = path.windows(2).map(|w| self.map.segment_clearance_m(w[0], w[1]));
         let at_start = path.first().map(|p| self.map.clearance_m(*p));

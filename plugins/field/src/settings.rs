@@ -1,4 +1,4 @@
-//! Everything a potential-field planner can be set to.
+//! All settings of a potential-field planner.
 
 use crate::{
     escape::Escape,
@@ -13,27 +13,27 @@ use steering::Flight;
 pub enum Planning {
     /// As in the paper: moves of the law toward targets in lock step.
     Walked,
-    /// By flying the known map in thought, with the exact position: what the robot will do.
+    /// By simulated flight over the known map at the exact position, which predicts what the robot will do.
     Flown,
-    /// Walked for a robot without extent, as the paper's, and flown for one with a hull.
+    /// Walked for a robot without extent, as in the paper; flown for a robot with a hull.
     ByHull,
 }
 
-/// Which preset point comes after a move.
+/// The preset point that follows a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Targets {
-    /// The next of the list, whatever the move has done.
+    /// The next point in the list, whatever the result of the move.
     LockStep,
-    /// The one behind the nearest ahead, and the next of the list at least.
+    /// The point after the nearest one ahead, but at least the next in the list.
     Ahead,
 }
 
-/// How long a move is, up to the step.
+/// The length of a move, up to the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MoveLength {
     /// As far as the target.
     ToTarget,
-    /// As far as the resultant would pull a spring of the attraction's gain, `F / k_att`.
+    /// As far as the resultant would stretch a spring with the attraction gain, `F / k_att`.
     ByForce,
 }
 
@@ -42,9 +42,9 @@ pub enum MoveLength {
 pub struct Walking {
     /// Longest move toward a preset point, metres; the paper's `s`.
     pub step_m: f64,
-    /// Which preset point comes after a move.
+    /// The preset point that follows a move.
     pub targets: Targets,
-    /// How long a move toward a preset point is.
+    /// The length of a move toward a preset point.
     pub length: MoveLength,
     /// Length of a move toward a goal, metres.
     pub goto_step_m: f64,
@@ -52,40 +52,41 @@ pub struct Walking {
     pub flexible: bool,
     /// Largest change of heading from one move to the next, radians, if it is limited.
     pub turn_limit_rad: Option<f64>,
-    /// A path that falls further behind its preset point than this skips floor, metres.
+    /// A path that lags further behind its preset point than this skips floor, metres.
     pub max_lag_m: f64,
 }
 
 /// How the rotating force is used in flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RotationUse {
-    /// As in the plan: by the reading and the sense that are set.
+    /// As in the plan, with the configured reading and direction.
     Paper,
-    /// About whatever blocks the way, on the side of the smaller detour, with narrow gaps closed; ours.
+    /// Around whatever blocks the path, on the side of the smaller detour, with narrow gaps closed; our addition.
     Gaps,
 }
 
-/// Everything a potential-field planner can be set to.
+/// All settings of a potential-field planner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldSettings {
     /// Gains and ranges.
     pub law: Law,
     /// When the rotating force acts.
     pub reading: Reading,
-    /// Which way round it acts.
+    /// Direction of the rotating force.
     pub rule: SenseRule,
-    /// What counts as a trap.
+    /// When the robot counts as trapped.
     pub gate: Gate,
-    /// What is done about a trap besides.
+    /// The additional response to a trap.
     pub escape: Escape,
     /// How a plan is made.
     pub planning: Planning,
-    /// How the law is walked to plan.
+    /// How the law is walked to make a plan.
     pub walking: Walking,
     /// How the rotating force is used in flight.
     pub rotation_use: RotationUse,
     /// How the robot is flown.
     pub flight: Flight,
-    /// Whether what moves is evaded in flight and left out of plans; else it stands where it is seen.
+    /// Whether moving obstacles are evaded in flight and left out of plans; otherwise they count as stationary where
+    /// they are seen.
     pub evades: bool,
 }

@@ -4,24 +4,26 @@ use geometry::Point;
 use std::collections::VecDeque;
 use steering::Forces;
 
-/// What opens the gate of the rotating force, and begins an escape. Wang et al. 2023 do not say.
+/// The condition that opens the gate of the rotating force and starts an escape. Wang et al. 2023 do not specify it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gate {
-    /// Moves that lead hardly anywhere, by [`TrapDetector`]; the gate is held open for ten moves, an escape lasts several.
+    /// Moves that make almost no headway, as judged by [`TrapDetector`]. The gate stays open for ten moves; an escape
+    /// lasts several.
     Detected,
-    /// The sum of pull and push points away from the target; asked anew at every move.
+    /// The sum of pull and push points away from the target; checked at every move.
     Backward,
-    /// The push is more than 0.8 of the pull and within 26 degrees of opposed to it; asked anew at every move.
+    /// The push exceeds 0.8 of the pull, and its direction is within 26 degrees of the opposite of the pull; checked at
+    /// every move.
     Opposed,
 }
 
-/// A push that opposes the pull is more than this share of it ...
+/// An opposing push is larger than this share of the pull ...
 const OPPOSED_SHARE: f64 = 0.8;
-/// ... and the cosine of the angle between them is below that of 154 degrees.
+/// ... and the cosine of the angle between the two is below that of 154 degrees.
 const OPPOSED_COS: f64 = -0.898_794;
 
 impl Gate {
-    /// Whether pull and push alone open it; never where moves decide.
+    /// Whether pull and push alone open the gate; always false for [`Self::Detected`].
     pub fn is_open(self, forces: &Forces) -> bool {
         let (pull, push) = (forces.attraction, forces.repulsion);
         match self {
@@ -35,22 +37,22 @@ impl Gate {
     }
 }
 
-/// Moves that the detector looks back over.
+/// Number of moves examined by the detector.
 const WINDOW: usize = 6;
-/// It is a trap when the net displacement falls below this share of what those moves could have covered.
+/// A trap: the net displacement is below this share of the distance that those moves could have covered.
 const SHARE: f64 = 0.35;
 
-/// Detects a trap from the last six moves: they led less than 0.35 of their length away from where they began, the target
-/// is more than a step off, and an obstacle acts.
+/// Detects a trap from the last six moves. It is a trap if their net displacement is less than 0.35 of the distance
+/// they could have covered, the target is more than a step away, and an obstacle acts.
 ///
-/// Wang et al. 2023 do not say when they call the robot trapped; window and share are ours.
+/// Wang et al. 2023 do not state when the robot counts as trapped; window and share are our choices.
 #[derive(Debug, Clone, Default)]
 pub struct TrapDetector {
     recent: VecDeque<Point>,
 }
 
 impl TrapDetector {
-    /// Takes the place reached by a move.
+    /// Records the position reached by a move.
     pub fn record(&mut self, at: Point) {
         self.recent.push_back(at);
         if self.recent.len() > WINDOW + 1 {
@@ -58,7 +60,8 @@ impl TrapDetector {
         }
     }
 
-    /// Whether the robot is trapped; `expected_m` is what a free move would cover, `lag_m` the distance to the target.
+    /// Whether the robot is trapped. `expected_m` is the distance that an unobstructed move would cover, and `lag_m`
+    /// the distance to the target.
     pub fn is_trapped(&self, expected_m: f64, step_m: f64, lag_m: f64, obstacle_acts: bool) -> bool {
         let (Some(first), Some(last)) = (self.recent.front(), self.recent.back()) else { return false };
         let hardly_moved = (last - first).norm() < SHARE * WINDOW as f64 * expected_m;

@@ -1,30 +1,31 @@
-//! When the rotating force acts, and which way round.
+//! When the rotating force acts, and in which direction.
 
 use crate::trap::Gate;
 use geometry::Vector;
 use std::collections::BTreeMap;
 use steering::{Contact, Side, Source};
 
-/// Moves for which a gate stays open once the detector has fired.
+/// Number of moves for which a gate stays open after the detector has fired.
 const HOLD_MOVES: usize = 10;
 
-/// How the rotating force of Wang et al. 2023 is read.
+/// The reading of the rotating force of Wang et al. 2023.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reading {
     /// No rotating force.
     Off,
-    /// As printed: about every obstacle within range, always.
+    /// As printed: around every obstacle in range, always.
     Literal,
-    /// Only while the gate is open; of all readings that were tried only such come near the printed figures.
+    /// Only while the gate is open. Of all readings tried, only this kind comes close to the printed figures.
     Gated,
 }
 
-/// How the sense of rotation is chosen.
+/// How the direction of rotation is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SenseRule {
-    /// Always counter-clockwise, as printed: helps at obstacles on the left hand, pushes back at those on the right.
+    /// Always counter-clockwise, as printed. Helps at obstacles on the left and pushes back at those on the right.
     CounterClockwise,
-    /// The one that points more toward the target when the force begins to act, kept while the obstacle is in range.
+    /// The direction that points more toward the target when the force begins to act; kept while the obstacle is in
+    /// range.
     SideAware,
 }
 
@@ -39,13 +40,13 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// Closed, and with no side chosen.
+    /// Creates the state with a closed gate and no side chosen.
     pub fn new(reading: Reading, rule: SenseRule, gate: Gate) -> Self {
         let hold = if gate == Gate::Detected { HOLD_MOVES } else { 1 };
         Self { reading, rule, hold, open_for: 0, kept: BTreeMap::new() }
     }
 
-    /// Takes the state of the next move: whether the law is trapped, and what is near.
+    /// Takes over the state of the next move: whether the law is trapped, and the nearby contacts.
     pub fn update(&mut self, is_trapped: bool, contacts: &[Contact], to_goal: Vector) {
         self.open_for = if is_trapped { self.hold } else { self.open_for.saturating_sub(1) };
         self.kept.retain(|source, _| contacts.iter().any(|c| c.source == *source));
@@ -65,7 +66,7 @@ impl Turning {
         }
     }
 
-    /// On which side to pass a contact, if the force acts.
+    /// The side on which to pass a contact, if the force acts.
     pub fn side(&self, contact: &Contact) -> Option<Side> {
         if !self.is_on() || contact.source == Source::Wall {
             return None;

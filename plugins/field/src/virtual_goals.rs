@@ -1,7 +1,7 @@
-//! The improved field of Yang et al. 2021: virtual goals on a square round the goal, and a pull that does not fade.
+//! The improved field of Yang et al. 2021: virtual goals on a square around the goal, and a pull that does not fade.
 //!
-//! The printed formulas have lost signs and roots. What is built is: attraction toward the goal, repulsion away from
-//! obstacles, at the goal a constant pull `k d_0`, and an evaluation of virtual goals that shuns the blocked direction.
+//! The printed formulas have lost signs and roots. Implemented here: attraction toward the goal, repulsion away from
+//! obstacles, a constant pull `k d_0` at the goal, and a score for virtual goals that avoids the blocked direction.
 
 use crate::{
     goal_law::{GoalLaw, TangentUse},
@@ -12,15 +12,15 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::KnownMap;
 
-/// Below this share of the attraction gain a force counts as zero (eq. 17 says "= 0", which steps never meet).
+/// Below this share of the attraction gain a force counts as zero (eq. 17 says "= 0", which discrete steps never meet).
 const ZERO_SHARE: f64 = 0.5;
-/// Steps over which the robot must have moved on.
+/// Number of steps over which the robot must have moved.
 const STALL_STEPS: usize = 6;
-/// It counts as moving when it got further than this many steps.
+/// The robot counts as moving if it moved further than this many steps.
 const STALL_SHARE: f64 = 1.5;
-/// A virtual goal is reached at this many steps.
+/// A virtual goal counts as reached within this many steps.
 const REACHED_STEPS: f64 = 2.0;
-/// A virtual goal is kept for this many steps at most.
+/// Maximum number of steps for which a virtual goal is kept.
 pub const HOLD_STEPS: usize = 30;
 
 /// Gains and ranges (Table 2 of the paper).
@@ -28,28 +28,29 @@ pub const HOLD_STEPS: usize = 30;
 pub struct SquareLaw {
     /// Attraction gain.
     pub k_att: f64,
-    /// Range of the goal: nearer than this the pull is constant and no virtual goal is used, metres.
+    /// Range of the goal, metres: closer than this the pull is constant and no virtual goal is used.
     pub d_0_m: f64,
-    /// Distance of the virtual goals from the goal, metres; the paper gives none.
+    /// Distance of the virtual goals from the goal, metres; the paper gives no value.
     pub square_m: f64,
-    /// Whether virtual goals and the constant pull are used at all; without it is the classical field.
+    /// Whether virtual goals and the constant pull are used. Without them the field is the classical one.
     pub improved: bool,
-    /// A virtual goal is kept for this many steps at most.
+    /// Maximum number of steps for which a virtual goal is kept.
     pub hold_steps: usize,
 }
 
-/// The virtual goal that is being used, and what the robot did lately.
+/// The virtual goal in use, and the robot's recent steps.
 #[derive(Debug, Clone, Default)]
 pub struct VirtualGoals {
     current: Option<Point>,
     held: usize,
     recent: VecDeque<Point>,
-    /// How many have been used.
+    /// Number of virtual goals used so far.
     pub used: u32,
 }
 
 impl SquareLaw {
-    /// The pull on a robot (eq. 17): toward the virtual goal if there is one, else toward the goal, constant near it.
+    /// The pull on a robot (eq. 17): toward the virtual goal if there is one, otherwise toward the goal; constant near
+    /// the goal.
     pub fn attraction(&self, at: Point, goal: Point, virtual_goal: Option<Point>) -> Vector {
         let way = goal - at;
         let near = self.improved && way.norm() < self.d_0_m;
@@ -60,22 +61,22 @@ impl SquareLaw {
         }
     }
 
-    /// The push of obstacles and wall that goes with it; gains and range as those of [`GoalLaw`].
+    /// The matching push of obstacles and wall. Gain and ranges are as in [`GoalLaw`].
     pub fn push(&self, k_rep: f64, rho_m: f64, wall_gain: f64) -> GoalLaw {
         let pull = Pull::Capped { k: self.k_att, d_0_m: self.d_0_m };
         let push = PushForm::Khatib;
         GoalLaw { pull, k_rep, push, rho_m, tangent: TangentUse::Off, tangent_weight: 0.0, wall_gain }
     }
 
-    /// The corners of the square round the goal, at 45, 135, 225 and 315 degrees.
+    /// The corners of the square around the goal, at 45, 135, 225 and 315 degrees.
     pub fn corners(&self, goal: Point) -> [Point; 4] {
         let half_m = self.square_m * std::f64::consts::FRAC_1_SQRT_2;
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]
             .map(|(x, y)| goal + Vector::new(x * half_m, y * half_m))
     }
 
-    /// The corner that lies furthest from the blocked direction (eq. 18 with its second vector reversed; as printed
-    /// the blocked direction itself scores best). `push` is the sum of all repulsion; of equals the first counts.
+    /// The corner furthest from the blocked direction (eq. 18 with its second vector reversed; as printed, the blocked
+    /// direction itself scores best). `push` is the sum of all repulsion. If scores are equal, the first corner counts.
     pub fn best_corner(
         &self,
         at: Point,
@@ -93,7 +94,7 @@ impl SquareLaw {
 }
 
 impl VirtualGoals {
-    /// Uses the best corner that is free from now on, if there is one; `push` is the sum of all repulsion.
+    /// Switches to the best free corner, if there is one. `push` is the sum of all repulsion.
     pub fn take_best(&mut self, law: &SquareLaw, at: Point, goal: Point, push: Vector, map: &KnownMap) {
         if let Some(corner) = law.best_corner(at, goal, push, |corner| map.clearance_m(corner) > 0.0) {
             self.take(corner);
@@ -105,8 +106,8 @@ impl VirtualGoals {
         self.current
     }
 
-    /// Takes the place of the next step and says whether the robot is in a minimum and needs a virtual goal; `force` is
-    /// what it would feel without one.
+    /// Records the position of the next step. Returns whether the robot is in a local minimum and needs a virtual goal.
+    /// `force` is the force without a virtual goal.
     pub fn needs_one(&mut self, law: &SquareLaw, at: Point, goal: Point, force: Vector, step_m: f64) -> bool {
         let stalled = self.record(at, step_m);
         if !law.improved || (goal - at).norm() < law.d_0_m {
@@ -124,7 +125,7 @@ impl VirtualGoals {
         force.norm() < ZERO_SHARE * law.k_att || stalled
     }
 
-    /// Uses a virtual goal from now on.
+    /// Switches to a virtual goal.
     pub fn take(&mut self, corner: Point) {
         self.current = Some(corner);
         self.held = 0;
@@ -132,7 +133,7 @@ impl VirtualGoals {
         self.recent.clear();
     }
 
-    /// Whether the last steps led hardly anywhere.
+    /// Whether the recent steps made almost no headway.
     fn record(&mut self, at: Point, step_m: f64) -> bool {
         self.recent.push_back(at);
         if self.recent.len() <= STALL_STEPS {

@@ -1,4 +1,4 @@
-//! Walking a law over the known map, move by move.
+//! Walks a law over the known map, move by move.
 
 use crate::{
     escape::Situation,
@@ -10,10 +10,10 @@ use geometry::{Point, Vector};
 use std::collections::VecDeque;
 use steering::Contact;
 
-/// A walk counts as trapped after this many moves that lead nowhere.
+/// A walk counts as trapped after this many moves without headway.
 const TRAP_MOVES: usize = 25;
 
-/// One walk and its memory.
+/// A walk in progress and its state.
 pub struct Walker<'a> {
     scene: &'a Scene,
     settings: &'a FieldSettings,
@@ -25,21 +25,21 @@ pub struct Walker<'a> {
     trap: Option<Point>,
 }
 
-/// One move to make.
+/// A move to make.
 #[derive(Debug, Clone, Copy)]
 pub struct Move {
-    /// Where to.
+    /// The target of the move.
     pub target: Point,
-    /// Longest move that counts as ordinary, metres.
+    /// Longest ordinary move, metres.
     pub step_m: f64,
     /// Longest move allowed now, metres.
     pub cap_m: f64,
-    /// What a free move covers here, metres.
+    /// Distance that an unobstructed move would cover, metres.
     pub expected_m: f64,
 }
 
 impl<'a> Walker<'a> {
-    /// A walk from here.
+    /// Starts a walk.
     pub fn new(scene: &'a Scene, settings: &'a FieldSettings, start: Point) -> Self {
         Self {
             scene,
@@ -53,24 +53,24 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Where the walk is.
+    /// The present position.
     pub fn at(&self) -> Point {
         self.at
     }
 
-    /// Where the walk was first trapped: 25 moves that led less than a step away, with the target more than a step off
-    /// all the time and two in the end.
+    /// The position where the walk was first trapped: 25 moves led less than a step away, with the target more than one
+    /// step away throughout and more than two steps at the end.
     pub fn trap(&self) -> Option<Point> {
         self.trap
     }
 
-    /// Every point of the walk, the start first.
+    /// All points of the walk, starting with the start.
     pub fn into_path(self) -> Vec<Point> {
         self.path
     }
 
-    /// Moves along the resultant, by no more than the distance to the target or what the force allows: a free way ends
-    /// exactly there.
+    /// Moves along the resultant, no further than the target or than the force allows. An unobstructed path ends
+    /// exactly at the target.
     pub fn advance(&mut self, next: &Move) {
         let to_target = next.target - self.at;
         let (law, step_m) = (&self.settings.law, next.step_m);
@@ -111,14 +111,14 @@ impl<'a> Walker<'a> {
         }
         self.lagging.push_back(self.at);
         if self.lagging.len() > TRAP_MOVES {
-            let first = self.lagging.pop_front().expect("more than 25 places are kept");
+            let first = self.lagging.pop_front().expect("more than 25 positions are kept");
             let led_nowhere = (self.at - first).norm() < step_m && lag_m > 2.0 * step_m;
             self.trap = self.trap.or(led_nowhere.then_some(self.at));
         }
     }
 }
 
-/// `wanted`, or as near to it as a turn by the limit gets; unit vectors.
+/// Returns `wanted`, or the nearest direction within the turn limit. Both are unit vectors.
 fn turned_at_most(heading: Vector, wanted: Vector, limit_rad: f64) -> Vector {
     let turn_rad = heading.perp(&wanted).atan2(heading.dot(&wanted));
     if turn_rad.abs() <= limit_rad {

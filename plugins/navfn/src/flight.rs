@@ -3,27 +3,27 @@
 use planner_api::{Command, Ctx, Result, Sensed, Site, Status};
 use steering::{Flight, Forces, Pilot, Tick, evade};
 
-/// Follows the plan, half a metre ahead, with the guard's word as the last; what moves is evaded.
+/// Follows the plan, aiming half a metre ahead. Moving obstacles are evaded, and every velocity passes the guard last.
 pub(crate) struct Flyer {
     flight: Flight,
     pilot: Pilot,
 }
 
 impl Flyer {
-    /// A flyer at a site.
+    /// Creates a flyer for a site.
     pub(crate) fn new(flight: Flight, site: &Site<'_>) -> Self {
         Self { flight, pilot: Pilot::pursuing(site) }
     }
 
-    /// Takes over changed settings on the way.
+    /// Applies changed settings during the flight.
     pub(crate) fn set(&mut self, flight: Flight) {
         self.flight = flight;
     }
 
-    /// The velocity until the next tick; without a plan the robot waits for one.
+    /// Returns the velocity until the next tick. Without a plan the robot waits for one.
     ///
     /// # Errors
-    /// When the console wants it to stop.
+    /// When the console requests a stop.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         if sensed.path_ahead.is_empty() {

@@ -1,4 +1,4 @@
-//! Goal planners that always arrive, or prove that nobody can.
+//! Goal planners that always arrive, or prove that the goal cannot be reached.
 #![forbid(unsafe_code)]
 
 pub mod navfn;

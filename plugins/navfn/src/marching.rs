@@ -1,15 +1,14 @@
-//! The distance to a goal over free cells, by fast marching, and its repair when cells change.
+//! The distance to a goal over free cells, computed by fast marching and repaired when cells change.
 //!
 //! The field solves the eikonal equation |grad T| = 1 with the first-order upwind scheme of Sethian 1996. Cells are
-//! taken in buckets as wide as the least increase of the scheme, the edge over the square root of two, so that no
-//! heap is needed (Tsitsiklis 1995; Yatziv et al. 2006).
+//! processed in buckets whose width is the smallest increase of the scheme, the cell edge divided by the square root of
+//! two, so no heap is needed (Tsitsiklis 1995; Yatziv et al. 2006).
 //!
-//! When cells are blocked, those that lost their support are raised: a cell whose value no longer follows from its
-//! neighbours is emptied, and so on outward. What was emptied is then marched over again from its rim. When cells are
-//! freed, the march begins from them. Nothing else is touched, and marching stops when the robot's cell is settled; the
-//! rest waits for the next time.
+//! When cells are blocked, every cell whose value no longer follows from its neighbours is cleared, spreading outward.
+//! The cleared area is then marched again from its rim. When cells are freed, the march starts from them. Nothing else
+//! is touched. Marching stops when the robot's cell is settled; the rest is left for the next call.
 
-/// A value counts as supported by its neighbours up to this share of a cell.
+/// A value counts as supported by its neighbours up to this error, as a share of a cell.
 const ROUNDING: f32 = 1e-4;
 
 /// Distances to the goal.
@@ -17,24 +16,25 @@ const ROUNDING: f32 = 1e-4;
 pub struct Field {
     columns: usize,
     cell_m: f32,
-    /// Buckets to the metre.
+    /// Number of buckets per metre.
     buckets_per_m: f32,
     blocked: Vec<bool>,
-    /// Distance from the goal, metres; infinite where it is blocked or not known yet.
+    /// Distance from the goal, metres; infinite for cells that are blocked or not yet reached.
     distance_m: Vec<f32>,
     is_source: Vec<bool>,
-    /// Cells that may lower their neighbours, with the distance they had when they came here, by that distance.
+    /// The cells that may lower their neighbours, in buckets by distance, each with its distance at the time it was
+    /// added.
     buckets: Vec<Vec<(u32, f32)>>,
-    /// Emptied buckets, to be filled again: only the front of the march takes memory.
+    /// Emptied buckets for reuse, so that only the front of the march takes memory.
     spare: Vec<Vec<(u32, f32)>>,
-    /// No bucket before this one holds anything.
+    /// The first bucket that may hold anything.
     first: usize,
     n_settled: usize,
 }
 
 impl Field {
-    /// A field over cells in rows of `columns`, of which the outermost are blocked, that is to be marched from sources at
-    /// known distances.
+    /// Creates a field that is not yet marched, over cells in rows of `columns`. The outermost cells are blocked; the
+    /// march starts from sources at known distances.
     pub fn new(columns: usize, cell_m: f64, blocked: Vec<bool>, sources: &[(usize, f64)]) -> Self {
         let n = blocked.len();
         let mut field = Self {
@@ -56,22 +56,23 @@ impl Field {
         field
     }
 
-    /// Distance from a cell to the goal, metres; infinite if there is no way, or if the march did not get there yet.
+    /// Returns the distance from a cell to the goal, metres. It is infinite if there is no path or the march has not
+    /// reached the cell.
     pub fn distance_m(&self, cell: usize) -> f32 {
         self.distance_m[cell]
     }
 
-    /// Whether the distance of a cell was given.
+    /// Whether the distance of a cell was given as a source.
     pub fn is_source(&self, cell: usize) -> bool {
         self.is_source[cell]
     }
 
-    /// Number of cells that were settled since the field was made.
+    /// The number of cells settled since the field was created.
     pub fn n_settled(&self) -> usize {
         self.n_settled
     }
 
-    /// Cells have been blocked: empties what they supported and makes ready to march over it again.
+    /// Blocks cells: clears everything that they supported, and prepares the march to recompute it.
     pub fn block(&mut self, cells: &[usize]) {
         let mut emptied: Vec<usize> = Vec::new();
         for &cell in cells {
@@ -98,7 +99,7 @@ impl Field {
         self.refill(&emptied);
     }
 
-    /// Cells have been freed: makes ready to march over them.
+    /// Frees cells, and prepares the march to cover them.
     pub fn free(&mut self, cells: &[usize]) {
         for &cell in cells {
             self.blocked[cell] = false;
@@ -106,13 +107,14 @@ impl Field {
         self.refill(cells);
     }
 
-    /// Marches until a cell is settled, or there is nothing left to march over; `keep_going` is asked now and then.
+    /// Marches until a cell is settled or nothing is left to march over. Calls `keep_going` occasionally and stops when
+    /// it returns false.
     pub fn march(&mut self, until: usize, keep_going: &mut dyn FnMut() -> bool) {
         while self.first < self.buckets.len() && !self.is_settled(until) && keep_going() {
             let mut bucket = std::mem::take(&mut self.buckets[self.first]);
-            // What is settled may put cells into the same bucket again, by rounding.
+            // Rounding can make a settled cell add cells to the same bucket again.
             while let Some((cell, distance_m)) = bucket.pop() {
-                // What was lowered since, or emptied, came here again or has nothing to give.
+                // A cell that has been lowered or cleared since is in another bucket, or has nothing to pass on.
                 if self.distance_m[cell as usize].to_bits() == distance_m.to_bits() {
                     self.settle(cell as usize);
                 }
@@ -124,7 +126,7 @@ impl Field {
         }
     }
 
-    /// Whether the distance of a cell will not change any more, unless cells are blocked or freed.
+    /// Whether the distance of a cell is final unless cells are blocked or freed.
     fn is_settled(&self, cell: usize) -> bool {
         self.bucket_of(self.distance_m[cell]).is_some_and(|bucket| bucket < self.first)
     }
@@ -172,16 +174,16 @@ impl Field {
     }
 
     fn neighbours(&self, cell: usize) -> [usize; 4] {
-        // Only cells within the frame are asked.
+        // Only cells inside the frame are evaluated.
         [cell - 1, cell + 1, cell - self.columns, cell + self.columns]
     }
 
-    /// The distance that follows from the neighbours.
+    /// The distance of a cell that follows from its neighbours.
     fn supported_m(&self, cell: usize) -> f32 {
         let [west, east, south, north] = self.neighbours(cell).map(|neighbour| self.distance_m[neighbour]);
         let (a, b, edge_m) = (west.min(east), south.min(north), self.cell_m);
         let apart_m = (a - b).abs();
-        // Two infinities have no difference.
+        // The difference of two infinities is undefined.
         if apart_m < edge_m {
             0.5 * (a + b + (2.0 * edge_m * edge_m - apart_m * apart_m).sqrt())
         } else {

@@ -11,17 +11,21 @@ use planner_api::{
 use steering::params as p;
 use world::shortest::{GrownFloor, NoWay, Way};
 
-/// A way is pulled taut about what lies within so many cells of it.
+/// A path is pulled taut around everything within this many cells of it.
 const REACH_CELLS: f64 = 4.0;
 
-const CELLS: ParamSpec = int("cells", "Cells along the floor", "", 20, 2000, 240)
-    .help("Cells along the longer side of the floor. More of them find narrower ways and take more time.")
+const CELLS: ParamSpec = int("cells", "Cells along the longer side", "", 20, 2000, 240)
+    .help(
+        "Number of cells along the longer side of the floor. More cells find narrower paths and take \
+           more time.",
+    )
     .group("Plan");
 
-/// Fast marching from the goal over the cells of the floor, down the field from the robot, and the way pulled taut.
+/// Fast marching from the goal over the cells of the floor, then descent of the field from the robot; the resulting
+/// path is pulled taut.
 ///
-/// The field is kept: an obstacle that is discovered repairs it. Where the cells show no way, the exact search has the
-/// last word, so it arrives or proves that nobody can.
+/// The field is kept between plans and repaired when an obstacle is discovered. If the cells show no path, the exact
+/// search decides, so the planner either arrives or proves that the goal cannot be reached.
 pub struct Navfn {
     clearance_m: f64,
     cells: usize,
@@ -32,8 +36,9 @@ pub struct Navfn {
 impl Planner for Navfn {
     const ID: &'static str = "navfn";
     const NAME: &'static str = "Navigation function";
-    const ABOUT: &'static str = "Eikonal distance to the goal on a grid, repaired when the map changes, and string pulling; \
-                                 proves it when there is no way; evades what moves.";
+    const ABOUT: &'static str = "Eikonal distance to the goal on a grid, repaired when the map changes, \
+                                 and a path pulled taut. Proves when no path exists. Evades moving \
+                                 obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[CELLS, p::CLEARANCE, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -92,7 +97,7 @@ impl Navfn {
         }
         let exact = floor.shortest(problem.start, problem.goal, &mut keep_going)?;
         let message = format!(
-            "the cells of {:.2} m are too coarse for the only way; the exact search found it",
+            "cells of {:.2} m are too coarse for the only path; found it with the exact search",
             navigation.cell_m()
         );
         ctx.log(LogLevel::Info, &message);

@@ -7,11 +7,12 @@ use crate::{
 };
 use world::{Boundary, Point, Vector, shortest::GrownFloor};
 
-/// Distances within so many cells of the goal are exact, if nothing is in the way: a march is worst near its source.
+/// Cells within this many cells of the goal get their exact distance if nothing is in between: a march is least
+/// accurate near its source.
 const SOURCE_CELLS: usize = 8;
-/// A way down the field may take this many steps for each cell.
+/// Largest number of steps per cell when descending the field.
 const STEPS_PER_CELL: usize = 4;
-/// Length of a step down the field, in cells.
+/// Length of a descent step, in cells.
 const STEP_CELLS: f64 = 0.7;
 
 /// Distances to a goal over the cells of a floor.
@@ -26,7 +27,7 @@ pub(crate) struct Navigation {
 }
 
 impl Navigation {
-    /// The navigation function of a problem with so many cells along its longer side.
+    /// Creates the navigation function of a problem, with this many cells along the longer side of the floor.
     pub(crate) fn new(problem: &PlanningProblem, floor: &GrownFloor, cells: usize) -> Self {
         let mut raster = Raster::new(&problem.boundary, problem.wall_keep_m, cells);
         for grown in &problem.shapes {
@@ -43,17 +44,17 @@ impl Navigation {
         }
     }
 
-    /// Edge of a cell, metres.
+    /// The edge length of a cell, metres.
     pub(crate) fn cell_m(&self) -> f64 {
         self.raster.cell_m()
     }
 
-    /// Number of cells settled since the field was made.
+    /// The number of cells settled since the field was created.
     pub(crate) fn n_settled(&self) -> usize {
         self.field.n_settled()
     }
 
-    /// Takes over a changed problem; the field is repaired, or recomputed if goal or wall changed.
+    /// Takes over a changed problem. The field is repaired, or recomputed if the goal or the wall has changed.
     pub(crate) fn update(&mut self, problem: &PlanningProblem, floor: &GrownFloor, cells: usize) {
         let same_wall =
             self.boundary == problem.boundary && (self.wall_keep_m - problem.wall_keep_m).abs() < 1e-12;
@@ -65,7 +66,7 @@ impl Navigation {
         for index in 0..self.shapes.len().max(problem.shapes.len()) {
             let (old, new) = (self.shapes.get(index), problem.shapes.get(index));
             if old != new {
-                // First on, then off: what stays covered does not change.
+                // Add first, then remove, so that cells that stay covered do not change.
                 if let Some(grown) = new {
                     self.raster.cover(grown, &mut blocked);
                 }
@@ -75,7 +76,7 @@ impl Navigation {
             }
         }
         self.shapes.clone_from(&problem.shapes);
-        // A cell may have been both.
+        // A cell may be in both lists.
         let is_blocked: Vec<bool> = self.raster.blocked().collect();
         blocked.retain(|cell| is_blocked[*cell]);
         freed.retain(|cell| !is_blocked[*cell]);
@@ -87,8 +88,8 @@ impl Navigation {
         }
     }
 
-    /// A way down the field from a start to the goal; it may cut corners by less than a cell. None if the cells show
-    /// no way, which may be their own fault.
+    /// Returns a path down the field from a start to the goal. It may cut corners by less than a cell. Returns `None`
+    /// if the cells show no path, which may be due to their coarseness.
     pub(crate) fn way(
         &mut self,
         start: Point,
@@ -118,12 +119,12 @@ impl Navigation {
         None
     }
 
-    /// A step along the gradient, or to the lowest neighbour where the gradient leads astray.
+    /// A step along the gradient, or to the lowest neighbour where the gradient does not lead down.
     fn step_down(&self, at: Point, cell: usize) -> Point {
         let here_m = self.field.distance_m(cell);
         let next = at + self.downhill(cell) * (STEP_CELLS * self.raster.cell_m());
         let next_cell = self.raster.cell_at(next);
-        // In the same cell the way goes straight on, so it leaves it.
+        // Within the same cell the path continues straight, so that it leaves the cell.
         if next_cell == cell || self.field.distance_m(next_cell) < here_m {
             return next;
         }
@@ -137,11 +138,11 @@ impl Navigation {
 
     fn around(&self, cell: usize) -> [usize; 4] {
         let columns = self.raster.columns();
-        // A free cell is never in the frame.
+        // A free cell is never part of the frame.
         [cell - 1, cell + 1, cell - columns, cell + columns]
     }
 
-    /// Unit vector against the upwind gradient.
+    /// The unit vector against the upwind gradient.
     fn downhill(&self, cell: usize) -> Vector {
         let here_m = self.field.distance_m(cell);
         let [west, east, south, north] =
@@ -151,7 +152,7 @@ impl Navigation {
     }
 }
 
-/// The field of a goal that is yet to be marched.
+/// Creates the field of a goal, not yet marched.
 fn field_of(raster: &Raster, goal: Point, floor: &GrownFloor) -> Field {
     let spare_m = floor.spare_m(goal);
     let sees =

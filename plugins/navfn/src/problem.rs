@@ -1,4 +1,4 @@
-//! What a request asks of a point robot: its start and goal among shapes grown by the hull, and how it refuses.
+//! A request for a point robot: start and goal among shapes grown by the hull, and how unsolvable requests are refused.
 
 use planner_api::{
     Code, Ctx, LogLevel, Plan, PlanRequest, PlannerError, Reason, Result, Site, Task, ZoneKind,
@@ -9,48 +9,49 @@ use world::{
     shortest::{GrownFloor, NoWay, Way},
 };
 
-/// Kept beyond what is demanded, so that no rounding counts as a touch, metres.
+/// Kept in addition to the required distance, so that rounding never counts as contact, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Points of a plan are no further apart than this, so that the mission can locate the robot along it, metres.
+/// Largest distance between points of a plan, so that the mission can locate the robot along it, metres.
 const SPACING_M: f64 = 0.2;
 
-/// The shape of something solid and what the middle of the robot keeps from it.
+/// A solid shape and the distance that the hull centre keeps from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct GrownShape {
-    /// Its outline.
+    /// The outline of the shape.
     pub shape: Shape,
     /// The distance kept, metres.
     pub keep_m: f64,
 }
 
-/// A request with everything solid grown by hull and clearance.
+/// A request with all solids grown by hull and clearance.
 ///
-/// Where the robot stands, or its goal lies, nearer to something than the clearance, it keeps as much from it as there
-/// is: it must be able to get away, and in.
+/// If the start or the goal is closer to a solid than the clearance, the path keeps only the distance that is available
+/// there. The robot must be able to leave the start and reach the goal.
 #[derive(Debug, Clone)]
 pub(crate) struct PlanningProblem {
-    /// From where.
+    /// The start.
     pub start: Point,
-    /// To where.
+    /// The goal.
     pub goal: Point,
     /// The wall.
     pub boundary: Boundary,
-    /// What the middle of the robot keeps from the wall, metres.
+    /// The distance that the hull centre keeps from the wall, metres.
     pub wall_keep_m: f64,
     /// Obstacles and no-go zones.
     pub shapes: Vec<GrownShape>,
-    /// What was discovered on the goal, with its name; the way leads there all the same.
+    /// Obstacles discovered on the goal, with their names. The path leads to the goal anyway.
     pub on_goal: Vec<(String, GrownShape)>,
 }
 
 impl PlanningProblem {
-    /// The problem of a request for a robot that keeps this clearance, or the mission's if that is larger, metres.
+    /// Creates the problem of a request for a robot that keeps this clearance, or the mission's if that is larger,
+    /// metres.
     ///
     /// # Errors
-    /// The task is not to reach a goal, or the hull touches something at the start or at the goal.
+    /// The task is not a goal, or the hull touches something at the start or at the goal.
     pub(crate) fn new(request: &PlanRequest<'_>, clearance_m: f64) -> Result<Self> {
         let Task::Goto { goal, .. } = request.task else {
-            let message = "plans to single goals only; take a planner for preset paths or coverage";
+            let message = "plans to single goals only; choose another planner for preset paths or coverage";
             return Err(PlannerError::new(Code::Unsupported, message));
         };
         let (site, start) = (request.site, request.start.position);
@@ -59,21 +60,19 @@ impl PlanningProblem {
         }
         let hull_m = site.limits.radius_m;
         let wanted_m = hull_m + site.clearance_m.max(clearance_m) + ROUNDING_M;
-        // Under way the estimate may have the hull touch what it does not touch.
+        // During a mission the estimated position may put the hull in contact with something that it does not touch.
         let least_at_start_m = if *request.reason == Reason::Start { hull_m } else { 0.0 };
         let boundary = site.boundary.to_owned();
-        let keep_m = |distance_m: &dyn Fn(Point) -> f64, what: &str| {
-            fitting(distance_m(start), wanted_m, least_at_start_m)
-                .ok_or_else(|| refused(site, start, distance_m(start), &format!("start touches {what}")))
-                .and_then(|at_start_m| {
-                    let at_goal_m = fitting(distance_m(goal), wanted_m, hull_m).ok_or_else(|| {
-                        refused(site, goal, distance_m(goal), &format!("goal touches {what}"))
-                    })?;
-                    Ok(at_start_m.min(at_goal_m))
-                })
+        let keep_m = |distance_m: &dyn Fn(Point) -> f64, solid: Solid<'_>| {
+            let kept_m = |end, at, least_m| {
+                let free_m = distance_m(at);
+                fitting(free_m, wanted_m, least_m).ok_or_else(|| refused(site, (end, at), free_m, solid))
+            };
+            Ok(kept_m(End::Start, start, least_at_start_m)?.min(kept_m(End::Goal, goal, hull_m)?))
         };
-        let wall_keep_m = keep_m(&|at| boundary.wall_distance_m(at), "the wall")?;
-        // What is discovered on the goal may be on its way: when it was seen for a while, it will be known.
+        let wall_keep_m = keep_m(&|at| boundary.wall_distance_m(at), Solid::Wall)?;
+        // An obstacle discovered on the goal may be moving; its motion is known only after it has been observed for a
+        // while.
         let is_on_goal = |(_, discovered, shape): &(String, bool, Shape)| {
             *request.reason != Reason::Start && *discovered && shape.distance_m(goal) < hull_m
         };
@@ -86,27 +85,27 @@ impl PlanningProblem {
         let shapes = others
             .into_iter()
             .map(|(name, _, shape)| {
-                let keep_m = keep_m(&|at| shape.distance_m(at), &name)?;
+                let keep_m = keep_m(&|at| shape.distance_m(at), Solid::Named(&name))?;
                 Ok(GrownShape { shape, keep_m })
             })
             .collect::<Result<Vec<GrownShape>>>()?;
         Ok(Self { start, goal, boundary, wall_keep_m, shapes, on_goal })
     }
 
-    /// A way as a plan; it says so where something was discovered on the goal.
+    /// Turns a path into a plan, and logs a warning if something was discovered on the goal.
     ///
-    /// The plan leads up to a disc: moving obstacles are seen as discs, and the console replans only for what comes into
-    /// the way. Before any other shape the plan ends.
+    /// The plan leads up to a disc, because moving obstacles are seen as discs and the console replans only when
+    /// something enters the path. Before any other shape the plan ends.
     pub(crate) fn plan_of(&self, way: &Way, ctx: &Ctx<'_>) -> Plan {
         let mut path = polyline::resampled(&way.points(), SPACING_M);
         for (name, grown) in &self.on_goal {
             let what = if matches!(grown.shape, Shape::Disc { .. }) {
-                "the robot goes on in case it moves away"
+                "the robot will continue to the goal if the obstacle moves away"
             } else {
                 let is_free = |at: &&Point| grown.shape.distance_m(**at) >= grown.keep_m - ROUNDING_M;
                 let clear = path.iter().take_while(is_free).count();
                 path.truncate(clear.max(1));
-                "the plan ends before it"
+                "the plan ends before the obstacle"
             };
             ctx.log(LogLevel::Warn, &format!("{name} is on the goal; {what}"));
         }
@@ -115,13 +114,13 @@ impl PlanningProblem {
         Plan { path, cost, complete, ..Plan::default() }
     }
 
-    /// The floor on which the robot is a point.
+    /// The floor for a robot reduced to a point.
     pub(crate) fn grown(&self) -> GrownFloor {
         GrownFloor::new(&self.boundary, self.wall_keep_m, self.shapes.iter().map(|s| (&s.shape, s.keep_m)))
     }
 }
 
-/// What is kept from something that is this far from an end of the way; none if that is less than the least.
+/// The distance to keep from a solid that is this far from an end of the path; `None` if that is below the minimum.
 fn fitting(distance_m: f64, wanted_m: f64, least_m: f64) -> Option<f64> {
     if distance_m >= wanted_m {
         return Some(wanted_m);
@@ -129,25 +128,42 @@ fn fitting(distance_m: f64, wanted_m: f64, least_m: f64) -> Option<f64> {
     (distance_m >= least_m - ROUNDING_M && distance_m > ROUNDING_M).then_some(distance_m)
 }
 
-fn refused(site: &Site<'_>, at: Point, distance_m: f64, what: &str) -> PlannerError {
-    let is_start = what.starts_with("start");
-    let outside = what.ends_with("the wall") && distance_m < 0.0;
-    let code = match (is_start, outside) {
-        (true, false) => Code::StartOccupied,
-        (true, true) => Code::StartOutside,
-        (false, false) => Code::GoalOccupied,
-        (false, true) => Code::GoalOutside,
+/// An end of the requested path.
+#[derive(Clone, Copy)]
+enum End {
+    Start,
+    Goal,
+}
+
+/// A solid that an end of the path may touch.
+#[derive(Clone, Copy)]
+enum Solid<'a> {
+    Wall,
+    Named(&'a str),
+}
+
+fn refused(site: &Site<'_>, (end, at): (End, Point), distance_m: f64, solid: Solid<'_>) -> PlannerError {
+    let is_outside = matches!(solid, Solid::Wall) && distance_m < 0.0;
+    let (code, end) = match (end, is_outside) {
+        (End::Start, false) => (Code::StartOccupied, "start"),
+        (End::Start, true) => (Code::StartOutside, "start"),
+        (End::Goal, false) => (Code::GoalOccupied, "goal"),
+        (End::Goal, true) => (Code::GoalOutside, "goal"),
+    };
+    let solid = match solid {
+        Solid::Wall => "the wall",
+        Solid::Named(name) => name,
     };
     let message = format!(
-        "the {what}: ({:.2}, {:.2}) is {distance_m:.2} m from it, the hull needs {:.2} m",
+        "the {end} touches {solid}: ({:.2}, {:.2}) is only {distance_m:.2} m from it; the hull needs {:.2} m",
         at.x, at.y, site.limits.radius_m
     );
     PlannerError::new(code, message)
 }
 
-/// Obstacles and no-go zones with what they are called and whether they were discovered.
+/// Obstacles and no-go zones, each with its name and whether it was discovered.
 fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, bool, Shape)> + 'a {
-    // What moves is left to the flight: by the time the robot is there it will be gone.
+    // Moving obstacles are handled in flight: they will be gone when the robot arrives.
     let obstacles = site
         .obstacles
         .iter()
@@ -157,7 +173,7 @@ fn shapes<'a>(site: &'a Site<'_>) -> impl Iterator<Item = (String, bool, Shape)>
     obstacles.chain(zones.map(|zone| ("a no-go zone".to_owned(), false, zone.outline.to_owned())))
 }
 
-/// Why there is no way, for the console.
+/// The reason why there is no path, for the console.
 pub(crate) fn refusal(no_way: NoWay, ctx: &Ctx<'_>) -> PlannerError {
     let code = match no_way {
         NoWay::StartBlocked { .. } => Code::StartOccupied,

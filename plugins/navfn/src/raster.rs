@@ -1,10 +1,10 @@
-//! The floor in square cells: which of them hold no place for the middle of the robot.
+//! The floor in square cells, and which of them the hull centre cannot enter.
 
 use crate::problem::GrownShape;
 use geometry::polyline::edges;
 use world::{Boundary, Point, Shape, Vector};
 
-/// Cells of a floor, with a frame of blocked ones around it, and how many things cover the middle of each.
+/// The cells of a floor, surrounded by a frame of blocked cells. Each cell counts the solids that cover its centre.
 #[derive(Debug, Clone)]
 pub(crate) struct Raster {
     low: Point,
@@ -14,7 +14,7 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
-    /// The floor within a wall from which `keep_m` is kept, with so many cells along its longer side.
+    /// Creates the floor within a wall, keeping `keep_m` from it, with this many cells along the longer side.
     pub(crate) fn new(boundary: &Boundary, keep_m: f64, cells: usize) -> Self {
         let (low, high) = boundary.bounds();
         let extent = high - low;
@@ -27,12 +27,12 @@ impl Raster {
         raster
     }
 
-    /// Edge of a cell, metres.
+    /// The edge length of a cell, metres.
     pub(crate) fn cell_m(&self) -> f64 {
         self.cell_m
     }
 
-    /// Number of cells along x, the frame included.
+    /// The number of cells along x, including the frame.
     pub(crate) fn columns(&self) -> usize {
         self.columns
     }
@@ -42,19 +42,19 @@ impl Raster {
         self.covers.iter().map(|covers| *covers > 0)
     }
 
-    /// The middle of a cell.
+    /// The centre of a cell.
     pub(crate) fn center(&self, cell: usize) -> Point {
         let (column, row) = (cell % self.columns, cell / self.columns);
         self.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
-    /// The cell of a point of the floor; one outside is taken to the edge.
+    /// The cell that contains a point. A point outside the floor maps to a cell at the edge.
     pub(crate) fn cell_at(&self, at: Point) -> usize {
         let (column, row) = (self.column(at.x), self.row(at.y));
         row * self.columns + column
     }
 
-    /// The free cells around a point, within so many cells, with their distances, metres.
+    /// The free cells within this many cells of a point, with their distances, metres.
     pub(crate) fn free_near(&self, at: Point, reach: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (column, row) = (self.column(at.x), self.row(at.y));
         let n_rows = self.covers.len() / self.columns;
@@ -67,7 +67,7 @@ impl Raster {
         free.map(move |cell| (cell, (self.center(cell) - at).norm()))
     }
 
-    /// Puts something solid on the floor; adds the cells that are blocked by it alone.
+    /// Adds a solid to the floor, and collects the cells that it alone blocks.
     pub(crate) fn cover(&mut self, grown: &GrownShape, blocked: &mut Vec<usize>) {
         self.visit(grown, |cell, covers| {
             *covers += 1;
@@ -77,7 +77,7 @@ impl Raster {
         });
     }
 
-    /// Takes something solid away again; adds the cells that are free now.
+    /// Removes a solid from the floor, and collects the cells that become free.
     pub(crate) fn uncover(&mut self, grown: &GrownShape, freed: &mut Vec<usize>) {
         self.visit(grown, |cell, covers| {
             *covers -= 1;
@@ -95,7 +95,7 @@ impl Raster {
         (((y - self.low.y) / self.cell_m) as usize).min(self.covers.len() / self.columns - 1)
     }
 
-    /// Frees what lies within the wall.
+    /// Frees the cells inside the wall.
     fn open(&mut self, boundary: &Boundary, keep_m: f64) {
         for row in 1..self.covers.len() / self.columns - 1 {
             let y = self.center(row * self.columns).y;
@@ -119,16 +119,16 @@ impl Raster {
         }
     }
 
-    /// The cells of a row whose middles lie between two places.
+    /// The cells of a row whose centres lie between two positions.
     fn cells(&self, row: usize, from: f64, to: f64) -> std::ops::Range<usize> {
         let column = |x: f64| ((x - self.low.x) / self.cell_m - 0.5).ceil().max(0.0) as usize;
         let last = self.columns - 1;
         row * self.columns + column(from).clamp(1, last)..row * self.columns + column(to).clamp(1, last)
     }
 
-    /// Calls `change` for every cell whose middle something solid covers.
+    /// Calls `change` for every cell whose centre is covered by a solid.
     ///
-    /// Walls are taken as at least one cell thick, or a way along the cells could lead across them.
+    /// Walls are treated as at least one cell thick. Otherwise a path along the cells could cross a wall.
     fn visit(&mut self, grown: &GrownShape, mut change: impl FnMut(usize, &mut u16)) {
         let thick_m = |half_width_m: f64| (half_width_m + grown.keep_m).max(0.5001 * self.cell_m);
         let parts: Vec<(Point, Point, f64)> = match &grown.shape {
@@ -165,14 +165,14 @@ impl Raster {
     }
 }
 
-/// What a horizontal line has in common with a disc.
+/// The part of a horizontal line inside a disc.
 fn chord(center: Point, radius_m: f64, y: f64) -> Option<(f64, f64)> {
     let half_squared = radius_m * radius_m - (y - center.y) * (y - center.y);
     (radius_m > 0.0 && half_squared >= 0.0)
         .then(|| (center.x - half_squared.sqrt(), center.x + half_squared.sqrt()))
 }
 
-/// What a horizontal line has in common with everything within a radius of a segment.
+/// The part of a horizontal line within a radius of a segment.
 fn bar_chord(a: Point, b: Point, radius_m: f64, y: f64) -> Option<(f64, f64)> {
     let ends = [chord(a, radius_m, y), chord(b, radius_m, y)];
     let sides = (b - a).try_normalize(0.0).map(|along| {
@@ -184,7 +184,7 @@ fn bar_chord(a: Point, b: Point, radius_m: f64, y: f64) -> Option<(f64, f64)> {
     all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// The pieces of a horizontal line within a simple polygon.
+/// The parts of a horizontal line inside a simple polygon.
 fn crossings(vertices: &[Point], y: f64) -> Vec<(f64, f64)> {
     let crossed = edges(vertices).filter(|(a, b)| (a.y > y) != (b.y > y));
     let mut xs: Vec<f64> = crossed.map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)).collect();

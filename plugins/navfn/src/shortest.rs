@@ -7,7 +7,7 @@ use crate::{
 use planner_api::{Caps, Command, Config, Ctx, ParamSpec, Plan, PlanRequest, Planner, Result, Sensed, Site};
 use steering::params as p;
 
-/// The shortest path that hull and clearance allow on the map as it is known, by tangents and arcs; replanned
+/// The shortest path that hull and clearance allow on the known map, made of tangents and arcs. It is replanned
 /// whenever an obstacle is discovered.
 pub struct Shortest {
     clearance_m: f64,
@@ -17,8 +17,8 @@ pub struct Shortest {
 impl Planner for Shortest {
     const ID: &'static str = "shortest";
     const NAME: &'static str = "Exact shortest path";
-    const ABOUT: &'static str = "The exact shortest path among discs and polygons, by a bitangent visibility graph and \
-                                 A*; says so if none exists, and evades what moves.";
+    const ABOUT: &'static str = "Exact shortest path among discs and polygons, by a bitangent visibility \
+                                 graph and A*. Reports when no path exists. Evades moving obstacles.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];

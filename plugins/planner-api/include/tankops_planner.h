@@ -1,4 +1,4 @@
-/* tankops_planner.h - what a tankops planner in C11 or C++11 includes.
+/* tankops_planner.h - the interface for tankops planners in C11 and C++11.
  *
  * A planner is a shared library `libplanner_NAME.so` (`.dylib`, `planner_NAME.dll`) that exports one symbol:
  *
@@ -8,18 +8,19 @@
  *     TP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);
  *
  * Rules
- *  - Nothing is ever freed by the other side. Inputs belong to the console and are good for the length of the call;
- *    results are handed over by calling the console's functions in tp_host, which copy before they return.
- *  - Functions return TP_OK or one of TP_E_...; the sentence for the operator goes to host->error before that.
+ *  - Neither side frees memory of the other. Inputs belong to the console and are valid only during the call. Results
+ *    are passed to the console's functions in tp_host, which copy them before they return.
+ *  - Functions return TP_OK or one of TP_E_...; before an error, pass a sentence for the operator to host->error.
  *  - One instance is called from one thread, one call at a time. Call host->should_stop in every long loop.
- *  - Never leave a function by an exception or longjmp.
- *  - Structs only grow at the end. `size` is what its writer knew: read and write nothing beyond it. Where arrays
- *    carry a stride, step by the stride and not by sizeof.
- *  - The planner runs in a process of its own: a crash or an endless loop costs that process, not the console.
- *  - It has 256 MB of memory, 1 GB on coverage missions, used or not, and up to 62 threads. The stack of a thread counts
- *    in full: 8 MB unless pthread_attr_setstacksize says otherwise. Threads end within the call that starts them.
+ *  - No exception and no longjmp may leave a function.
+ *  - Structs grow only at the end. `size` is the size that the writer of the struct knew: read and write nothing beyond
+ *    it. Where an array has a stride, step by the stride and not by sizeof.
+ *  - The planner runs in a process of its own: a crash or an endless loop ends that process, not the console.
+ *  - The planner may allocate 256 MB of memory (1 GB on coverage missions), whether it uses it or not, and start up to
+ *    62 threads. The stack of a thread counts in full: 8 MB unless set with pthread_attr_setstacksize. Threads must end
+ *    within the call that starts them.
  *
- * Frame: the tank frame, x east, y north, metres; angles in radians, counter-clockwise from east; SI units.
+ * Units and frame: SI units; the tank frame has x east and y north; angles in radians, counter-clockwise from east.
  */
 #ifndef TANKOPS_PLANNER_H
 #define TANKOPS_PLANNER_H
@@ -34,7 +35,7 @@ extern "C" {
 #  define TP_ASSERT(what, text) _Static_assert(what, text)
 #endif
 
-#define TP_ABI_MAJOR 1u /* libraries of another major version are refused */
+#define TP_ABI_MAJOR 1u /* the console refuses libraries with a different major version */
 #define TP_ABI_MINOR 4u /* raised when something is added at the end of a struct */
 
 /* ---- numbers that cross the boundary ------------------------------------------------------------------------- */
@@ -42,53 +43,53 @@ extern "C" {
 enum tp_code {
   TP_OK = 0,
   TP_E_INVALID = 1,        /* the request makes no sense */
-  TP_E_CONFIG = 2,         /* the parameters do not fit together or do not fit the site */
+  TP_E_CONFIG = 2,         /* the parameters contradict each other or do not fit the site */
   TP_E_START_OCCUPIED = 3,
   TP_E_START_OUTSIDE = 4,
   TP_E_GOAL_OCCUPIED = 5,
   TP_E_GOAL_OUTSIDE = 6,
-  TP_E_NO_PATH = 7,        /* points handed over before are the part of the way that was found */
-  TP_E_TIMEOUT = 8,        /* should_stop said 2 */
-  TP_E_CANCELLED = 9,      /* should_stop said 1 */
-  TP_E_STUCK = 10,         /* in a local minimum */
-  TP_E_STATE = 11,         /* called in the wrong order, or a state that does not fit */
-  TP_E_UNSUPPORTED = 12,   /* not offered */
-  TP_E_INTERNAL = 13       /* a fault of the planner; 14 and 15 are reserved */
+  TP_E_NO_PATH = 7,        /* the points passed so far are the part of the path that was found */
+  TP_E_TIMEOUT = 8,        /* should_stop returned 2 */
+  TP_E_CANCELLED = 9,      /* should_stop returned 1 */
+  TP_E_STUCK = 10,         /* caught in a local minimum */
+  TP_E_STATE = 11,         /* called in the wrong order, or the state does not fit */
+  TP_E_UNSUPPORTED = 12,   /* the planner does not offer this */
+  TP_E_INTERNAL = 13       /* an internal error of the planner; 14 and 15 are reserved */
 };
 enum tp_cap { TP_CAP_GLOBAL = 1, TP_CAP_LOCAL = 2, TP_CAP_COVERAGE = 4, TP_CAP_SNAPSHOT = 8, TP_CAP_LIVE_PARAMS = 16 };
 enum tp_outline_kind { TP_DISC = 0, TP_POLYGON = 1, TP_POLYLINE = 2 };
-enum tp_obstacle_flag { TP_DISCOVERED = 1 /* seen on the way: its place carries the position error */ };
+enum tp_obstacle_flag { TP_DISCOVERED = 1 /* found during the mission: its position carries the position error */ };
 enum tp_zone_kind { TP_ZONE_NO_GO = 0, TP_ZONE_LAND = 1, TP_ZONE_UNDERWATER = 2 };
-enum tp_motion { TP_POINT = 0 /* any direction at once */, TP_UNICYCLE = 1 /* ahead and turning */ };
+enum tp_motion { TP_POINT = 0 /* moves in any direction */, TP_UNICYCLE = 1 /* drives forward and backward, and turns */ };
 enum tp_reason {
   TP_REASON_START = 0, TP_REASON_BLOCKED = 1, TP_REASON_MAP_CHANGED = 2, TP_REASON_OPERATOR = 3,
-  TP_REASON_SWAP = 4 /* `from` drove before */, TP_REASON_RECOVER = 5
+  TP_REASON_SWAP = 4 /* `from` is the previous planner */, TP_REASON_RECOVER = 5
 };
 enum tp_task {
   TP_GOTO = 0,   /* one target */
   TP_FOLLOW = 1, /* targets in order */
-  TP_COVER = 2   /* since 1.1: scan the regions with the swath and come back to targets[0], the tether's anchor; asked
-                    only of planners with TP_CAP_COVERAGE */
+  TP_COVER = 2   /* since 1.1: scan the regions and return to targets[0], the tether's anchor; requested only from
+                    planners with TP_CAP_COVERAGE */
 };
 enum tp_status { TP_MOVING = 0, TP_ARRIVED = 1, TP_STUCK = 2, TP_WAITING = 3 };
 enum tp_drive {
-  TP_TWIST = 0,    /* a: speed ahead m/s, b: turn rate rad/s */
-  TP_VELOCITY = 1  /* a, b: velocity in the tank frame, m/s; the console turns the robot into it */
+  TP_TWIST = 0,    /* a: forward speed, m/s; b: turn rate, rad/s */
+  TP_VELOCITY = 1  /* a, b: velocity in the tank frame, m/s; the console turns the robot in this direction */
 };
 enum tp_param_kind {
   TP_PARAM_FLOAT = 0, TP_PARAM_INT = 1, TP_PARAM_FLAG = 2 /* 0 or 1 */, TP_PARAM_CHOICE = 3 /* index of the word */
 };
 enum tp_leg_tag { /* since 1.1 */
   TP_LEG_SWATH = 0,     /* the tool scans new floor */
-  TP_LEG_CONNECTOR = 1, /* from the end of one lane to the beginning of another */
-  TP_LEG_RETRACT = 2,   /* back along its own way so that the tether is taken in */
-  TP_LEG_TRAVEL = 3     /* to the first lane, or home */
+  TP_LEG_CONNECTOR = 1, /* leads from the end of one lane to the beginning of another */
+  TP_LEG_RETRACT = 2,   /* retraces the path so that the tether is reeled in */
+  TP_LEG_TRAVEL = 3     /* leads to the first lane, or home */
 };
-enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change under way, through reconfigure */ };
+enum tp_param_flag { TP_PARAM_LIVE = 1 /* may change during a mission, through reconfigure */ };
 enum tp_draw_kind {
-  TP_DRAW_ARROW = 0,  /* a: foot, b: from foot to tip */
+  TP_DRAW_ARROW = 0,  /* a: foot, b: vector from foot to tip */
   TP_DRAW_CIRCLE = 1, /* a: centre, value: radius */
-  TP_DRAW_LINE = 2    /* a: from, b: to */
+  TP_DRAW_LINE = 2    /* a, b: ends */
 };
 enum tp_layer {
   TP_LAYER_ATTRACTION = 0, TP_LAYER_REPULSION = 1, TP_LAYER_ROTATION = 2, TP_LAYER_RESULTANT = 3,
@@ -96,7 +97,7 @@ enum tp_layer {
 };
 enum tp_log_level { TP_LOG_DEBUG = 0, TP_LOG_INFO = 1, TP_LOG_WARN = 2 };
 
-/* ---- values; those without a size are frozen for the major version ------------------------------------------- */
+/* ---- values; structs without a size are frozen for the major version ----------------------------------------- */
 
 typedef struct tp_str { const char *ptr; size_t len; } tp_str; /* UTF-8, no terminating zero */
 typedef struct tp_vec2 { double x, y; } tp_vec2;
@@ -112,54 +113,54 @@ typedef struct tp_outline {
 typedef struct tp_obstacle { /* may grow: use the stride */
   uint32_t id, flags;
   tp_outline outline;
-  tp_vec2 velocity;      /* m/s, as estimated; zero for what stands still (since minor 1) */
+  tp_vec2 velocity;      /* m/s, estimated; zero if it stands still or is not sensed now (since 1.1) */
 } tp_obstacle;
 typedef struct tp_zone { uint32_t kind, reserved; tp_outline outline; } tp_zone;    /* may grow: use the stride */
 
-/* ---- what the console hands over ----------------------------------------------------------------------------- */
+/* ---- what the console passes --------------------------------------------------------------------------------- */
 
 typedef struct tp_site {
-  uint32_t size, revision;  /* revision grows whenever anything here changes */
-  uint64_t seed;            /* start of every random choice, so that a plan can be repeated */
+  uint32_t size, revision;  /* revision increases whenever anything here changes */
+  uint64_t seed;            /* seed for all random choices, so that a plan can be reproduced */
   tp_outline boundary;      /* disc about the origin, or polygon */
   const tp_obstacle *obstacles;
   uint32_t n_obstacles, obstacle_stride;
-  const tp_zone *zones;     /* later ones on top */
+  const tp_zone *zones;     /* where zones overlap, the later one counts */
   uint32_t n_zones, zone_stride;
   uint32_t motion, reserved;
   double v_max, w_max;      /* largest speed and turn rate of the robot */
-  double radius;            /* of the smallest circle around the robot */
-  double sensing_range;     /* how far it sees obstacles */
-  double swath;             /* width of floor scanned in one pass */
+  double radius;            /* radius of the smallest circle around the robot */
+  double sensing_range;     /* how far the robot senses obstacles */
+  double swath;             /* lane spacing: the width scanned in one pass, less the overlap */
   double clearance;         /* distance to keep between hull and anything solid */
   /* since 1.4 */
-  double acceleration;      /* largest change of speed; 0 if the console does not say */
-  double tick;              /* length of a tick: a command takes effect for so long */
-  uint32_t is_amphibious;   /* 1 for a robot that walks and swims: v_max and w_max are the larger limits of both */
-  uint32_t transition_ticks; /* for a complete change from walking to swimming */
-  double land_v_max, land_w_max;             /* outside zones that are flooded */
-  double underwater_v_max, underwater_w_max; /* within them */
+  double acceleration;      /* largest change of speed, m/s2; 0 if the console does not state it */
+  double tick;              /* length of a tick, for which a command takes effect */
+  uint32_t is_amphibious;   /* 1 for a robot that walks and swims: v_max and w_max are then the larger limits */
+  uint32_t transition_ticks; /* for a complete change from walking to swimming, ticks */
+  double land_v_max, land_w_max;             /* on dry floor */
+  double underwater_v_max, underwater_w_max; /* on flooded floor */
 } tp_site;
 
 typedef struct tp_plan_in {
   uint32_t size, reason;
-  tp_str from;              /* with TP_REASON_SWAP: who drove before */
+  tp_str from;              /* with TP_REASON_SWAP: id of the previous planner */
   tp_pose start;
   double covariance[6];     /* of x, y, heading: xx xy xh yy yh hh */
   uint32_t task, n_targets;
   const tp_vec2 *targets;
-  double tolerance;         /* distance at which the last target counts as reached */
+  double tolerance;         /* distance from the last target at which it counts as reached */
   const tp_vec2 *previous;  /* the path flown so far */
   uint32_t n_previous, reserved;
   const tp_site *site;
   /* since 1.1, with TP_COVER */
-  const tp_outline *regions; /* what is still to scan: polygons; none means all floor that can be reached */
-  uint32_t n_regions, has_tether; /* has_tether 0: no tether, and its limits are infinite */
-  double reel;              /* length on the reel */
-  double max_wrap;          /* largest wrap angle on one obstacle, radians */
+  const tp_outline *regions; /* floor still to be scanned: polygons; none means all reachable floor */
+  uint32_t n_regions, has_tether; /* has_tether 0: no tether; its limits are infinite */
+  double reel;              /* length of tether on the reel */
+  double max_wrap;          /* largest wrap angle around one obstacle, radians */
   double max_sum_wrap;      /* largest sum of the wrap angles, radians */
-  /* since 1.3, with TP_COVER: the plan to be kept to, as what is left of the one that the robot flies */
-  const tp_vec2 *way;       /* its path; no points: plan anew */
+  /* since 1.3, with TP_COVER: the plan to keep to as far as possible, such as the rest of the current one */
+  const tp_vec2 *way;       /* its path; without points, plan from scratch */
   const tp_leg *way_legs;
   uint32_t n_way, n_way_legs;
   const tp_outline *way_cuts; /* polylines */
@@ -172,7 +173,7 @@ typedef struct tp_step_in {
   double t, dt;             /* mission time and length of a tick, seconds */
   tp_pose pose;
   double covariance[6];
-  double v, w;              /* speed ahead and turn rate now */
+  double v, w;              /* forward speed and turn rate that were last commanded */
   tp_vec2 target;           /* where to go next */
   const tp_vec2 *targets_ahead;
   uint32_t n_targets_ahead, n_path_ahead;
@@ -181,9 +182,9 @@ typedef struct tp_step_in {
   uint32_t n_obstacles, obstacle_stride;
 } tp_step_in;
 
-/* ---- what the planner hands back ----------------------------------------------------------------------------- */
+/* ---- what the planner passes back ---------------------------------------------------------------------------- */
 
-typedef struct tp_param {   /* to host->param during describe */
+typedef struct tp_param {   /* passed to host->param in describe */
   uint32_t size, kind, flags, reserved;
   tp_str key, label, unit, help, group;
   tp_str options;           /* words of a choice, joined by '|' */
@@ -198,38 +199,39 @@ typedef struct tp_step_out { uint32_t size, status, drive, reserved; double a, b
 typedef struct tp_host {    /* the first argument is always host->ctx */
   uint32_t size, abi_minor; /* abi_minor of the console */
   void *ctx;
-  uint32_t (*should_stop)(void *ctx);      /* 0 go on, 1 cancelled, 2 the deadline passed; costs one clock read */
+  uint32_t (*should_stop)(void *ctx);      /* 0 continue, 1 cancelled, 2 deadline passed; costs one clock read */
   double (*time_left_s)(void *ctx);
-  uint32_t (*wants_drawing)(void *ctx);    /* 0 when nobody looks */
+  uint32_t (*wants_drawing)(void *ctx);    /* 0 when drawings are not shown */
   void (*error)(void *ctx, const char *message, size_t len); /* the sentence of a refusal */
   void (*log)(void *ctx, uint32_t level, const char *message, size_t len);
   void (*param)(void *ctx, const tp_param *param);           /* in describe */
   void (*points)(void *ctx, const tp_vec2 *points, size_t n); /* in plan: the path, in one or more pieces */
   void (*draw)(void *ctx, const tp_draw *drawings, size_t n);
-  void (*scalar)(void *ctx, tp_str name, double value, tp_str unit); /* a named figure of this tick */
+  void (*scalar)(void *ctx, tp_str name, double value, tp_str unit); /* a named figure for this tick */
   void (*bytes)(void *ctx, const uint8_t *bytes, size_t n);  /* in snapshot */
-  /* since 1.1: ask TP_HOST_HAS first */
-  void (*legs)(void *ctx, const tp_leg *legs, size_t n);     /* in plan: what stretches of the path are for, in order */
+  /* since 1.1: check with TP_HOST_HAS first */
+  void (*legs)(void *ctx, const tp_leg *legs, size_t n);     /* in plan: the purpose of each stretch, in order */
   void (*cut)(void *ctx, const tp_vec2 *points, size_t n);   /* in plan: one line that the robot never crosses */
-  /* since 1.2: ask TP_HOST_HAS first */
-  void (*progress)(void *ctx, double share, const char *what, size_t len); /* in plan: how far it is, 0 to 1, and a few
-                    words on what is being done; shown while the plan is made and kept nowhere. Call it freely. */
+  /* since 1.2: check with TP_HOST_HAS first */
+  void (*progress)(void *ctx, double share, const char *what, size_t len); /* in plan: the share done, 0 to 1, and the
+                    activity in a few words; shown while the plan is computed, and not stored. Call it freely. */
 } tp_host;
 
 typedef struct tp_planner { /* the first five functions are required, the others may be null */
   uint32_t size, caps, state_version, reserved;
-  tp_str id;                /* stable, [a-z0-9_-]{1,32}: scenarios and recordings name it */
+  tp_str id;                /* stable, [a-z0-9_-]{1,32}: used in scenarios and recordings */
   tp_str name, version, about;
   int32_t (*describe)(const tp_host *);
   int32_t (*create)(const tp_host *, const tp_site *, const tp_value *values, uint32_t n, void **instance);
-  void (*destroy)(void *instance); /* when the mission has no more use for the instance: its end, another planner, a new
-                    build, and before the next instance is created in this process. 0.1 s after it begins the process is
-                    killed; a crash, an attempt that no planner may make and too long a time are reported, and harm no
-                    mission. An instance whose process was killed, for a fault or with the console, is not destroyed. */
+  void (*destroy)(void *instance); /* called when the mission no longer needs the instance: at its end, when a different
+                    planner or a new build takes over, and before the next instance is created in this process. If
+                    it takes more than 0.1 s, the process is killed. A crash, a forbidden call or a timeout here is
+                    reported but harms no mission. If the process was killed, after a fault or with the console, destroy
+                    is not called. */
   int32_t (*plan)(void *instance, const tp_host *, const tp_plan_in *, tp_plan_out *);
   int32_t (*step)(void *instance, const tp_host *, const tp_step_in *, tp_step_out *);
   int32_t (*reconfigure)(void *instance, const tp_host *, const tp_value *values, uint32_t n);
-  uint32_t (*stopping)(void *instance, const tp_host *); /* 1: give me a few more steps */
+  uint32_t (*stopping)(void *instance, const tp_host *); /* returns 1 to be given a few more steps */
   int32_t (*snapshot)(void *instance, const tp_host *);
   int32_t (*restore)(void *instance, const tp_host *, uint32_t version, const uint8_t *state, size_t n);
   const void *(*get_extension)(tp_str name);
@@ -244,7 +246,7 @@ typedef struct tp_entry {
 
 typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_stamp;
 
-/* ---- to write ------------------------------------------------------------------------------------------------- */
+/* ---- macros for a plugin ------------------------------------------------------------------------------------- */
 
 #define TP_MAGIC { 'T', 'A', 'N', 'K', 'P', 'L', 'A', 'N' }
 #define TP_HOST_HAS(host, member) \
@@ -259,7 +261,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 #  define TP_C
 #endif
 
-/* The stamp is read from the file before the library is loaded, so that nothing of a misfit ever runs. */
+/* The console reads the stamp from the file before it loads the library, so no code of an incompatible library runs. */
 #if defined(_MSC_VER)
 #  define TP_EXPORT TP_C __declspec(dllexport)
 #  pragma section(".tankpln", read)
@@ -276,7 +278,7 @@ typedef struct tp_stamp { uint8_t magic[8]; uint32_t abi_major, abi_minor; } tp_
 #    define TP_SECTION ".tankplan"
 #    define TP_VISIBLE __attribute__((visibility("default")))
 #  endif
-#  ifdef __cplusplus /* a const object of C++ is local to its file unless it is declared extern first */
+#  ifdef __cplusplus /* in C++ a const object is local to its file unless it is declared extern first */
 #    define TP_EXPORT extern "C" TP_VISIBLE const tp_entry tank_planner_entry;
 #    define TP_STAMP(major, minor) extern "C" TP_VISIBLE const tp_stamp tank_planner_stamp; \
        __attribute__((used, section(TP_SECTION))) \

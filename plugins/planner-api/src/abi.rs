@@ -1,9 +1,9 @@
-//! The C table beneath the trait, as in `include/tankops_planner.h`, which explains every field.
+//! The C ABI beneath the trait, as declared in `include/tankops_planner.h`, which documents every field.
 //!
-//! Rules of the boundary: nothing is ever freed by the other side; inputs belong to the console for the length of a
-//! call; results are handed over by calling the console's sinks, which copy at once. Structs grow only at the end
-//! and carry their writer's `size`. Enums cross as numbers and are checked. No panic and no exception may leave a
-//! function of the table.
+//! Rules of the boundary: neither side frees memory of the other. Inputs belong to the console and are valid only
+//! during the call. Results are passed to the console's functions, which copy them before they return. Structs grow
+//! only at the end and carry their writer's `size`. Enums cross as numbers and are checked. No panic and no exception
+//! may leave a planner's function.
 
 pub mod input;
 pub mod lend;
@@ -14,37 +14,37 @@ pub use input::{Obstacle, Outline, PlanIn, Site, StepIn, Zone};
 pub use output::{Draw, Leg, Param, PlanOut, StepOut, Value};
 pub use table::{Entry, Host, Label, Planner, PlannerList, Stamp, label_len};
 
-/// First bytes of entry and stamp.
+/// The first bytes of the entry and of the stamp.
 pub const MAGIC: [u8; 8] = *b"TANKPLAN";
-/// Libraries of another major version are refused.
+/// The major version; the console refuses libraries with a different one.
 pub const MAJOR: u32 = 1;
-/// Raised when something is added at the end of a struct.
+/// The minor version; raised when something is added at the end of a struct.
 pub const MINOR: u32 = 4;
 /// The one symbol that a library exports.
 pub const SYMBOL: &str = "tank_planner_entry";
-/// Section of the stamp as file readers name it, on Linux, on macOS and on Windows.
+/// The section that holds the stamp, as file readers name it on Linux, macOS and Windows.
 pub const SECTIONS: [&str; 3] = [".tankplan", "__tankplan", ".tankpln"];
 
-/// Text in UTF-8 without a terminating zero; belongs to whoever gave it.
+/// UTF-8 text without a terminating zero; it belongs to the side that passed it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Str {
-    /// First byte; may be null when `len` is zero.
+    /// Pointer to the first byte; may be null when `len` is zero.
     pub ptr: *const u8,
-    /// Number of bytes.
+    /// The number of bytes.
     pub len: usize,
 }
 
-// SAFETY: in statics a `Str` only ever points at a `&'static str`.
+// SAFETY: in a static, a `Str` only ever points at a `&'static str`.
 unsafe impl Sync for Str {}
 
 impl Str {
-    /// Lends a text; the pointer is good for as long as the text is.
+    /// Lends a text; the pointer is valid as long as the text.
     pub const fn of(text: &str) -> Self {
         Self { ptr: text.as_ptr(), len: text.len() }
     }
 
-    /// The text, with what is not UTF-8 replaced; at most `most` bytes of it.
+    /// Reads at most `most` bytes of the text, with invalid UTF-8 replaced.
     ///
     /// # Safety
     /// `ptr` is null or points at `len` readable bytes.
@@ -54,13 +54,13 @@ impl Str {
     }
 }
 
-/// A point or vector of the tank frame, metres.
+/// A point or vector in the tank frame, metres.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vec2 {
-    /// East.
+    /// The east component.
     pub x: f64,
-    /// North.
+    /// The north component.
     pub y: f64,
 }
 
@@ -88,7 +88,7 @@ impl From<Vec2> for nalgebra::Vector2<f64> {
     }
 }
 
-/// Position and heading; the heading in radians, counter-clockwise from east.
+/// A position and a heading.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
@@ -96,37 +96,37 @@ pub struct Pose {
     pub x: f64,
     /// North, metres.
     pub y: f64,
-    /// Heading, radians.
+    /// Heading, radians, counter-clockwise from east.
     pub heading: f64,
 }
 
-/// An array that came over the boundary; null or empty gives an empty slice.
+/// Borrows an array that came over the boundary; a null, empty or unaligned one gives an empty slice.
 ///
 /// # Safety
-/// `ptr` is null or points at `len` readable values that nobody changes during `'a`.
+/// `ptr` is null or points at `len` readable values that do not change during `'a`.
 pub unsafe fn slice<'a, T>(ptr: *const T, len: usize) -> &'a [T] {
     if ptr.is_null() || len == 0 || !ptr.is_aligned() {
         return &[];
     }
-    // SAFETY: promised by the caller, and null and unaligned pointers are gone.
+    // SAFETY: promised by the caller; null and unaligned pointers are handled above.
     unsafe { std::slice::from_raw_parts(ptr, len) }
 }
 
-/// A struct whose first field is its writer's `size` and that is valid when all its bytes are zero.
+/// A struct that begins with its writer's `size` and is valid when all its bytes are zero.
 ///
 /// # Safety
-/// Implemented only for `repr(C)` structs of numbers, raw pointers and `Option` function pointers that begin with a
-/// `u32` size.
+/// Implement it only for `repr(C)` structs that begin with a `u32` size and consist of numbers, raw pointers and
+/// `Option` function pointers.
 pub unsafe trait Sized32: Copy {}
 
-/// Copies a struct that may have been written by an older or newer side: what its writer did not have is zero.
+/// Copies a struct that an older or newer side may have written; fields that the writer did not have are zero.
 ///
 /// # Safety
-/// `from` is aligned and points at a struct that begins with a `u32` giving how many bytes of it are readable.
+/// `from` is aligned and points at a struct that begins with a `u32`, the number of its readable bytes.
 pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
     let mut to = std::mem::MaybeUninit::<T>::zeroed();
-    // SAFETY: the first `size` bytes are readable by promise, and no more than `T` has room for are written;
-    // all-zero bytes are a valid `T` by the promise of `Sized32`.
+    // SAFETY: the caller promises that the first `size` bytes are readable, and at most the size of `T` is written.
+    // All-zero bytes are a valid `T` because it is `Sized32`.
     unsafe {
         let written = from.cast::<u32>().read() as usize;
         let n = written.min(size_of::<T>());
@@ -135,7 +135,7 @@ pub unsafe fn copy_sized<T: Sized32>(from: *const T) -> T {
     }
 }
 
-// The layout is the contract: a drift from the header must not compile. The header asserts the same numbers.
+// The layout is the contract: a mismatch with the header must not compile. The header asserts the same numbers.
 const _: () = {
     use std::mem::offset_of;
     assert!(size_of::<Str>() == 16 && size_of::<Vec2>() == 16 && size_of::<Pose>() == 24);
@@ -158,7 +158,7 @@ const _: () = {
     assert!(size_of::<Leg>() == 16);
     assert!(size_of::<Planner>() == 160 && offset_of!(Planner, describe) == 80);
     assert!(size_of::<Entry>() == 48 && offset_of!(Entry, planners) == 24 && size_of::<Stamp>() == 16);
-    // Points are lent as they lie in memory.
+    // Points are lent in place, without a conversion.
     assert!(
         size_of::<nalgebra::Point2<f64>>() == 16 && align_of::<nalgebra::Point2<f64>>() == align_of::<Vec2>()
     );

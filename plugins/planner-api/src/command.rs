@@ -1,19 +1,19 @@
-//! What a planner commands the robot to do.
+//! The command that a planner returns for each tick.
 
 use geometry::Drive;
 use nalgebra::Vector2;
 
-/// How the planner sees its own task.
+/// The planner's view of its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Status {
-    /// On the way.
+    /// The robot is on its way.
     Moving,
     /// The task is done.
     Arrived,
-    /// No way on from here, as far as this planner sees.
+    /// The planner sees no way to continue from here.
     Stuck,
-    /// Standing still on purpose.
+    /// The robot stands still on purpose.
     Waiting,
 }
 
@@ -21,14 +21,14 @@ pub enum Status {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Command {
-    /// How to move until the next step.
+    /// How to move until the next tick.
     pub drive: Drive,
-    /// How the planner sees its task.
+    /// The planner's view of its progress.
     pub status: Status,
 }
 
 impl Command {
-    /// Move with this velocity in the tank frame.
+    /// Moves with this velocity in the tank frame, metres per second.
     ///
     /// ```
     /// use planner_api::{Command, Drive, Status, Vector2};
@@ -41,7 +41,7 @@ impl Command {
         Self { drive: Drive::Velocity(velocity), status: Status::Moving }
     }
 
-    /// Move with this speed and turn rate.
+    /// Moves with this forward speed (metres per second) and turn rate (radians per second).
     ///
     /// ```
     /// use planner_api::{Command, Drive, Status};
@@ -54,7 +54,7 @@ impl Command {
         Self { drive: Drive::Twist { v_m_per_s, w_rad_per_s }, status: Status::Moving }
     }
 
-    /// Stand still and say why.
+    /// Stands still and reports why.
     ///
     /// ```
     /// use planner_api::{Command, Drive, Status};
@@ -67,11 +67,11 @@ impl Command {
     }
 }
 
-/// Whether a planner that was asked to stop needs a few more steps.
+/// Whether a planner that is about to be stopped needs a few more steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stopping {
-    /// Stop at once.
+    /// Stop it immediately.
     Done,
-    /// Keep calling `step`; the planner brings the robot to a stop itself.
+    /// Keep calling `step`; the planner brings the robot to a standstill itself.
     NeedsSteps,
 }

@@ -1,46 +1,58 @@
-//! What a planner may call while it works: deadline, progress, drawing, scalars, log.
+//! The services of the console that a planner may use during a call: deadline, progress, drawings, figures, log.
 
 use crate::{Code, Drawing, Layer, PlannerError, Result};
 use nalgebra::{Point2, Vector2};
-use std::time::Duration;
+use std::{fmt, time::Duration};
 
-/// Why a planner has to stop working.
+/// The reason why a planner must stop working.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StopReason {
-    /// The console no longer wants the answer.
+    /// The console no longer needs the answer.
     Cancelled,
-    /// The deadline passed.
+    /// The deadline has passed.
     Timeout,
 }
 
-/// How loud a message is.
+/// The severity of a log message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum LogLevel {
-    /// For the author only.
+    /// Of interest only to the planner's author.
     Debug = 0,
-    /// Worth knowing.
+    /// For the operator's information.
     Info = 1,
-    /// Worth looking at.
+    /// Needs the operator's attention.
     Warn = 2,
 }
 
-/// What the host offers during a call; the glue implements it over the C table, tests over memory.
+impl fmt::Display for LogLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Debug => "debug",
+            Self::Info => "info",
+            Self::Warn => "warning",
+        })
+    }
+}
+
+/// What the host offers during a call. The glue implements it with the functions of the C ABI, tests implement it in
+/// memory.
 pub trait Services {
-    /// Whether to stop, and why.
+    /// The reason to stop, if there is one.
     fn stop(&self) -> Option<StopReason>;
     /// Time until the deadline.
     fn time_left(&self) -> Duration;
-    /// Whether anyone looks at drawings.
+    /// Whether drawings are shown.
     fn wants_drawing(&self) -> bool;
-    /// Takes drawings.
+    /// Accepts drawings.
     fn draw(&self, drawings: &[Drawing]);
-    /// Takes a named figure of this tick.
+    /// Accepts a named figure for this tick.
     fn scalar(&self, name: &str, value: f64, unit: &str);
-    /// Takes how far a plan is, and what is being done.
+    /// Accepts the progress of a plan: the share done, and the current activity.
     fn progress(&self, share: f64, what: &str);
-    /// Takes a message.
+    /// Accepts a log message.
     fn log(&self, level: LogLevel, message: &str);
 }
 
@@ -51,7 +63,7 @@ pub struct Ctx<'a> {
 }
 
 impl<'a> Ctx<'a> {
-    /// Services for the length of a call.
+    /// Wraps services for the length of a call.
     ///
     /// ```
     /// use planner_api::{Ctx, testing::Bench};
@@ -64,7 +76,7 @@ impl<'a> Ctx<'a> {
         Self { services }
     }
 
-    /// Call it in every loop: costs one clock read.
+    /// Returns an error when the planner must stop. Call it in every loop: it costs one clock read.
     ///
     /// ```
     /// use planner_api::{Code, StopReason, testing::Bench};
@@ -83,11 +95,11 @@ impl<'a> Ctx<'a> {
             Some(StopReason::Cancelled) => {
                 Err(PlannerError::new(Code::Cancelled, "cancelled by the console"))
             }
-            Some(StopReason::Timeout) => Err(PlannerError::new(Code::Timeout, "the deadline passed")),
+            Some(StopReason::Timeout) => Err(PlannerError::new(Code::Timeout, "the deadline has passed")),
         }
     }
 
-    /// Time until the deadline.
+    /// Returns the time until the deadline.
     ///
     /// ```
     /// use planner_api::{StopReason, testing::Bench};
@@ -101,7 +113,7 @@ impl<'a> Ctx<'a> {
         self.services.time_left()
     }
 
-    /// Whether anyone looks at drawings; skip costly ones if not.
+    /// Whether drawings are shown. If not, skip those that are costly to make.
     ///
     /// ```
     /// use planner_api::{Layer, Point2, testing::Bench};
@@ -117,7 +129,7 @@ impl<'a> Ctx<'a> {
         self.services.wants_drawing()
     }
 
-    /// Draws an arrow.
+    /// Draws an arrow from the point `at`.
     ///
     /// ```
     /// use planner_api::{Drawing, Layer, Point2, Vector2, testing::Bench};
@@ -159,7 +171,7 @@ impl<'a> Ctx<'a> {
         self.services.draw(&pieces);
     }
 
-    /// Reports a named figure of this tick; the console plots it.
+    /// Reports a named figure for this tick; the console plots it.
     ///
     /// ```
     /// use planner_api::testing::Bench;
@@ -172,9 +184,10 @@ impl<'a> Ctx<'a> {
         self.services.scalar(name, value, unit);
     }
 
-    /// Reports the progress of a plan while it is being made: the share done, 0 to 1, about in proportion to time, and what is
-    /// being done in a few plain words (`candidate 3 of 8`). The console shows it while it waits and keeps none of it;
-    /// outside of `plan` it goes nowhere. Call it as often as you like: what comes faster than it can be read is left out.
+    /// Reports the progress of a plan while it is being computed: the share done, from 0 to 1 and roughly proportional
+    /// to time, and the current activity in a few plain words (`candidate 3 of 8`). The console shows it while it
+    /// waits, and does not store it; outside `plan` it is ignored. Call it as often as you like: updates that come
+    /// faster than people can read are dropped.
     ///
     /// ```
     /// use planner_api::testing::Bench;
@@ -189,7 +202,7 @@ impl<'a> Ctx<'a> {
         self.services.progress(share, what);
     }
 
-    /// Says something to the operator's event log.
+    /// Writes a message to the operator's event log.
     ///
     /// ```
     /// use planner_api::{LogLevel, testing::Bench};
@@ -200,5 +213,20 @@ impl<'a> Ctx<'a> {
     /// ```
     pub fn log(&self, level: LogLevel, message: &str) {
         self.services.log(level, message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
+
+    #[test]
+    fn every_level_has_a_word_of_its_own() {
+        let all: [LogLevel; LogLevel::COUNT] = [LogLevel::Debug, LogLevel::Info, LogLevel::Warn];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

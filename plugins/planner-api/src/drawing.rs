@@ -1,25 +1,25 @@
-//! What a planner draws to explain itself, on screen and in the recording.
+//! What a planner draws to explain its decisions, on screen and in the recording.
 
 use nalgebra::{Point2, Vector2};
 
-/// What a drawing stands for.
+/// The meaning of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum Layer {
-    /// Pull of the target.
+    /// The pull of the target.
     Attraction = 0,
-    /// Push of the obstacles.
+    /// The push of the obstacles.
     Repulsion = 1,
-    /// Rotating or tangential force.
+    /// A rotating or tangential force.
     Rotation = 2,
-    /// Sum of all forces.
+    /// The sum of all forces.
     Resultant = 3,
-    /// Obstacles or targets that the planner made up.
+    /// Virtual obstacles or targets.
     Virtual = 4,
     /// A path under consideration.
     Path = 5,
-    /// The tether as the planner sees it.
+    /// The tether as the planner models it.
     Tether = 6,
     /// Anything else.
     Other = 7,
@@ -38,7 +38,7 @@ impl Layer {
         Self::Other,
     ];
 
-    /// The layer of a number that came over the boundary; `Other` for unknown ones.
+    /// Converts a number that came over the boundary; unknown numbers become `Other`.
     ///
     /// ```
     /// use planner_api::Layer;
@@ -51,35 +51,35 @@ impl Layer {
     }
 }
 
-/// One thing drawn, in the tank frame.
+/// One drawing, in the tank frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Drawing {
-    /// An arrow; for forces one newton is drawn as one metre unless the planner scales it.
+    /// An arrow. A force is drawn at one metre per newton unless the planner scales it.
     Arrow {
-        /// What it stands for.
+        /// What the arrow means.
         layer: Layer,
-        /// Foot of the arrow.
+        /// The foot of the arrow.
         at: Point2<f64>,
-        /// From foot to tip.
+        /// The vector from foot to tip.
         vector: Vector2<f64>,
     },
     /// A circle.
     Circle {
-        /// What it stands for.
+        /// What the circle means.
         layer: Layer,
-        /// Centre.
+        /// The centre.
         center: Point2<f64>,
         /// Radius, metres.
         radius_m: f64,
     },
-    /// A straight piece of a line.
+    /// A straight line.
     Line {
-        /// What it stands for.
+        /// What the line means.
         layer: Layer,
-        /// From.
+        /// The first end.
         from: Point2<f64>,
-        /// To.
+        /// The second end.
         to: Point2<f64>,
     },
 }

@@ -1,42 +1,65 @@
-//! Why a planner could not do what it was asked.
+//! Why a planner cannot do what the console asked.
 
 use std::fmt;
 
-/// A closed list of reasons, so that the console can act on them.
+/// A closed list of reasons, so that the console can react to each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(i32)]
 pub enum Code {
     /// The request makes no sense.
     Invalid = 1,
-    /// The parameters do not fit together or do not fit the site.
+    /// The parameters contradict each other or do not fit the site.
     Config = 2,
-    /// The start lies in an obstacle.
+    /// The start is inside an obstacle.
     StartOccupied = 3,
-    /// The start lies outside the floor.
+    /// The start is outside the floor.
     StartOutside = 4,
-    /// The goal lies in an obstacle.
+    /// The goal is inside an obstacle.
     GoalOccupied = 5,
-    /// The goal lies outside the floor.
+    /// The goal is outside the floor.
     GoalOutside = 6,
-    /// There is no way, or none was found.
+    /// No path exists, or none was found.
     NoPath = 7,
-    /// The deadline passed.
+    /// The deadline has passed.
     Timeout = 8,
     /// The console asked to stop.
     Cancelled = 9,
-    /// In a local minimum.
+    /// The planner is caught in a local minimum.
     Stuck = 10,
-    /// Called in the wrong order, or the state given to `restore` does not fit.
+    /// A function was called in the wrong order, or the state passed to `restore` does not fit.
     State = 11,
-    /// The planner does not offer this.
+    /// The planner does not offer this function.
     Unsupported = 12,
-    /// A fault of the planner itself.
+    /// An internal error of the planner.
     Internal = 13,
     /// Reserved for the glue: the planner panicked.
     Panic = 14,
-    /// Reserved for the glue: the planner panicked before and may not be called again.
+    /// Reserved for the glue: the planner panicked earlier and cannot be called again.
     Poisoned = 15,
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Invalid => "invalid request",
+            Self::Config => "parameters do not fit",
+            Self::StartOccupied => "start in an obstacle",
+            Self::StartOutside => "start outside the floor",
+            Self::GoalOccupied => "goal in an obstacle",
+            Self::GoalOutside => "goal outside the floor",
+            Self::NoPath => "no path found",
+            Self::Timeout => "deadline missed",
+            Self::Cancelled => "cancelled",
+            Self::Stuck => "stuck in a local minimum",
+            Self::State => "called in the wrong state",
+            Self::Unsupported => "not supported",
+            Self::Internal => "internal fault",
+            Self::Panic => "panic",
+            Self::Poisoned => "unusable after a panic",
+        })
+    }
 }
 
 impl Code {
@@ -58,7 +81,7 @@ impl Code {
         Self::Poisoned,
     ];
 
-    /// The code of a number that came over the boundary, if it is one.
+    /// Converts a number that came over the boundary; `None` if it is not a code.
     ///
     /// ```
     /// use planner_api::Code;
@@ -71,19 +94,19 @@ impl Code {
     }
 }
 
-/// A planner's refusal: a code for the console, a sentence for the operator.
+/// A planner's refusal: a code for the console and a sentence for the operator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannerError {
-    /// What kind of refusal.
+    /// The kind of refusal.
     pub code: Code,
-    /// What was wrong and what would be right, as a sentence without a full stop.
+    /// What is wrong and what to do about it, as a sentence without a full stop.
     pub message: String,
-    /// For `NoPath`: how far it got.
+    /// With `NoPath`: the part of the path that was found.
     pub partial: Vec<nalgebra::Point2<f64>>,
 }
 
 impl PlannerError {
-    /// A refusal with a code and a sentence.
+    /// Creates a refusal from a code and a sentence.
     ///
     /// ```
     /// use planner_api::{Code, PlannerError};
@@ -95,7 +118,7 @@ impl PlannerError {
         Self { code, message: message.into(), partial: Vec::new() }
     }
 
-    /// This planner does not offer what was asked.
+    /// Creates the refusal of a function that this planner does not offer.
     ///
     /// ```
     /// use planner_api::{Code, PlannerError};
@@ -106,7 +129,7 @@ impl PlannerError {
         Self::new(Code::Unsupported, "not offered by this planner")
     }
 
-    /// No way through, but this far one gets.
+    /// Creates a refusal for a goal that cannot be reached; `partial` is the path as far as it leads.
     ///
     /// ```
     /// use planner_api::{Code, Point2, PlannerError};
@@ -127,3 +150,18 @@ impl fmt::Display for PlannerError {
 }
 
 impl std::error::Error for PlannerError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
+
+    #[test]
+    fn every_code_has_a_word_of_its_own() {
+        let all: [Code; Code::COUNT] = Code::ALL;
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
+    }
+}

@@ -1,12 +1,12 @@
-//! From types that implement [`Planner`] to the symbol that the console looks for.
+//! Turns types that implement [`Planner`] into the symbol that the console looks for.
 
 use crate::abi::{self, Str};
 use crate::{Kind, ParamSpec, Planner, glue};
 
-/// Exports planners from a crate of type `cdylib`; the whole of a plugin's boilerplate.
+/// Exports planners from a crate of type `cdylib`. A plugin needs no other boilerplate.
 ///
-/// The author's crate may `#![forbid(unsafe_code)]`. Ids and parameters are checked while it compiles.
-/// [`Planner`] shows an example.
+/// The author's crate may `#![forbid(unsafe_code)]`. Ids and parameters are checked at compile time. See [`Planner`]
+/// for an example.
 #[macro_export]
 macro_rules! export_planners {
     ($($planner:ty),+ $(,)?) => {
@@ -35,14 +35,14 @@ macro_rules! export_planners {
     };
 }
 
-/// The table of one planner; does not compile for an id or a parameter that the console would refuse.
+/// Builds the function table of one planner. An id or a parameter that the console would refuse does not compile.
 #[doc(hidden)]
 pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
-    assert!(is_id(P::ID), "a planner's ID is 1 to 32 of a-z, 0-9, _ and -");
+    assert!(is_id(P::ID), "a planner's ID must be 1 to 32 characters of a-z, 0-9, _ and -");
     let mut i = 0;
     while i < P::PARAMS.len() {
         assert!(!P::PARAMS[i].key.is_empty(), "a parameter has no key");
-        assert!(default_fits(&P::PARAMS[i]), "the default of a parameter lies outside its range");
+        assert!(default_fits(&P::PARAMS[i]), "the default of a parameter is outside its range");
         i += 1;
     }
     abi::Planner {
@@ -67,7 +67,7 @@ pub const fn table<P: Planner>(version: &'static str) -> abi::Planner {
     }
 }
 
-/// Whether a text may be a planner's id: 1 to 32 of a-z, 0-9, `_` and `-`.
+/// Whether a text is a valid planner id: 1 to 32 characters of a-z, 0-9, `_` and `-`.
 ///
 /// ```
 /// use planner_api::export::is_id;
@@ -96,7 +96,7 @@ const fn default_fits(spec: &ParamSpec) -> bool {
     }
 }
 
-/// Words are joined by `|` when they cross the boundary.
+/// Words are joined by `|` when they cross the boundary, so they must not contain it.
 const fn are_words(options: &[&str]) -> bool {
     let mut i = 0;
     while i < options.len() {

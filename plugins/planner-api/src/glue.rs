@@ -1,7 +1,7 @@
-//! The functions of the C table for any [`Planner`]; only `export_planners!` and the console's tests name them.
+//! The functions of the C ABI for any [`Planner`]; only `export_planners!` and the console's tests name them.
 //!
-//! Everything that the author wrote runs under `catch_unwind`, `destroy` too. An instance that panicked is poisoned:
-//! it answers [`Code::Poisoned`] to every further call.
+//! All code of the author runs under `catch_unwind`, `destroy` included. An instance that panicked is poisoned: it
+//! answers every further call with [`Code::Poisoned`].
 
 mod guard;
 mod inputs;
@@ -17,16 +17,16 @@ use inputs::{
 use services::HostServices;
 use std::ffi::c_void;
 
-/// A planner in a box of its own; the console holds the pointer to it.
+/// A boxed planner; the console holds the pointer to it.
 struct Slot<P> {
     planner: P,
     poisoned: bool,
 }
 
-/// Runs `call` on an instance unless it is poisoned, and poisons it when it panics.
+/// Runs `call` on an instance unless it is poisoned, and poisons the instance if `call` panics.
 ///
 /// # Safety
-/// `instance` is null or came from [`create`] of the same `P` and is not in use elsewhere.
+/// `instance` is null or came from [`create`] for the same `P`, and is not in use elsewhere.
 unsafe fn on<P: Planner>(
     instance: *mut c_void,
     services: &HostServices,
@@ -38,7 +38,7 @@ unsafe fn on<P: Planner>(
         return Code::State as i32;
     };
     if slot.poisoned {
-        services.error("it panicked before and may not be called again");
+        services.error("it panicked earlier and cannot be called again");
         return Code::Poisoned as i32;
     }
     let code = run(services, || call(&mut slot.planner));
@@ -46,7 +46,7 @@ unsafe fn on<P: Planner>(
     code
 }
 
-/// Hands every declared parameter to the console.
+/// Passes every declared parameter to the console.
 ///
 /// # Safety
 /// `host` points at the console's services.
@@ -92,7 +92,8 @@ fn declare(spec: &ParamSpec, services: &HostServices) {
 /// Configures a planner and gives the console a pointer to it.
 ///
 /// # Safety
-/// `host` and `site` point at structs of the console, `values` at `n` values, `instance` at room for a pointer.
+/// `host` and `site` point at structs of the console, `values` at an array of `n` values, `instance` at space for a
+/// pointer.
 pub unsafe extern "C" fn create<P: Planner>(
     host: *const abi::Host,
     site: *const abi::Site,
@@ -114,10 +115,10 @@ pub unsafe extern "C" fn create<P: Planner>(
     })
 }
 
-/// Drops a planner; what its `drop` panics about is forgotten.
+/// Drops a planner; a panic in its `drop` is ignored.
 ///
 /// # Safety
-/// `instance` is null or came from [`create`] of the same `P` and is not used again.
+/// `instance` is null or came from [`create`] for the same `P`, and is not used again.
 pub unsafe extern "C" fn destroy<P: Planner>(instance: *mut c_void) {
     if !instance.is_null() {
         // SAFETY: promised by the caller.
@@ -129,7 +130,7 @@ pub unsafe extern "C" fn destroy<P: Planner>(instance: *mut c_void) {
 /// Gives a planner new values of live parameters.
 ///
 /// # Safety
-/// As [`create`] and [`destroy`].
+/// See [`create`] and [`destroy`].
 pub unsafe extern "C" fn reconfigure<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,
@@ -146,10 +147,10 @@ pub unsafe extern "C" fn reconfigure<P: Planner>(
     }
 }
 
-/// Asks for a plan; points go to the console one array at a time, cost and completeness into `out`.
+/// Requests a plan: passes its points to the console one array at a time, and writes cost and completeness to `out`.
 ///
 /// # Safety
-/// `instance` as for [`destroy`]; `host`, `input` and `out` point at structs of the console.
+/// For `instance` see [`destroy`]; `host`, `input` and `out` point at structs of the console.
 pub unsafe extern "C" fn plan<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,
@@ -187,10 +188,10 @@ pub unsafe extern "C" fn plan<P: Planner>(
     unsafe { on::<P>(instance, &services, call) }
 }
 
-/// Asks for a command and writes it into `out`.
+/// Requests a command and writes it to `out`.
 ///
 /// # Safety
-/// As [`plan`].
+/// See [`plan`].
 pub unsafe extern "C" fn step<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,
@@ -209,10 +210,10 @@ pub unsafe extern "C" fn step<P: Planner>(
     }
 }
 
-/// Notifies a planner that it will be stopped; 1 when it needs a few more steps.
+/// Announces to a planner that it will be stopped; returns 1 if it needs a few more steps.
 ///
 /// # Safety
-/// `instance` as for [`destroy`]; `host` points at the console's services.
+/// For `instance` see [`destroy`]; `host` points at the console's services.
 pub unsafe extern "C" fn stopping<P: Planner>(instance: *mut c_void, host: *const abi::Host) -> u32 {
     let mut answer = Stopping::Done;
     // SAFETY: promised by the caller.
@@ -226,10 +227,10 @@ pub unsafe extern "C" fn stopping<P: Planner>(instance: *mut c_void, host: *cons
     u32::from(answer == Stopping::NeedsSteps)
 }
 
-/// Hands a planner's private state to the console.
+/// Passes a planner's private state to the console.
 ///
 /// # Safety
-/// As [`stopping`].
+/// See [`stopping`].
 pub unsafe extern "C" fn snapshot<P: Planner>(instance: *mut c_void, host: *const abi::Host) -> i32 {
     // SAFETY: promised by the caller.
     unsafe {
@@ -241,10 +242,10 @@ pub unsafe extern "C" fn snapshot<P: Planner>(instance: *mut c_void, host: *cons
     }
 }
 
-/// Gives a planner the state of an earlier instance.
+/// Passes the state of an earlier instance to a planner.
 ///
 /// # Safety
-/// As [`stopping`], and `state` points at `n` bytes.
+/// See [`stopping`]; `state` points at `n` bytes.
 pub unsafe extern "C" fn restore<P: Planner>(
     instance: *mut c_void,
     host: *const abi::Host,

@@ -2,10 +2,11 @@
 //! # Rust
 //!
 //! Write a type, implement [`Planner`] for it, and export it with `export_planners!(MyPlanner)` from a crate of type
-//! `cdylib`. Everything else (the C table, catching panics, copying) is done here; the author's crate may
+//! `cdylib`. This crate does the rest (the C ABI, catching panics, copying); the author's crate may
 //! `#![forbid(unsafe_code)]`.
 //!
-//! Frame: the tank frame, x east, y north, metres; angles in radians, counter-clockwise; SI units throughout.
+//! Units and frame: SI units throughout; the tank frame has x east and y north, in metres; angles are in radians,
+//! counter-clockwise from east.
 
 pub mod command;
 pub mod ctx;
@@ -27,7 +28,7 @@ pub use command::{Command, Status, Stopping};
 pub use ctx::{Ctx, LogLevel, Services, StopReason};
 pub use drawing::{Drawing, Layer};
 pub use error::{Code, PlannerError};
-/// Points, poses, shapes, paths and motion: what a planner shares with the console.
+/// The types that planners share with the console: points, poses, shapes, paths and motion.
 pub use geometry::{self, Drive, Limits, Motion};
 pub use glue::on_own_thread;
 pub use nalgebra::{Point2, Vector2};
@@ -36,5 +37,5 @@ pub use planner::{Caps, Planner};
 pub use request::{Leg, LegTag, Plan, PlanRequest, PoseEstimate, Reason, Sensed, Task, TetherLimits};
 pub use site::{Boundary, Obstacle, Outline, Site, Zone, ZoneKind};
 
-/// The result of a planner's call.
+/// The result of a call to a planner.
 pub type Result<T> = std::result::Result<T, PlannerError>;

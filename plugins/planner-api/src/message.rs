@@ -1,10 +1,12 @@
-//! What the console sends to a planner, each message defined once.
+//! The messages from the console to a planner, each defined once.
 //!
-//! `P` and the other parameters say how a message holds its arrays. By default it owns them, so that it can be kept and sent to
-//! another process. Planners are lent them: [`crate::Site`], [`crate::PlanRequest`] and [`crate::Sensed`] are these types with
-//! slices, and `lend` makes the one of the other.
+//! The type parameters (`P` and others) determine how a message holds its arrays. By default it owns them, so that it
+//! can be stored or sent to another process. Planners receive borrowed messages: [`crate::Site`],
+//! [`crate::PlanRequest`] and [`crate::Sensed`] are the same types with slices, and `lend` turns an owned message into
+//! a borrowed one.
 //!
-//! With the feature `serde` both forms are written alike, field by field: a message that is lent is read as one that is owned.
+//! With the feature `serde`, both forms are serialised identically, field by field: a borrowed message can be written
+//! and read back as an owned one.
 
 use crate::{Plan, PoseEstimate, Reason, TetherLimits, ZoneKind};
 use geometry::{Boundary, Limits, Shape};
@@ -13,55 +15,56 @@ use std::sync::Arc;
 
 type Point = Point2<f64>;
 
-/// Something the robot must not touch.
+/// An object that the robot must not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Obstacle<P = Vec<Point>> {
-    /// Stable within a mission.
+    /// Identifies the obstacle; does not change during a mission.
     pub id: u32,
-    /// Its outline in the tank frame.
+    /// Outline in the tank frame.
     pub outline: Shape<P>,
-    /// Whether it was discovered on the way (so its place carries the position error) or stands on the drawing.
+    /// Whether the obstacle was found during the mission, so that its position carries the position error of the robot.
+    /// Otherwise it is on the drawing.
     pub discovered: bool,
-    /// How fast it moves, metres per second, tank frame; zero for what stands still. An estimate, and only what is sensed
-    /// now is known to move.
+    /// Estimated velocity in the tank frame, metres per second. It is zero for an obstacle that stands still, and for
+    /// one that is not sensed now.
     pub velocity_m_per_s: Vector2<f64>,
 }
 
-/// A part of the floor with a meaning of its own.
+/// A special part of the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Zone<P = Vec<Point>> {
-    /// What is special about it.
+    /// What is special about this part of the floor.
     pub kind: ZoneKind,
-    /// Its outline.
+    /// The outline.
     pub outline: Shape<P>,
 }
 
-/// The drawing of the tank, the robot and the margins that the mission demands.
+/// The tank, the robot, and the margins that the mission requires.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Site<P = Vec<Point>, O = Vec<Obstacle>, Z = Vec<Zone>> {
-    /// Grows whenever anything here changes.
+    /// Increases whenever anything in this struct changes.
     pub revision: u32,
-    /// The wall.
+    /// The wall of the tank.
     pub boundary: Boundary<P>,
-    /// Known and discovered obstacles.
+    /// The known obstacles: those on the drawing and those found since.
     pub obstacles: O,
-    /// Zones, later ones on top.
+    /// The zones; where zones overlap, the later one counts.
     pub zones: Z,
-    /// What the robot can do.
+    /// The capabilities of the robot.
     #[cfg_attr(feature = "serde", serde(serialize_with = "whole"))]
     pub limits: Limits,
-    /// Width of the floor that the tool scans in one pass, metres.
+    /// Lane spacing, metres: the width that the tool scans in one pass, less the overlap that the mission requires.
     pub swath_m: f64,
     /// Distance to keep between the robot's hull and anything solid, metres.
     pub clearance_m: f64,
-    /// Start of every random choice, so that a plan can be repeated.
+    /// The seed for all random choices, so that a plan can be reproduced.
     pub seed: u64,
 }
 
-/// What the mission is to achieve from here on.
+/// The task of the mission from now on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
@@ -69,79 +72,82 @@ pub enum Task<P = Vec<Point>, R = Vec<Vec<Point>>> {
     Goto {
         /// The goal.
         goal: Point,
-        /// Distance at which it counts as reached, metres.
+        /// Distance from the goal at which it counts as reached, metres.
         tolerance_m: f64,
     },
     /// Follow preset points in order, as closely as the obstacles allow.
     Follow {
-        /// The points that remain, the next one first.
+        /// The remaining points, the next one first.
         targets: P,
-        /// Distance at which the last one counts as reached, metres.
+        /// Distance from the last point at which it counts as reached, metres.
         tolerance_m: f64,
     },
-    /// Scan the floor with the swath, and come back to the anchor.
+    /// Scan the floor and return to the anchor.
     Cover {
-        /// Where the path ends, and where the tether is made fast if there is one.
+        /// The end of the path; the tether, if there is one, is attached here.
         anchor: Point,
-        /// What is still to scan: closed polygons, counter-clockwise, that do not overlap. Empty: all floor that can
-        /// be reached. They may be ragged (built of square cells) and need not respect obstacles or clearances.
+        /// The floor still to be scanned: closed polygons, counter-clockwise, which do not overlap. If empty: all
+        /// reachable floor. The polygons may be ragged (built of square cells), and may contain obstacles or floor too
+        /// close to them.
         regions: R,
-        /// The tether's limits; `None` without a tether.
+        /// The limits of the tether; `None` without a tether.
         tether: Option<TetherLimits>,
         /// Distance from the anchor at which the robot counts as back, metres.
         tolerance_m: f64,
     },
 }
 
-/// A request for a plan; `W`, `S` and `Y` hold the reason, the site and the plan under way.
+/// A request for a plan. The type parameters `W`, `S` and `Y` are the types of the reason, the site and the plan to
+/// keep to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlanRequest<P = Vec<Point>, R = Vec<Vec<Point>>, W = Reason, S = Arc<Site>, Y = Plan> {
-    /// Why.
+    /// Why the plan is requested.
     pub reason: W,
-    /// From where.
+    /// Where the robot starts.
     pub start: PoseEstimate,
-    /// To what end.
+    /// The task to plan for.
     pub task: Task<P, R>,
-    /// Where.
+    /// The tank, its obstacles and the robot.
     pub site: S,
-    /// The path flown so far, oldest first, and a return path before the plan; empty at the start.
+    /// The path flown so far, oldest point first, followed by the return path that the robot will take before it starts
+    /// the plan; empty at the start of a mission.
     pub previous: P,
-    /// On coverage missions: the plan to be kept to as far as it can be, which is what is left of the one that the robot flies,
-    /// from the place that it is led to, or one that this planner made a moment ago; without its cost. It may lead through
-    /// what was found since. `None`: plan anew.
+    /// On coverage missions, the plan to keep to as far as possible, or `None` to plan from scratch. It is either the
+    /// rest of the plan that the robot is flying, beginning where the robot is being led, or the plan that this planner
+    /// has just made. Its cost is not set. It may lead through obstacles found since.
     pub under_way: Option<Y>,
 }
 
-/// What is known in one tick.
+/// A planner's view of one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sensed<P = Vec<Point>, O = Vec<Obstacle>> {
-    /// Number of the tick, from 0.
+    /// Number of the tick; the first is 0.
     pub tick: u64,
     /// Mission time, seconds.
     pub t_s: f64,
     /// Length of a tick, seconds.
     pub dt_s: f64,
-    /// Where the robot believes it is.
+    /// The estimated pose of the robot.
     pub pose: PoseEstimate,
-    /// Speed ahead as commanded last, metres per second.
+    /// Forward speed that was last commanded, metres per second.
     pub v_m_per_s: f64,
-    /// Turn rate as commanded last, radians per second.
+    /// Turn rate that was last commanded, radians per second.
     pub w_rad_per_s: f64,
-    /// Where to go next: the goal, or the preset point that is due.
+    /// Where to go next: the goal, or the next preset point.
     pub target: Point,
-    /// The preset points from the target on, a few metres of them.
+    /// The preset points from the target on, for a few metres.
     pub targets_ahead: P,
-    /// The plan from here on, a few metres of it.
+    /// The plan from here on, for a few metres.
     pub path_ahead: P,
-    /// Known and discovered obstacles within the robot's sensing range: as they are seen now, so that their distance from
-    /// `pose` is right even where the position is not, and as the chart has them while they are out of sight.
+    /// Known obstacles within the robot's sensing range. An obstacle in sight is where the robot sees it now, so that
+    /// its distance from `pose` is right even if `pose` is not. One out of sight is where the chart has it.
     pub obstacles: O,
 }
 
 impl Obstacle {
-    /// Lends the obstacle.
+    /// Borrows the obstacle.
     pub fn lend(&self) -> crate::Obstacle<'_> {
         let Self { id, discovered, velocity_m_per_s, .. } = *self;
         Obstacle { id, outline: self.outline.as_ref(), discovered, velocity_m_per_s }
@@ -149,14 +155,14 @@ impl Obstacle {
 }
 
 impl Zone {
-    /// Lends the zone.
+    /// Borrows the zone.
     pub fn lend(&self) -> crate::Zone<'_> {
         Zone { kind: self.kind, outline: self.outline.as_ref() }
     }
 }
 
 impl Site {
-    /// Lends the site for a call.
+    /// Borrows the site for the length of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::Site<'_>) -> T) -> T {
         let obstacles: Vec<_> = self.obstacles.iter().map(Obstacle::lend).collect();
         let zones: Vec<_> = self.zones.iter().map(Zone::lend).collect();
@@ -167,7 +173,7 @@ impl Site {
 }
 
 impl PlanRequest {
-    /// Lends the request for a call.
+    /// Borrows the request for the length of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::PlanRequest<'_>) -> T) -> T {
         let regions: Vec<&[Point]> = match &self.task {
             Task::Cover { regions, .. } => regions.iter().map(Vec::as_slice).collect(),
@@ -187,7 +193,7 @@ impl PlanRequest {
 }
 
 impl crate::Sensed<'_> {
-    /// What a robot knows that stands still at a pose and is to go to a target, with nothing around it; a tick takes `dt_s`
+    /// The view of a robot that stands still at a pose, with a target and nothing around it; a tick takes `dt_s`
     /// seconds.
     pub fn new(tick: u64, dt_s: f64, pose: PoseEstimate, target: Point) -> Self {
         Self {
@@ -206,7 +212,7 @@ impl crate::Sensed<'_> {
 }
 
 impl Sensed {
-    /// Lends what is known for a call.
+    /// Borrows the view for the length of `call`.
     pub fn lend<T>(&self, call: impl FnOnce(&crate::Sensed<'_>) -> T) -> T {
         let obstacles: Vec<_> = self.obstacles.iter().map(Obstacle::lend).collect();
         let Self { tick, t_s, dt_s, pose, v_m_per_s, w_rad_per_s, target, .. } = *self;
@@ -225,8 +231,8 @@ impl Sensed {
     }
 }
 
-/// Writes the limits with their last field even when it is `None`. In a journal it is left out then, and a format without names
-/// could not be read.
+/// Serialises the limits with their last field even when it is `None`. Journals leave it out then, but a format without
+/// field names could not be read back without it.
 #[cfg(feature = "serde")]
 fn whole<S: serde::Serializer>(limits: &Limits, to: S) -> Result<S::Ok, S::Error> {
     serde::Serialize::serialize(&(Limits { amphibious: None, ..*limits }, limits.amphibious), to)

@@ -1,36 +1,36 @@
 //! Typed parameters: declared once as constants, checked by the host, read by key.
 
-/// What values a parameter takes.
+/// The values that a parameter accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// A real number.
     Float {
-        /// Smallest value allowed.
+        /// The smallest value allowed.
         min: f64,
-        /// Largest value allowed.
+        /// The largest value allowed.
         max: f64,
-        /// Value when nothing is set.
+        /// The default.
         default: f64,
     },
     /// A whole number.
     Int {
-        /// Smallest value allowed.
+        /// The smallest value allowed.
         min: i64,
-        /// Largest value allowed.
+        /// The largest value allowed.
         max: i64,
-        /// Value when nothing is set.
+        /// The default.
         default: i64,
     },
     /// On or off.
     Flag {
-        /// Value when nothing is set.
+        /// The default.
         default: bool,
     },
-    /// One of some words.
+    /// One of several words.
     Choice {
         /// The words.
         options: &'static [&'static str],
-        /// Index of the word when nothing is set.
+        /// The index of the default.
         default: usize,
     },
 }
@@ -46,19 +46,19 @@ pub enum Kind {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParamSpec {
-    /// Name in scenarios and on the command line.
+    /// The key in scenarios and on the command line.
     pub key: &'static str,
-    /// Name on screen.
+    /// The name on screen.
     pub label: &'static str,
-    /// Unit of the value; empty for a pure number.
+    /// The unit; empty for a pure number.
     pub unit: &'static str,
-    /// One or two sentences: what it does, what more of it does.
+    /// One or two sentences: what the parameter does, and the effect of a larger value.
     pub help: &'static str,
-    /// Heading under which the screen lists it.
+    /// The heading under which the screen lists the parameter.
     pub group: &'static str,
-    /// What values it takes.
+    /// The values that the parameter accepts.
     pub kind: Kind,
-    /// Whether it may change while the mission runs.
+    /// Whether the parameter may change while the mission runs.
     pub live: bool,
 }
 
@@ -67,7 +67,7 @@ impl ParamSpec {
         Self { key, label, unit, help: "", group: "", kind, live: false }
     }
 
-    /// Adds the help text.
+    /// Sets the help text.
     ///
     /// ```
     /// let mode = planner_api::flag("gated", "Gated", true).help("Only obstacles ahead repel.");
@@ -78,7 +78,7 @@ impl ParamSpec {
         Self { help, ..self }
     }
 
-    /// Puts it under a heading.
+    /// Sets the heading under which the screen lists the parameter.
     ///
     /// ```
     /// let gain = planner_api::float("k_att", "Attraction gain", "1/s", 0.0, 5.0, 1.0).group("Field");
@@ -89,7 +89,7 @@ impl ParamSpec {
         Self { group, ..self }
     }
 
-    /// Lets it change while the mission runs, through [`crate::Planner::reconfigure`].
+    /// Allows the parameter to change while the mission runs, through [`crate::Planner::reconfigure`].
     ///
     /// ```
     /// let gain = planner_api::float("k_att", "Attraction gain", "1/s", 0.0, 5.0, 1.0).live();
@@ -101,7 +101,7 @@ impl ParamSpec {
     }
 }
 
-/// A real parameter: `float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4)`.
+/// Declares a real parameter: `float("k_rep", "Repulsion gain", "m3/s", 0.0, 10.0, 0.4)`.
 ///
 /// ```
 /// use planner_api::{Kind, float};
@@ -120,7 +120,7 @@ pub const fn float(
     ParamSpec::new(key, label, unit, Kind::Float { min, max, default })
 }
 
-/// A whole-number parameter.
+/// Declares a whole-number parameter.
 ///
 /// ```
 /// use planner_api::{Kind, int};
@@ -139,7 +139,7 @@ pub const fn int(
     ParamSpec::new(key, label, unit, Kind::Int { min, max, default })
 }
 
-/// A parameter that is on or off.
+/// Declares a parameter that is on or off.
 ///
 /// ```
 /// use planner_api::{Kind, flag};
@@ -150,7 +150,7 @@ pub const fn flag(key: &'static str, label: &'static str, default: bool) -> Para
     ParamSpec::new(key, label, "", Kind::Flag { default })
 }
 
-/// A parameter that is one of some words; the default is given by its index.
+/// Declares a parameter that is one of several words; the default is given by its index.
 ///
 /// ```
 /// use planner_api::{Kind, choice};
@@ -167,16 +167,16 @@ pub const fn choice(
     ParamSpec::new(key, label, "", Kind::Choice { options, default })
 }
 
-/// One value as it crosses the boundary: flags are 0 or 1, choices are the index of the word.
+/// One value as it crosses the boundary: 0 or 1 for a flag, the index of the word for a choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Value<'a> {
-    /// Which parameter.
+    /// The key of the parameter.
     pub key: &'a str,
-    /// Its value.
+    /// The value.
     pub number: f64,
 }
 
-/// The values of all parameters; the host has filled the defaults and checked the ranges.
+/// The values of all parameters; the host has filled in the defaults and checked the ranges.
 ///
 /// ```
 /// use planner_api::{Config, Value, choice, flag, float, int};
@@ -199,30 +199,30 @@ pub struct Config<'a> {
 }
 
 impl<'a> Config<'a> {
-    /// Values for these parameters; those that are missing take their defaults.
+    /// Combines declared parameters with the values set; missing values take their defaults.
     pub fn new(specs: &'a [ParamSpec], values: &'a [Value<'a>]) -> Self {
         Self { specs, values }
     }
 
-    /// A real parameter.
+    /// Returns the value of a real parameter.
     ///
     /// # Panics
-    /// If the planner declares no such parameter: a slip of its author that the first test finds.
+    /// If the planner does not declare this parameter: an author's mistake that the first test finds.
     pub fn float(&self, key: &str) -> f64 {
         self.number(key)
     }
 
-    /// A whole-number parameter; panics like [`Config::float`].
+    /// Returns the value of a whole-number parameter; panics like [`Config::float`].
     pub fn int(&self, key: &str) -> i64 {
         self.number(key) as i64
     }
 
-    /// A parameter that is on or off; panics like [`Config::float`].
+    /// Returns the value of a parameter that is on or off; panics like [`Config::float`].
     pub fn flag(&self, key: &str) -> bool {
         self.number(key) != 0.0
     }
 
-    /// The chosen word; panics like [`Config::float`], or if it is not a choice.
+    /// Returns the chosen word; panics like [`Config::float`], or if the parameter is not a choice.
     pub fn choice(&self, key: &str) -> &'static str {
         let Kind::Choice { options, default } = self.spec(key).kind else {
             panic!("parameter `{key}` is not a choice")
@@ -244,7 +244,7 @@ impl<'a> Config<'a> {
     }
 }
 
-/// The default of a parameter as it crosses the boundary.
+/// Returns the default of a parameter as it crosses the boundary.
 ///
 /// ```
 /// use planner_api::{choice, flag, params::default_number};

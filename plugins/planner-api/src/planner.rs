@@ -4,23 +4,23 @@ use crate::{
     Command, Config, Ctx, ParamSpec, Plan, PlanRequest, PlannerError, Result, Sensed, Site, Stopping,
 };
 
-/// What a planner offers, as a set of bits.
+/// The abilities of a planner, as a set of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Caps(pub u32);
 
 impl Caps {
     /// Plans on the whole known map.
     pub const GLOBAL: Self = Self(1);
-    /// Reacts to what it senses, step by step.
+    /// Reacts to what the robot senses, step by step.
     pub const LOCAL: Self = Self(2);
     /// Covers the floor.
     pub const COVERAGE: Self = Self(4);
     /// Can save and restore its private state.
     pub const SNAPSHOT: Self = Self(8);
-    /// Takes new values of live parameters under way.
+    /// Accepts new values of live parameters during a mission.
     pub const LIVE_PARAMS: Self = Self(16);
 
-    /// Both sets together.
+    /// Returns the union of both sets.
     ///
     /// ```
     /// use planner_api::Caps;
@@ -33,7 +33,7 @@ impl Caps {
         Self(self.0 | other.0)
     }
 
-    /// Whether everything in `other` is offered.
+    /// Whether this set includes all of `other`.
     ///
     /// ```
     /// use planner_api::Caps;
@@ -46,10 +46,10 @@ impl Caps {
     }
 }
 
-/// A planner: asked once for a plan, then every tick for a command.
+/// A planner: it is asked for a plan when the mission needs one, and for a command in every tick.
 ///
-/// One instance is called from one thread, one call at a time. What another planner needs to take over (path flown,
-/// targets left, coverage) is kept by the console, so a planner need only keep what is its own.
+/// An instance is called from one thread, one call at a time. The console keeps what a different planner would need to
+/// take over (path flown, targets left, coverage), so a planner only keeps what is its own.
 ///
 /// ```
 /// use planner_api::*;
@@ -79,59 +79,59 @@ impl Caps {
 /// assert!(Wait.snapshot().is_err(), "it keeps no state of its own");
 /// ```
 pub trait Planner: Sized + 'static {
-    /// Stable name in recordings and scenarios: `[a-z0-9_-]{1,32}`.
+    /// Stable id in recordings and scenarios: `[a-z0-9_-]{1,32}`.
     const ID: &'static str;
-    /// Name on screen.
+    /// The name on screen.
     const NAME: &'static str;
-    /// One sentence: what it does, and from where.
+    /// One sentence: what the planner does, and its source.
     const ABOUT: &'static str = "";
-    /// What it offers.
+    /// The planner's abilities.
     const CAPS: Caps;
-    /// Format of [`Planner::snapshot`]; raise it when the format changes.
+    /// Version of the format of [`Planner::snapshot`]; raise it when the format changes.
     const STATE_VERSION: u32 = 1;
-    /// Its parameters.
+    /// The planner's parameters.
     const PARAMS: &'static [ParamSpec];
 
-    /// Makes a planner for a site; there is no half-configured one.
+    /// Creates a planner for a site. The new instance must be ready for use.
     ///
     /// # Errors
-    /// [`crate::Code::Config`] when the parameters do not fit together or the site.
+    /// [`crate::Code::Config`] when the parameters contradict each other or do not fit the site.
     fn configure(config: &Config<'_>, site: &Site<'_>, ctx: &Ctx<'_>) -> Result<Self>;
 
-    /// Takes new values of live parameters.
+    /// Accepts new values of live parameters.
     ///
     /// # Errors
-    /// [`crate::Code::Unsupported`] makes the console configure a new instance instead.
+    /// With [`crate::Code::Unsupported`] the console configures a new instance instead.
     fn reconfigure(&mut self, _config: &Config<'_>, _ctx: &Ctx<'_>) -> Result<()> {
         Err(PlannerError::unsupported())
     }
 
-    /// Plans a path for the task on what is known now.
+    /// Plans a path for the task, based on what is known now.
     ///
     /// # Errors
-    /// Why there is none; [`PlannerError::no_path_but`] may carry the part that was found.
+    /// The reason why there is no path; [`PlannerError::no_path_but`] can carry the part that was found.
     fn plan(&mut self, request: &PlanRequest<'_>, ctx: &Ctx<'_>) -> Result<Plan>;
 
-    /// Decides how to move until the next tick.
+    /// Decides how the robot moves until the next tick.
     ///
     /// # Errors
-    /// Why it cannot; the console then holds the robot.
+    /// The reason why there is no command; the console then holds the robot.
     fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command>;
 
-    /// The console is about to stop this planner.
+    /// Tells the planner that the console is about to stop it.
     fn stopping(&mut self, _ctx: &Ctx<'_>) -> Stopping {
         Stopping::Done
     }
 
-    /// The planner's private state, for a restart of the same planner.
+    /// Returns the planner's private state, for a restart of the same planner.
     ///
     /// # Errors
-    /// [`crate::Code::Unsupported`] when it keeps none.
+    /// [`crate::Code::Unsupported`] when the planner keeps no state.
     fn snapshot(&self) -> Result<Vec<u8>> {
         Err(PlannerError::unsupported())
     }
 
-    /// Takes over the state of an earlier instance.
+    /// Restores the state of an earlier instance.
     ///
     /// # Errors
     /// [`crate::Code::State`] when the state does not fit.

@@ -1,10 +1,10 @@
-//! What a planner is asked, and what it knows when asked.
+//! The requests to a planner, and the information they carry.
 
 use crate::message;
 use crate::site::{Obstacle, Site};
 use nalgebra::{Matrix3, Point2};
 
-/// An estimated pose with its covariance.
+/// An estimated pose and its covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseEstimate {
@@ -12,44 +12,44 @@ pub struct PoseEstimate {
     pub position: Point2<f64>,
     /// Heading, radians.
     pub heading_rad: f64,
-    /// Covariance of x, y (square metres) and heading (square radians).
+    /// Covariance of x, y and heading, in metres and radians.
     #[cfg_attr(feature = "serde", serde(with = "geometry::symmetric"))]
     pub covariance: Matrix3<f64>,
 }
 
-/// Why a plan is wanted.
+/// Why a plan is requested.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Reason {
     /// The mission begins.
     Start,
-    /// The robot cannot go on along the plan.
+    /// The robot cannot continue along the plan.
     Blocked,
     /// The map has changed.
     MapChanged,
-    /// The operator asks for it.
+    /// The operator requests it.
     Operator,
-    /// This planner takes over from another one.
+    /// This planner takes over from a different one.
     Swap {
-        /// Id of the planner that drove before.
+        /// Id of the previous planner.
         from: String,
     },
-    /// This planner starts again after a fault.
+    /// This planner restarts after a fault.
     Recover,
 }
 
-/// What the mission is to achieve from here on, lent by the console.
+/// The task of the mission from now on, lent by the console.
 pub type Task<'a> = message::Task<&'a [Point2<f64>], &'a [&'a [Point2<f64>]]>;
 
-/// What a tether bears. It runs from the anchor to the robot, taut, and may touch obstacles.
+/// The limits of a tether. The tether runs taut from the anchor to the robot, and may touch obstacles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TetherLimits {
-    /// Length on the reel, metres; infinite without a limit.
+    /// Length of tether on the reel, metres; infinite without a limit.
     pub reel_length_m: f64,
-    /// Largest wrap angle on one obstacle, radians; infinite without a limit.
+    /// Largest wrap angle around one obstacle, radians; infinite without a limit.
     pub wrap_max_rad: f64,
-    /// Largest sum of the wrap angles on all obstacles, radians; infinite without a limit.
+    /// Largest sum of the wrap angles around all obstacles, radians; infinite without a limit.
     pub wrap_total_max_rad: f64,
 }
 
@@ -68,13 +68,13 @@ pub type PlanRequest<'a> =
     message::PlanRequest<&'a [Point2<f64>], &'a [&'a [Point2<f64>]], &'a Reason, &'a Site<'a>, &'a Plan>;
 
 impl<'a> PlanRequest<'a> {
-    /// A request of a robot that has not driven yet.
+    /// Creates the request of a robot that has not driven yet.
     pub fn new(reason: &'a Reason, start: PoseEstimate, task: Task<'a>, site: &'a Site<'a>) -> Self {
         Self { reason, start, task, site, previous: &[], under_way: None }
     }
 }
 
-/// A path to fly.
+/// A plan: a path to fly, with the purposes of its stretches and the cuts.
 ///
 /// ```
 /// use planner_api::{Plan, Point2};
@@ -86,26 +86,26 @@ impl<'a> PlanRequest<'a> {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
-    /// Points of the path, the start first.
+    /// The points of the path, the start first.
     pub path: Vec<Point2<f64>>,
-    /// Cost in the planner's own measure; the length in metres unless it says otherwise.
+    /// The cost in a measure of the planner's choice; length in metres unless the planner documents a different one.
     pub cost: f64,
     /// Whether the path achieves the whole task.
     pub complete: bool,
-    /// What the stretches of the path are for, in order; empty when the planner does not state it. Two legs may share a
-    /// point, and what no leg names is on the way from one place to another.
+    /// The purposes of the stretches of the path, in order; empty if the planner does not state them. Two consecutive
+    /// legs may share a point. A stretch that belongs to no leg counts as the way from one place to the next.
     pub legs: Vec<Leg>,
     /// Lines that the tethered robot never crosses, neither on the path nor when it leaves it.
     pub cuts: Vec<Vec<Point2<f64>>>,
 }
 
 impl Plan {
-    /// Longest path that is accepted, metres. Whoever reads a plan may sample its path at centimetres: a longer one, which no
-    /// robot flies, would exhaust the memory.
+    /// The longest path that the console accepts, metres. The console may sample paths at centimetre spacing, and a
+    /// longer one would exhaust its memory.
     pub const MOST_LENGTH_M: f64 = 1e6;
 
-    /// Checks that all points are finite, that the path is not absurdly long, and that the legs lie on the path, in order, and
-    /// share at most a point.
+    /// Checks that all points are finite, that the path is not too long, and that the legs lie on the path, in order,
+    /// and share at most a point.
     ///
     /// ```
     /// use planner_api::{Leg, LegTag, Plan, Point2};
@@ -113,20 +113,20 @@ impl Plan {
     /// let path = vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0)];
     /// let legs = vec![Leg { tag: LegTag::Swath, first: 0, last: 2 }];
     /// let error = Plan { path, legs, ..Plan::default() }.check().unwrap_err();
-    /// assert_eq!(error, "gave leg 0 from point 0 to 2 of a path of 2 points");
+    /// assert_eq!(error, "gave leg 0 from point 0 to 2 in a path of 2 points");
     /// ```
     ///
     /// # Errors
-    /// What is wrong; the sentence reads on after the planner's name.
+    /// What is wrong: a sentence that continues after the planner's name.
     pub fn check(&self) -> Result<(), String> {
         let is_finite = |p: &Point2<f64>| p.x.is_finite() && p.y.is_finite();
         if let Some(index) = self.path.iter().position(|p| !is_finite(p)) {
             return Err(format!("gave a path whose point {index} is not finite"));
         }
         let (length_m, limit_m) = (self.length_m(), Self::MOST_LENGTH_M);
-        // The sum of finite lengths may be infinite, and is refused as well.
+        // A sum of finite lengths may be infinite; this refuses it, too.
         if length_m > limit_m {
-            return Err(format!("gave a path of {length_m:.0} m, the limit is {limit_m:.0} m"));
+            return Err(format!("gave a path of {length_m:.0} m; the limit is {limit_m:.0} m"));
         }
         if !self.cuts.iter().flatten().all(is_finite) {
             return Err("gave a cut with a point that is not finite".to_owned());
@@ -143,10 +143,12 @@ impl Plan {
         for (index, leg) in self.legs.iter().enumerate() {
             let (first, last, n) = (leg.first, leg.last, self.path.len());
             if first > last || last >= n {
-                return Err(format!("gave leg {index} from point {first} to {last} of a path of {n} points"));
+                return Err(format!("gave leg {index} from point {first} to {last} in a path of {n} points"));
             }
             if first < from {
-                return Err(format!("gave leg {index} from point {first} on, within the leg before it"));
+                return Err(format!(
+                    "gave leg {index}, whose first point {first} is inside the previous leg"
+                ));
             }
             from = last;
         }
@@ -154,35 +156,35 @@ impl Plan {
     }
 }
 
-/// What a stretch of a path is for.
+/// The purpose of a stretch of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[repr(u32)]
 pub enum LegTag {
     /// The tool scans new floor.
     Swath = 0,
-    /// From the end of one lane to the beginning of another.
+    /// Leads from the end of one lane to the beginning of another.
     Connector = 1,
-    /// Back along its own way so that the tether is taken in.
+    /// Retraces the path so that the tether is reeled in.
     Retract = 2,
-    /// To the first lane, or home.
+    /// Leads to the first lane, or home.
     Travel = 3,
 }
 
-/// A stretch of a plan's path.
+/// A stretch of a plan's path with its purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Leg {
-    /// What it is for.
+    /// The purpose.
     pub tag: LegTag,
-    /// Index of its first point in [`Plan::path`].
+    /// Index of the first point in [`Plan::path`].
     pub first: usize,
-    /// Index of its last point, which belongs to it.
+    /// Index of the last point, inclusive.
     pub last: usize,
 }
 
 impl LegTag {
-    /// The word that scripts and people read.
+    /// Returns the word for scripts and people.
     ///
     /// ```
     /// assert_eq!(planner_api::LegTag::Retract.word(), "retract");
@@ -196,7 +198,7 @@ impl LegTag {
         }
     }
 
-    /// The tag of a number that came over the boundary, if it is one.
+    /// Converts a number that came over the boundary; `None` if it is not a tag.
     ///
     /// ```
     /// use planner_api::LegTag;
@@ -211,7 +213,7 @@ impl LegTag {
     }
 }
 
-/// What is known in one tick, lent by the console.
+/// A planner's view of one tick, lent by the console.
 ///
 /// ```
 /// use planner_api::{Command, Drive, Sensed};

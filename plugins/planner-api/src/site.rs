@@ -1,18 +1,18 @@
-//! Where the mission takes place, as far as the drawing shows it.
+//! The tank in which a mission takes place.
 
 use crate::message;
 use nalgebra::Point2;
 
-/// The wall of the tank, its corners borrowed from the console.
+/// The wall of the tank; its corners are borrowed from the console.
 pub type Boundary<'a> = geometry::Boundary<&'a [Point2<f64>]>;
-/// The outline of an obstacle or zone, its corners borrowed from the console.
+/// The outline of an obstacle or zone; its corners are borrowed from the console.
 pub type Outline<'a> = geometry::Shape<&'a [Point2<f64>]>;
 
-/// Something the robot must not touch, lent by the console.
+/// An object that the robot must not touch, lent by the console.
 pub type Obstacle<'a> = message::Obstacle<&'a [Point2<f64>]>;
-/// A part of the floor with a meaning of its own, lent by the console.
+/// A special part of the floor, lent by the console.
 pub type Zone<'a> = message::Zone<&'a [Point2<f64>]>;
-/// The drawing of the tank, the robot and the margins that the mission demands, lent by the console.
+/// The tank, the robot, and the margins that the mission requires, lent by the console.
 pub type Site<'a> = message::Site<&'a [Point2<f64>], &'a [Obstacle<'a>], &'a [Zone<'a>]>;
 
 /// What is special about a part of the floor.

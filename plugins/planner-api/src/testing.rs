@@ -1,4 +1,4 @@
-//! The console's services kept in memory, for the unit tests of a planner.
+//! An in-memory version of the console's services, for the unit tests of a planner.
 //!
 //! ```
 //! use planner_api::testing::Bench;
@@ -13,8 +13,8 @@ use crate::{Config, Ctx, Drawing, LogLevel, Planner, Result, Services, Site, Sto
 use std::cell::{Cell, RefCell};
 use std::time::Duration;
 
-/// Collects what a planner draws, reports and says. Its deadline is an hour away and somebody is watching, unless a
-/// test says otherwise.
+/// Collects what a planner draws, reports and logs. Unless a test changes it, the deadline is an hour away and drawings
+/// are shown.
 #[derive(Debug)]
 pub struct Bench {
     stop: Cell<Option<StopReason>>,
@@ -39,7 +39,7 @@ impl Default for Bench {
 }
 
 impl Bench {
-    /// A bench with nothing on it yet.
+    /// Creates an empty bench.
     ///
     /// ```
     /// let bench = planner_api::testing::Bench::new();
@@ -49,7 +49,7 @@ impl Bench {
         Self::default()
     }
 
-    /// The services as a planner sees them.
+    /// Returns the services as a planner sees them.
     ///
     /// ```
     /// let bench = planner_api::testing::Bench::new();
@@ -59,8 +59,8 @@ impl Bench {
         Ctx::new(self)
     }
 
-    /// Makes a planner with these parameter values (flags 0 or 1, choices the index of the word); the others take
-    /// their defaults.
+    /// Creates a planner with these parameter values (0 or 1 for a flag, the index of the word for a choice); the
+    /// others take their defaults.
     ///
     /// ```
     /// # use planner_api::*;
@@ -91,13 +91,13 @@ impl Bench {
     /// ```
     ///
     /// # Errors
-    /// What the planner's `configure` refuses.
+    /// The planner's `configure` refuses the values or the site.
     pub fn configure<P: Planner>(&self, values: &[(&str, f64)], site: &Site<'_>) -> Result<P> {
         let values: Vec<Value<'_>> = values.iter().map(|&(key, number)| Value { key, number }).collect();
         P::configure(&Config::new(P::PARAMS, &values), site, &self.ctx())
     }
 
-    /// From now on [`Ctx::check`] fails for this reason; `None` lets the planner work again.
+    /// Makes [`Ctx::check`] fail for this reason from now on; `None` lets the planner work again.
     ///
     /// ```
     /// use planner_api::{StopReason, testing::Bench};
@@ -112,7 +112,7 @@ impl Bench {
         self.stop.set(reason.into());
     }
 
-    /// From now on nobody looks at drawings; they are still collected.
+    /// Reports from now on that drawings are not shown; they are still collected.
     ///
     /// ```
     /// let bench = planner_api::testing::Bench::new();
@@ -123,17 +123,17 @@ impl Bench {
         self.watched.set(false);
     }
 
-    /// What was drawn since the last [`Bench::clear`].
+    /// Returns what was drawn since the last [`Bench::clear`].
     pub fn drawings(&self) -> Vec<Drawing> {
         self.drawings.borrow().clone()
     }
 
-    /// Named figures since the last [`Bench::clear`]: name, value, unit.
+    /// Returns the named figures since the last [`Bench::clear`]: name, value, unit.
     pub fn scalars(&self) -> Vec<(String, f64, String)> {
         self.scalars.borrow().clone()
     }
 
-    /// The newest value of a named figure.
+    /// Returns the newest value of a named figure.
     ///
     /// ```
     /// let bench = planner_api::testing::Bench::new();
@@ -145,17 +145,17 @@ impl Bench {
         self.scalars.borrow().iter().rev().find(|(known, ..)| known == name).map(|(_, value, _)| *value)
     }
 
-    /// Progress reported for a plan since the last [`Bench::clear`]: share, and what was being done.
+    /// Returns the progress reported since the last [`Bench::clear`]: the share done, and the activity.
     pub fn progress(&self) -> Vec<(f64, String)> {
         self.progress.borrow().clone()
     }
 
-    /// What was said since the last [`Bench::clear`].
+    /// Returns the log messages since the last [`Bench::clear`].
     pub fn logs(&self) -> Vec<(LogLevel, String)> {
         self.logs.borrow().clone()
     }
 
-    /// Forgets everything that was drawn, reported and said.
+    /// Clears everything that was drawn, reported and logged.
     ///
     /// ```
     /// use planner_api::{LogLevel, testing::Bench};

@@ -1,9 +1,9 @@
-//! An elastic band: a way drawn as near to its course as clearance, wall and turn limit allow.
+//! An elastic band: pulls a path as close to its course as clearance, wall and turn limit allow.
 //!
-//! The sum of squared distances between points of one index is minimised by the alternating direction method of
-//! multipliers (Boyd et al. 2011): solve a banded linear system, put what it gives back within every limit, repeat.
-//! The limits are those of the final path: distances of its pieces, and the angle between chords of [`SPAN_M`] however
-//! these are laid along it.
+//! The alternating direction method of multipliers (Boyd et al. 2011) minimises the sum of squared distances between
+//! points with the same index. In each round it solves a banded linear system and projects the solution onto every
+//! limit. The limits are those of the final path: the distances of its segments from solids, and the angle between
+//! chords of [`SPAN_M`] at any position along the path.
 
 mod banded;
 mod rows;
@@ -17,65 +17,65 @@ use world::{Boundary, Point, Vector, polyline};
 
 /// Length of path over which a change of heading is measured, metres.
 pub(crate) const SPAN_M: f64 = 0.2;
-/// Once a way is found this share of the turn limit is aimed at.
+/// Once a path has been found, the band aims at this share of the turn limit.
 const TURN_SHARE: f64 = 0.985;
-/// Clearances are kept with this much to spare, metres.
+/// Extra margin added to clearances, metres.
 const SPARE_M: f64 = 2e-4;
 /// Weights of the first and second differences of offsets, which keep the points in order.
 const ORDER_WEIGHT: f64 = 0.02;
 const BEND_WEIGHT: f64 = 0.1;
-/// Weight of a point that may not move.
+/// Weight of a fixed point.
 const FIXED_WEIGHT: f64 = 1e6;
-/// The wall has rows for points nearer to it than this, metres.
+/// The wall has rows for points closer to it than this, metres.
 const WALL_REACH_M: f64 = 0.25;
-/// Step of the multipliers beyond one.
+/// Over-relaxation of the multiplier updates.
 const OVER: f64 = 1.6;
 /// Rounds of solving and projecting with one set of rows.
 const ROUNDS: usize = 10;
-/// Penalties grow up to this many times.
+/// The largest factor by which penalties grow.
 const MOST_GROWN: f64 = 100.0;
-/// Another set of rows has to bring at least this share of the cost.
+/// The search ends when a new set of rows reduces the cost by less than this share.
 const GAIN: f64 = 0.002;
-/// In the end points may slide along the way this often, at first by this share of what they are off.
+/// In the end points may slide along the path this many times, initially by this share of their deviation.
 const SLIDES: usize = 12;
 const SLIDE_SHARE: f64 = 0.5;
 
-/// A point of the course and what holds there.
+/// A point of the course and the conditions there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Knot {
-    /// Where the course is.
+    /// The point of the course.
     pub at: Point,
-    /// How many preset points it stands for.
+    /// The number of preset points that it represents.
     pub weight: f64,
-    /// Largest change of heading per metre of path, radians; infinite for none.
+    /// Largest change of heading per metre of path, radians; infinite if there is no limit.
     pub turn_per_m: f64,
-    /// Whether the way has to pass it.
+    /// Whether the path must pass through this point.
     pub fixed: bool,
 }
 
-/// How long to draw.
+/// How long to keep trying.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Patience {
-    /// Sets of rows.
+    /// The maximum number of sets of rows.
     pub sets: usize,
-    /// Growth of the penalties from one set to the next as long as a limit is broken.
+    /// Growth of the penalties from one set to the next while a limit is violated.
     pub growth: f64,
-    /// Share of the turn limit that is aimed at.
+    /// The share of the turn limit to aim at.
     pub turn_share: f64,
 }
 
 /// A band along a course.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Band<'a> {
-    /// Its knots.
+    /// The knots of the band.
     pub knots: &'a [Knot],
-    /// Where it may be.
+    /// The space that is available.
     pub room: &'a Room,
 }
 
 impl<'a> Band<'a> {
-    /// The way drawn tight from one that passes everything on the sides wanted; `None` if no way within the limits was
-    /// found.
+    /// Tightens a path that already passes everything on the desired sides. Returns `None` if no path within the limits
+    /// was found.
     pub(crate) fn drawn(&self, way: &[Point], patience: Patience) -> Option<Vec<Point>> {
         let solids = self.solids(way);
         let mut places = way.to_vec();
@@ -109,21 +109,21 @@ impl<'a> Band<'a> {
         best.map(|(cost, places)| self.slid_home(cost, places))
     }
 
-    /// Sum of the squared distances to the course.
+    /// Returns the weighted sum of squared distances to the course.
     pub(crate) fn cost(&self, way: &[Point]) -> f64 {
         way.iter().zip(self.knots).map(|(p, knot)| knot.weight * (p - knot.at).norm_squared()).sum()
     }
 
-    /// Whether a way keeps every limit.
+    /// Whether a path keeps every limit.
     pub(crate) fn is_allowed(&self, way: &[Point]) -> bool {
         way.windows(2).all(|w| self.room.is_free(w[0], w[1])) && self.turns_slowly(way)
     }
 
-    /// Whether no two chords of [`SPAN_M`] that meet turn faster than allowed.
+    /// Whether every two adjacent chords of [`SPAN_M`] turn no faster than allowed.
     fn turns_slowly(&self, way: &[Point]) -> bool {
         let stations_m = polyline::stations_m(way);
         let length_m = stations_m[way.len() - 1];
-        // As the chords slide along the way they turn most where one of their ends meets a point of it.
+        // As the chords slide along the path, the turn is largest where an end of a chord is at a point of the path.
         let marks_m = stations_m.iter().flat_map(|s_m| [s_m - SPAN_M, *s_m, s_m + SPAN_M]);
         marks_m.filter(|s_m| *s_m >= SPAN_M && s_m + SPAN_M <= length_m).all(|s_m| {
             let (index, share) = piece(&stations_m, s_m);
@@ -138,7 +138,7 @@ impl<'a> Band<'a> {
         })
     }
 
-    /// What is near, each once.
+    /// Returns the solids near a path, each once.
     fn solids(&self, way: &[Point]) -> Vec<Solid<'a>> {
         let mut parts: Vec<(&'a Part, f64)> = Vec::new();
         for place in way {
@@ -151,7 +151,7 @@ impl<'a> Band<'a> {
         parts.into_iter().flat_map(|(part, keep_m)| solids_of(part, keep_m)).collect()
     }
 
-    /// The rows about a way; multipliers of the same rows are taken over.
+    /// Builds the rows for a path; rows that existed before keep their multipliers.
     fn rows(&self, solids: &[Solid<'a>], way: &[Point], share: f64, before: &[Row<'a>]) -> Vec<Row<'a>> {
         let mut rows = Vec::with_capacity(before.len() + 8);
         self.turn_rows(way, share, &mut rows);
@@ -180,7 +180,7 @@ impl<'a> Band<'a> {
         rows
     }
 
-    /// The second difference over the span at every point.
+    /// Builds the rows for the turn limit: the second difference over the span at every point.
     fn turn_rows(&self, way: &[Point], share: f64, rows: &mut Vec<Row<'a>>) {
         let stations_m = polyline::stations_m(way);
         let last = way.len() - 1;
@@ -206,7 +206,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// The points moved along the way, nearer to those of the course, as long as that breaks no limit.
+    /// Slides the points along the path, closer to those of the course, as long as no limit is violated.
     fn slid_home(&self, mut cost: f64, mut way: Vec<Point>) -> Vec<Point> {
         let mut share = SLIDE_SHARE;
         for _ in 0..SLIDES {
@@ -238,7 +238,7 @@ impl<'a> Band<'a> {
         slid
     }
 
-    /// Solves and projects a number of times; the places of the last solution.
+    /// Solves and projects several times; returns the points of the last solution.
     fn rounds(&self, rows: &mut [Row<'a>]) -> Vec<Point> {
         let mut matrix =
             Banded::new(self.knots.len(), rows.iter().map(|row| row.factors.len()).max().unwrap_or(2).max(3));
@@ -279,7 +279,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The piece that a station lies on, and the share of it that lies before.
+/// Returns the segment at a station, and the fraction of it that is before the station.
 fn piece(stations_m: &[f64], station_m: f64) -> (usize, f64) {
     let next = stations_m.partition_point(|s| *s <= station_m).clamp(1, stations_m.len() - 1);
     let (from_m, to_m) = (stations_m[next - 1], stations_m[next]);

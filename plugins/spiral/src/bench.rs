@@ -1,13 +1,13 @@
-//! What the tests of our own planners share: plans of the paper's layouts and their figures over many seeds.
+//! Shared by the tests of our own planners: plans for the paper's layouts, and their figures over many seeds.
 
 use planner_api::{Motion, Plan, PlanRequest, Planner, Reason, Result, Task, testing::Bench};
 use std::time::Duration;
 use trials::{Distribution, Layout, Safety, Sampling, Score, exact_pose, floor_rmse_m, safety, score};
 
-/// Clearance of the paper's layouts in our tests, metres.
+/// Clearance in the paper's layouts in our tests, metres.
 pub(crate) const CLEARANCE_M: f64 = 0.3;
 
-/// Plans a whole layout.
+/// Plans a path through a layout.
 pub(crate) fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Result<Plan> {
     let bench = Bench::new();
     let obstacles = layout.obstacles();
@@ -19,7 +19,7 @@ pub(crate) fn plan<P: Planner>(layout: &Layout, values: &[(&str, f64)]) -> Resul
     planner.plan(&request, &bench.ctx())
 }
 
-/// Time this thread has spent computing, so that figures hold on a busy machine; zero where it is not available.
+/// Returns the CPU time of this thread, so that figures are valid on a busy machine; zero where it is not available.
 fn on_cpu() -> Duration {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let nanoseconds = stat.split_whitespace().next().and_then(|word| word.parse().ok());
@@ -121,7 +121,7 @@ impl Figures {
     }
 }
 
-/// Every planner on a preset path refuses input that makes no sense, with a reason.
+/// Tests that every planner on a preset path refuses invalid input, with a reason.
 mod bad_input {
     use super::*;
     use crate::{

@@ -5,56 +5,56 @@ use std::{f64::consts::TAU, ops::Range};
 use steering::{Keep, Room, solid_parts};
 use world::{Point, Vector, geometry::wrap_angle_rad, polyline};
 
-/// Neighbouring points are no further apart than this, metres: the paper's step.
+/// Largest distance between neighbouring points, metres: the step of the paper.
 const SPACING_M: f64 = 0.2;
-/// More points than this are refused.
+/// Courses with more points than this are refused.
 const MOST_POINTS: usize = 200_000;
-/// A start nearer to the first point than this is on the course, metres.
+/// A start closer to the first point than this is on the course, metres.
 const ON_COURSE_M: f64 = 1e-3;
-/// Outside the floor by no more than this is rounding, metres.
+/// Being outside the floor by no more than this is a rounding error, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Turns nearer to each other than this lie on top of each other, metres.
+/// Turns of the path closer to each other than this count as coincident, metres.
 const LEAST_PITCH_M: f64 = 1e-3;
 
 /// Points to follow in order.
 #[derive(Debug, Clone)]
 pub(crate) struct Course {
-    /// The points; where the robot is comes first.
+    /// The points; the first one is the robot's position.
     pub points: Vec<Point>,
-    /// Way along the course to every point, metres.
+    /// Distance along the course to every point, metres.
     pub stations_m: Vec<f64>,
-    /// Distance at which the last point counts as reached, metres.
+    /// Distance from the last point at which it counts as reached, metres.
     pub tolerance_m: f64,
 }
 
 impl Course {
-    /// The course of a task, from where the robot is.
+    /// Creates the course of a task, beginning at the robot.
     ///
     /// # Errors
-    /// [`Code::Invalid`] for points that are missing, no numbers or too many, and for turns on top of each other.
+    /// [`Code::Invalid`] for points that are missing, not finite or too many, and for turns that coincide.
     pub(crate) fn new(request: &PlanRequest<'_>) -> Result<Self> {
         let start = request.start.position;
         let (targets, tolerance_m) = match request.task {
             Task::Goto { goal, tolerance_m } => (vec![goal], tolerance_m),
             Task::Follow { targets, tolerance_m } => (targets.to_vec(), tolerance_m),
             Task::Cover { .. } => {
-                let message = "it flies to points and along paths and does not cover floors";
+                let message = "it drives to points and along paths and does not cover floors";
                 return Err(PlannerError::new(Code::Unsupported, message));
             }
         };
         check_targets(&targets)?;
         if !start.x.is_finite() || !start.y.is_finite() {
-            return Err(invalid("the start is not a number"));
+            return Err(invalid("the start is not a finite point"));
         }
         let first = targets[0];
         let mut points = if (first - start).norm() > ON_COURSE_M { vec![start] } else { Vec::new() };
         points.extend(targets);
         let split = polyline::length_m(&points) / SPACING_M + points.len() as f64;
         if split > MOST_POINTS as f64 {
-            let message = format!("the preset path has {split:.0} points, {MOST_POINTS} are allowed");
+            let message = format!("the preset path has {split:.0} points; {MOST_POINTS} are allowed");
             return Err(invalid(message));
         }
-        // A hair more, so that points one step apart are not split by rounding.
+        // Slightly more than one step, so that rounding does not split gaps of exactly one step.
         let most_m = SPACING_M * (1.0 + 1e-6);
         let has_gaps = points.windows(2).any(|w| (w[1] - w[0]).norm() > most_m);
         let points = if has_gaps { polyline::resampled(&points, most_m) } else { points };
@@ -62,25 +62,25 @@ impl Course {
         Ok(Self { points, stations_m, tolerance_m })
     }
 
-    /// Index of the last point.
+    /// Returns the index of the last point.
     pub(crate) fn last(&self) -> usize {
         self.points.len() - 1
     }
 
-    /// Unit vector along the course at a point.
+    /// Returns the unit vector along the course at a point.
     pub(crate) fn direction(&self, index: usize) -> Vector {
         let (before, after) = (index.saturating_sub(1), (index + 1).min(self.last()));
         (self.points[after] - self.points[before]).try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
-    /// Unit vector from a point to the next one.
+    /// Returns the unit vector from a point to the next one.
     pub(crate) fn leg(&self, index: usize) -> Vector {
         let from = index.min(self.last().saturating_sub(1));
         let along = self.points[(from + 1).min(self.last())] - self.points[from];
         along.try_normalize(1e-12).unwrap_or_else(Vector::x)
     }
 
-    /// How fast the course itself turns about a point, radians per metre.
+    /// Returns how fast the course itself turns at a point, radians per metre.
     pub(crate) fn turn_per_m(&self, index: usize) -> f64 {
         let before = self.leg(index.saturating_sub(1));
         let after = self.leg(index);
@@ -90,11 +90,11 @@ impl Course {
     }
 }
 
-/// The room for the robot: the mission's clearance or a larger one from obstacles, and from the wall the mission's
-/// unless the course itself passes the wall more closely; the hull never touches it.
+/// Returns the space for the robot. Obstacles are cleared by the mission's clearance or a larger one. The wall is
+/// cleared by the mission's clearance, unless the course itself passes closer to it; the hull never touches the wall.
 ///
 /// # Errors
-/// [`Code::Config`] when hull and clearance are larger than the distance between the turns.
+/// [`Code::Config`] when hull and clearance exceed the distance between the turns.
 pub(crate) fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result<Room> {
     let hull_m = site.limits.radius_m;
     let obstacle_m = hull_m + site.clearance_m.max(clearance_m);
@@ -105,7 +105,8 @@ pub(crate) fn room(site: &Site<'_>, clearance_m: f64, course: &Course) -> Result
     Ok(Room::new(site, Keep { obstacle_m, wall_m }))
 }
 
-/// Distance between a point and the one a full turn on, if the path goes round more than once, metres.
+/// Returns the distance between the first point and the one a full turn further, metres; `None` if the path turns less
+/// than one and a half times around the centre.
 fn pitch_m(points: &[Point]) -> Option<f64> {
     let mut turned_rad = 0.0_f64;
     let mut one_turn_on = None;
@@ -126,8 +127,8 @@ fn invalid(message: impl Into<String>) -> PlannerError {
     PlannerError::new(Code::Invalid, message)
 }
 
-/// Refuses a start outside the tank or with half the hull in an obstacle; says where the path begins if the start
-/// itself is nearer to something than the clearance allows.
+/// Refuses a start outside the tank or with half of the hull in an obstacle. If the start itself is closer to something
+/// than the clearance, logs that the path begins beside it.
 ///
 /// # Errors
 /// [`Code::StartOutside`] or [`Code::StartOccupied`].
@@ -140,9 +141,9 @@ pub(crate) fn check_start(
     let (start, hull_m) = (request.start.position, request.site.limits.radius_m);
     let place = format!("the start ({:.2}, {:.2})", start.x, start.y);
     if room.wall().wall_distance_m(start) < -ROUNDING_M {
-        return Err(PlannerError::new(Code::StartOutside, format!("{place} lies outside the tank")));
+        return Err(PlannerError::new(Code::StartOutside, format!("{place} is outside the tank")));
     }
-    // The estimated start may be off a little: only a hull that is half inside is refused.
+    // The estimated start may be slightly wrong, so it is refused only if half of the hull is inside.
     let distances_m = solid_parts(request.site).map(|(_, part)| part.distance(start).0);
     let outline_m = distances_m.fold(f64::INFINITY, f64::min);
     if outline_m < hull_m / 2.0 || outline_m <= 0.0 {
@@ -151,14 +152,14 @@ pub(crate) fn check_start(
     }
     if room.spare_m(course.points[0]) < 0.0 {
         let message = format!(
-            "{place} is nearer to something solid than the clearance allows; the path begins beside it"
+            "{place} is closer to something solid than the clearance allows; the path begins beside it"
         );
         ctx.log(LogLevel::Warn, &message);
     }
     Ok(())
 }
 
-/// Refuses preset points that are missing or no numbers, and turns on top of each other.
+/// Refuses preset points that are missing or not finite, and turns that coincide.
 ///
 /// # Errors
 /// [`Code::Invalid`].
@@ -167,20 +168,20 @@ pub(crate) fn check_targets(targets: &[Point]) -> Result<()> {
         return Err(invalid("there is no preset point to follow"));
     }
     if let Some(at) = targets.iter().position(|p| !p.x.is_finite() || !p.y.is_finite()) {
-        return Err(invalid(format!("preset point {at} is not a number")));
+        return Err(invalid(format!("preset point {at} is not a finite point")));
     }
     if let Some(at) = targets.windows(2).position(|w| (w[1] - w[0]).norm() < 1e-9) {
-        return Err(invalid(format!("preset points {at} and {} coincide; give each point once", at + 1)));
+        return Err(invalid(format!("preset points {at} and {} coincide; remove one of them", at + 1)));
     }
     if let Some(pitch_m) = pitch_m(targets).filter(|pitch_m| *pitch_m < LEAST_PITCH_M) {
         return Err(invalid(format!(
-            "the turns of the preset path are {pitch_m:.3} m apart; give it a pitch"
+            "the turns of the preset path are only {pitch_m:.3} m apart; increase its pitch"
         )));
     }
     Ok(())
 }
 
-/// Refuses a hull and a clearance that together are wider than the distance between the turns.
+/// Refuses a hull and a clearance that together exceed the distance between the turns.
 ///
 /// # Errors
 /// [`Code::Config`].
@@ -188,12 +189,12 @@ pub(crate) fn check_pitch(keep_m: f64, points: &[Point]) -> Result<()> {
     let Some(pitch_m) = pitch_m(points).filter(|pitch_m| keep_m > *pitch_m) else { return Ok(()) };
     let message = format!(
         "hull and clearance need {keep_m:.2} m, but the turns of the preset path are {pitch_m:.2} m apart; \
-         ask for less clearance or a wider pitch"
+         reduce the clearance or increase the pitch"
     );
     Err(PlannerError::new(Code::Config, message))
 }
 
-/// Refuses parameters that are not numbers from 0 on; none of ours may be negative.
+/// Refuses parameters that are negative or not finite.
 ///
 /// # Errors
 /// [`Code::Config`].
@@ -201,16 +202,19 @@ pub(crate) fn check_numbers(config: &Config<'_>, specs: &[ParamSpec]) -> Result<
     let is_number = |value: f64| value.is_finite() && value >= 0.0;
     let Some(spec) = specs.iter().find(|spec| !is_number(config.float(spec.key))) else { return Ok(()) };
     let value = config.float(spec.key);
-    Err(PlannerError::new(Code::Config, format!("{} is {value}; give a number from 0 on", spec.key)))
+    Err(PlannerError::new(
+        Code::Config,
+        format!("{} is {value}; it must be a number of at least 0", spec.key),
+    ))
 }
 
-/// Where a path along a course can begin: its first point, or the nearest free place about it.
+/// Returns where a path along a course can begin: its first point, or the nearest free point around it.
 pub(crate) fn nearest_free(course: &Course, room: &Room) -> Point {
     let start = course.points[0];
     places_about(start, 0..80).find(|place| room.spare_m(*place) >= 0.0).unwrap_or(start)
 }
 
-/// Places about a point, the nearest first: so many rings of them, 2.5 cm apart.
+/// Returns points around a center, nearest first, on rings 2.5 cm apart.
 pub(crate) fn places_about(center: Point, rings: Range<u32>) -> impl Iterator<Item = Point> {
     rings.map(|k| f64::from(k) * 0.025).flat_map(move |radius_m| {
         let bearings = (0..48).map(|k| f64::from(k) * TAU / 48.0);

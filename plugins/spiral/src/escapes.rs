@@ -1,10 +1,11 @@
-//! The two potential fields that the rotating one is compared with: a virtual target, and a push out of the trap.
+//! The two potential fields for comparison with the rotating one: they leave traps with a virtual target, or with a
+//! sideways push.
 
 use crate::potential::{Kind, Potential};
 use field::{Escape, FieldSettings, open_points as o, params as p};
 use planner_api::{Config, ParamSpec};
 
-/// A list of parameters: what both have, and what only one has.
+/// The list of parameters: those that both fields share, and those given.
 macro_rules! params {
     ($($own:expr),*) => {
         &[
@@ -35,23 +36,24 @@ macro_rules! params {
     };
 }
 
-/// A potential field that leaves traps by a virtual target beside the obstacle; Yang 2018, reconstructed.
+/// A potential field that leaves traps with a virtual target beside the obstacle; Yang 2018, reconstructed.
 pub type Vt = Potential<VirtualTarget>;
 
-/// A potential field that leaves traps by a push to the side; Zhao 2022, reconstructed.
+/// A potential field that leaves traps with a sideways push; Zhao 2022, reconstructed.
 pub type Iapf = Potential<Push>;
 
-/// The law of [`Vt`].
+/// Selects the force law of [`Vt`].
 pub enum VirtualTarget {}
 
-/// The law of [`Iapf`].
+/// Selects the force law of [`Iapf`].
 pub enum Push {}
 
 impl Kind for VirtualTarget {
     const ID: &'static str = "vt";
     const NAME: &'static str = "Virtual target";
-    const ABOUT: &'static str = "Potential field that leaves traps by a virtual target and evades what moves; \
-                                 reconstructed from the description of Yang 2018 in Wang et al. 2023.";
+    const ABOUT: &'static str = "Potential field that leaves traps with a virtual target, reconstructed \
+                                 from the description of Yang 2018 in Wang et al. 2023. Evades moving \
+                                 obstacles.";
     const PARAMS: &'static [ParamSpec] = params!();
 
     fn settings(config: &Config<'_>) -> FieldSettings {
@@ -62,8 +64,9 @@ impl Kind for VirtualTarget {
 impl Kind for Push {
     const ID: &'static str = "iapf";
     const NAME: &'static str = "Improved potential field";
-    const ABOUT: &'static str = "Potential field that leaves traps by a push to the side and evades what moves; \
-                                 reconstructed from the description of Zhao 2022 in Wang et al. 2023.";
+    const ABOUT: &'static str = "Potential field that leaves traps with a sideways push, reconstructed \
+                                 from the description of Zhao 2022 in Wang et al. 2023. Evades moving \
+                                 obstacles.";
     const PARAMS: &'static [ParamSpec] = params!(o::PUSH, o::PUSH_SIDE, o::BESIDE);
 
     fn settings(config: &Config<'_>) -> FieldSettings {

@@ -1,4 +1,5 @@
-//! Planning by offsets from the course: on it wherever it is free, beside it at the least cost where it is not.
+//! Plans by offsets from the course: the path stays on the course where it is free, and passes beside it at the lowest
+//! cost where it is not.
 
 use crate::{
     band::{Band, Knot, Patience, SPAN_M},
@@ -10,39 +11,39 @@ use std::{collections::BTreeMap, ops::RangeInclusive};
 use steering::Room;
 use world::{Point, Vector};
 
-/// Stations of the first search are at least so far apart, metres.
+/// Smallest distance between stations in the first search, metres.
 const COARSE_M: f64 = 0.15;
-/// Distance between its offsets, metres.
+/// Distance between the offsets in the first search, metres.
 const CELL_M: f64 = 0.05;
-/// Preset points nearer to each other than this are moved together, metres.
+/// Preset points closer to each other than this are moved together, metres.
 const FINE_M: f64 = 0.1;
-/// And so near where no smooth way is found else, metres.
+/// The same distance for the case that no smooth path is found otherwise, metres.
 const FINEST_M: f64 = 0.05;
-/// Room before and behind what blocks the course, metres: enough to leave it and to come back.
+/// Space before and after a blockage of the course, metres: enough to leave the course and return to it.
 const RAMPS_M: [f64; 2] = [1.0, 3.0];
-/// Course beside a window over which the heading counts, metres.
+/// Length of course next to a window over which the heading must be smooth, metres.
 const BESIDE_M: f64 = SPAN_M * 1.3;
-/// What a way passes as near as this to the clearance might be passed on the other side, metres.
+/// Anything that a path passes at no more than this beyond the clearance might be passed on the other side, metres.
 const TOUCH_M: f64 = 0.1;
-/// Few other ways are tried at first, many where none of them is smooth.
+/// Few alternatives are tried at first, and many if none of them is smooth.
 const FEW: Others = Others { cost: 2.0, number: 2 };
 const MANY: Others = Others { cost: 6.0, number: 8 };
-/// Most ways are soon drawn; what is not is worth more.
+/// Most paths are soon tightened; the others deserve more attempts.
 const HASTE: Patience = Patience { sets: 40, growth: 1.1, turn_share: 0.95 };
 const PATIENCE: Patience = Patience { sets: 80, growth: 1.2, turn_share: 0.92 };
-/// The last point counts more than any other, so that the path arrives.
+/// The last point has a higher weight than all others, so that the path reaches the end.
 const END_WEIGHT: f64 = 20.0;
-/// A last point inside an obstacle is missed by no more than this beside what it must be, metres.
+/// Beyond what the clearance requires, the path may miss a last point inside an obstacle by this much, metres.
 const NEARLY_M: f64 = 0.1;
-/// The course itself may turn faster than the limit; the path may do so a little faster than the course.
+/// The course itself may turn faster than the limit. There the path may turn faster than the course by this factor.
 const OWN_TURN: f64 = 1.15;
 
-/// What the plan is to keep to.
+/// The limits that the plan must keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Limits {
-    /// Furthest offset from the course, metres.
+    /// Largest offset from the course, metres.
     pub offset_m: f64,
-    /// Largest change of heading per metre of path, radians; infinite for none.
+    /// Largest change of heading per metre of path, radians; infinite if there is no limit.
     pub turn_per_m: f64,
 }
 
@@ -51,7 +52,7 @@ pub(crate) struct Limits {
 pub(crate) struct Path {
     /// One point for every point of the course.
     pub points: Vec<Point>,
-    /// Indices of the course between which the limit of the heading could not be kept.
+    /// Index ranges of the course within which the turn limit could not be kept.
     pub sharp: Vec<RangeInclusive<usize>>,
 }
 
@@ -60,41 +61,41 @@ pub(crate) struct Path {
 pub(crate) struct Blocked {
     /// Index of the point of the course that cannot be passed.
     pub station: usize,
-    /// The path up to where it leaves the course for the last time.
+    /// The path up to where it last leaves the course.
     pub partial: Vec<Point>,
 }
 
-/// What was found within one window: a point for every point of the course there.
+/// The result within one window, with a point for every point of the course there.
 enum Beside {
-    /// A way within the limit of the heading.
+    /// A path within the turn limit.
     Smooth(Vec<Point>),
-    /// A way that turns faster.
+    /// A path that turns faster.
     Sharp(Vec<Point>),
-    /// None.
+    /// No path.
     Blocked { station: usize },
 }
 
-/// Which other ways are tried beside the cheapest.
+/// Which alternatives to the cheapest path are tried.
 #[derive(Debug, Clone, Copy)]
 struct Others {
-    /// Up to this many times its cost.
+    /// Largest cost, as a multiple of the cheapest.
     cost: f64,
-    /// No more than so many.
+    /// Largest number.
     number: usize,
 }
 
-/// How a way round is looked for.
+/// The settings of one search for a way round.
 #[derive(Debug, Clone, Copy)]
 struct Attempt {
-    /// Furthest offset, metres.
+    /// Largest offset, metres.
     offset_m: f64,
-    /// Turns may be faster than the limit by this factor.
+    /// Factor by which turns may exceed the limit.
     sharper: f64,
-    /// Whether the first window begins on the course.
+    /// Whether the path in the first window begins on the course.
     begins_on: bool,
     patience: Patience,
     others: Others,
-    /// Points of the course nearer to each other than this are moved together, metres.
+    /// Points of the course closer to each other than this are moved together, metres.
     fine_m: f64,
 }
 
@@ -105,10 +106,10 @@ struct Search<'a> {
     limits: Limits,
 }
 
-/// The path along a course that keeps its distance from everything, with the least sum of squared offsets.
+/// Finds the path along a course that keeps its distance from everything, with the smallest sum of squared offsets.
 ///
 /// # Errors
-/// When the console wants it to stop.
+/// The console asked to stop.
 pub(crate) fn plan(
     course: &Course,
     room: &Room,
@@ -138,7 +139,7 @@ pub(crate) fn plan(
 }
 
 impl Search<'_> {
-    /// The points of the course that the robot cannot stand on, or not go on from.
+    /// Returns the points of the course where the robot cannot be, or from which it cannot reach the next one.
     fn blocked(&self) -> Vec<usize> {
         let points = &self.course.points;
         let is_blocked = |index: &usize| {
@@ -150,7 +151,8 @@ impl Search<'_> {
         (0..points.len()).filter(is_blocked).collect()
     }
 
-    /// Pieces of the course with room to go round what blocks it; overlapping ones are one.
+    /// Returns the sections of the course that contain a blockage, with space for a way round; overlapping ones are
+    /// merged.
     fn windows(&self, blocked: &[usize], ramps_m: &[f64]) -> Vec<RangeInclusive<usize>> {
         let stations_m = &self.course.stations_m;
         let mut windows: Vec<RangeInclusive<usize>> = Vec::new();
@@ -168,7 +170,7 @@ impl Search<'_> {
         windows
     }
 
-    /// A way round within a window: as smooth as demanded if there is one, else any.
+    /// Finds a way round within a window: one within the turn limit if possible, otherwise any.
     fn beside(&self, window: &RangeInclusive<usize>, is_wide: bool) -> Beside {
         let far_m = self.limits.offset_m;
         let mut furthest = *window.start();
@@ -194,7 +196,7 @@ impl Search<'_> {
             Attempt { sharper: f64::INFINITY, offset_m: far_m * 2.0, ..near },
         ]);
         if begins_on && *window.start() == 0 {
-            // Where nothing leads on from the start itself the path begins beside it.
+            // If nothing leads on from the start itself, the path begins beside it.
             attempts.push(Attempt { sharper: f64::INFINITY, begins_on: false, ..far });
         }
         for attempt in attempts {
@@ -208,15 +210,15 @@ impl Search<'_> {
         short_of_end.map_or(Beside::Blocked { station: furthest }, Beside::Sharp)
     }
 
-    /// Whether the last window ends at the end of the course, or as near to it as obstacles allow.
+    /// Whether a path in the last window reaches the end of the course, or comes as close as obstacles allow.
     fn arrives(&self, window: &RangeInclusive<usize>, points: &[Point]) -> bool {
         let end = self.course.points[self.course.last()];
         let allowed_m = self.course.tolerance_m.max(NEARLY_M - self.room.spare_m(end));
         *window.end() < self.course.last() || (points[points.len() - 1] - end).norm() <= allowed_m
     }
 
-    /// The best way round within a window, one point for every point of the course; or the point that cannot be
-    /// passed.
+    /// Finds the best way round within a window, with one point for every point of the course. The error is the point
+    /// that cannot be passed.
     fn within(
         &self,
         window: &RangeInclusive<usize>,
@@ -249,7 +251,7 @@ impl Search<'_> {
         best.map(|(_, points)| points).ok_or(*window.start())
     }
 
-    /// Ways that pass one thing on the other side.
+    /// Finds paths that pass one obstacle on the other side.
     fn others(&self, strip: &Strip<'_>, way: &Way, most: Others) -> Vec<Way> {
         let mut others: Vec<Way> = Vec::new();
         for bar in self.bars(strip.stations, way) {
@@ -263,7 +265,7 @@ impl Search<'_> {
         others
     }
 
-    /// What closes the side on which a way passes each thing that it touches.
+    /// Returns a bar for each obstacle that a path touches; it closes the side on which the path passes.
     fn bars(&self, stations: &[Station], way: &Way) -> Vec<Bar> {
         let mut seen: Vec<Point> = Vec::new();
         let mut bars = Vec::new();
@@ -291,7 +293,7 @@ impl Search<'_> {
         bars
     }
 
-    /// A rough way moved off its grid: its cost and its points.
+    /// Moves a rough path off its grid; returns its cost and its points.
     fn drawn(
         &self,
         window: &RangeInclusive<usize>,
@@ -330,7 +332,7 @@ impl Search<'_> {
         Some((cost, points[window.start() - around.start()..=window.end() - around.start()].to_vec()))
     }
 
-    /// A window and the pieces of course beside it over which its heading counts.
+    /// Extends a window by the sections of course on both sides over which the heading must be smooth.
     fn around(&self, window: &RangeInclusive<usize>) -> RangeInclusive<usize> {
         let stations_m = &self.course.stations_m;
         let first = stations_m.partition_point(|s| *s < stations_m[*window.start()] - BESIDE_M);
@@ -338,7 +340,7 @@ impl Search<'_> {
         first..=last
     }
 
-    /// Points of the course so far from each other that are moved; those between follow.
+    /// Selects points of the course at this spacing. They are moved, and those in between follow.
     fn knots(&self, window: &RangeInclusive<usize>, apart_m: f64) -> Vec<usize> {
         let stations_m = &self.course.stations_m;
         let mut knots = vec![*window.start()];
@@ -359,7 +361,7 @@ impl Search<'_> {
     }
 }
 
-/// A point for every point of the course: on the straight way between those that were moved.
+/// Interpolates a point for every point of the course between those that were moved.
 fn filled(knots: &[usize], places: &[Point]) -> Vec<Point> {
     let mut points = vec![places[0]];
     for (pair, ends) in knots.windows(2).zip(places.windows(2)) {
@@ -370,7 +372,7 @@ fn filled(knots: &[usize], places: &[Point]) -> Vec<Point> {
     points
 }
 
-/// The course with the ways round in their places.
+/// Replaces the blocked windows of the course by the ways round them.
 fn joined(
     course: &Course,
     windows: &[RangeInclusive<usize>],

@@ -1,4 +1,5 @@
-//! What all potential fields on a preset path share: they are walked over the known map, and flown tick by tick.
+//! Shared by all potential fields on a preset path: plans simulate a walk over the known map, and in flight the field
+//! acts tick by tick.
 
 use crate::course;
 use field::{FieldSettings, ForcePilot, offline};
@@ -9,16 +10,16 @@ use std::marker::PhantomData;
 
 /// What distinguishes one potential field from another.
 pub trait Kind: 'static {
-    /// Identity.
+    /// The planner's id.
     const ID: &'static str;
-    /// Name for people.
+    /// The name for people.
     const NAME: &'static str;
-    /// One sentence about it, with its source.
+    /// One sentence about the field, with its source.
     const ABOUT: &'static str;
-    /// What can be set.
+    /// The parameters.
     const PARAMS: &'static [ParamSpec];
 
-    /// The settings that a configuration stands for.
+    /// Converts a configuration to settings of the field.
     fn settings(config: &Config<'_>) -> FieldSettings;
 }
 

@@ -1,14 +1,14 @@
-//! Flying along a plan or a preset path: straight to the next point, past what is in the way along its tangent.
+//! Follows a plan or a preset path in flight: straight to the next point, and along the tangent of anything in the way.
 
 use crate::tangent::Around;
 use geometry::{Point, convex::Part};
 use planner_api::{Command, Ctx, Result, Sensed, Site};
 use steering::{Flight, Forces, Keep, Pilot, Tick};
 
-/// The way is looked at this far ahead, metres.
+/// How far ahead the way is checked, metres.
 const REACH_M: f64 = 0.4;
 
-/// Follows a plan, or without one the preset points, with a noisy pose and obstacles discovered on the way.
+/// Follows a plan, or the preset points if there is no plan, with a noisy pose and obstacles found during the mission.
 pub(crate) struct Pursuit {
     flight: Flight,
     clearance_m: f64,
@@ -16,20 +16,20 @@ pub(crate) struct Pursuit {
 }
 
 impl Pursuit {
-    /// A pursuit at a site that keeps this clearance, or the mission's if that is larger, metres.
+    /// Creates a pursuit that keeps this clearance, metres, or the mission's if that is larger.
     pub(crate) fn new(flight: Flight, clearance_m: f64, site: &Site<'_>) -> Self {
         Self { flight, clearance_m, pilot: Pilot::pursuing(site) }
     }
 
-    /// Takes over changed settings on the way; what it remembers stays.
+    /// Changes the settings during a mission; everything else is kept.
     pub(crate) fn set(&mut self, flight: Flight, clearance_m: f64) {
         (self.flight, self.clearance_m) = (flight, clearance_m);
     }
 
-    /// The velocity until the next tick.
+    /// Returns the velocity until the next tick.
     ///
     /// # Errors
-    /// When the console wants it to stop.
+    /// The console asked to stop.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, ctx: &Ctx<'_>) -> Result<Command> {
         ctx.check()?;
         let bodies = self.pilot.bodies(sensed);
@@ -40,7 +40,7 @@ impl Pursuit {
         Ok(self.pilot.pursue(&self.flight, &tick, aim).into())
     }
 
-    /// Where to head now: along the tangent of what blocks the way, if something does.
+    /// Returns where to head now if something is in the way: along its tangent.
     fn aim(&mut self, tick: &Tick<'_>) -> Option<Point> {
         let at = tick.pose.position;
         let keep_m = self.pilot.keep_m(&self.flight, &tick.pose).max(self.clearance_m);
@@ -49,7 +49,7 @@ impl Pursuit {
         let solid = tick.bodies.iter().flat_map(|body| &body.parts);
         let hull_m = self.pilot.limits().radius_m;
         let keep = Keep { obstacle_m: hull_m + keep_m, wall_m: hull_m + keep_m };
-        // A robot that already stands in a closed gap must get out of it either way.
+        // A robot that is already inside a closed gap must be able to leave it on either side.
         let gaps = closed.iter().filter(|part| part.distance(at).0 >= hull_m);
         let around = Around { wall: self.pilot.wall(), parts: solid.chain(gaps).collect(), keep };
         let wanted = (tick.target - at).try_normalize(1e-9)?;

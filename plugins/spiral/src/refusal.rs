@@ -1,4 +1,4 @@
-//! Saying no with a reason: where the way is blocked, and by which ring of obstacles, if that is proved.
+//! Refuses a plan with a reason: where the course is blocked, and by which ring of obstacles, if that is proved.
 
 use crate::{
     course::Course,
@@ -8,7 +8,7 @@ use planner_api::{PlannerError, Site};
 use steering::Room;
 use world::Point;
 
-/// The refusal of a course that is blocked at a point.
+/// Creates the refusal for a course that is blocked at a point.
 pub(crate) fn no_path(
     course: &Course,
     (site, room): (&Site<'_>, &Room),
@@ -21,12 +21,11 @@ pub(crate) fn no_path(
     };
     let at = course.points[blocked];
     let keep_m = room.keep().obstacle_m;
-    let proof = ring
-        .map_or_else(|| "no way round was found beside the preset path".to_owned(), |ring| proof_by(&ring));
+    let proof = ring.map_or_else(|| "no way round was found".to_owned(), |ring| proof_by(&ring));
     PlannerError::no_path_but(
         format!(
-            "blocked at station {blocked} of {}, ({:.2}, {:.2}), {:.1} m along the preset path: hull and clearance \
-             need {keep_m:.2} m; {proof}",
+            "blocked at point {blocked} of {}, ({:.2}, {:.2}), {:.1} m along the preset path: hull and \
+             clearance need {keep_m:.2} m; {proof}",
             course.points.len(),
             at.x,
             at.y,
@@ -39,11 +38,11 @@ pub(crate) fn no_path(
 fn proof_by(ring: &Ring) -> String {
     let ids: Vec<String> = ring.obstacles.iter().map(u32::to_string).collect();
     let wall = if ring.has_wall { " and the wall" } else { "" };
-    format!("proved: no way leads there, a ring of obstacles {}{wall} closes it off", ids.join(", "))
+    format!("proved: a ring of obstacles {}{wall} closes off that point", ids.join(", "))
 }
 
-/// The first free point from the blocked one on that cannot be reached, if the end of the course cannot be either; and
-/// the ring about it.
+/// If the end of the course cannot be reached, returns the first free point from the blocked one on that cannot be
+/// reached either, and the ring around it.
 fn cut_off(
     course: &Course,
     (site, room): (&Site<'_>, &Room),

@@ -1,9 +1,10 @@
-//! Proof that no way leads from one place to another: a closed chain of solids that the hull cannot pass between.
+//! Proves that no path leads from one place to another: finds a closed chain of solids between which the hull does not
+//! fit.
 //!
-//! What must be kept clear of is the union of all solids, each grown by its clearance. Where two of them overlap a line
-//! from one to the other lies within the union. Two places are apart exactly if such lines form a closed curve that
-//! goes round one of them and not round the other, that is, which a straight line between them crosses more often in
-//! one direction than in the other. Counting crossings along a spanning tree finds such a curve without trying all.
+//! The forbidden area is the union of all solids, each grown by its clearance. Where two of them overlap, a line from
+//! one to the other is inside the union. Two places are separated if and only if such lines form a closed curve that
+//! encloses one of them and not the other. A straight line between the places crosses such a curve more often in one
+//! direction than in the other. Counting crossings along a spanning tree finds the curve without trying all of them.
 
 use geometry::{convex::Part, polyline::edges};
 use planner_api::Site;
@@ -11,32 +12,32 @@ use std::collections::{BTreeSet, VecDeque};
 use steering::{Keep, solid_parts};
 use world::{Boundary, Point, Vector};
 
-/// More solids than this are not looked at.
+/// Sites with more solids than this are not examined.
 const MOST_PARTS: usize = 3000;
-/// Nearer than this to touching, a gap is not called closed, metres.
+/// A gap must be closed by more than this rounding margin, metres.
 const ROUNDING_M: f64 = 1e-9;
 
-/// What a ring is made of.
+/// The elements of a ring.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Ring {
-    /// Ids of its obstacles and no-go zones, ascending.
+    /// Ids of the obstacles and no-go zones in the ring, ascending.
     pub obstacles: Vec<u32>,
-    /// Whether the wall is part of it.
+    /// Whether the wall is part of the ring.
     pub has_wall: bool,
 }
 
-/// Something solid, grown by what is to be kept from it.
+/// A solid, grown by its clearance.
 #[derive(Debug)]
 enum Node {
     Obstacle {
         id: u32,
         part: Part,
     },
-    /// A straight piece of the wall.
+    /// A straight section of the wall.
     Wall {
         part: Part,
     },
-    /// All of a round wall.
+    /// The whole of a round wall.
     RoundWall,
 }
 
@@ -44,13 +45,15 @@ enum Node {
 #[derive(Debug, Clone, Copy)]
 struct Link {
     to: usize,
-    /// How often the line between the two places is crossed from left to right, less how often from right to left.
+    /// How often the link crosses the line between the two places from left to right, minus how often from right to
+    /// left.
     crossings: i32,
 }
 
-/// The ring that keeps the two places apart for a hull that keeps these distances, if there is one.
+/// Returns the ring that separates two places for a hull that keeps these distances, if there is one.
 ///
-/// Exact but for solids that touch to within a billionth of a metre. With more than 3,000 parts nothing is found.
+/// The result is exact, except for solids that touch to within a billionth of a metre. With more than 3,000 parts it is
+/// always `None`.
 pub(crate) fn between(site: &Site<'_>, keep: Keep, a: Point, b: Point) -> Option<Ring> {
     let nodes = nodes(site);
     if nodes.len() > MOST_PARTS {
@@ -85,7 +88,7 @@ impl Node {
     }
 }
 
-/// For every node its links to the others.
+/// Returns the links of every node to the others.
 fn links(nodes: &[Node], keep: Keep, wall: &Boundary, (a, b): (Point, Point)) -> Vec<Vec<Link>> {
     let mut links: Vec<Vec<Link>> = nodes.iter().map(|_| Vec::new()).collect();
     let mut add = |i: usize, j: usize, line: &[Point]| {
@@ -117,7 +120,8 @@ fn links(nodes: &[Node], keep: Keep, wall: &Boundary, (a, b): (Point, Point)) ->
     links
 }
 
-/// The corner or end of a part that lies furthest from the middle of the tank, and how far the part goes beyond it.
+/// Returns the corner or end of a part that is furthest from the centre of the tank, and how far the part extends
+/// beyond it.
 fn outermost(part: &Part) -> (Point, f64) {
     let furthest = |points: &[Point]| {
         let by_radius = |p: &&Point, q: &&Point| p.coords.norm().total_cmp(&q.coords.norm());
@@ -129,7 +133,7 @@ fn outermost(part: &Part) -> (Point, f64) {
     }
 }
 
-/// Whether a piece of line crosses the line from `a` to `b`: 1 from its left to its right, -1 back, else 0.
+/// Whether a line segment crosses the line from `a` to `b`: 1 from left to right, -1 from right to left, otherwise 0.
 fn crossing(a: Point, b: Point, from: Point, to: Point) -> i32 {
     let is_left = |p: Point, q: Point, r: Point| (q - p).perp(&(r - p)) >= 0.0;
     let sides = (is_left(a, b, from), is_left(a, b, to));
@@ -139,7 +143,7 @@ fn crossing(a: Point, b: Point, from: Point, to: Point) -> i32 {
     if sides.0 { 1 } else { -1 }
 }
 
-/// A closed chain of nodes whose crossings do not add up to nothing.
+/// Returns a closed chain of nodes whose crossings do not add up to zero.
 fn odd_cycle(links: &[Vec<Link>]) -> Option<Vec<usize>> {
     let mut sums: Vec<Option<i32>> = vec![None; links.len()];
     let mut parents: Vec<usize> = (0..links.len()).collect();
@@ -168,7 +172,7 @@ fn odd_cycle(links: &[Vec<Link>]) -> Option<Vec<usize>> {
     None
 }
 
-/// The ways of two nodes up the tree to where they meet.
+/// Joins the paths of two nodes up the tree to where they meet.
 fn closed_chain(parents: &[usize], a: usize, b: usize) -> Vec<usize> {
     let up = |node: usize| {
         std::iter::successors(Some(node), |node| Some(parents[*node]).filter(|parent| parent != node))

@@ -6,19 +6,21 @@ use planner_api::{Config, ParamSpec};
 
 /// The rotating potential field of Wang et al. 2023, in both readings.
 ///
-/// For a point robot planning walks the law in lock step as the paper does; for one with a hull that fails nearly
-/// always, so there the known map is flown in thought. In flight the rotating force is, unless set otherwise, used
-/// about whatever blocks the way and on the side of the smaller detour: as printed it gets stuck.
+/// For a point robot, planning walks the force law in lock step as in the paper. For a robot with a hull this nearly
+/// always fails, so planning simulates a flight over the known map instead. In flight the rotating force, unless
+/// configured differently, acts around whatever is in the way, on the side of the smaller detour; as printed in the
+/// paper it gets stuck.
 pub type Rpf = Potential<Rotating>;
 
-/// The law of [`Rpf`].
+/// Selects the force law of [`Rpf`].
 pub enum Rotating {}
 
 impl Kind for Rotating {
     const ID: &'static str = "rpf";
     const NAME: &'static str = "Rotating potential field";
-    const ABOUT: &'static str = "Potential field with a rotating force about obstacles, along a preset spiral, after \
-                                 Wang et al. 2023; evades what moves unless steered as in the paper.";
+    const ABOUT: &'static str = "Potential field with a rotating force around obstacles, along a preset \
+                                 spiral, after Wang et al. 2023. Evades moving obstacles unless steered as \
+                                 in the paper.";
     const PARAMS: &'static [ParamSpec] = &[
         p::READING,
         p::SENSE,

@@ -13,24 +13,28 @@ use steering::{Room, params as p};
 use world::polyline;
 
 const TURN: ParamSpec = float("turn_deg", "Turn limit per 0.2 m", "deg", 0.0, 180.0, 30.0)
-    .help("Largest change of heading along 0.2 m of path, where the preset path itself turns no faster; 0 is no limit.")
+    .help(
+        "Largest change of heading along 0.2 m of path where the preset path itself turns more slowly; 0 \
+         means no limit.",
+    )
     .group("Plan")
     .live();
-const MAX_OFFSET: ParamSpec = float("max_offset_m", "Furthest offset", "m", 0.1, 5.0, 1.25)
-    .help("How far beside the preset path a way round is looked for first; twice as far if there is none.")
+const MAX_OFFSET: ParamSpec = float("max_offset_m", "Largest offset", "m", 0.1, 5.0, 1.25)
+    .help("How far from the preset path to search for a way round at first; twice as far if there is none.")
     .group("Plan")
     .live();
 
-/// Plans along a preset path: on it wherever it is free, beside it at the least cost where it is not.
+/// Plans along a preset path: the plan stays on it where it is free, and passes beside it at the lowest cost where it
+/// is not.
 ///
-/// Clearance and wall are hard limits of the search, and so is the change of heading. In flight the plan is pursued
-/// through the guard; what is discovered on the way is gone round by a new plan.
+/// Clearance, wall and change of heading are hard limits of the search. In flight the plan is followed with the guard
+/// active; obstacles found on the way are bypassed with a new plan.
 pub struct SpiralLattice {
     wishes: Wishes,
     pursuit: Pursuit,
 }
 
-/// What is asked of a plan.
+/// The settings for plans.
 #[derive(Debug, Clone, Copy)]
 struct Wishes {
     clearance_m: f64,
@@ -40,8 +44,9 @@ struct Wishes {
 impl Planner for SpiralLattice {
     const ID: &'static str = "spiral-lattice";
     const NAME: &'static str = "Offset lattice";
-    const ABOUT: &'static str = "Global plan along a preset path: least squared offset with hard clearance, wall and \
-                                 turn limit, by dynamic programming; takes what moves as standing.";
+    const ABOUT: &'static str = "Global plan along a preset path by dynamic programming: smallest squared \
+                                 offset, with clearance, wall and turn limit as hard limits. Treats moving \
+                                 obstacles as stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL).and(Caps::LIVE_PARAMS);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, TURN, MAX_OFFSET, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -89,7 +94,7 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
         ctx.log(
             LogLevel::Warn,
             &format!(
-                "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only way turns faster than the turn limit",
+                "between ({:.2}, {:.2}) and ({:.2}, {:.2}) the only possible path exceeds the turn limit",
                 from.x, from.y, to.x, to.y
             ),
         );
@@ -99,7 +104,10 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
         let beside_m = (begin - start).norm();
         ctx.log(
             LogLevel::Warn,
-            &format!("nothing leads on along the preset path from the start; the path begins {beside_m:.2} m beside it"),
+            &format!(
+                "no path leads on from the start along the preset path; the plan begins {beside_m:.2} m \
+                 beside it"
+            ),
         );
     }
     let end = path.points[path.points.len() - 1];
@@ -109,7 +117,7 @@ fn plan_of(path: lattice::Path, course: &Course, room: &Room, ctx: &Ctx<'_>) -> 
     if !complete {
         ctx.log(
             LogLevel::Warn,
-            &format!("the plan is not complete: it ends {missing_m:.2} m short of its end"),
+            &format!("the plan is incomplete: it ends {missing_m:.2} m short of the end of the preset path"),
         );
     }
     Plan { cost: polyline::length_m(&path.points), path: path.points, complete, ..Plan::default() }

@@ -14,21 +14,26 @@ use planner_api::{
 use steering::{params as p, solid_parts};
 use world::polyline;
 
-/// Beyond clearance the robot has to see at least this far, metres.
+/// How far the robot must see beyond the clearance, metres.
 const LEAST_SIGHT_M: f64 = 0.5;
 
 const RANGE: ParamSpec = float("range_m", "Sensing range", "m", 0.5, 10.0, 1.2)
-    .help("Obstacles further from the middle of the robot are not taken into account; never more than it senses.")
+    .help(
+        "Obstacles further from the centre of the robot are ignored. It cannot exceed the robot's own \
+         sensing range.",
+    )
     .group("Plan");
 const STEP: ParamSpec = float("step_m", "Longest move", "m", 0.01, 0.3, 0.1)
-    .help("Length of a move of the plan; shorter ones pass obstacles more closely to the clearance.")
+    .help(
+        "Length of a move in the plan; with shorter moves the path passes obstacles closer to the clearance.",
+    )
     .group("Plan");
 
-/// Follows a preset path, or a plan of another planner, by what the robot senses.
+/// Follows a preset path, or a plan of a different planner, by what the robot senses.
 ///
-/// Straight to the next free point; past what is in the way along the tangent of the headings it blocks, on the side
-/// that misses less floor. Where neither side leads on, in a pocket, it goes the shortest way back to the course among
-/// all that it has sensed so far. It never goes where hull and clearance have no room.
+/// It heads straight for the next free point. It passes obstacles along the tangent of the headings that they block, on
+/// the side where less floor is missed. In a pocket, where neither side leads on, it takes the shortest path back to
+/// the course, given everything sensed so far. It never enters places where hull and clearance do not fit.
 pub struct SpiralTangent {
     clearance_m: f64,
     range_m: f64,
@@ -39,8 +44,9 @@ pub struct SpiralTangent {
 impl Planner for SpiralTangent {
     const ID: &'static str = "spiral-tangent";
     const NAME: &'static str = "Tangent follower";
-    const ABOUT: &'static str = "Reactive: follows a preset path or a plan by what is sensed, past obstacles along their \
-                                 tangents, with hard clearance and wall; takes what moves as standing.";
+    const ABOUT: &'static str = "Reactive: follows a preset path or a plan by what the robot senses, and \
+                                 passes obstacles along their tangents, with clearance and wall as hard \
+                                 limits. Treats moving obstacles as stationary.";
     const CAPS: Caps = Caps::GLOBAL.and(Caps::LOCAL);
     const PARAMS: &'static [ParamSpec] =
         &[p::CLEARANCE, RANGE, STEP, p::GUARD, p::GUARD_SIGMAS, p::SLOW, p::MIN_SHARE, p::STUCK];
@@ -53,8 +59,8 @@ impl Planner for SpiralTangent {
         let least_m = hull_m + clearance_m.max(site.clearance_m) + LEAST_SIGHT_M;
         if range_m < least_m {
             let message = format!(
-                "a range of {range_m:.2} m is too short for hull and clearance; {least_m:.2} m are needed, or less \
-                 clearance"
+                "a sensing range of {range_m:.2} m is too short for hull and clearance; it must be at \
+                 least {least_m:.2} m, or the clearance smaller"
             );
             return Err(PlannerError::new(Code::Config, message));
         }
@@ -78,7 +84,10 @@ impl Planner for SpiralTangent {
                 let goal = course.points[course.last()];
                 let complete = (goal - last).norm() <= course.tolerance_m || room.spare_m(goal) < 0.0;
                 if !complete {
-                    ctx.log(LogLevel::Warn, "the plan is not complete: it ends short of its end");
+                    ctx.log(
+                        LogLevel::Warn,
+                        "the plan is incomplete: it ends short of the end of the preset path",
+                    );
                 }
                 Ok(Plan { cost: polyline::length_m(&path), path, complete, ..Plan::default() })
             }

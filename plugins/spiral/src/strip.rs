@@ -1,20 +1,21 @@
-//! The cheapest way through a strip of offsets beside a course, by dynamic programming: on which side to pass what.
+//! Finds the cheapest path through a strip of offsets beside a course by dynamic programming. This decides on which
+//! side to pass each obstacle.
 
 use steering::{Room, room::MOST_SPARE_M};
 use world::{Point, Vector};
 
-/// Weight of the squared change of offset beside the squared offset itself.
+/// Weight of the squared change of offset, relative to the squared offset.
 const SLOPE_WEIGHT: f64 = 0.5;
 const NOWHERE: u8 = u8::MAX;
 
-/// A place of the course from which offsets are counted.
+/// A point of the course from which offsets are measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Station {
-    /// Where the course is.
+    /// The point of the course.
     pub at: Point,
-    /// Unit vector to its left.
+    /// Unit vector to the left of the course.
     pub left: Vector,
-    /// How many preset points it stands for.
+    /// The number of preset points that it represents.
     pub weight: f64,
 }
 
@@ -23,39 +24,39 @@ pub(crate) struct Station {
 pub(crate) struct Bar {
     /// Index of the station.
     pub station: usize,
-    /// From this offset, metres to the left.
+    /// First offset, metres to the left.
     pub from_m: f64,
-    /// To this offset, metres to the left.
+    /// Last offset, metres to the left.
     pub to_m: f64,
 }
 
-/// Where to look for a way.
+/// The grid to search for a path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip<'a> {
     /// The stations, at least two.
     pub stations: &'a [Station],
     /// Distance between neighbouring offsets, metres.
     pub cell_m: f64,
-    /// Offsets on either side of the course.
+    /// The number of offsets on either side of the course.
     pub half: usize,
-    /// The offset changes by no more cells than this from station to station.
+    /// The maximum change of offset from one station to the next, cells.
     pub most_change: usize,
-    /// Whether the way begins on the course, and whether it ends there.
+    /// Whether the path must begin on the course, and whether it must end on it.
     pub on_course: [bool; 2],
-    /// What is closed.
+    /// The offsets that are closed.
     pub bars: &'a [Bar],
 }
 
-/// A way through a strip.
+/// A path through a strip.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Way {
-    /// Offsets at every station, metres to the left.
+    /// The offset at every station, metres to the left.
     pub offsets_m: Vec<f64>,
-    /// Weighted sum of their squares and of those of their changes, square metres.
+    /// Weighted sum of the squared offsets and of their squared changes, square metres.
     pub cost: f64,
 }
 
-/// The offsets of one station and how they are reached.
+/// The offsets of one station and the cost of reaching them.
 struct Front {
     places: Vec<Point>,
     spare_m: Vec<f64>,
@@ -63,10 +64,10 @@ struct Front {
 }
 
 impl Strip<'_> {
-    /// The way with the least sum of squared offsets and of their changes that keeps its distance from everything.
+    /// Finds the path with the smallest cost that keeps its distance from everything.
     ///
     /// # Errors
-    /// Index of the first station that no way reaches.
+    /// Index of the first station that no path reaches.
     pub(crate) fn cheapest(&self, room: &Room) -> Result<Way, usize> {
         let mut front = self.front(room, 0);
         for offset in 0..self.width() {
@@ -100,7 +101,7 @@ impl Strip<'_> {
         (offset as f64 - self.half as f64) * self.cell_m
     }
 
-    /// The places of a station, none of them reached yet; barred ones have no room.
+    /// Returns the offsets of a station, with none reached yet; barred offsets have no room.
     fn front(&self, room: &Room, station: usize) -> Front {
         let Station { at, left, .. } = self.stations[station];
         let places: Vec<Point> = (0..self.width()).map(|offset| at + left * self.offset_m(offset)).collect();
@@ -115,7 +116,7 @@ impl Strip<'_> {
         Front { places, spare_m, cost: vec![f64::INFINITY; self.width()] }
     }
 
-    /// Prices of a station's offsets; from which offset each is reached.
+    /// Computes the costs of a station's offsets; returns the offset from which each is reached.
     fn reach(&self, room: &Room, station: usize, front: &Front, next: &mut Front) -> Vec<u8> {
         let weight = self.stations[station].weight;
         let mut came_from = vec![NOWHERE; self.width()];
@@ -147,13 +148,13 @@ impl Strip<'_> {
     }
 }
 
-/// Whether the straight way between two places is free.
+/// Whether the straight line between two places is free.
 fn leads(room: &Room, (from, a): (&Front, usize), (to, b): (&Front, usize)) -> bool {
     if from.spare_m[a] < 0.0 || to.spare_m[b] < 0.0 {
         return false;
     }
     let length_m = (to.places[b] - from.places[a]).norm();
-    // What is spared about both ends covers it.
+    // The free space around both ends covers the line.
     let is_covered = from.spare_m[a] + to.spare_m[b] > length_m && length_m < 2.0 * MOST_SPARE_M;
     is_covered || room.is_free(from.places[a], to.places[b])
 }

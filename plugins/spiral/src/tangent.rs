@@ -1,30 +1,30 @@
-//! Following a course by what is sensed: straight to its next free point, and past what is in the way along the
-//! tangents of the headings that it blocks.
+//! Follows a course by what is sensed: straight to its next free point, and past obstacles along the tangents of the
+//! headings that they block.
 
 use geometry::convex::Part;
 use std::f64::consts::TAU;
 use steering::{Keep, Side, wall_contacts};
 use world::{Boundary, Point, Vector, geometry::wrap_angle_rad};
 
-/// The nearest point of the course is looked for this far ahead, metres.
+/// How far ahead the nearest point of the course is searched for, metres.
 const WINDOW_M: f64 = 1.5;
-/// Nearer to the course than this is on it, metres.
+/// A place closer to the course than this is on it, metres.
 const ON_COURSE_M: f64 = 0.01;
-/// Headings are kept this far from those that are blocked, radians.
+/// The margin between a heading and blocked headings, radians.
 const MARGIN_RAD: f64 = 1e-6;
-/// A way round is thought through for this many moves.
+/// How many moves of a way round are simulated.
 const THOUGHT_MOVES: usize = 120;
-/// Without getting on along the course for this many moves it is stuck.
+/// The follower is stuck after this many moves without progress along the course.
 const PATIENCE_MOVES: usize = 40;
-/// Nearer by no more than this is rounding, metres.
+/// Closer by no more than this is a rounding error, metres.
 const ROUNDING_M: f64 = 1e-7;
 
-/// A course with the way along it.
+/// A course with the distances along it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Track<'a> {
-    /// Its points, at least one.
+    /// The points, at least one.
     pub points: &'a [Point],
-    /// Way to every point, metres.
+    /// Distance along the course to every point, metres.
     pub stations_m: &'a [f64],
 }
 
@@ -33,50 +33,51 @@ pub(crate) struct Track<'a> {
 pub(crate) struct Around<'a> {
     /// The wall.
     pub wall: &'a Boundary,
-    /// Everything sensed, in parts.
+    /// Everything sensed, as parts.
     pub parts: Vec<&'a Part>,
-    /// Distances to keep.
+    /// The distances to keep.
     pub keep: Keep,
 }
 
-/// Headings that are blocked: within `half_rad` of `middle_rad`.
+/// An interval of blocked headings: within `half_rad` of `middle_rad`.
 #[derive(Debug, Clone, Copy)]
 struct Interval {
     middle_rad: f64,
     half_rad: f64,
 }
 
-/// Where a follower is and how it goes round.
+/// The position of a follower, and how it passes obstacles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Follower {
-    /// Where it is.
+    /// The position.
     pub at: Point,
-    /// Index of the nearest point of the course; only moves forward.
+    /// Index of the nearest point of the course; it only increases.
     pub nearest: usize,
-    /// On which side it passes what is in the way, while it does.
+    /// The side on which the follower is passing an obstacle, if it is.
     pub side: Option<Side>,
     best: usize,
     idle: usize,
 }
 
-/// What is in range leads on neither side back to the course.
+/// Neither side leads past the obstacles in range back to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Stuck;
 
 impl Around<'_> {
-    /// Room left at a place, metres; negative where the middle of the hull may not be.
+    /// Returns the free space at a place, metres; negative where the centre of the hull may not be.
     pub(crate) fn spare_m(&self, at: Point) -> f64 {
         let wall_m = self.wall.wall_distance_m(at) - self.keep.wall_m + 1e-9;
         self.parts.iter().map(|part| part.distance(at).0 - self.keep.obstacle_m).fold(wall_m, f64::min)
     }
 
-    /// Whether the middle of the hull may go straight from one place to another, as far as is known.
+    /// Whether the centre of the hull can move straight from one place to another, as far as is known.
     pub(crate) fn is_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - 1e-9
             && self.parts.iter().all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m)
     }
 
-    /// Whether the middle of the hull may go straight from one place to another, touching what it likes.
+    /// Whether the centre of the hull can move straight from one place to another, with a rounding margin so that it
+    /// may touch obstacles.
     pub(crate) fn is_nearly_free(&self, a: Point, b: Point) -> bool {
         self.wall.wall_distance_m(b) >= self.keep.wall_m - ROUNDING_M
             && self
@@ -85,7 +86,7 @@ impl Around<'_> {
                 .all(|part| part.segment_distance_m(a, b) >= self.keep.obstacle_m - ROUNDING_M)
     }
 
-    /// Headings in which a move of this length would come too near to something.
+    /// Returns the headings in which a move of this length would come too close to something.
     fn blocked(&self, at: Point, reach_m: f64) -> Vec<Interval> {
         let mut blocked: Vec<Interval> = Vec::new();
         for part in &self.parts {
@@ -104,7 +105,7 @@ impl Around<'_> {
         blocked
     }
 
-    /// The heading nearest to the one wanted, turning only to one side; `None` if all are blocked.
+    /// Returns the heading nearest to the desired one, turning only to one side; `None` if all are blocked.
     pub(crate) fn tangent(&self, at: Point, wanted: Vector, reach_m: f64, side: Side) -> Option<Vector> {
         let blocked = self.blocked(at, reach_m);
         let sign = side.sign();
@@ -124,21 +125,21 @@ impl Around<'_> {
 }
 
 impl Interval {
-    /// How far to turn on to leave the interval, if the heading lies in it.
+    /// Returns how far to turn to leave the interval, if the heading is inside it.
     fn beyond(&self, heading_rad: f64, sign: f64) -> Option<f64> {
         let off_rad = wrap_angle_rad(heading_rad - self.middle_rad);
         (off_rad.abs() < self.half_rad).then(|| (self.half_rad - sign * off_rad).max(MARGIN_RAD))
     }
 }
 
-/// Something convex lies behind the plane through its nearest point.
+/// Returns the headings that a convex object blocks. The object is entirely behind the plane through its nearest point.
 fn interval(spare_m: f64, away: Vector, reach_m: f64) -> Option<Interval> {
-    // Who is too near already may go along, or away.
+    // A robot that is already too close may move along the object, or away from it.
     let cosine = (spare_m.max(0.0) / reach_m).min(1.0);
     (cosine < 1.0).then(|| Interval { middle_rad: (-away.y).atan2(-away.x), half_rad: cosine.acos() })
 }
 
-/// A round wall bends toward the robot, so a tangent would leave the tank.
+/// Returns the headings that a round wall blocks. The wall curves toward the robot, so a tangent would leave the tank.
 fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
     let r = at.coords.norm();
     if r + reach_m <= radius_m || r < 1e-9 {
@@ -149,7 +150,7 @@ fn round_wall(radius_m: f64, at: Point, reach_m: f64) -> Option<Interval> {
 }
 
 impl Follower {
-    /// A follower at a place near a point of its course.
+    /// Creates a follower at a place near a point of its course.
     pub(crate) fn new(at: Point, nearest: usize) -> Self {
         Self { at, nearest, side: None, best: nearest, idle: 0 }
     }
@@ -157,7 +158,7 @@ impl Follower {
     /// Makes one move of at most this length.
     ///
     /// # Errors
-    /// [`Stuck`] when nothing leads on.
+    /// [`Stuck`] when no move leads on.
     pub(crate) fn advance(
         &mut self,
         track: &Track<'_>,
@@ -185,14 +186,14 @@ impl Follower {
         Ok(())
     }
 
-    /// Whether the last point of the course is reached, or as nearly as what is known allows.
+    /// Whether the last point of the course has been reached.
     pub(crate) fn is_done(&self, track: &Track<'_>, tolerance_m: f64) -> bool {
         let last = track.points.len() - 1;
         let left_m = track.stations_m[last] - track.stations_m[self.nearest];
         left_m < tolerance_m && (track.points[last] - self.at).norm() < tolerance_m
     }
 
-    /// Whether it follows the course and not a way round.
+    /// Whether the follower is on the course and not on a way round.
     pub(crate) fn is_on(&self, track: &Track<'_>) -> bool {
         self.off_m(track) < ON_COURSE_M
     }
@@ -228,7 +229,7 @@ impl Follower {
         }
     }
 
-    /// The first point of the course that is ahead and free, as far as is known.
+    /// Returns the first free point of the course ahead, as far as is known.
     fn aim(&self, track: &Track<'_>, around: &Around<'_>) -> Point {
         let off_m = self.off_m(track);
         let lead_m = if off_m < ON_COURSE_M { 1e-6 } else { 0.05 + 0.5 * off_m };
@@ -239,7 +240,7 @@ impl Follower {
         free.next().map_or(last, |index| track.points[index])
     }
 
-    /// The side on which less floor is missed, as far as is known: both are gone in thought. `None` if neither leads
+    /// Returns the side on which less floor is missed, as far as is known, by simulating both. `None` if neither leads
     /// back to the course.
     fn better_side(&self, track: &Track<'_>, around: &Around<'_>, step_m: f64) -> Option<Side> {
         let cost = |side: Side| self.cost_of(side, track, around, step_m).map(|cost| (cost, side));

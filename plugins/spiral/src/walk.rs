@@ -1,4 +1,5 @@
-//! Walking a course: what comes into range is sensed and remembered, and the memory leads out of pockets.
+//! Simulates a walk along a course: obstacles that come into range are sensed and remembered, and the remembered ones
+//! are used to find the way out of pockets.
 
 use crate::{
     course::{self, Course},
@@ -10,22 +11,22 @@ use planner_api::{Ctx, Result};
 use steering::Room;
 use world::{Point, polyline};
 
-/// What is sensed is looked up again after this distance, metres.
+/// The distance between two looks at the surroundings, metres.
 const LOOK_M: f64 = 0.2;
-/// Moves allowed, as a multiple of those of the course.
+/// The maximum number of moves, as a multiple of those that the course takes.
 const DETOUR: f64 = 4.0;
-/// The console is asked after so many moves.
+/// How often to check whether the console wants to stop, moves.
 const ASK_EVERY: usize = 32;
 
-/// A walk along a course by a robot that senses no further than its range.
+/// A walk along a course by a robot that senses only what is within its range.
 pub(crate) struct Walk<'a> {
     course: &'a Course,
     room: &'a Room,
-    /// Room at the last point, metres.
+    /// Free space at the last point, metres.
     end_spare_m: f64,
-    /// Everything there is, each with a circle about it.
+    /// All obstacles as parts, each with a circle around it.
     parts: Vec<(&'a Part, Point, f64)>,
-    /// Which of it was sensed so far.
+    /// Which parts have been sensed so far.
     seen: Vec<bool>,
     around: Around<'a>,
     looked: Option<Point>,
@@ -35,19 +36,19 @@ pub(crate) struct Walk<'a> {
     path: Vec<Point>,
 }
 
-/// How leaving a pocket went.
+/// The result of leaving a pocket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Left {
-    /// The course is reached again.
+    /// The walk is back on the course.
     OnCourse,
-    /// The last point lies in an obstacle, and no place is nearer to it.
+    /// The last point is inside an obstacle, and no place is closer to it.
     AtEnd,
-    /// What was sensed closes off all that is left of the course.
+    /// The sensed parts close off the rest of the course.
     Enclosed,
 }
 
 impl<'a> Walk<'a> {
-    /// A walk from the beginning of a course among these parts.
+    /// Creates a walk from the beginning of a course among these parts.
     pub(crate) fn new(
         course: &'a Course,
         room: &'a Room,
@@ -63,10 +64,10 @@ impl<'a> Walk<'a> {
         Self { course, room, parts, end_spare_m, seen, around, looked: None, range_m, step_m, follower, path }
     }
 
-    /// The path walked, and the station where it is stuck if it does not come to the end.
+    /// Returns the path walked, and the station at which it got stuck if it did not reach the end.
     ///
     /// # Errors
-    /// When the console wants it to stop.
+    /// The console asked to stop.
     pub(crate) fn walked(mut self, ctx: &Ctx<'_>) -> Result<(Vec<Point>, std::result::Result<(), usize>)> {
         let track = Track { points: &self.course.points, stations_m: &self.course.stations_m };
         let most = (DETOUR * track.stations_m[self.course.last()] / self.step_m) as usize + 4000;
@@ -92,7 +93,8 @@ impl<'a> Walk<'a> {
         Ok((self.path, Err(self.follower.nearest)))
     }
 
-    /// Senses, if it has gone far enough since the last time; whether something new came into range.
+    /// Senses the surroundings if the follower has moved far enough since the last look. Returns whether something new
+    /// came into range.
     fn look(&mut self) -> bool {
         let at = self.follower.at;
         if self.looked.is_some_and(|from| (at - from).norm() <= LOOK_M) {
@@ -118,13 +120,13 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The last point lies in an obstacle, and the follower has come as near as it can.
+    /// Whether the last point is inside an obstacle and the follower is as close to it as possible.
     fn ends_here(&self) -> bool {
         let last = self.course.points[self.course.last()];
         self.end_spare_m < 0.0 && (last - self.follower.at).norm() < self.step_m - self.end_spare_m
     }
 
-    /// Drives back to the course along a way that avoids what was sensed so far; replans whenever something new is in
+    /// Moves back to the course along a path that avoids everything sensed so far; replans whenever something new is in
     /// the way.
     fn left_pocket(&mut self, track: &Track<'_>, ctx: &Ctx<'_>) -> Result<Left> {
         loop {
@@ -155,7 +157,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// A part and a circle about it.
+/// Pairs a part with a circle around it.
 fn with_circle(part: &Part) -> (&Part, Point, f64) {
     let middle = part.middle();
     let corners = part.corners().into_iter();

@@ -1,4 +1,4 @@
-//! Out of a pocket: the shortest way among all that was sensed so far to the course beyond.
+//! Finds the way out of a pocket: the shortest path to the course beyond it, among everything sensed so far.
 
 use crate::{
     course::places_about,
@@ -8,30 +8,30 @@ use geometry::convex::Part;
 use steering::Room;
 use world::{Point, Shape, shortest::GrownFloor};
 
-/// A detour up to this long is taken to the next piece of course, metres; before a longer one the pieces further on are
-/// asked for.
+/// A detour up to this length to the next section of course is accepted, metres. Before a longer one, the sections
+/// further on are tried.
 const SHORT_M: f64 = 6.0;
 
 /// A way back to the course.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct WayOut {
-    /// Its points, from where the robot is.
+    /// The points, from the position of the follower on.
     pub way: Vec<Point>,
-    /// Index of the point of the course that it leads to.
+    /// Index of the point of the course where it ends.
     pub nearest: usize,
-    /// Whether it leads to the place nearest to a last point that is blocked.
+    /// Whether it ends at the free place nearest to a blocked last point.
     pub is_end: bool,
 }
 
-/// The floor among what was sensed.
+/// Returns the floor between the sensed parts.
 pub(crate) fn floor<'a>(room: &Room, seen: impl Iterator<Item = &'a Part>) -> GrownFloor {
     let shapes: Vec<Shape> = seen.map(Part::to_shape).collect();
     let keep = room.keep();
     GrownFloor::new(room.wall(), keep.wall_m, shapes.iter().map(|shape| (shape, keep.obstacle_m)))
 }
 
-/// The way to the first free piece of the course ahead that can be reached without much of a detour, else to the one
-/// with the shortest way; `None` if all of them are proved to be closed off.
+/// Finds the path to the first free section of the course ahead that needs only a short detour, or else to the section
+/// with the shortest path. `None` if all of them are proved to be closed off.
 pub(crate) fn onward(
     track: &Track<'_>,
     follower: &Follower,
@@ -51,7 +51,7 @@ pub(crate) fn onward(
     best.map(|(_, way_out)| way_out)
 }
 
-/// Where every free piece of the course ahead begins; if there is none, the free place nearest to its end.
+/// Returns the start of every free section of the course ahead; if there is none, the free place nearest to the end.
 fn goals(track: &Track<'_>, follower: &Follower, floor: &GrownFloor) -> Vec<(Point, usize, bool)> {
     let last = track.points.len() - 1;
     let mut goals = Vec::new();

@@ -1,4 +1,4 @@
-//! What blocks the way: obstacles that leave no passage between them, or to the wall, as one.
+//! Finds what blocks the path. Obstacles with no passage between them, or to the wall, count as one.
 
 use crate::{body::Body, side::Side, tick::Tick};
 use geometry::{
@@ -10,44 +10,44 @@ use geometry::{
 };
 use std::collections::BTreeSet;
 
-/// The way is looked at this far ahead, metres.
+/// The path is examined this far ahead, metres.
 const AHEAD_M: f64 = 2.5;
-/// Obstacles further from the hull than this are not looked at, metres.
+/// Obstacles further from the hull than this are ignored, metres.
 const HORIZON_M: f64 = 4.0;
-/// Never more obstacles than this, the nearest ones, are looked at.
+/// At most this many obstacles are considered, nearest first.
 const MOST_BODIES: usize = 48;
-/// A way blocked by less than this share of the guard distance counts as free: the guard slides past.
+/// A path blocked by less than this share of the guard distance counts as free: the guard slides past.
 const BLOCKING_SHARE: f64 = 0.7;
-/// The way to a preset point need not be free over this last piece: preset points pass obstacles closely, and the
-/// mission looks half a metre ahead, metres.
+/// The last part of the path to a preset point need not be free, metres. Preset points pass close to obstacles, and the
+/// mission looks half a metre ahead.
 const PASSING_M: f64 = 0.35;
 
 /// The surroundings in one tick, and the room that the hull needs.
 #[derive(Debug, Clone, Copy)]
 pub struct View<'a> {
-    /// Where the robot is, where it is bound and what it senses.
+    /// The robot's pose, its target and the bodies it senses.
     pub tick: &'a Tick<'a>,
     /// The wall.
     pub wall: &'a Boundary,
     /// Radius of the hull, metres.
     pub hull_m: f64,
-    /// Distance the guard keeps between hull and anything solid, metres.
+    /// Distance that the guard keeps between the hull and any solid, metres.
     pub keep_m: f64,
 }
 
-/// Obstacles that leave no passage between them, one of which stands in the way.
+/// A group of obstacles with no passage between them, at least one of which blocks the path.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Blockage {
-    /// Their ids.
+    /// Ids of the obstacles.
     pub members: BTreeSet<u32>,
-    /// Lines that close the narrow gaps between them.
+    /// Lines that close the narrow gaps between the obstacles.
     pub closed: Vec<(Point, Point)>,
     corners: Vec<(Point, f64)>,
-    /// The sides on which going round ends at the wall.
+    /// The sides on which a detour would end at the wall.
     pub dead_ends: Vec<Side>,
 }
 
-/// A passage too narrow, between two bodies or, without a second one, between a body and the wall.
+/// A passage that is too narrow: between two bodies, or between one body and the wall if there is no second body.
 struct Narrow {
     first: usize,
     second: Option<usize>,
@@ -59,14 +59,14 @@ impl View<'_> {
         self.tick.pose.position
     }
 
-    /// From the robot to its target.
+    /// The vector from the robot to its target.
     fn way(&self) -> Vector {
         self.tick.target - self.at()
     }
 }
 
 impl Blockage {
-    /// What blocks the way to the target, if anything.
+    /// Finds what blocks the path to the target, if anything.
     pub(crate) fn of(view: &View<'_>) -> Option<Self> {
         let bodies = nearest_bodies(view);
         let narrow = narrow_passages(view, &bodies);
@@ -95,7 +95,7 @@ impl Blockage {
         Some(blockage)
     }
 
-    /// The side on which less has to be turned away from the target, the present heading weighing a little.
+    /// The side that requires the smaller turn away from the target; the present heading has a small weight.
     pub(crate) fn shorter_side(&self, view: &View<'_>) -> Side {
         let bearing_rad = bearing(view.way());
         let room_m = view.hull_m + view.keep_m;
@@ -159,7 +159,8 @@ fn narrow_passages(view: &View<'_>, bodies: &[&Body]) -> Vec<Narrow> {
     narrow
 }
 
-/// From the corner of a body that is nearest to the wall to the wall, if no passage is left there.
+/// If the gap between a body and the wall is too narrow, returns the line across it, from the body's corner nearest to
+/// the wall.
 fn narrow_to_wall(wall: &Boundary, body: &Body, room_m: f64) -> Option<(Point, Point)> {
     let corners = body.parts.iter().flat_map(Part::corners);
     let gaps = corners.map(|(corner, radius_m)| (wall.wall_distance_m(corner) - radius_m, corner));
@@ -177,7 +178,7 @@ fn nearest_on_wall(wall: &Boundary, point: Point) -> Point {
     }
 }
 
-/// The body nearest to the robot that stands in the way, or belongs to a closed gap that the way leads through.
+/// The body nearest to the robot that blocks the path, or that borders a closed gap on the path.
 fn blocker(view: &View<'_>, bodies: &[&Body], narrow: &[Narrow]) -> Option<usize> {
     let (at, way) = (view.at(), view.way());
     let near_enough_m = if view.tick.is_last { 0.0 } else { PASSING_M };

@@ -1,25 +1,25 @@
-//! Something solid nearby: how far off it is, and in which direction.
+//! A solid near the robot: its distance and direction.
 
 use geometry::{
     Boundary, Point, Vector, direction_or,
     polyline::{edges, nearest_on_segment},
 };
 
-/// What stands there.
+/// The kind of solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Source {
     /// An obstacle, by its id.
     Obstacle(u32),
-    /// A gap too narrow for the robot, closed by a line that the planner made up.
+    /// A gap too narrow for the robot, closed by a virtual line.
     Gap,
     /// The wall of the tank.
     Wall,
 }
 
-/// Something solid near the robot.
+/// A solid near the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// What stands there.
+    /// The kind of solid.
     pub source: Source,
     /// Distance from the hull to the outline, metres; negative when they overlap.
     pub distance_m: f64,
@@ -27,7 +27,7 @@ pub struct Contact {
     pub away: Vector,
 }
 
-/// The wall as contacts of a hull: one for a round wall, one for every piece in reach of a straight one.
+/// The wall as contacts of a hull: one for a round wall, or one for every segment in reach of a straight wall.
 pub fn wall_contacts(wall: &Boundary, at: Point, hull_m: f64, reach_m: f64) -> Vec<Contact> {
     let contact =
         |outline_m: f64, away: Vector| Contact { source: Source::Wall, distance_m: outline_m - hull_m, away };

@@ -1,7 +1,7 @@
-//! Which way round what blocks the way: on the side of the smaller detour, and that side is kept.
+//! Chooses the side on which to pass whatever blocks the path. The side of the smaller detour is chosen and then kept.
 //!
-//! Wang et al. 2023 turn counter-clockwise about single points, which pushes back at half of them and cancels between
-//! two. Here obstacles that leave no passage between them, or to the wall, are gone round as one.
+//! Wang et al. 2023 turn counter-clockwise around single points. That pushes the robot back at half of the points, and
+//! cancels out between two of them. Here obstacles with no passage between them, or to the wall, are bypassed as one.
 
 use crate::{
     blockage::{Blockage, View},
@@ -10,21 +10,21 @@ use crate::{
 use geometry::Point;
 use std::collections::BTreeSet;
 
-/// A side is kept for this long after the way has become free, seconds.
+/// A side is kept for this long after the path has become free, seconds.
 const KEPT_S: f64 = 2.0;
 
-/// What to go round, and how.
+/// The obstacles to bypass, and the side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detour {
-    /// The obstacles to go round as one.
+    /// Ids of the obstacles to bypass as one.
     pub members: BTreeSet<u32>,
-    /// Lines that close the narrow gaps between them.
+    /// Lines that close the narrow gaps between the obstacles.
     pub closed: Vec<(Point, Point)>,
-    /// On which side to pass them.
+    /// The side on which to pass the obstacles.
     pub side: Side,
 }
 
-/// Chooses the side once for everything that blocks the way.
+/// Chooses a side once for each group of obstacles that blocks the path.
 #[derive(Debug, Clone, Default)]
 pub struct Detours {
     kept: Option<Kept>,
@@ -35,13 +35,13 @@ struct Kept {
     members: BTreeSet<u32>,
     side: Side,
     seen_s: f64,
-    /// Whether a wall was taken into account; after that the side is not changed again on its account, for what is
-    /// left and right of the way changes as the robot goes round.
+    /// Whether the wall has been considered. After that the wall no longer changes the side, because left and right of
+    /// the path swap as the robot goes around.
     knows_wall: bool,
 }
 
 impl Detours {
-    /// What blocks the way to the target now, if anything, and which way round to go.
+    /// Returns what blocks the path to the target now, if anything, and the side on which to pass it.
     pub fn update(&mut self, view: &View<'_>) -> Option<Detour> {
         self.kept = self.kept.take().filter(|kept| view.tick.t_s - kept.seen_s < KEPT_S);
         let blockage = Blockage::of(view)?;
@@ -52,7 +52,7 @@ impl Detours {
         Some(Detour { members: blockage.members, closed: blockage.closed, side })
     }
 
-    /// Tries the other side: this one led nowhere.
+    /// Switches to the other side because the present one led nowhere.
     pub fn flip(&mut self) {
         if let Some(kept) = &mut self.kept {
             kept.side = kept.side.other();

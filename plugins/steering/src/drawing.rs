@@ -1,17 +1,17 @@
-//! What drives the robot, made visible.
+//! Draws the forces that drive the robot.
 
 use crate::body::Body;
 use geometry::{Point, Vector};
 use planner_api::{Ctx, Layer};
 
-/// Beyond this distance the pull of an aim no longer grows, metres.
+/// Beyond this distance the pull of a target no longer grows, metres.
 pub const FAR_M: f64 = 1.0;
-/// No arrow is longer, metres: near an outline repulsion grows beyond all bounds.
+/// Longest arrow, metres: repulsion grows without bound near an outline.
 const LONGEST_M: f64 = 1.5;
-/// Shorter arrows are left out, metres.
+/// Shorter arrows are not drawn, metres.
 const SHORTEST_M: f64 = 0.02;
 
-/// What drives a robot at one place, in parts, so that they can be drawn.
+/// The separate forces on a robot at one position, for drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Forces {
     /// Pull of the target.
@@ -23,19 +23,19 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// Nothing but the pull of an aim.
+    /// Only the pull of a target.
     pub fn toward(at: Point, aim: Point) -> Self {
         Self { attraction: (aim - at).cap_magnitude(FAR_M), ..Self::default() }
     }
 
-    /// Sum of all.
+    /// The sum of all forces.
     pub fn resultant(&self) -> Vector {
         self.attraction + self.repulsion + self.rotation
     }
 
-    /// Reports the size of every force, and draws them if anyone looks.
+    /// Reports the size of every force, and draws the forces if drawings are wanted.
     ///
-    /// An arrow of one metre is a force as large as the pull of a target one metre off.
+    /// An arrow of one metre represents a force as large as the pull of a target one metre away.
     pub fn show(&self, ctx: &Ctx<'_>, at: Point, k_att: f64) {
         ctx.scalar("F_att", self.attraction.norm(), "N");
         ctx.scalar("F_rep", self.repulsion.norm(), "N");
@@ -58,7 +58,7 @@ impl Forces {
     }
 }
 
-/// Reports the distance between a hull at a place and the nearest body, if there is one.
+/// Reports the distance between a hull at a position and the nearest body, if there is one.
 pub fn show_nearest(ctx: &Ctx<'_>, at: Point, hull_m: f64, bodies: &[Body]) {
     let distances_m = bodies.iter().map(|body| body.hull_distance_m(at, hull_m));
     if let Some(nearest_m) = distances_m.min_by(f64::total_cmp) {

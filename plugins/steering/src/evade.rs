@@ -1,9 +1,9 @@
-//! Keeping out of the way of what moves.
+//! Evading moving obstacles.
 //!
-//! Every tick some velocities are flown in thought, with the robot's own way of turning into them, among movers that go
-//! on as they are seen to go. Of those that stay clear the one nearest to the wish is taken; a little more room is
-//! preferred, for what moves may turn. After the velocity obstacles of Fiorini and Shiller 1998 and the dynamic window of
-//! Fox et al. 1997.
+//! In every tick, a set of velocities is simulated, including the turn that the robot needs to follow each one. Moving
+//! obstacles are assumed to keep their observed velocities. Of the velocities that stay clear, the one closest to the
+//! wanted velocity is taken. A little more room is preferred, because moving obstacles may turn. After the velocity
+//! obstacles of Fiorini and Shiller 1998 and the dynamic window of Fox et al. 1997.
 
 use crate::body::Body;
 use geometry::{
@@ -12,22 +12,22 @@ use geometry::{
 };
 use planner_api::{Ctx, Layer, Obstacle, PoseEstimate, Sensed, Site};
 
-/// Slower than this an obstacle stands still, metres per second.
+/// Below this speed an obstacle counts as stationary, metres per second.
 const STILL_M_PER_S: f64 = 0.02;
-/// Movers are looked at this far ahead in time, seconds, in steps of so much.
+/// Moving obstacles are predicted this far ahead, seconds, in steps of [`STEP_S`].
 const HORIZON_S: f64 = 5.0;
 const STEP_S: f64 = 0.2;
-/// What stands still is looked at this far ahead, seconds: the wish itself keeps clear of it beyond.
+/// Stationary obstacles are checked this far ahead, seconds. Beyond that, the wanted velocity avoids them.
 const STANDING_S: f64 = 1.6;
-/// Headings that are tried, and shares of the largest speed.
+/// Number of headings tried, and the speeds tried as shares of the maximum.
 const HEADINGS: u32 = 24;
 const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-/// Room to a mover that is kept if it can be, beyond the clearance, metres, and that is liked.
+/// Room to a moving obstacle in addition to the clearance, metres: kept if possible, and preferred.
 const ROOM_M: f64 = 0.1;
 const LIKED_M: f64 = 0.8;
-/// The place of a mover is less sure by this much each second, metres.
+/// The predicted position of a moving obstacle becomes uncertain by this much every second, metres.
 const DOUBT_M_PER_S: f64 = 0.04;
-/// What a metre of missing room is worth in metres per second of deviation from the wish.
+/// Cost of a metre of missing room, in metres per second of deviation from the wanted velocity.
 const WORTH_PER_S: f64 = 0.25;
 
 /// Whether an obstacle moves.
@@ -35,33 +35,34 @@ pub fn moves(obstacle: &Obstacle<'_>) -> bool {
     obstacle.velocity_m_per_s.norm() > STILL_M_PER_S
 }
 
-/// The obstacles of a site that stand: when the robot arrives, what moves will be elsewhere.
+/// The stationary obstacles of a site. Moving ones will be elsewhere when the robot arrives.
 pub fn standing<'a>(site: &Site<'a>) -> Vec<Obstacle<'a>> {
     site.obstacles.iter().filter(|o| !moves(o)).copied().collect()
 }
 
-/// Something that moves.
+/// A moving obstacle.
 #[derive(Debug, Clone)]
 pub struct Mover {
-    /// As it is now.
+    /// The obstacle at its present position.
     pub body: Body,
     /// Its velocity, metres per second.
     pub velocity: Vector,
 }
 
 impl Mover {
-    /// Draws where it goes.
+    /// Draws the predicted motion of the obstacle.
     pub fn show(&self, ctx: &Ctx<'_>) {
         ctx.arrow(Layer::Virtual, self.body.center(), self.velocity);
     }
 }
 
-/// What is to be evaded, and what counts as standing: without evasion everything.
+/// Splits bodies into those to evade and those that count as stationary. Without evasion, all count as stationary.
 pub fn sorted_if(evades: bool, sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
     if evades { sorted(sensed, bodies) } else { (Vec::new(), bodies) }
 }
 
-/// What is sensed, sorted: what moves, and what stands; `bodies` are those of what is sensed, and others that stand.
+/// Splits the sensed obstacles into moving and stationary ones. `bodies` holds the sensed bodies and further stationary
+/// ones.
 pub fn sorted(sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>) {
     let mut movers = Vec::new();
     let mut standing = Vec::new();
@@ -74,31 +75,31 @@ pub fn sorted(sensed: &Sensed<'_>, bodies: Vec<Body>) -> (Vec<Mover>, Vec<Body>)
     (movers, standing)
 }
 
-/// What a robot has to keep clear of.
+/// Everything that a robot must keep clear of.
 #[derive(Debug, Clone, Copy)]
 pub struct Around<'a> {
-    /// What moves.
+    /// The moving obstacles.
     pub movers: &'a [Mover],
-    /// What stands still.
+    /// The stationary bodies.
     pub standing: &'a [Body],
     /// The wall.
     pub wall: &'a Boundary,
-    /// What the robot can do.
+    /// Motion limits of the robot.
     pub limits: &'a Limits,
-    /// Distance to keep between hull and anything, metres.
+    /// Distance to keep between the hull and anything else, metres.
     pub clearance_m: f64,
 }
 
-/// How a velocity turns out.
+/// The predicted outcome of a velocity.
 #[derive(Debug, Clone, Copy)]
 struct Outlook {
-    /// When it comes too near to something, seconds; the horizon if it does not.
+    /// Time until the robot comes too close to something, seconds; the horizon if it does not.
     until_s: f64,
-    /// The least distance between the hull and a mover, metres.
+    /// The smallest distance between the hull and a moving obstacle, metres.
     room_m: f64,
 }
 
-/// The velocity to take instead of the one wished for, tank frame, metres per second.
+/// Returns the velocity to use instead of the wanted one, tank frame, metres per second.
 pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
     let v_max = around.limits.v_max_m_per_s;
     let headings = (0..HEADINGS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(HEADINGS));
@@ -122,7 +123,7 @@ pub fn evade(wish: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Vector {
     best.or_else(last).map_or(wish, |(velocity, _)| *velocity)
 }
 
-/// Flies a velocity in thought.
+/// Simulates a velocity.
 fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outlook {
     let hull_m = around.limits.radius_m;
     let (mut at, mut heading_rad) = (pose.position, pose.heading_rad);
@@ -130,7 +131,7 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
         let bodies = around.standing.iter().map(|body| body.hull_distance_m(at, hull_m));
         bodies.fold(around.wall.wall_distance_m(at) - hull_m, f64::min)
     };
-    // What is too near already must at least not come nearer.
+    // If the robot is already too close to a stationary obstacle, it must at least not come closer.
     let keep_m = around.clearance_m.min(standing_m(at) - 1e-6);
     let mut room_m = f64::INFINITY;
     let n_steps = (HORIZON_S / STEP_S).round() as u32;
@@ -148,12 +149,12 @@ fn outlook(velocity: Vector, pose: &PoseEstimate, around: &Around<'_>) -> Outloo
     Outlook { until_s: HORIZON_S, room_m }
 }
 
-/// Place and heading a step later, by the console's law of turning a robot into a velocity.
+/// Position and heading one step later, by the console's rule for turning a robot toward a velocity.
 fn moved(at: Point, heading_rad: f64, velocity: Vector, limits: &Limits) -> (Point, f64) {
     match drive_for(Drive::Velocity(velocity), heading_rad, limits, TURN_FIRST_RAD) {
         Drive::Velocity(velocity) => (at + velocity * STEP_S, heading_rad),
         Drive::Twist { v_m_per_s, w_rad_per_s } => {
-            // No further than the error: a step is long.
+            // Turn no further than the heading error: a step is long.
             let error_rad = heading_error_rad(velocity, heading_rad);
             let turn_rad = (w_rad_per_s * STEP_S).clamp(-error_rad.abs(), error_rad.abs());
             let middle_rad = heading_rad + turn_rad / 2.0;

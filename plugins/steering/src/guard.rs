@@ -1,32 +1,35 @@
-//! The last word before a velocity leaves: nothing moves toward what is already as near as allowed.
+//! The final check of every velocity: the hull never moves toward anything that is already as close as allowed.
 
 use crate::contact::Contact;
 use geometry::{Braking, Vector};
 
-/// Time over which a distance may be used up, seconds: several ticks, so that the hull comes to rest before it touches. A robot
-/// that needs longer to stop is slower.
+/// Time over which a distance may be used up, seconds: several ticks, so that the hull stops before contact. A robot
+/// that needs longer to stop is driven more slowly.
 const BRAKING_S: f64 = 0.5;
-/// The fastest the guard drives the robot away from something too near, as a share of the largest speed.
+/// Maximum speed at which the guard moves the robot away from something too close, as a share of the robot's maximum
+/// speed.
 const RETREAT_SHARE: f64 = 0.4;
 
-/// A velocity `v` with `away . v >= least`.
+/// The velocities `v` with `away . v >= least`.
 #[derive(Debug, Clone, Copy)]
 struct HalfPlane {
     away: Vector,
     least: f64,
 }
 
-/// The largest speed toward something with so much room before it, metres per second; negative where there is too little.
+/// The maximum speed toward a solid with this much room before it, metres per second; negative if there is too little
+/// room.
 fn fastest_toward(room_m: f64, braking: &Braking) -> f64 {
     let used_up = room_m / BRAKING_S;
     if room_m > 0.0 { used_up.min(braking.speed_within(room_m)) } else { used_up }
 }
 
-/// The velocity nearest to `wanted` that keeps a distance `keep_m` from every contact.
+/// Returns the velocity closest to `wanted` that keeps a distance `keep_m` from every contact.
 ///
-/// Toward a contact at distance `d` no more than `(d - keep_m) / 0.5 s` is allowed, and no more than what the robot can stop
-/// from within `d - keep_m`, so it slides along what it would run into; nearer than `keep_m` it is driven away. Where that is impossible, as in a gap narrower than both
-/// distances together, it may move along the gap but not across.
+/// Toward a contact at distance `d`, the speed is limited to `(d - keep_m) / 0.5 s` and to the speed from which the
+/// robot can stop within `d - keep_m`. The robot therefore slides along an obstacle instead of running into it. Closer
+/// than `keep_m` it is driven away. Where that is impossible, as in a gap too narrow for both distances, it may move
+/// along the gap but not across.
 pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64, braking: &Braking) -> Vector {
     let planes: Vec<HalfPlane> = contacts
         .iter()
@@ -42,7 +45,7 @@ pub fn slide(wanted: Vector, contacts: &[Contact], keep_m: f64, v_max: f64, brak
     safe.unwrap_or_else(Vector::zeros).cap_magnitude(v_max)
 }
 
-/// A velocity of the same direction, so slow that a robot that still heads elsewhere stays clear while it turns.
+/// Returns the velocity, slowed down so that a robot with a different heading stays clear while it turns.
 pub fn braked(
     velocity: Vector,
     heading: Vector,
@@ -56,12 +59,12 @@ pub fn braked(
         let room_m = (contact.distance_m - keep_m).max(0.0);
         if closing > 0.05 { allowed.min(fastest_toward(room_m, braking) / closing) } else { allowed }
     });
-    // Never quite still: the direction of the command is what the robot turns into.
+    // Never fully stopped: the robot turns into the direction of the command.
     let share = if speed > 0.0 { (allowed / speed).max(0.02) } else { 0.0 };
     velocity * share
 }
 
-/// The point of an intersection of half planes that is nearest to `wanted`, if there is one.
+/// The point in an intersection of half planes that is closest to `wanted`, if the intersection is not empty.
 fn nearest_within(wanted: Vector, planes: &[HalfPlane]) -> Option<Vector> {
     let is_allowed = |v: &Vector| planes.iter().all(|p| p.away.dot(v) >= p.least - 1e-9);
     if is_allowed(&wanted) {

@@ -1,4 +1,4 @@
-//! The known map in flat form, for planners that look at it in thousands of small steps.
+//! The known map in a flat form, for planners that query it in thousands of small steps.
 
 use crate::{
     body::{Body, solid_parts},
@@ -8,10 +8,10 @@ use crate::{
 use geometry::{Boundary, Point, convex::Part, polyline::edges};
 use planner_api::Site;
 
-/// What is near is looked up again after this distance, metres.
+/// The nearby solids are looked up again after the robot has moved this far, metres.
 const SLACK_M: f64 = 1.0;
 
-/// Everything solid, and the wall.
+/// All solids, and the wall.
 #[derive(Debug, Clone)]
 pub struct KnownMap {
     /// Convex parts of obstacles and no-go zones.
@@ -23,7 +23,7 @@ pub struct KnownMap {
 }
 
 impl KnownMap {
-    /// The map of a site.
+    /// Creates the map of a site.
     pub fn new(site: &Site<'_>) -> Self {
         Self {
             solids: solid_parts(site).map(|(id, part)| Solid::new(id, part)).collect(),
@@ -32,7 +32,7 @@ impl KnownMap {
         }
     }
 
-    /// The map of a site without what moves: when the robot arrives it will be elsewhere.
+    /// Creates the map of a site without moving obstacles: they will be elsewhere when the robot arrives.
     pub fn standing(site: &Site<'_>) -> Self {
         let movers: Vec<u32> = site.obstacles.iter().filter(|o| evade::moves(o)).map(|o| o.id).collect();
         let mut map = Self::new(site);
@@ -40,14 +40,14 @@ impl KnownMap {
         map
     }
 
-    /// Takes obstacles off the map; true if there were any of them.
+    /// Removes obstacles from the map. Returns true if any of them were on it.
     pub fn forget(&mut self, ids: &[u32]) -> bool {
         let n_before = self.solids.len();
         self.solids.retain(|solid| !ids.contains(&solid.id));
         self.solids.len() < n_before
     }
 
-    /// Takes what is sensed instead of what was known of the same obstacles; true if that changed anything.
+    /// Replaces known obstacles by their sensed versions. Returns true if that changed the map.
     pub fn learn(&mut self, bodies: &[Body]) -> bool {
         let mut changed = false;
         for body in bodies {
@@ -62,21 +62,20 @@ impl KnownMap {
         changed
     }
 
-    /// Distance from a hull at a place to anything solid, the wall included, metres.
+    /// The distance from a hull at a position to the nearest solid, wall included, metres.
     pub fn clearance_m(&self, at: Point) -> f64 {
         let solids = self.solids.iter().map(|s| s.distance(at).0);
         solids.fold(self.wall.wall_distance_m(at), f64::min) - self.hull_m
     }
 
-    /// Whether the hull finds a margin along a straight way.
+    /// Whether the hull keeps a margin along a straight path.
     pub fn is_free(&self, a: Point, b: Point, margin_m: f64) -> bool {
         let keep_m = self.hull_m + margin_m;
         self.solids.iter().all(|s| s.segment_distance_m(a, b, keep_m) >= keep_m)
             && self.wall_distance_m(a, b, keep_m) >= keep_m
     }
 
-    /// The least distance between hull and anything solid along a path, metres; of a distance that is larger than
-    /// `enough_m` only that it is.
+    /// The smallest distance between the hull and any solid along a path, metres; exact only up to `enough_m`.
     pub fn path_clearance_m(&self, path: &[Point], enough_m: f64) -> f64 {
         let reach_m = enough_m + self.hull_m;
         let mut nearby = Nearby::new(reach_m);
@@ -84,7 +83,7 @@ impl KnownMap {
         for pair in path.windows(2) {
             let long_m = (pair[1] - pair[0]).norm();
             if long_m > SLACK_M {
-                // Things near its middle may not be near its beginning.
+                // Solids near the middle of a segment may be out of reach at its start.
                 nearby.forget();
                 let free = self.solids.iter().map(|s| s.segment_distance_m(pair[0], pair[1], least_m));
                 least_m = free.fold(least_m, f64::min);
@@ -102,11 +101,11 @@ impl KnownMap {
         least_m - self.hull_m
     }
 
-    /// Distance from the wall to a segment, metres; negative outside, and exact only below `enough_m`.
+    /// The distance from the wall to a segment, metres; negative outside, and exact only below `enough_m`.
     pub fn wall_distance_m(&self, a: Point, b: Point, enough_m: f64) -> f64 {
         let ends_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
         let Boundary::Polygon { vertices } = &self.wall else { return ends_m };
-        // No place between is nearer to the wall than this.
+        // A lower bound for every point in between.
         if ends_m - (b - a).norm() / 2.0 >= enough_m {
             return ends_m;
         }
@@ -124,17 +123,17 @@ pub struct Nearby {
 }
 
 impl Nearby {
-    /// Those whose outline is within a distance of the robot's middle.
+    /// Creates a list of the solids whose outlines are within a distance of the robot's centre.
     pub fn new(reach_m: f64) -> Self {
         Self { reach_m, looked_from: None, indices: Vec::new(), wall_m: f64::INFINITY }
     }
 
-    /// Looks again next time: the map has changed.
+    /// Forces a new search on the next update because the map has changed.
     pub fn forget(&mut self) {
         self.looked_from = None;
     }
 
-    /// Indices of all solids in reach, and perhaps some more.
+    /// Updates the list for a new position. Returns the indices of all solids in reach, and possibly some more.
     pub fn update(&mut self, map: &KnownMap, at: Point) -> &[usize] {
         if self.looked_from.is_none_or(|from| (from - at).norm_squared() > SLACK_M * SLACK_M) {
             self.looked_from = Some(at);
@@ -147,7 +146,7 @@ impl Nearby {
         &self.indices
     }
 
-    /// Those found by the last update.
+    /// The indices found by the last update.
     pub fn indices(&self) -> &[usize] {
         &self.indices
     }

@@ -1,5 +1,5 @@
-//! What every planner of a driving robot needs, whatever its method: what stands in the way and how far off it is,
-//! where there is room for the hull, and a pilot that drives toward an aim, slows down and never comes too near.
+//! Shared functions for all planners that drive a robot: finding what is in the way and how far away it is, finding
+//! room for the hull, and a pilot that drives toward a target, slows down near obstacles and keeps its distance.
 //!
 //! Frame: the tank frame, metres, radians. Distances to obstacles are measured from the robot's hull to the outline.
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! Driving a robot, tick by tick, with a noisy pose and obstacles discovered on the way.
+//! Drives a robot tick by tick, with a noisy pose and obstacles discovered on the way.
 
 use crate::{
     blockage::View,
@@ -15,29 +15,30 @@ use crate::{
 use geometry::{Boundary, Braking, Limits, Motion, Point, Vector, motion::heading_error_rad};
 use planner_api::{Command, Ctx, Drive, PoseEstimate, Sensed, Site, Status};
 
-/// The guard keeps this much more than the mission demands, for it lets the hull touch its limit, metres.
+/// Distance that the guard adds to the mission's clearance, metres, because the guard lets the hull go right to its
+/// limit.
 const SPARE_M: f64 = 0.02;
-/// The position error widens the guard by no more than this, metres: a robot that is lost shall still move.
+/// The position error widens the guard distance by at most this much, metres, so that a lost robot can still move.
 const MOST_WIDENING_M: f64 = 0.15;
-/// A guard that leaves less than this share of the speed wanted has wedged the robot.
+/// If the guard leaves less than this share of the wanted speed, the robot is wedged.
 const WEDGED_SHARE: f64 = 0.05;
 /// Within this distance of the last point the robot slows down, metres.
 const ARRIVING_M: f64 = 0.5;
-/// After this share of the time to being stuck, and every such share again, another remedy is tried.
+/// Interval between remedies, as a share of the time after which the robot counts as stuck.
 const REMEDY_SHARE: f64 = 0.3;
-/// A robot goes no further than this between two commands, metres: it aims a little ahead.
+/// Longest distance between two commands, metres: the robot aims only slightly ahead.
 const TICK_MOST_M: f64 = 0.1;
-/// Share of the turn rate that an arc to the aim may take; the rest is for corrections.
+/// Share of the turn rate that an arc to the target may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
-/// Nearer aims make the arc no tighter, metres.
+/// Targets closer than this do not tighten the arc, metres.
 const LEAST_REACH_M: f64 = 0.15;
-/// How much of the last direction is kept, so that noise does not shake the robot.
+/// Weight of the previous direction, so that noise does not shake the robot.
 const SMOOTHING: f64 = 0.5;
 
-/// Drives a robot where a planner wants it.
+/// Drives a robot in the direction that a planner wants.
 ///
-/// The command is a velocity along the wanted direction at the estimated position, slowed down near obstacles and
-/// passed through the guard, which is the last word.
+/// The command is a velocity in the wanted direction from the estimated position. It is slowed down near obstacles and
+/// passes the guard last.
 #[derive(Debug, Clone)]
 pub struct Pilot {
     limits: Limits,
@@ -50,12 +51,12 @@ pub struct Pilot {
     direction: Option<Vector>,
 }
 
-/// How the robot moves.
+/// The motion chosen for a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decision {
     /// Velocity in the tank frame, metres per second.
     pub velocity: Vector,
-    /// Moving, or stuck.
+    /// Moving or stuck.
     pub status: Status,
 }
 
@@ -66,7 +67,7 @@ impl From<Decision> for Command {
 }
 
 impl Pilot {
-    /// A pilot for a site.
+    /// Creates a pilot for a site.
     pub fn pursuing(site: &Site<'_>) -> Self {
         Self {
             limits: site.limits,
@@ -80,7 +81,7 @@ impl Pilot {
         }
     }
 
-    /// Straight toward an aim.
+    /// Drives straight toward a target.
     pub fn pursue(&mut self, flight: &Flight, tick: &Tick<'_>, aim: Point) -> Decision {
         let status = self.watch(flight, tick);
         let at = tick.pose.position;
@@ -90,7 +91,8 @@ impl Pilot {
         Decision { velocity: self.velocity(flight, tick, wanted, &contacts), status }
     }
 
-    /// Whether the robot gets on, asked once a tick, first; if it does not, another way round is tried.
+    /// Checks whether the robot makes progress, and tries another way around if it does not. Call this first in every
+    /// tick.
     pub fn watch(&mut self, flight: &Flight, tick: &Tick<'_>) -> Status {
         let idle_s = self.stall.update(tick.t_s, tick.pose.position, tick.target);
         if self.remedy.update(idle_s, flight.stuck_s * REMEDY_SHARE) {
@@ -99,14 +101,14 @@ impl Pilot {
         if idle_s > flight.stuck_s { Status::Stuck } else { Status::Moving }
     }
 
-    /// What blocks the way to the target, if anything, and which way round to go; another side is tried, or none, while
-    /// nothing comes of it.
+    /// Returns what blocks the path to the target, if anything, and the side on which to pass it. While the robot makes
+    /// no progress, the other side is tried, then no detour.
     pub fn way_round(&mut self, tick: &Tick<'_>, keep_m: f64) -> Option<Detour> {
         let view = View { tick, wall: &self.wall, hull_m: self.limits.radius_m, keep_m };
         self.detours.update(&view).filter(|_| !self.remedy.pushes())
     }
 
-    /// The velocity along a direction, of any length, at a speed that what is near allows.
+    /// Returns the velocity along a direction, at a speed that nearby solids allow. The length of `wanted` is ignored.
     pub fn velocity(&mut self, flight: &Flight, tick: &Tick<'_>, wanted: Vector, near: &[Contact]) -> Vector {
         let along = wanted.try_normalize(1e-9);
         let speed = self.speed(flight, tick, along.unwrap_or_else(Vector::zeros), near);
@@ -115,13 +117,13 @@ impl Pilot {
         let keep_m = self.keep_m(flight, &tick.pose);
         let spare_m = flight.guard_m.max(self.clearance_m + SPARE_M) - self.clearance_m;
         let safe = self.guarded(velocity, tick, keep_m);
-        // Wedged where the plan, which keeps the mission's clearance, passes.
+        // The guard wedged the robot where the plan, which keeps only the mission's clearance, can pass.
         let is_wedged = safe.norm() < WEDGED_SHARE * velocity.norm();
         if is_wedged { self.guarded(velocity, tick, keep_m - spare_m) } else { safe }
     }
 
-    /// The command for a decision, or for the velocity nearest to it that stays clear of what moves; the bodies of the
-    /// tick are what stands.
+    /// Returns the command for a decision, or the closest velocity that stays clear of moving obstacles. The bodies of
+    /// the tick count as stationary.
     pub fn past(&self, movers: &[Mover], decision: Decision, tick: &Tick<'_>, ctx: &Ctx<'_>) -> Command {
         if movers.is_empty() {
             return decision.into();
@@ -139,7 +141,7 @@ impl Pilot {
         Command::velocity(evade::evade(decision.velocity, &tick.pose, &around))
     }
 
-    /// What the robot can do.
+    /// The motion limits of the robot.
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
@@ -149,18 +151,18 @@ impl Pilot {
         &self.wall
     }
 
-    /// What is sensed in parts, no-go zones included.
+    /// The sensed obstacles and the no-go zones, divided into parts.
     pub fn bodies(&self, sensed: &Sensed<'_>) -> Vec<Body> {
         Body::sensed(sensed, &self.no_go)
     }
 
-    /// Distance the guard keeps between hull and anything solid, metres.
+    /// The distance that the guard keeps between the hull and any solid, metres.
     pub fn keep_m(&self, flight: &Flight, pose: &PoseEstimate) -> f64 {
         let widening_m = (flight.guard_sigmas * position_sigma_m(pose)).min(MOST_WIDENING_M);
         flight.guard_m.max(self.clearance_m + SPARE_M) + if widening_m.is_finite() { widening_m } else { 0.0 }
     }
 
-    /// The direction wanted, or that to the target without one, with a little of the last one.
+    /// The wanted direction, or the direction to the target if there is none, smoothed with the previous direction.
     fn smoothed(&mut self, wanted: Option<Vector>, tick: &Tick<'_>) -> Vector {
         let toward = (tick.target - tick.pose.position).try_normalize(1e-9);
         let Some(wanted) = wanted.or(toward) else { return Vector::zeros() };
@@ -170,7 +172,7 @@ impl Pilot {
         direction
     }
 
-    /// Slower toward what is near and at the end of the way.
+    /// The speed, reduced near solids and at the end of the path.
     fn speed(&self, flight: &Flight, tick: &Tick<'_>, direction: Vector, near: &[Contact]) -> f64 {
         let near = near.iter().map(|contact| {
             let closing = (-contact.away.dot(&direction)).max(0.0);
@@ -186,14 +188,14 @@ impl Pilot {
         (self.limits.v_max_m_per_s * share).min(stops).min(TICK_MOST_M / self.limits.tick_s.max(1e-3))
     }
 
-    /// The largest speed in a direction from which a robot with a heading comes round to the target, metres per second.
+    /// The maximum speed at which a robot moving in this direction can still turn to the target, metres per second.
     fn turning_speed(&self, direction: Vector, tick: &Tick<'_>) -> f64 {
         if self.limits.motion == Motion::Point {
             return f64::INFINITY;
         }
         let off_rad = heading_error_rad(direction, tick.pose.heading_rad).abs();
         let reach_m = (tick.target - tick.pose.position).norm().max(LEAST_REACH_M);
-        // Of the speed only the part along the heading is driven.
+        // Only the component along the heading is driven.
         let bend = 2.0 * off_rad.sin() * off_rad.cos() / reach_m;
         if bend > 1e-9 { TURN_SHARE * self.limits.w_max_rad_per_s / bend } else { f64::INFINITY }
     }
@@ -219,7 +221,7 @@ impl Pilot {
     }
 }
 
-/// Standard deviation of the position in the direction in which it is largest, metres.
+/// The largest standard deviation of the position over all directions, metres.
 pub fn position_sigma_m(pose: &PoseEstimate) -> f64 {
     let position = pose.covariance.fixed_view::<2, 2>(0, 0).into_owned();
     position.symmetric_eigenvalues().max().max(0.0).sqrt()

@@ -1,22 +1,22 @@
-//! Where the middle of the hull may be: hard clearances to everything solid and to the wall.
+//! Where the hull centre may be: hard clearances to all solids and to the wall.
 
 use crate::body::solid_parts;
 use geometry::{Boundary, Point, Vector, convex::Part, polyline::edges};
 use planner_api::Site;
 
-/// Edge of a bucket, metres.
+/// Edge length of a bucket, metres.
 const BUCKET_M: f64 = 1.0;
-/// Spare room is measured up to this much, metres; anything larger is reported as this.
+/// Spare room is measured up to this value, metres; larger room is reported as this value.
 pub const MOST_SPARE_M: f64 = 0.6;
-/// Slack for rounding, metres.
+/// Tolerance for rounding, metres.
 const ROUNDING_M: f64 = 1e-9;
 
-/// Something solid and the distance that the middle of the hull keeps from it.
+/// A solid and the distance that the hull centre keeps from it.
 #[derive(Debug, Clone)]
 struct KeptPart {
     part: Part,
     keep_m: f64,
-    /// The box around the part.
+    /// The bounding box of the part.
     low: Point,
     high: Point,
 }
@@ -27,12 +27,12 @@ impl KeptPart {
         Self { part, keep_m, low, high }
     }
 
-    /// The part is no nearer to the box between two corners than this, metres.
+    /// A lower bound for the distance from the part to a box, metres.
     fn least_m(&self, low: Point, high: Point) -> f64 {
         (self.low - high).sup(&(low - self.high)).sup(&Vector::zeros()).norm()
     }
 
-    /// The distance to a place, metres, as far as it is below a limit.
+    /// The distance to a position, metres, if it is below a limit.
     fn distance_below(&self, at: Point, limit_m: f64) -> Option<f64> {
         (self.least_m(at, at) < limit_m.max(f64::MIN_POSITIVE))
             .then(|| self.part.distance(at).0)
@@ -49,7 +49,7 @@ fn bounds(part: &Part) -> (Point, Point) {
     })
 }
 
-/// Distances the middle of the hull has to keep, metres.
+/// Distances that the hull centre must keep, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keep {
     /// From the outline of an obstacle.
@@ -58,9 +58,9 @@ pub struct Keep {
     pub wall_m: f64,
 }
 
-/// The floor that the middle of the hull may use.
+/// The floor available to the hull centre.
 ///
-/// Obstacles are found through buckets of one metre, so a question costs as much as there is nearby.
+/// Obstacles are looked up in buckets of one metre, so the cost of a query depends only on what is nearby.
 #[derive(Debug, Clone)]
 pub struct Room {
     wall: Boundary,
@@ -72,12 +72,12 @@ pub struct Room {
 }
 
 impl Room {
-    /// The floor of a site, no-go zones left out.
+    /// Creates the floor of a site, without its no-go zones.
     pub fn new(site: &Site<'_>, keep: Keep) -> Self {
         Self::of_parts(site.boundary.to_owned(), solid_parts(site).map(|(_, part)| part), keep)
     }
 
-    /// The floor between some parts.
+    /// Creates the floor between some parts.
     pub fn of_parts(wall: Boundary, parts: impl Iterator<Item = Part>, keep: Keep) -> Self {
         let mut parts: Vec<KeptPart> = parts.map(|part| KeptPart::new(part, keep.obstacle_m)).collect();
         if let Boundary::Polygon { vertices } = &wall {
@@ -94,7 +94,7 @@ impl Room {
         room
     }
 
-    /// Room left at a place, metres: negative where the middle of the hull may not be, at most 0.6.
+    /// The spare room at a position, metres: negative where the hull centre must not be, and at most 0.6.
     pub fn spare_m(&self, at: Point) -> f64 {
         let wall = self.wall.wall_distance_m(at) - self.keep.wall_m + ROUNDING_M;
         self.near(at).fold(wall.min(MOST_SPARE_M), |spare_m, s| {
@@ -102,12 +102,12 @@ impl Room {
         })
     }
 
-    /// Whether a place lies in an obstacle or outside the wall.
+    /// Whether a position is inside an obstacle or outside the wall.
     pub fn is_solid(&self, at: Point) -> bool {
         self.wall.wall_distance_m(at) < 0.0 || self.near(at).any(|s| s.distance_below(at, 0.0).is_some())
     }
 
-    /// Whether the middle of the hull may go straight from `a` to `b`, which are less than 0.6 m apart.
+    /// Whether the hull centre may move straight from `a` to `b`, which are less than 0.6 m apart.
     pub fn is_free(&self, a: Point, b: Point) -> bool {
         let wall_m = self.wall.wall_distance_m(a).min(self.wall.wall_distance_m(b));
         wall_m - self.keep.wall_m >= -ROUNDING_M
@@ -116,7 +116,7 @@ impl Room {
             })
     }
 
-    /// The parts within reach of a place with what they demand, for those who look at them one by one.
+    /// The parts near a position, each with its required distance, for callers that examine them one by one.
     pub fn parts_near(&self, at: Point) -> impl Iterator<Item = (&Part, f64)> + '_ {
         self.near(at).map(|s| (&s.part, s.keep_m))
     }
@@ -142,7 +142,7 @@ impl Room {
         Some((y as usize) * self.columns + x as usize).filter(|index| inside && *index < self.buckets.len())
     }
 
-    /// Lists a part in every bucket from which it can matter.
+    /// Adds a part to every bucket in which it can matter.
     fn enter(&mut self, index: usize) {
         let kept = &self.parts[index];
         let reach_m = kept.keep_m + MOST_SPARE_M + BUCKET_M * std::f64::consts::FRAC_1_SQRT_2;

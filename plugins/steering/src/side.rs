@@ -1,13 +1,13 @@
-//! On which side something is passed.
+//! The side on which an obstacle is passed.
 
 use geometry::Vector;
 
-/// On which side to pass, as seen when looking at what is passed.
+/// The side on which to pass, seen when looking at the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// It stays on the right hand: clockwise round it, seen from above.
+    /// The obstacle stays on the right: clockwise around it, seen from above.
     Left,
-    /// It stays on the left hand: counter-clockwise round it.
+    /// The obstacle stays on the left: counter-clockwise around it.
     Right,
 }
 
@@ -23,8 +23,8 @@ impl Side {
         if self == Self::Left { 1.0 } else { -1.0 }
     }
 
-    /// Unit tangent about something whose outward direction at the robot is `away`: to this side of it for a robot that
-    /// looks at it.
+    /// Unit tangent at a solid whose outward direction at the robot is `away`: toward this side of the solid, as seen
+    /// by a robot facing it.
     pub fn along(self, away: Vector) -> Vector {
         Vector::new(away.y, -away.x) * self.sign()
     }

@@ -1,4 +1,4 @@
-//! A convex part of an obstacle that is known.
+//! A convex part of a known obstacle.
 
 use crate::{
     contact::{Contact, Source},
@@ -7,22 +7,22 @@ use crate::{
 };
 use geometry::{Point, Vector, convex::Part, direction_or, polyline::nearest_on_segment};
 
-/// A convex thing that the robot must not touch.
+/// A convex solid that the robot must not touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// The obstacle that it is a part of.
+    /// Id of the obstacle that the solid belongs to.
     pub id: u32,
-    /// Its outline.
+    /// The outline.
     pub part: Part,
-    /// Middle of a disc around it.
+    /// Centre of an enclosing disc.
     pub center: Point,
-    /// Radius of that disc, metres.
+    /// Radius of the enclosing disc, metres.
     pub radius_m: f64,
     corners: Vec<(Point, f64)>,
 }
 
 impl Solid {
-    /// A part of an obstacle.
+    /// Creates a part of an obstacle.
     pub fn new(id: u32, part: Part) -> Self {
         let mut corners = part.corners();
         if corners.iter().all(|corner| *corner == corners[0]) {
@@ -32,23 +32,23 @@ impl Solid {
         Self { id, part, center, radius_m, corners }
     }
 
-    /// A disc.
+    /// Creates a disc.
     pub fn disc(id: u32, center: Point, radius_m: f64) -> Self {
         Self::new(id, Part::disc(center, radius_m))
     }
 
-    /// Discs whose hull it is.
+    /// The discs whose convex hull is the solid.
     pub fn corners(&self) -> &[(Point, f64)] {
         &self.corners
     }
 
-    /// Whether a point is certainly further than this from the outline; costs next to nothing.
+    /// Whether a point is certainly further than this from the outline; a very cheap check.
     pub fn is_beyond(&self, at: Point, distance_m: f64) -> bool {
         let reach_m = self.radius_m + distance_m;
         (at - self.center).norm_squared() > reach_m * reach_m
     }
 
-    /// Signed distance from a point to the outline, metres, and the way out.
+    /// The signed distance from a point to the outline, metres, and the direction away from it.
     pub fn distance(&self, at: Point) -> (f64, Vector) {
         if self.corners.len() > 1 {
             return self.part.distance(at);
@@ -57,7 +57,7 @@ impl Solid {
         (from.norm() - self.radius_m, direction_or(from, Vector::x()))
     }
 
-    /// The contact of a hull that comes this near to it; costs next to nothing where it does not.
+    /// The contact of a hull within this distance of the solid. Very cheap if there is none.
     pub fn contact(&self, at: Point, hull_m: f64, reach_m: f64) -> Option<Contact> {
         if self.is_beyond(at, reach_m + hull_m) {
             return None;
@@ -67,7 +67,7 @@ impl Solid {
         (contact.distance_m < reach_m).then_some(contact)
     }
 
-    /// Distance from a segment to the outline, metres; not above zero when they touch, and exact only below
+    /// The distance from a segment to the outline, metres; zero or negative when they touch, and exact only below
     /// `enough_m`.
     pub fn segment_distance_m(&self, a: Point, b: Point, enough_m: f64) -> f64 {
         let nearest = nearest_on_segment(a, b, self.center);
@@ -79,11 +79,11 @@ impl Solid {
     /// The tangent from a point to the outline grown by a margin.
     pub fn tangent(&self, at: Point, margin_m: f64, side: Side) -> Tangent {
         let grown = self.corners.iter().map(|(corner, radius_m)| (*corner, radius_m + margin_m));
-        tangents::outermost(at, grown, side).expect("a solid has a corner")
+        tangents::outermost(at, grown, side).expect("a solid has at least one corner")
     }
 }
 
-/// A disc around several discs: round their box, as Xu et al. 2022, eq. 6, mean it.
+/// A disc around several discs: the circumscribed circle of their bounding box, as in Xu et al. 2022, eq. 6.
 pub fn disc_around(discs: &[(Point, f64)]) -> (Point, f64) {
     if discs.iter().all(|disc| disc == &discs[0]) {
         return discs[0];

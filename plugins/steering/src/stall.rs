@@ -1,19 +1,19 @@
-//! Whether the robot gets on.
+//! Checks whether the robot makes progress.
 
 use geometry::Point;
 
 /// Leaving a circle of this radius counts as moving, metres.
 const MOVING_M: f64 = 0.5;
-/// Coming nearer to the target by this counts as getting on, metres.
+/// Coming closer to the target by this much counts as progress, metres.
 const GAIN_M: f64 = 0.1;
-/// A target that moves by this is another one, metres.
+/// A target that shifts by more than this is a new target, metres.
 const OTHER_TARGET_M: f64 = 0.2;
-/// Going about without coming nearer is borne this many times as long as standing still.
+/// Moving without coming closer is tolerated this many times as long as standing still.
 const PATIENCE: f64 = 3.0;
-/// Ticks further apart than this have a hold between them, seconds; what was held could not get on.
+/// A longer interval between ticks means that the robot was held, seconds; a held robot could not make progress.
 const HELD_S: f64 = 1.0;
 
-/// Remembers when the robot last moved and when it last came nearer to its target.
+/// Remembers when the robot last moved and when it last came closer to its target.
 #[derive(Debug, Clone, Default)]
 pub struct Stall {
     memory: Option<Memory>,
@@ -30,7 +30,7 @@ struct Memory {
 }
 
 impl Stall {
-    /// Takes a tick; returns for how long nothing has come of it, seconds.
+    /// Processes a tick. Returns the time without progress, seconds.
     pub fn update(&mut self, t_s: f64, at: Point, target: Point) -> f64 {
         let missing_m = (target - at).norm();
         let fresh =
@@ -53,8 +53,8 @@ impl Stall {
     }
 }
 
-/// What is tried in turn while nothing comes of it: the other side first, then straight on without a detour, for the
-/// way to a preset point in a niche is blocked from every side.
+/// What to try in turn while the robot makes no progress: first the other side, then straight on without a detour. The
+/// second is needed because the path to a preset point in a niche is blocked from every side.
 #[derive(Debug, Clone, Default)]
 pub struct Remedy {
     tried: u32,
@@ -62,7 +62,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Takes for how long nothing has come of it; true when the side is to be changed now.
+    /// Takes the time without progress. Returns true when the robot should change the side now.
     pub fn update(&mut self, idle_s: f64, pause_s: f64) -> bool {
         if idle_s < self.due_s - pause_s || idle_s < pause_s {
             *self = Self { tried: 0, due_s: pause_s };
@@ -75,7 +75,7 @@ impl Remedy {
         is_due && !self.pushes()
     }
 
-    /// Whether to go straight on now.
+    /// Whether the robot should go straight on now.
     pub fn pushes(&self) -> bool {
         self.tried > 0 && self.tried.is_multiple_of(2)
     }

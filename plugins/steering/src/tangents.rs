@@ -1,21 +1,21 @@
-//! Tangents from a robot to something round or convex.
+//! Tangents from a robot to a round or convex solid.
 
 use crate::side::Side;
 use geometry::{Point, Vector};
 
-/// A tangent: where it points, and how long it is.
+/// A tangent: its direction and its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tangent {
     /// Unit vector from the robot along the tangent.
     pub direction: Vector,
-    /// Length up to the point of contact, metres; 0 when the robot stands on or inside.
+    /// Length up to the point of contact, metres; 0 when the robot is on or inside the outline.
     pub length_m: f64,
 }
 
-/// The tangent from `at` to a disc on one side (Xu et al. 2022, eq. 10, which is singular where it is vertical; as
-/// vectors it is `(L c +- R c') / |c|^2`).
+/// The tangent from `at` to a disc on one side (Xu et al. 2022, eq. 10). The printed form is singular where the tangent
+/// is vertical; as vectors it is `(L c +- R c') / |c|^2`.
 ///
-/// From inside it points along the circle and a little outward.
+/// From inside the disc, the tangent points along the circle and slightly outward.
 pub fn to_disc(at: Point, center: Point, radius_m: f64, side: Side) -> Tangent {
     let c = center - at;
     let across = Vector::new(-c.y, c.x) * side.sign();
@@ -34,7 +34,8 @@ pub fn to_disc(at: Point, center: Point, radius_m: f64, side: Side) -> Tangent {
     Tangent { direction, length_m: 0.0 }
 }
 
-/// The outermost tangent of several discs on one side; `None` for none. They must lie within half a turn.
+/// The outermost tangent to several discs on one side; `None` if there are no discs. The discs must lie within half a
+/// turn.
 pub fn outermost(at: Point, discs: impl Iterator<Item = (Point, f64)>, side: Side) -> Option<Tangent> {
     discs.map(|(center, radius_m)| to_disc(at, center, radius_m, side)).reduce(|best, next| {
         if best.direction.perp(&next.direction) * side.sign() > 0.0 { next } else { best }

@@ -1,4 +1,4 @@
-//! What a pilot goes by in one tick.
+//! The input of a pilot in one tick.
 
 use crate::body::Body;
 use geometry::Point;
@@ -9,24 +9,24 @@ use planner_api::{PoseEstimate, Sensed};
 pub struct Tick<'a> {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// Where the robot believes it is.
+    /// The robot's estimated pose.
     pub pose: PoseEstimate,
-    /// Where to go next.
+    /// The next target.
     pub target: Point,
     /// Whether the task ends at the target.
     pub is_last: bool,
-    /// What is near, no-go zones included.
+    /// Nearby bodies, no-go zones included.
     pub bodies: &'a [Body],
 }
 
 impl<'a> Tick<'a> {
-    /// Bound for the target of the task.
+    /// Creates a tick bound for the target of the task.
     pub fn toward_target(sensed: &Sensed<'_>, bodies: &'a [Body]) -> Self {
         let is_last = sensed.targets_ahead.len() <= 1;
         Self { t_s: sensed.t_s, pose: sensed.pose, target: sensed.target, is_last, bodies }
     }
 
-    /// Bound for the next point of the plan; for the target of the task where there is no plan.
+    /// Creates a tick bound for the next point of the plan, or for the target of the task if there is no plan.
     pub fn along_path(sensed: &Sensed<'_>, bodies: &'a [Body]) -> Self {
         let toward_target = Self::toward_target(sensed, bodies);
         let target = sensed.path_ahead.first().copied().unwrap_or(sensed.target);

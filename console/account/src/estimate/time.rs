@@ -1,32 +1,33 @@
-//! How long a path takes: at full speed where the robot can stop from it in time, more slowly where it must be able to stop or
-//! to turn sooner, with stops to turn at corners.
+//! The time that a path takes: at full speed where the robot can brake in time, more slowly near solid objects and
+//! before turns, with stops to turn at corners.
 
 use mission::MissionConfig;
 use world::{ObstacleMap, Point, Vector, geometry::Braking, polyline};
 
-/// Distance between the places whose speeds are looked at, metres.
+/// Distance between the places at which the speed is computed, metres.
 const STEP_M: f64 = 0.1;
-/// The robot stops to turn by more than this at a corner, radians; by less it turns on the way.
+/// At a corner sharper than this the robot stops to turn, radians; otherwise it turns while driving.
 pub(super) const CORNER_RAD: f64 = 0.5;
-/// Share of the room beside the hull that a robot which brakes straight on may use up, and the most that it leaves, metres.
+/// Clearance that a robot keeps when it brakes straight ahead: this share of the space beside its hull, at most
+/// `ROOM_MOST_M` metres.
 const ROOM_SHARE: f64 = 0.5;
 const ROOM_MOST_M: f64 = 0.1;
-/// The way straight on is looked at in steps of at least this much, metres.
+/// Minimum step in which the path straight ahead is checked, metres.
 const LOOK_M: f64 = 0.02;
 
-/// Time to drive a path in a tank as drawn, from rest to rest, seconds.
+/// Time to drive a path in a tank as drawn, from standstill to standstill, seconds.
 pub fn time_s(mission: &MissionConfig, map: &ObstacleMap, path: &[Point]) -> f64 {
     let limits = &mission.limits;
     let mut time_s = 0.0;
     for (stretch, turn_rad) in stretches(path) {
         time_s += straight_s(mission, map, &stretch);
-        // The turn begins with the tick after the robot stands.
+        // The turn begins with the tick after the robot has stopped.
         time_s += turn_rad.map_or(0.0, |rad| rad / limits.w_max_rad_per_s + limits.tick_s);
     }
     time_s
 }
 
-/// The stretches of a path between its corners, each with the turn at its end, radians, if it ends at a corner.
+/// The stretches of a path between its corners. Each has the turn at its end, radians, if it ends at a corner.
 fn stretches(path: &[Point]) -> Vec<(Vec<Point>, Option<f64>)> {
     let mut all = Vec::new();
     let mut stretch: Vec<Point> = Vec::new();
@@ -51,7 +52,7 @@ fn stretches(path: &[Point]) -> Vec<(Vec<Point>, Option<f64>)> {
     all
 }
 
-/// Time to drive a stretch without corners from rest to rest, seconds.
+/// Time to drive a stretch without corners from standstill to standstill, seconds.
 fn straight_s(mission: &MissionConfig, map: &ObstacleMap, stretch: &[Point]) -> f64 {
     let places = polyline::resampled(stretch, STEP_M);
     let ways: Vec<Vector> =
@@ -68,7 +69,8 @@ fn straight_s(mission: &MissionConfig, map: &ObstacleMap, stretch: &[Point]) -> 
         .sum()
 }
 
-/// The squares of the speeds at the places of a stretch: as fast as each place allows, and as the robot gains and loses speed.
+/// The squared speeds along a stretch: within the limit at each place, and within the robot's acceleration and
+/// braking.
 fn squared_speeds(mission: &MissionConfig, map: &ObstacleMap, places: &[Point], ways: &[Vector]) -> Vec<f64> {
     let limits = &mission.limits;
     let n = ways.len();
@@ -89,8 +91,8 @@ fn squared_speeds(mission: &MissionConfig, map: &ObstacleMap, places: &[Point], 
     squares
 }
 
-/// The largest speed at a place from which the robot stops, straight on, before it touches anything that is drawn, and within what
-/// it sees, metres per second.
+/// The largest speed at a place from which the robot can stop straight ahead before it touches a drawn object, and
+/// within its sensing range, metres per second.
 fn free_speed(mission: &MissionConfig, map: &ObstacleMap, at: Point, ahead: Vector) -> f64 {
     let limits = &mission.limits;
     let braking = Braking::of(limits);

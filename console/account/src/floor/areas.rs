@@ -1,4 +1,4 @@
-//! Cells that lie together, as areas with a place and causes.
+//! Groups of adjacent cells as areas, each with a position and causes.
 
 use super::measure::Measure;
 use serde::{Deserialize, Serialize};
@@ -8,50 +8,50 @@ use world::{Floor, PlateMap, Point, Vector};
 /// Areas smaller than this are not listed but only summed, square metres.
 const LEAST_M2: f64 = 0.01;
 
-/// Cells that lie together.
+/// A group of adjacent cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Area<R> {
-    /// A place in it, metres: the cell nearest to its middle.
+    /// A position in the area, metres: the cell nearest to its centre.
     pub at: Point,
-    /// South west corner of the box around it, metres.
+    /// South-west corner of its bounding box, metres.
     pub low: Point,
-    /// North east corner of the box around it, metres.
+    /// North-east corner of its bounding box, metres.
     pub high: Point,
     /// Area, square metres.
     pub area_m2: f64,
-    /// The plate on which most of it lies; absent if the layout of the plates is not known.
+    /// The plate with most of the area; absent if the plate layout is not known.
     pub plate: Option<String>,
-    /// Every plate on which it lies, the one with most of it first.
+    /// All plates that the area touches, the one with most of it first.
     #[serde(default)]
     pub plates: Vec<String>,
-    /// The reason for most of it.
+    /// The reason for most of the area.
     pub reason: R,
-    /// Why, cause by cause, the one for most of it first.
+    /// The causes, the one for most of the area first.
     #[serde(default = "Vec::new")]
     pub causes: Vec<Cause<R>>,
 }
 
-/// Why some part of an area was not scanned.
+/// The reason why part of an area was not scanned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cause<R> {
     /// The reason.
     pub reason: R,
-    /// How much of the area it holds for, square metres.
+    /// The part of the area that it applies to, square metres.
     pub area_m2: f64,
-    /// The number behind it; absent where there is none.
+    /// The value behind the reason; absent if it has none.
     pub measure: Option<Measure>,
-    /// The same as a sentence.
+    /// The reason with its value, as a sentence.
     pub text: String,
 }
 
-/// What is too small to be listed.
+/// The areas that are too small to be listed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Slivers<R> {
-    /// How many.
+    /// Number of areas.
     pub count: usize,
-    /// Their area together, square metres.
+    /// Total area, square metres.
     pub area_m2: f64,
-    /// Why, cause by cause, the one for most of it first.
+    /// The causes, the one for most of the area first.
     #[serde(default = "Vec::new")]
     pub causes: Vec<Cause<R>>,
 }
@@ -63,7 +63,7 @@ impl<R> Default for Slivers<R> {
 }
 
 impl<R> Slivers<R> {
-    /// Why, as one sentence; several causes carry their areas.
+    /// The causes as one sentence; several causes state their areas.
     pub fn why(&self) -> String {
         why(&self.causes)
     }
@@ -79,14 +79,14 @@ fn why<R>(causes: &[Cause<R>]) -> String {
     }
 }
 
-/// A reason that can be said with a number.
+/// A reason that can be stated with a value.
 pub trait Explained: Copy + Ord {
     /// The reason as a sentence.
     fn sentence(self, measure: Option<&Measure>) -> String;
 }
 
 impl<R> Area<R> {
-    /// Why, as one sentence; parts of areas with several causes carry their areas.
+    /// The causes as one sentence; several causes state their parts of the area.
     pub fn why(&self) -> String {
         why(&self.causes)
     }
@@ -96,16 +96,16 @@ impl<R> fmt::Display for Area<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { at, area_m2, plate, .. } = self;
         let plate = plate.as_ref().map(|name| format!(", plate {name}")).unwrap_or_default();
-        // Rounded before it is written: a coordinate near zero has no sign.
+        // Rounding comes before formatting, so that a coordinate near zero has no sign.
         let [x, y] = [at.x, at.y].map(|m| (10.0 * m).round() / 10.0 + 0.0);
-        // So fine that an area does not look as large as the limit below which it is.
+        // Enough decimals that a listed area does not round up to the limit that it is below.
         let decimals = if *area_m2 < 0.1 { 3 } else { 2 };
         write!(f, "{area_m2:.decimals$} m² at {x:.1}, {y:.1} m{plate}: {}", self.why())
     }
 }
 
-/// The areas of the cells that have a reason, the largest first, and what is too small to be listed. Cells lie
-/// together if they touch, be it at a corner, whatever their plates and reasons.
+/// Returns the areas of the cells that have a reason, the largest first, and the areas too small to be listed. Cells
+/// are adjacent if they touch, even at a corner, whatever their plates and reasons.
 pub fn areas<R: Explained>(
     floor: &Floor,
     plates: Option<&PlateMap>,
@@ -113,7 +113,7 @@ pub fn areas<R: Explained>(
     measure: impl Fn(R, &[usize]) -> Option<Measure>,
 ) -> (Vec<Area<R>>, Slivers<R>) {
     let reasons: Vec<Option<R>> = (0..floor.len()).map(reason_of).collect();
-    let reason = |cell: usize| reasons[cell].expect("only cells with a reason lie together");
+    let reason = |cell: usize| reasons[cell].expect("only cells with a reason are grouped");
     let (mut listed, mut slivers, mut specks) = (Vec::new(), Slivers::default(), Vec::new());
     for cells in together(floor, (0..floor.len()).filter(|cell| reasons[*cell].is_some())) {
         let area_m2 = cells.len() as f64 * floor.cell_m2();
@@ -125,13 +125,14 @@ pub fn areas<R: Explained>(
             listed.push(area_of(floor, plates, &cells, reason, &measure));
         }
     }
-    // Equal areas stay in the order of their first cell.
+    // Areas of equal size stay in the order of their first cells.
     listed.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
     slivers.causes = causes(floor, &specks, reason, &measure);
     (listed, slivers)
 }
 
-/// Some cells, in order of their index, in groups of those that touch, be it at a corner; in the order of their first cells.
+/// Groups cells, given in ascending order, by contact, including contact at a corner; the groups are in order of
+/// their first cells.
 pub fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Vec<usize>> {
     let all: Vec<usize> = cells.into_iter().collect();
     let mut is_open = vec![false; floor.len()];
@@ -154,7 +155,7 @@ pub fn together(floor: &Floor, cells: impl IntoIterator<Item = usize>) -> Vec<Ve
     groups
 }
 
-/// The cells that touch a cell, and itself.
+/// A cell and the cells that touch it.
 pub(crate) fn around(floor: &Floor, cell: usize) -> impl Iterator<Item = usize> + use<> {
     let (column, row, width) = (cell % floor.width, cell / floor.width, floor.width);
     let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
@@ -194,7 +195,7 @@ pub fn area_of<R: Explained>(
     }
 }
 
-/// Why some cells were not scanned, cause by cause.
+/// The causes of unscanned cells.
 fn causes<R: Explained>(
     floor: &Floor,
     cells: &[usize],
@@ -209,7 +210,7 @@ fn causes<R: Explained>(
     by_size(cells, reason_of).into_iter().map(cause).collect()
 }
 
-/// Cells by some key, the key of most cells first; of equal ones the first in their order.
+/// Groups cells by a key, the key with most cells first; keys with equal counts are in ascending order.
 fn by_size<K: Copy + Ord>(cells: &[usize], key_of: impl Fn(usize) -> K) -> Vec<(K, Vec<usize>)> {
     let mut groups: BTreeMap<K, Vec<usize>> = BTreeMap::new();
     for cell in cells {

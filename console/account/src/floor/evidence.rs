@@ -1,4 +1,5 @@
-//! Evidence of why floor was missed: where plans led, where the robot went, where its position was uncertain.
+//! Evidence for the reasons of missed floor: where plans led, where the robot went, and where its position was
+//! uncertain.
 
 use super::{reasons::Reasons, zone::CRITICAL_ZONE_M};
 use crate::sampled::sampled;
@@ -8,39 +9,39 @@ use world::{
     ShellStretch, ShellZone, SweptArea, Tool, ZoneKind, tether::Reach,
 };
 
-/// Plans are laid out on the floor in pieces no longer than this, metres.
+/// Plans are drawn on the floor in pieces no longer than this, metres.
 const PIECE_M: f64 = 0.5;
-/// The error of a cell over which nothing passed without counting.
+/// The error of a cell over which no uncounted pass went.
 const NEVER: u16 = u16::MAX;
-/// The zone of a cell that none took out of reach.
+/// The zone index of a cell that no zone made unreachable.
 const OF_NONE: u16 = u16::MAX;
-/// Ways along a plan that differ by less are the same, metres.
+/// Distances along a plan that differ by less count as equal, metres.
 const NEARLY_M: f64 = 0.01;
 
-/// What was planned and done, cell by cell.
+/// A record of what was planned and done, cell by cell.
 #[derive(Debug, Clone)]
 pub struct Evidence {
     grid: Floor,
     tool: Tool,
-    /// Distance from a found obstacle within which it is to blame, metres.
+    /// Distance from a found obstacle within which it counts as a cause, metres.
     beside_m: f64,
-    /// The plan under way.
+    /// The current plan.
     plan: Planned,
-    /// The plan before the one that was made last, until that one is flown: it may be refused.
+    /// The plan before the latest one, until the latest one is started: it may still be refused.
     before: Option<Box<Planned>>,
-    /// A plan led there, and was flown past there.
+    /// Cells that a plan led to and that the robot passed along the plan.
     passed: Vec<bool>,
-    /// The smallest 95 % error with which the tool passed without counting, millimetres; [`NEVER`] if it did not.
+    /// The smallest 95 % error of an uncounted pass of the tool, millimetres; [`NEVER`] if there was none.
     uncertain_mm: Vec<u16>,
-    /// The 95 % error now, metres.
+    /// The present 95 % error, metres.
     error_m: f64,
-    /// What was to be scanned; `None` for everything.
+    /// The floor that was to be scanned; `None` for all of it.
     asked: Option<Vec<bool>>,
     found: Vec<(ObstacleId, Solid)>,
     drawn: Vec<Solid>,
-    /// Zones that the robot must not enter: those of the scenario, and those drawn later.
+    /// The no-go zones: those of the scenario, and those drawn later.
     no_go: Vec<Solid>,
-    /// Which of them took a cell out of reach when it was drawn; [`OF_NONE`] for none.
+    /// The zone that made a cell unreachable when it was drawn; [`OF_NONE`] if there is none.
     shut_by: Vec<u16>,
     boundary: Boundary,
     shell: ShellZone,
@@ -49,7 +50,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Nothing was planned or done yet.
+    /// Evidence of a run without plans and movement.
     pub fn new(run: &RunOpened) -> Self {
         let none = vec![false; run.floor.len()];
         Self {
@@ -73,7 +74,7 @@ impl Evidence {
         }
     }
 
-    /// A plan was made for what is left; it takes the place of the one before.
+    /// Adds a plan for the remaining floor; it replaces the plan before.
     pub fn plan(&mut self, path: &[Point], cuts: &[Vec<Point>], is_whole: bool) {
         self.leave_behind();
         let path = sampled(path, PIECE_M);
@@ -97,33 +98,34 @@ impl Evidence {
         self.before = Some(Box::new(std::mem::replace(&mut self.plan, plan)));
     }
 
-    /// The plan that was made last does not fly: the one before still holds.
+    /// Drops the latest plan because it is not run; the plan before remains valid.
     pub fn refuse_plan(&mut self) {
         if let Some(before) = self.before.take() {
             self.plan = *before;
         }
     }
 
-    /// The robot is this far along the plan, metres.
+    /// Sets the robot's progress along the plan, metres.
     pub fn fly(&mut self, along_m: f64) {
         self.before = None;
         self.plan.along_m = self.plan.along_m.max(along_m);
     }
 
-    /// So much of the way is flown, as a share of the way flown before this plan and the whole of this plan.
+    /// Sets the progress as a share of the distance driven before this plan plus the length of this plan.
     pub fn fly_share(&mut self, done: f64) {
         let Planned { length_m, flown_m, .. } = self.plan;
         self.fly(done * (flown_m + length_m) - flown_m);
     }
 
-    /// What the plan was flown past stays so when another plan is made.
+    /// Cells that the robot passed along the plan stay marked when a new plan is made.
     fn leave_behind(&mut self) {
         for (passed, due_m) in self.passed.iter_mut().zip(&self.plan.due_m) {
             *passed |= self.plan.is_past(*due_m);
         }
     }
 
-    /// The robot believed to be here, with this 95 % error, metres; whether what its tool passed since the last time counts.
+    /// Adds the estimated position with its 95 % error, metres, and whether the floor that the tool passed since the
+    /// last position counts as scanned.
     pub fn visit(&mut self, here: Pose, error_m: f64, counts: bool) {
         let before = std::mem::replace(&mut self.last, here);
         self.error_m = error_m;
@@ -133,29 +135,30 @@ impl Evidence {
         }
     }
 
-    /// How the zone along the shell was scanned, stretch by stretch.
+    /// The scanned state of the critical zone, stretch by stretch along the shell.
     pub fn shell(&self) -> Vec<ShellStretch> {
         let solid: Vec<&Solid> = self.solids().filter(|solid| self.shell.is_beside(&solid.shape)).collect();
         self.shell.profile(|point| solid.iter().any(|solid| solid.shape.distance_m(point) < 0.0))
     }
 
-    /// The scanned share of the reachable floor by the area that the tool passed, 0 to 1; `None` if there is no such floor.
+    /// The scanned share of the reachable floor by the exact area that the tool passed, 0 to 1; `None` if there is no
+    /// reachable floor.
     pub fn exact_share(&self, floor: &FloorMaker) -> Option<f64> {
         let shapes: Vec<Shape> = self.solids().map(|solid| solid.shape.clone()).collect();
         self.area.share_of(floor, &self.boundary, &shapes)
     }
 
-    /// The zones that the robot must not enter.
+    /// The no-go zones.
     pub fn no_go(&self) -> impl Iterator<Item = &Solid> {
         self.no_go.iter()
     }
 
-    /// Everything solid on the floor as it is known.
+    /// All solid objects on the floor, as known.
     fn solids(&self) -> impl Iterator<Item = &Solid> {
         self.drawn.iter().chain(self.found.iter().map(|(_, solid)| solid))
     }
 
-    /// The tool passed, but nothing counted.
+    /// Adds a pass of the tool that did not count.
     pub fn leave_uncounted(&mut self, runs: &[CellRun]) {
         let error_mm = (1000.0 * self.error_m).ceil().min(f64::from(NEVER - 1)) as u16;
         for CellRun(first, count) in runs {
@@ -165,18 +168,18 @@ impl Evidence {
         }
     }
 
-    /// An obstacle was found, or turned out to stand elsewhere.
+    /// Adds a found obstacle, or corrects its position.
     pub fn find(&mut self, obstacle: &Obstacle) {
         self.found.retain(|(id, _)| *id != obstacle.id);
         self.found.push((obstacle.id, Solid::of(obstacle)));
     }
 
-    /// A no-go zone was drawn; `words` say what it is.
+    /// Adds a no-go zone that was drawn; `words` describe it.
     pub fn forbid(&mut self, words: String, outline: &Shape) {
         self.no_go.push(Solid { name: words, shape: outline.clone() });
     }
 
-    /// The zone that was drawn last changed the kind of these cells.
+    /// Marks cells whose class was changed by the zone that was drawn last.
     pub fn shut(&mut self, changes: &[KindRun]) {
         let zone = u16::try_from(self.no_go.len().saturating_sub(1)).unwrap_or(OF_NONE);
         for KindRun(kind, first, count) in changes {
@@ -188,18 +191,18 @@ impl Evidence {
         }
     }
 
-    /// The zone that took a cell out of reach when it was drawn, if one did.
+    /// The zone that made a cell unreachable when it was drawn, if any.
     pub(super) fn shut_by(&self, index: usize) -> Option<&Solid> {
         self.no_go.get(usize::from(self.shut_by[index]))
     }
 
-    /// The no-go zone that is nearest to a place, and its distance, metres; `None` without any.
+    /// The no-go zone nearest to a position and its distance, metres; `None` without zones.
     pub(super) fn nearest_no_go(&self, place: Point) -> Option<(&Solid, f64)> {
         let all = self.no_go.iter().map(|zone| (zone, zone.shape.distance_m(place)));
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Takes in what another run on the same floor planned and did.
+    /// Adds the plans and movements of another run on the same floor.
     pub fn join(&mut self, other: &Self) {
         let or = |own: &mut [bool], others: &[bool]| own.iter_mut().zip(others).for_each(|(a, b)| *a |= b);
         for (index, due_m) in self.plan.due_m.iter_mut().enumerate() {
@@ -226,7 +229,7 @@ impl Evidence {
         self.area.join(&other.area);
     }
 
-    /// The zones of another run; those of a scenario that both were flown with have the same names.
+    /// Adds the zones of another run; zones of a scenario that both runs share have the same names.
     fn join_zones(&mut self, other: &Self) {
         let mut index_of = Vec::new();
         for zone in &other.no_go {
@@ -242,29 +245,29 @@ impl Evidence {
         }
     }
 
-    /// Gives what was found other names.
+    /// Renames the found obstacles.
     pub fn name_found(&mut self, name: impl Fn(&str) -> String) {
         for (_, solid) in &mut self.found {
             solid.name = name(&solid.name);
         }
     }
 
-    /// What was found on the way.
+    /// The obstacles found during the run.
     pub fn found(&self) -> impl Iterator<Item = (ObstacleId, &Solid)> {
         self.found.iter().map(|(id, solid)| (*id, solid))
     }
 
-    /// Whether all of the floor was to be scanned.
+    /// Whether the whole floor was to be scanned.
     pub fn asks_for_everything(&self) -> bool {
         self.asked.is_none()
     }
 
-    /// Whether a cell was to be scanned at all.
+    /// Whether a cell was to be scanned.
     pub fn is_asked(&self, index: usize) -> bool {
         self.asked.as_ref().is_none_or(|asked| asked[index])
     }
 
-    /// Why cells were missed in this run.
+    /// The reasons for the missed cells of this run.
     pub fn reasons(&self, run: &RunOpened) -> Reasons<'_> {
         let cable = run.mission.cable_reach().filter(|_| !self.plan.is_whole);
         let reach = cable.map(|(anchor, reach_m)| {
@@ -282,63 +285,63 @@ impl Evidence {
         }
     }
 
-    /// The smallest 95 % error with which the tool passed a cell without counting, metres; `None` if it did not.
+    /// The smallest 95 % error of an uncounted pass over a cell, metres; `None` if there was none.
     pub(super) fn uncertain_m(&self, index: usize) -> Option<f64> {
         Some(self.uncertain_mm[index]).filter(|mm| *mm != NEVER).map(|mm| f64::from(mm) / 1000.0)
     }
 
-    /// Name and distance of the nearest solid thing, the shell included, metres.
+    /// Name and distance of the nearest solid object, including the shell, metres.
     pub fn nearest_solid(&self, place: Point) -> (&str, f64) {
         let obstacles = self.solids().map(|solid| (solid.name.as_str(), solid.shape.distance_m(place)));
         let shell = ("the shell", self.boundary.wall_distance_m(place));
         obstacles.fold(shell, |least, other| if other.1 < least.1 { other } else { least })
     }
 
-    /// The same with the no-go zones, from which the robot keeps as far.
+    /// The same including no-go zones, from which the robot keeps the same distance.
     pub(super) fn nearest_kept_from(&self, place: Point) -> (&str, f64) {
         let solid = self.nearest_solid(place);
         let zone = self.nearest_no_go(place).map(|(zone, m)| (zone.name.as_str(), m));
         zone.filter(|(_, m)| *m < solid.1).unwrap_or(solid)
     }
 
-    /// Name and distance of the found obstacle that is nearest to a place, metres; `None` without any.
+    /// Name and distance of the found obstacle nearest to a position, metres; `None` without found obstacles.
     pub(super) fn nearest_found(&self, place: Point) -> Option<(&str, f64)> {
         let all = self.found.iter().map(|(_, solid)| (solid.name.as_str(), solid.shape.distance_m(place)));
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Whether a found obstacle is to blame for what was missed at a place.
+    /// Whether a found obstacle is a cause for missed floor at a position.
     pub(super) fn is_beside_found(&self, place: Point) -> bool {
         self.found.iter().any(|(_, solid)| solid.shape.distance_m(place) <= self.beside_m)
     }
 
-    /// Lines of the plan that the tethered robot does not cross.
+    /// The cuts of the plan: lines that the tethered robot does not cross.
     pub(super) fn cuts(&self) -> &[Vec<Point>] {
         &self.plan.cuts
     }
 
-    /// How far ahead along the plan a cell lies, metres; `None` if it is not ahead.
+    /// Distance along the plan to a cell ahead, metres; `None` if the cell is not ahead.
     pub(super) fn ahead_m(&self, index: usize) -> Option<f64> {
         self.is_ahead(index).then(|| f64::from(self.plan.due_m[index]) - self.plan.along_m)
     }
 
-    /// Whether a plan led to a cell and was flown past there.
+    /// Whether a plan led to a cell and the robot passed it along the plan.
     pub(super) fn is_passed(&self, index: usize) -> bool {
         self.passed[index] || self.plan.is_past(self.plan.due_m[index])
     }
 
-    /// Whether there ever was a plan.
+    /// Whether there was ever a plan.
     pub(super) fn has_plan(&self) -> bool {
         self.plan.length_m > 0.0 || self.plan.flown_m > 0.0 || self.passed.contains(&true)
     }
 
-    /// Whether the plan leads to a cell further on than it was flown.
+    /// Whether the plan leads to a cell beyond the robot's progress.
     pub(super) fn is_ahead(&self, index: usize) -> bool {
         !self.plan.due_m[index].is_nan() && !self.plan.is_past(self.plan.due_m[index])
     }
 }
 
-/// Something solid on the floor.
+/// A solid object on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
     /// Its name, for people.
@@ -353,20 +356,20 @@ impl Solid {
     }
 }
 
-/// A plan, and how far it was flown.
+/// A plan and the progress along it.
 #[derive(Debug, Clone)]
 struct Planned {
-    /// Way along the plan by which it has led over each cell for the last time, metres; NaN where it leads nowhere near.
+    /// Distance along the plan at which it last leads over each cell, metres; NaN where it does not lead nearby.
     due_m: Vec<f32>,
     /// Its length, metres.
     length_m: f64,
-    /// How far it was flown, metres.
+    /// The robot's progress along it, metres.
     along_m: f64,
-    /// Way flown along the plans before, metres.
+    /// Distance driven along earlier plans, metres.
     flown_m: f64,
-    /// Whether it was for everything that was left.
+    /// Whether it was for all remaining floor.
     is_whole: bool,
-    /// Lines that the tethered robot does not cross.
+    /// The cuts: lines that the tethered robot does not cross.
     cuts: Vec<Vec<Point>>,
 }
 
@@ -376,7 +379,7 @@ impl Planned {
         Self { due_m, length_m: 0.0, along_m: 0.0, flown_m: 0.0, is_whole: true, cuts: Vec::new() }
     }
 
-    /// Whether it was flown past there; never where it leads nowhere near.
+    /// Whether the robot passed a cell along the plan; never for a cell that the plan does not lead near.
     fn is_past(&self, due_m: f32) -> bool {
         f64::from(due_m) <= self.along_m + NEARLY_M
     }

@@ -1,43 +1,43 @@
-//! The numbers behind reasons.
+//! The values behind reasons.
 
 use super::areas::around;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use world::Floor;
 
-/// The number behind a reason: by how much, against which limit, beside what.
+/// The value behind a reason: the amount, its limit, and the object concerned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
-    /// The distance or error that the reason is about, metres.
+    /// The distance or error, metres.
     pub value_m: f64,
-    /// The largest such distance, where it is a range, metres.
+    /// The largest distance, if there is a range, metres.
     #[serde(default)]
     pub to_m: Option<f64>,
-    /// What it is held against, metres; absent where it stands for itself.
+    /// The limit for comparison, metres; absent if there is none.
     pub limit_m: Option<f64>,
-    /// The nearest solid thing, where it is to blame.
+    /// The nearest solid object, if it is the cause.
     pub near: Option<String>,
 }
 
 impl Measure {
-    /// A number that stands for itself.
+    /// A value without a limit.
     pub(crate) fn of(value_m: f64) -> Self {
         Self { value_m, to_m: None, limit_m: None, near: None }
     }
 
-    /// The same against a limit.
+    /// A value with a limit.
     pub(crate) fn against(self, limit_m: f64) -> Self {
         Self { limit_m: Some(limit_m), ..self }
     }
 
-    /// How far some cells are from solid things, of which the nearest is named.
+    /// The distances of some cells from solid objects, with the name of the nearest object.
     pub(crate) fn off<'a>(distances: impl Iterator<Item = (&'a str, f64)> + Clone) -> Option<Self> {
         let (name, least_m) = distances.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let most_m = distances.map(|(_, m)| m.max(0.0)).fold(0.0, f64::max);
         Some(Self { to_m: Some(most_m), ..Self::of(least_m.max(0.0)).beside(name) })
     }
 
-    /// The distance, or from where to where it goes, metres.
+    /// The distance, or its range, metres.
     pub fn range(&self) -> String {
         let to_m = self.to_m.filter(|to_m| format!("{to_m:.2}") != format!("{:.2}", self.value_m));
         to_m.map_or_else(
@@ -46,16 +46,17 @@ impl Measure {
         )
     }
 
-    /// The same beside a thing.
+    /// The same with the name of an object.
     pub(crate) fn beside(self, near: &str) -> Self {
         Self { near: Some(near.to_owned()), ..self }
     }
 }
 
-/// How far some cells reach beyond others, metres: the largest distance from the edge of the others, which are those around
-/// them that are asked for; a cell at least, `None` if there are no others.
+/// The largest distance of some cells from the edge of the reference cells around them, metres. It is at least one
+/// cell; `None` if there are no reference cells.
 pub(crate) fn depth_m(floor: &Floor, cells: &[usize], is_other: impl Fn(usize) -> bool) -> Option<f64> {
-    // Each cell takes over the nearest other cell of a neighbour that is nearer: almost exact, and linear.
+    // Each cell takes over the nearest reference cell of a neighbour that is closer to one: almost exact, in linear
+    // time.
     let mut nearest: BTreeMap<usize, Option<usize>> = cells.iter().map(|cell| (*cell, None)).collect();
     let distance_m = |a: usize, b: usize| (floor.center(a) - floor.center(b)).norm();
     let closest = |cell: usize, candidates: &mut dyn Iterator<Item = usize>| {

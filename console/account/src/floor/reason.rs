@@ -1,38 +1,38 @@
-//! Why floor was not scanned, or cannot be.
+//! Reasons why floor was not scanned, or cannot be scanned.
 
 use super::{areas::Explained, measure::Measure};
 use serde::{Deserialize, Serialize};
 use world::Cell;
 
-/// Why floor in reach of the tool was not scanned.
+/// The reason why reachable floor was not scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MissReason {
     /// The tool passed, but the position error was above the limit.
     PositionUncertain,
-    /// Beside an obstacle that was found on the way.
+    /// Beside an obstacle that was found during the run.
     FoundObstacle,
     /// Outside the areas that the mission was to scan.
     NotAsked,
-    /// Beyond lanes that are narrower than the swath by the overlap.
+    /// Beyond the lanes, which are narrower than the swath by the overlap.
     Narrow,
-    /// No plan led there: it keeps hull and clearance from something solid.
+    /// No plan led to the floor, because a plan keeps hull and clearance from solid objects.
     Clearance,
-    /// No plan led there: it lies along a line that keeps the tether from winding round anything.
+    /// No plan led to the floor: it is along a line that keeps the tether unwound.
     Wrap,
-    /// No plan led there.
+    /// No plan led to the floor.
     NotPlanned,
     /// The run had no plan.
     NoPlan,
-    /// No plan led there, because the cable does not.
+    /// No plan led to the floor, because the floor is beyond the reel.
     BeyondReel,
-    /// A plan led there, but the mission ended before.
+    /// A plan led to the floor, but the mission ended first.
     NotReached,
-    /// A plan led there, but the robot passed beside it.
+    /// A plan led to the floor, but the robot passed beside it.
     PassedBeside,
 }
 
-/// Why floor is out of reach of the tool.
+/// The reason why floor is unreachable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OutOfReach {
@@ -40,14 +40,14 @@ pub enum OutOfReach {
     ShellMargin,
     /// The robot keeps its distance from an obstacle.
     BesideObstacle,
-    /// In a zone that the robot must not enter.
+    /// In a no-go zone.
     NoGo,
-    /// No way leads there that is wide enough for the robot.
+    /// No passage to it is wide enough for the robot.
     ClosedOff,
 }
 
 impl OutOfReach {
-    /// Why cells of a kind are out of reach, if they are.
+    /// The reason why cells of a class are unreachable, if they are.
     pub(crate) fn of(kind: Cell) -> Option<Self> {
         match kind {
             Cell::Outside | Cell::Reachable => None,
@@ -63,7 +63,7 @@ impl Explained for MissReason {
     fn sentence(self, measure: Option<&Measure>) -> String {
         let Some(measure) = measure else { return self.plainly().to_owned() };
         let Measure { value_m, limit_m, near, .. } = measure;
-        let (limit_m, near) = (limit_m.unwrap_or(0.0), near.as_deref().unwrap_or("something solid"));
+        let (limit_m, near) = (limit_m.unwrap_or(0.0), near.as_deref().unwrap_or("a solid object"));
         match self {
             Self::PositionUncertain => {
                 format!("passed with position error {value_m:.2} m, limit {limit_m:.2} m")
@@ -72,28 +72,38 @@ impl Explained for MissReason {
             Self::NotAsked => format!("not requested, up to {value_m:.2} m outside the requested areas"),
             Self::Narrow => {
                 format!(
-                    "{value_m:.2} m outside the nearest lane (lanes are {limit_m:.2} m wide: the swath less the overlap)"
+                    "{value_m:.2} m outside the nearest lane (lanes are {limit_m:.2} m wide: the swath less \
+                     the overlap)"
                 )
             }
             Self::Clearance => {
-                format!("not planned: {} from {near}, hull and clearance {limit_m:.2} m", measure.range())
+                format!(
+                    "not planned: {} from {near}, hull and clearance require {limit_m:.2} m",
+                    measure.range()
+                )
             }
             Self::Wrap => format!("not planned: {value_m:.2} m from a line that keeps the tether unwound"),
-            Self::NotPlanned => format!("not planned: {value_m:.2} m beside lanes of {limit_m:.2} m"),
+            Self::NotPlanned => format!(
+                "not planned: up to {value_m:.2} m from the planned lanes (lanes \
+                are {limit_m:.2} m wide)"
+            ),
             Self::NoPlan => self.plainly().to_owned(),
             Self::BeyondReel => {
                 format!(
-                    "not planned: {value_m:.1} m beyond the reel, lanes within {limit_m:.1} m of the anchor"
+                    "not planned: {value_m:.1} m beyond the reel; lanes are within {limit_m:.1} m of the \
+                     anchor"
                 )
             }
-            Self::NotReached => format!("planned, but the mission ended up to {value_m:.1} m of path before"),
+            Self::NotReached => {
+                format!("planned, but the mission ended first, with up to {value_m:.1} m of path to go")
+            }
             Self::PassedBeside => format!("planned, but the robot passed {value_m:.2} m to one side"),
         }
     }
 }
 
 impl MissReason {
-    /// The reason in at most 32 characters, for a row of a list.
+    /// The reason in at most 32 characters, for a list.
     pub fn briefly(self) -> &'static str {
         match self {
             Self::PositionUncertain => "position error above the limit",
@@ -110,7 +120,7 @@ impl MissReason {
         }
     }
 
-    /// The reason without its number.
+    /// The reason without its value.
     pub fn plainly(self) -> &'static str {
         match self {
             Self::PositionUncertain => "passed, but the position error was above the limit",
@@ -129,7 +139,7 @@ impl MissReason {
 }
 
 impl OutOfReach {
-    /// The reason without its number.
+    /// The reason without its value.
     pub fn plainly(self) -> &'static str {
         match self {
             Self::ShellMargin => "clearance to the shell",
@@ -144,9 +154,9 @@ impl Explained for OutOfReach {
     fn sentence(self, measure: Option<&Measure>) -> String {
         match (self, measure) {
             (Self::ShellMargin | Self::BesideObstacle, Some(measure)) => {
-                let near = measure.near.as_deref().unwrap_or("something solid");
+                let near = measure.near.as_deref().unwrap_or("a solid object");
                 let limit_m = measure.limit_m.unwrap_or(0.0);
-                format!("{} from {near}, hull and clearance {limit_m:.2} m", measure.range())
+                format!("{} from {near}, hull and clearance require {limit_m:.2} m", measure.range())
             }
             (Self::ClosedOff, Some(Measure { value_m, near, .. })) => {
                 let by = near.as_ref().map(|zone| format!("closed off by {zone}: ")).unwrap_or_default();
@@ -154,7 +164,7 @@ impl Explained for OutOfReach {
             }
             (Self::NoGo, Some(Measure { value_m, near, .. })) => {
                 let zone = near.as_deref().unwrap_or("a no-go zone");
-                format!("in {zone}, up to {value_m:.2} m from floor in reach")
+                format!("in {zone}, up to {value_m:.2} m from reachable floor")
             }
             (_, None) => self.plainly().to_owned(),
         }

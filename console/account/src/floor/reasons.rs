@@ -1,4 +1,4 @@
-//! Why cells were missed or are out of reach, and the numbers behind it.
+//! Finds the reasons why cells were missed or are unreachable, with the values behind them.
 
 use super::{
     evidence::{Evidence, Solid},
@@ -8,7 +8,7 @@ use super::{
 use std::collections::BTreeMap;
 use world::{Cell, CoverageGrid, Point, polyline, tether::Reach};
 
-/// The names of the zones of some cells, the zone of most cells first; `None` without any.
+/// The names of the zones of some cells, the zone with most cells first; `None` without zones.
 fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     let mut cells: BTreeMap<&str, usize> = BTreeMap::new();
     zones.for_each(|zone| *cells.entry(&zone.name).or_default() += 1);
@@ -18,10 +18,10 @@ fn named<'a>(zones: impl Iterator<Item = &'a Solid>) -> Option<String> {
     (!names.is_empty()).then(|| names.join(" and "))
 }
 
-/// Why floor was missed.
+/// Finds the reasons for missed floor.
 pub struct Reasons<'a> {
     pub(super) evidence: &'a Evidence,
-    /// Where the cable leads; `None` if no plan left floor out because of it.
+    /// The floor within reach of the cable; `None` if no plan omitted floor because of it.
     pub(super) reach: Option<Reach>,
     /// Whether the robot drags a tether.
     pub(super) has_tether: bool,
@@ -29,12 +29,12 @@ pub struct Reasons<'a> {
     pub(super) lane_m: f64,
     /// Hull and clearance, metres.
     pub(super) room_m: f64,
-    /// The 95 % error above which nothing counts, metres.
+    /// Limit of the 95 % error above which nothing counts as scanned, metres.
     pub(super) limit_m: f64,
 }
 
 impl Reasons<'_> {
-    /// Why a cell was missed.
+    /// The reason why a cell was missed.
     pub fn why_missed(&self, center: Point, index: usize) -> MissReason {
         let evidence = self.evidence;
         if evidence.uncertain_m(index).is_some() {
@@ -54,13 +54,14 @@ impl Reasons<'_> {
         }
     }
 
-    /// How far a place lies beyond any lane, which keeps hull and clearance from what is solid, metres; negative within reach of one.
+    /// The distance of a position beyond any lane, given that lanes keep hull and clearance from solid objects,
+    /// metres; negative within reach of a lane.
     pub fn beyond_lanes_m(&self, place: Point) -> f64 {
         let (_, solid_m) = self.evidence.nearest_kept_from(place);
         self.room_m - solid_m - self.lane_m / 2.0
     }
 
-    /// Why no plan led to a place.
+    /// The reason why no plan led to a position.
     fn why_not_planned(&self, place: Point) -> MissReason {
         let (_, solid_m) = self.evidence.nearest_kept_from(place);
         if !self.evidence.has_plan() {
@@ -76,7 +77,7 @@ impl Reasons<'_> {
         }
     }
 
-    /// The number behind the reason for some cells, of which there is at least one.
+    /// The value behind the reason for some cells, at least one.
     pub fn measure(&self, grid: &CoverageGrid, reason: MissReason, cells: &[usize]) -> Option<Measure> {
         let (floor, evidence) = (grid.floor(), self.evidence);
         let most =
@@ -94,7 +95,7 @@ impl Reasons<'_> {
                 Measure::off(cells.iter().filter_map(|cell| evidence.nearest_found(floor.center(*cell))))
             }
             MissReason::NotAsked => depth_m(floor, cells, |cell| evidence.is_asked(cell)).map(Measure::of),
-            // In a corner no lane leads to floor that is near enough to one by its distance from the nearest wall alone.
+            // In a corner, a cell may be near enough to one wall, and still no lane can reach it.
             MissReason::Narrow => most(&|cell| Some(self.beyond_lanes_m(floor.center(cell))))
                 .filter(|beyond_m| *beyond_m > 0.0)
                 .map(|m| Measure::of(m).against(self.lane_m)),
@@ -115,7 +116,7 @@ impl Reasons<'_> {
         }
     }
 
-    /// The number behind the reason why some cells are out of reach.
+    /// The value behind the reason why some cells are unreachable.
     pub(crate) fn measure_out_of_reach(
         &self,
         grid: &CoverageGrid,
@@ -140,7 +141,7 @@ impl Reasons<'_> {
         }
     }
 
-    /// Distance from a line that the tethered robot does not cross, metres; `None` if there is none.
+    /// Distance from the nearest cut, metres; `None` without cuts.
     fn cut_m(&self, place: Point) -> Option<f64> {
         let edges = self.evidence.cuts().iter().flat_map(|cut| cut.windows(2));
         edges
@@ -148,7 +149,7 @@ impl Reasons<'_> {
             .reduce(f64::min)
     }
 
-    /// Whether a cell was to be scanned, and no plan led there, because the cable does not.
+    /// Whether a cell was to be scanned, but no plan led there because it is beyond the reel.
     fn is_left_beyond_reel(&self, index: usize, center: Point) -> bool {
         let evidence = self.evidence;
         let is_left = evidence.is_asked(index) && !evidence.is_passed(index) && !evidence.is_ahead(index);

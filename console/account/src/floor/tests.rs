@@ -181,14 +181,14 @@ fn every_gap_has_a_cause_with_its_number() {
         why(&run, &evidence, |p| p.x > 4.0 && p.coords.norm() > 4.77 && p.y.abs() < 0.3),
         "m outside the nearest lane (lanes are 0.40 m wide: the swath less the overlap)",
     );
-    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance 0.45 m");
+    says(why(&run, &evidence, square(0.0, 3.4)), "m from column, hull and clearance require 0.45 m");
     says(why(&run, &evidence, square(0.0, 0.2)), "m from a line that keeps the tether unwound");
     let untethered =
         RunOpened { mission: mission::MissionConfig { tether: None, ..run.mission.clone() }, ..run.clone() };
-    says(why(&untethered, &evidence, square(0.0, 0.2)), "m beside lanes of 0.40 m");
+    says(why(&untethered, &evidence, square(0.0, 0.2)), "m from the planned lanes (lanes are 0.40 m wide)");
     says(why(&run, &Evidence::new(&run), square(0.0, 0.2)), "the run had no plan when it ended");
-    says(why(&run, &evidence, square(0.0, -1.0)), "m beside lanes of 0.40 m");
-    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended up to");
+    says(why(&run, &evidence, square(0.0, -1.0)), "m from the planned lanes (lanes are 0.40 m wide)");
+    says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the mission ended first, with up to");
     evidence.fly(1e3);
     says(why(&run, &evidence, square(0.0, -3.9)), "planned, but the robot passed 0.10 m to one side");
 }
@@ -375,7 +375,7 @@ fn floor_that_was_not_requested_or_lies_in_a_no_go_zone_is_listed_with_a_distanc
     // little more because the zone lies between them.
     assert!(all[0].contains("not requested, up to 5.93 m outside"), "{all:?}");
     let out = account.unreachable.iter().find(|area| area.reason == OutOfReach::NoGo).expect("the zone");
-    assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from floor in reach");
+    assert_eq!(out.why(), "in a no-go zone, up to 0.50 m from reachable floor");
 }
 
 /// What becomes of a floor on which a box is forbidden, as the words of the areas out of reach.

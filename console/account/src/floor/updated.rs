@@ -1,11 +1,11 @@
-//! The floor as it turned out to be.
+//! The floor with the knowledge gained during runs.
 
 use super::{Evidence, Solid};
 use mission::event::RunOpened;
 use std::collections::BTreeSet;
 use world::{Floor, FloorMaker, Obstacle, ObstacleId, Zone, ZoneKind};
 
-/// The floor with everything that any of the runs found, and without what any of them forbade.
+/// The floor with all obstacles found in any of the runs, less all no-go zones drawn in any of them.
 pub fn updated_floor(run: &RunOpened, grid: &Floor, evidence: &Evidence, swath_m: f64) -> FloorMaker {
     let mut world = run.world.as_drawn();
     let drawn: BTreeSet<ObstacleId> = world.obstacles.iter().map(|obstacle| obstacle.id).collect();

@@ -7,14 +7,14 @@ use world::{Point, ShellFigures, ShellStretch};
 
 /// Width of the critical zone along the shell, metres (API 653: 3 inches).
 pub(crate) const CRITICAL_ZONE_M: f64 = 0.075;
-/// Share of the shell along which the whole zone is scanned when it counts as done.
+/// Share of the shell along which the full width must be scanned for the zone to count as done.
 const CRITICAL_DONE: f64 = 0.995;
-/// A narrower rim is not shown, metres.
+/// An unreachable rim narrower than this is not stated, metres.
 const LEAST_RIM_M: f64 = 0.005;
-/// Arcs that are not done are one if they are nearer than this, and are left out if they are shorter, metres.
+/// Arcs closer together than this are merged, and shorter arcs are omitted, metres.
 const ARC_M: f64 = 0.1;
 
-/// The zone along the shell, where the floor plate meets it.
+/// The critical zone along the shell, where the floor meets it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CriticalZone {
     /// Its width, metres.
@@ -22,24 +22,24 @@ pub struct CriticalZone {
     /// Length of the shell beside free floor, metres.
     #[serde(default)]
     pub length_m: f64,
-    /// Length along which its whole width was scanned, metres.
+    /// Length of shell along which the full width of the zone was scanned, metres.
     #[serde(default)]
     pub done_m: f64,
     /// Scanned share of its area, 0 to 1; absent if there is no free floor at the shell.
     pub scanned: Option<f64>,
-    /// Distance from the shell to where the scanned floor begins, the median along the shell where the zone is not
-    /// done, metres; its width if nothing of it was scanned.
+    /// Distance from the shell to the edge of the scanned floor: the median along the shell where the zone is not
+    /// done, metres; the width of the zone if nothing of it was scanned.
     #[serde(default)]
     pub gap_m: f64,
-    /// Whether it was scanned: its whole width along 99.5 % of the shell.
+    /// Whether the zone is done: its full width is scanned along 99.5 % of the shell.
     pub done: bool,
-    /// Why not, as a sentence; absent if it was.
+    /// The reason why not, as a sentence; absent if it is done.
     pub why: Option<String>,
-    /// The zone plate by plate, in the order along the shell; empty if the layout of the plates is not known.
+    /// The zone plate by plate, in the order along the shell; empty if the plate layout is not known.
     #[serde(default)]
     pub plates: Vec<ZoneOfPlate>,
-    /// Arcs of the shell of 0.1 m and more that are not done, in their order along the shell; those less than 0.1 m apart
-    /// are one.
+    /// Arcs of the shell of at least 0.1 m that are not done, in order along the shell; arcs less than 0.1 m apart
+    /// count as one.
     #[serde(default)]
     pub arcs: Vec<ZoneArc>,
 }
@@ -51,32 +51,35 @@ pub struct ZoneOfPlate {
     pub plate: String,
     /// Length of the shell beside free floor, metres.
     pub length_m: f64,
-    /// Length along which its whole width was scanned, metres.
+    /// Length of shell along which the full width of the zone was scanned, metres.
     pub done_m: f64,
-    /// Distance from the shell to the scanned floor, the median where it is not done, metres.
+    /// Distance from the shell to the scanned floor: the median where the zone is not done, metres.
     pub gap_m: f64,
 }
 
-/// An arc of the shell along which the zone was not scanned over its whole width.
+/// An arc of the shell along which the zone was not scanned over its full width.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ZoneArc {
-    /// Way along the shell to its beginning, metres: counter-clockwise from due east, or from the first corner on.
+    /// Distance along the shell to its start, metres: counter-clockwise from due east, or from the first corner of
+    /// the drawing.
     pub from_m: f64,
-    /// The same to its end, metres; beyond the length of the shell for an arc over its beginning.
+    /// Distance along the shell to its end, metres; greater than the length of the shell if the arc runs past the
+    /// origin.
     pub to_m: f64,
-    /// Where it begins, metres.
+    /// Its start point, metres.
     pub from: Point,
-    /// Where it ends, metres.
+    /// Its end point, metres.
     pub to: Point,
-    /// Length of it that is not done, metres.
+    /// Length of shell that is not done, metres.
     pub not_done_m: f64,
-    /// Distance from the shell to the scanned floor, the median of what is not done, metres.
+    /// Distance from the shell to the scanned floor: the median where the arc is not done, metres.
     pub gap_m: f64,
     /// The largest such distance, metres.
     pub gap_max_m: f64,
 }
 
-/// What a mission's tool cannot reach along the shell, and why, as the end of a sentence; nothing if it reaches all of it.
+/// The width of floor along the shell that a mission's tool cannot reach, with the reason, as the end of a sentence;
+/// empty if the tool reaches the shell.
 pub(crate) fn rim(mission: &MissionConfig) -> String {
     let (hull_m, room_m, swath_m) = (mission.limits.radius_m, mission.room_m(), mission.swath_m);
     let rim_m = room_m - swath_m / 2.0;
@@ -85,12 +88,13 @@ pub(crate) fn rim(mission: &MissionConfig) -> String {
     }
     let clearance_m = room_m - hull_m;
     format!(
-        "; {rim_m:.2} m not reachable: hull radius {hull_m:.2} m + clearance {clearance_m:.2} m - half of the swath of {swath_m:.2} m"
+        "; the outer {rim_m:.2} m is unreachable: hull radius {hull_m:.2} m + clearance {clearance_m:.2} m \
+         - half of the swath of {swath_m:.2} m"
     )
 }
 
 impl CriticalZone {
-    /// The zone as the shell was scanned; `plate_of` names the plate of a place on the wall.
+    /// Evaluates the zone from the scanned state of the shell; `plate_of` names the plate at a point on the wall.
     pub(crate) fn of(shell: &[ShellStretch], rim: &str, plate_of: impl Fn(Point) -> Option<String>) -> Self {
         let ShellFigures { length_m, done_m, scanned, gap_m } = ShellFigures::of(shell);
         let has_floor = length_m > 0.0;
@@ -103,9 +107,9 @@ impl CriticalZone {
                 let rest = if gap_m >= CRITICAL_ZONE_M - 1e-9 {
                     "the rest mostly unscanned".to_owned()
                 } else {
-                    format!("the rest from {:.0} mm off the shell (median)", 1000.0 * gap_m)
+                    format!("the rest scanned from {:.0} mm off the shell (median)", 1000.0 * gap_m)
                 };
-                Some(format!("full width on {done_m:.1} of {length_m:.1} m, {rest}{rim}"))
+                Some(format!("full width along {done_m:.1} of {length_m:.1} m, {rest}{rim}"))
             }
         };
         let scanned = has_floor.then_some(scanned);
@@ -144,7 +148,7 @@ fn arcs(shell: &[ShellStretch]) -> Vec<ZoneArc> {
             _ => open.push(vec![stretch]),
         }
     }
-    // The end of the wall is its beginning.
+    // The end of the wall is its start.
     let total_m = shell.last().map_or(0.0, end_m);
     let is_over_the_end = |first: &[&ShellStretch], last: &[&ShellStretch]| {
         first[0].along_m + total_m - last.last().map_or(0.0, |stretch| end_m(stretch)) <= ARC_M
@@ -153,7 +157,7 @@ fn arcs(shell: &[ShellStretch]) -> Vec<ZoneArc> {
     if open.len() > 1 && is_over_the_end(&open[0], &open[open.len() - 1]) {
         let first = open.remove(0);
         over_m = first.last().map(|stretch| end_m(stretch) + total_m);
-        open.last_mut().expect("two at least").extend(first);
+        open.last_mut().expect("at least two").extend(first);
     }
     let last = open.len().saturating_sub(1);
     let arc = |(index, arc): (usize, Vec<&ShellStretch>)| {

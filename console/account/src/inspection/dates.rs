@@ -1,4 +1,4 @@
-//! Dates in what people write.
+//! Dates in texts written by people.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ pub struct Date {
 }
 
 impl Date {
-    /// Reads `2027-03-31`, or the last day of `2027-03`; none if it is neither.
+    /// Reads `2027-03-31`, or the last day of `2027-03`; `None` for anything else.
     ///
     /// ```
     /// use account::Date;
@@ -33,7 +33,8 @@ impl Date {
         (parts.len() <= 3 && (1..=last).contains(&day)).then_some(Self { year, month, day })
     }
 
-    /// The last day that a text names behind a word as `until`: of `valid to 2027-05`, `expires 2019` (the end of the year).
+    /// Finds the last day that a text names after a word such as `until`: in `valid to 2027-05`, or in `expires 2019`
+    /// (the end of the year).
     pub fn until(text: &str) -> Option<Self> {
         let lower = text.to_lowercase();
         let words: Vec<&str> = lower
@@ -51,7 +52,7 @@ impl Date {
     }
 }
 
-/// Words before the last day of something.
+/// Words that precede a last day.
 const UNTIL: [&str; 12] = [
     "until",
     "till",

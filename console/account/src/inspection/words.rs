@@ -1,9 +1,9 @@
-//! Words that people write where they have nothing to say.
+//! Placeholder words that people write when they have no fact to state.
 
-/// What people write where they do not know yet.
+/// Placeholders for facts that are not known yet.
 const PLACEHOLDERS: [&str; 6] = ["fixme", "lorem ipsum", "tba", "tbc", "tbd", "todo"];
 
-/// Texts that begin so announce a fact instead of stating it.
+/// Texts that begin like this announce a fact instead of stating it.
 const ANNOUNCED: [&str; 15] = [
     "to be added",
     "to be advised",
@@ -22,7 +22,7 @@ const ANNOUNCED: [&str; 15] = [
     "will follow",
 ];
 
-/// A text of nothing but these words says nothing.
+/// A text that consists only of these words has no content.
 const EMPTY: [&str; 58] = [
     "any",
     "applicable",
@@ -84,7 +84,7 @@ const EMPTY: [&str; 58] = [
     "yet",
 ];
 
-/// Whether a text stands for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`, `?`.
+/// Whether a text is a placeholder for one that is still to be written: `TBD`, `todo: ask`, `xxx`, `...`, `?`.
 ///
 /// ```
 /// use account::is_placeholder;
@@ -99,8 +99,8 @@ pub fn is_placeholder(text: &str) -> bool {
     is_marked || letters().all(|letter| letter == 'x')
 }
 
-/// Whether a text states no fact: a placeholder, `n.a.`, `none`, `to be done`, `not yet known`. A sentence that says of what
-/// there is none does: `No remarks`, `None above 20 % of the thickness`.
+/// Whether a text states no fact: a placeholder, `n.a.`, `none`, `to be done`, `not yet known`. A sentence that names
+/// its subject does state a fact: `No remarks`, `None above 20 % of the thickness`.
 ///
 /// ```
 /// use account::says_nothing;
@@ -117,7 +117,7 @@ pub fn says_nothing(text: &str) -> bool {
     is_placeholder(text) || is_announced || words.iter().all(|word| EMPTY.contains(&&**word))
 }
 
-/// The words of a text in small letters; `n.a.`, `N/A` and `n a` are one, and wide letters are as others.
+/// The words of a text in lower case; `n.a.`, `N/A` and `n a` are the same, and full-width letters equal normal ones.
 fn words(text: &str) -> Vec<String> {
     let plain = |letter: char| match u32::from(letter) {
         wide @ 0xFF01..=0xFF5E => char::from_u32(wide - 0xFEE0).unwrap_or(letter),

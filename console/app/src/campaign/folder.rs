@@ -1,4 +1,4 @@
-//! The folder of a campaign: what is frozen, the parts, what they cost, and who works on what.
+//! The folder of a campaign: its frozen plan, its parts and their cost, and the claims of its workers.
 
 use anyhow::Context;
 use campaign::{Campaign, Table, TableError, part};
@@ -12,7 +12,7 @@ use std::{
 
 const FROZEN: &str = "campaign.json";
 
-/// The folder of a campaign; several machines may work in it at once.
+/// The folder of a campaign; several machines can work in it at the same time.
 #[derive(Debug, Clone)]
 pub(crate) struct Folder(SharedFolder);
 
@@ -25,23 +25,23 @@ impl Folder {
         self.0.path()
     }
 
-    /// The campaign that was frozen here.
+    /// The frozen campaign in this folder.
     pub(crate) fn campaign(&self) -> anyhow::Result<Campaign> {
         let file = self.path().join(FROZEN);
         let refused = |why: &str| bad_input(format!("{}: {why}", file.display()));
         let json = self.0.read(Path::new(FROZEN)).map_err(|error| refused(&error.to_string()))?;
-        let missing = || refused("there is none; `tankops campaign prepare PLAN --out DIR` makes one");
+        let missing = || refused("does not exist; create it with `tankops campaign prepare PLAN --out DIR`");
         let json = json.ok_or_else(missing)?;
         Campaign::thaw(&json).map_err(|why| bad_input(format!("{} {why}", file.display())))
     }
 
-    /// Freezes a campaign, unless the same one is here already; gives the one that is here now.
+    /// Freezes a campaign, unless the same campaign is already frozen here. Returns the campaign in the folder.
     pub(crate) fn freeze(&self, campaign: Campaign) -> anyhow::Result<Campaign> {
         self.0.make(&["parts", "cost"]).map_err(|error| bad_input(format!("{error:#}")))?;
         if self.0.has(Path::new(FROZEN)) {
             let there = self.campaign()?;
             if !there.is_same(&campaign) {
-                let what = "holds another campaign: plan, scenarios, program or plugins differ";
+                let what = "holds a different campaign: plan, scenarios, program or plugins differ";
                 return Err(bad_input(format!("{} {what}; choose another --out", self.path().display())));
             }
             return Ok(there);
@@ -54,15 +54,15 @@ impl Folder {
         Path::new("parts").join(format!("part-{block:05}.parquet"))
     }
 
-    /// Whether the part of a block is there, byte for byte as it was written.
+    /// Whether the part of a block exists and is intact, byte for byte.
     pub(crate) fn has_part(&self, campaign: &Campaign, block: u64) -> bool {
         matches!(self.check_part(campaign, block), Ok(true))
     }
 
-    /// Whether there is a part of a block.
+    /// Whether a block has a part.
     ///
     /// # Errors
-    /// It is damaged, or not the part of this block.
+    /// The part is damaged, or belongs to a different block or campaign.
     fn check_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<bool> {
         if !self.0.has(&Self::part(block)) {
             return Ok(false);
@@ -70,7 +70,7 @@ impl Folder {
         self.with_part(block, |file| part::check(campaign, block, file)).map(|()| true)
     }
 
-    /// Reads a part.
+    /// Reads the part of a block.
     pub(crate) fn read_part(&self, campaign: &Campaign, block: u64) -> anyhow::Result<Table> {
         self.with_part(block, |file| part::read(campaign, block, file))
     }
@@ -82,16 +82,16 @@ impl Folder {
     ) -> anyhow::Result<T> {
         let file = self.path().join(Self::part(block));
         let open = open_regular(&file).with_context(|| file.display().to_string())?;
-        read(open).map_err(|why| bad_input(format!("{} {why}; fly block {block} again", file.display())))
+        read(open).map_err(|why| bad_input(format!("{} {why}; run block {block} again", file.display())))
     }
 
-    /// Publishes the rows of a block, after what they cost.
+    /// Publishes the cost of a block, then its rows.
     pub(crate) fn publish_part(&self, block: u64, part: &[u8], cost: &str) -> anyhow::Result<()> {
         self.publish(&Path::new("cost").join(format!("part-{block:05}.jsonl")), cost.as_bytes())?;
         self.publish(&Self::part(block), part)
     }
 
-    /// Blocks without a whole part, and what is wrong with the parts that are there and not whole.
+    /// The blocks without an intact part, and a description of every damaged part.
     pub(crate) fn missing(&self, campaign: &Campaign) -> (Vec<u64>, Vec<String>) {
         let (mut missing, mut damaged) = (Vec::new(), Vec::new());
         for block in 0..campaign.blocks() {
@@ -105,7 +105,7 @@ impl Folder {
         (missing, damaged)
     }
 
-    /// Seconds that one core took for all parts so far.
+    /// The core seconds spent on all parts so far.
     pub(crate) fn core_seconds(&self) -> f64 {
         let files = fs::read_dir(self.path().join("cost")).into_iter().flatten().flatten();
         let texts = files.filter_map(|file| read_regular(&file.path()).ok());
@@ -113,27 +113,27 @@ impl Folder {
         texts.map(|text| text.lines().filter_map(seconds).sum::<f64>()).sum()
     }
 
-    /// Writes a file whole or not at all.
+    /// Writes a file completely or not at all.
     pub(crate) fn publish(&self, name: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         self.0.publish(name, bytes)
     }
 
-    /// Removes what killed workers have left.
+    /// Removes temporary files of killed workers.
     pub(crate) fn tidy(&self) {
         self.0.tidy(&["parts", "cost", "."]);
     }
 
-    /// Takes a block for this worker alone; false if another one has it.
+    /// Claims a block for this worker; returns `false` if another worker holds it.
     pub(crate) fn claim(&self, block: u64) -> bool {
         self.0.claim(&claim_of(block))
     }
 
-    /// Says that the holder of a claim is alive.
+    /// Refreshes a claim, so that other workers see that its holder is alive.
     pub(crate) fn keep_claim(&self, block: u64) {
         self.0.keep_claim(&claim_of(block));
     }
 
-    /// Gives a block back.
+    /// Releases a block.
     pub(crate) fn release(&self, block: u64) {
         self.0.release(&claim_of(block));
     }

@@ -1,4 +1,4 @@
-//! Flies the missions of a campaign, one after the other, in this thread.
+//! Runs the missions of a campaign one after the other on the calling thread.
 
 use account::Summary;
 use campaign::{Campaign, Case, Row, Status};
@@ -12,19 +12,19 @@ use planner_host::{Host, HostConfig, PluginDirs};
 use scenario::Scenario;
 use std::{any::Any, panic::AssertUnwindSafe};
 
-/// A mission that fails is flown so often before it counts as failed.
+/// The number of attempts before a failed mission counts as failed.
 const TRIES: u32 = 3;
 
-/// Flies missions; the processes of its planners are used again from mission to mission.
+/// Runs missions; the planners' processes are reused from mission to mission.
 pub(crate) struct Pilot<'a> {
     campaign: &'a Campaign,
     plugins: &'a PluginDirs,
     found: &'a Found,
-    /// One for each kind of limits; a host has one.
+    /// One host for each set of limits.
     hosts: Vec<(HostConfig, InOrder)>,
 }
 
-/// How a try ended.
+/// The outcome of an attempt.
 enum Tried {
     Flown(Box<Summary>),
     Refused(String),
@@ -37,7 +37,7 @@ impl<'a> Pilot<'a> {
         Self { campaign, plugins, found, hosts: Vec::new() }
     }
 
-    /// Flies a mission, and says how many tries that took; `None` if it was stopped.
+    /// Runs a mission; returns its row and the number of attempts, or `None` if it was stopped.
     pub(crate) fn fly(&mut self, case: &Case<'_>, is_stopped: impl Fn() -> bool) -> Option<(Row, u32)> {
         let scenario = match self.scenario(case) {
             Ok(scenario) => scenario,
@@ -51,7 +51,7 @@ impl<'a> Pilot<'a> {
                 Tried::Refused(why) => Row::not_flown(case.n, Status::Refused, why),
                 Tried::Failed(why) => Row::not_flown(case.n, Status::Failed, why),
             };
-            // What the machine did to a planner happens once, what the planner does happens again.
+            // A fault of the machine does not recur on a second attempt; a fault of the planner does.
             let again = row.status == Status::Failed && tries < TRIES || row.has_faults() && tries == 1;
             if !again {
                 return Some((row, tries));
@@ -97,5 +97,5 @@ impl<'a> Pilot<'a> {
 
 fn words(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without saying why")
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message")
 }

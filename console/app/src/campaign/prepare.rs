@@ -1,6 +1,6 @@
-//! From a plan to a frozen campaign: everything is checked before the first mission.
+//! Turns a plan into a frozen campaign; everything is checked before the first mission.
 
-use campaign::{Campaign, Plan, PlanKey, ScenarioText, table::hex};
+use campaign::{Campaign, Plan, PlanKey, ScenarioText};
 use command::here::Here;
 use flight::{
     failure::bad_input,
@@ -43,14 +43,14 @@ fn scenarios(plan: &Plan, folder: &Path) -> anyhow::Result<Vec<ScenarioText>> {
         let times = names.entry(scenario.name.clone()).or_default();
         *times += 1;
         let name = if *times == 1 { scenario.name } else { format!("{}-{times}", scenario.name) };
-        let sha256 = hex(&Sha256::digest(&scenario.text));
+        let sha256 = hex::encode(Sha256::digest(&scenario.text));
         texts.push(ScenarioText { name, path: path.display().to_string(), text: scenario.text, sha256 });
     }
     Ok(texts)
 }
 
-/// Refuses a plan with bounds that no scenario takes, or a key that is refused wherever it is set: that is a slip of the pen.
-/// What only some combinations refuse becomes a row of the table.
+/// Refuses a plan whose bounds no scenario accepts, or with a key that every scenario refuses, since this must be a
+/// typing error. A value that only some combinations refuse becomes a row of the table.
 fn check_values(plan: &Plan, campaign: &Campaign, found: &Found) -> anyhow::Result<()> {
     let tried = |set: Vec<String>, planner: Option<&String>, scenario: &ScenarioText| {
         let settings = Settings { set, planner: planner.cloned(), seed: Some(campaign.design.seeds.first) };

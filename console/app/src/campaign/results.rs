@@ -1,4 +1,4 @@
-//! From the parts of a campaign to its table and summary.
+//! Combines the parts of a campaign into its table and summary.
 
 use super::folder::Folder;
 use anyhow::anyhow;
@@ -8,14 +8,15 @@ use report::print::warn_line;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// What was merged.
+/// The results of a merge.
 pub(crate) struct Results {
     pub findings: Findings,
-    /// SHA-256 of the table, hexadecimal.
+    /// The SHA-256 of the table in hexadecimal.
     pub sha256: String,
 }
 
-/// Blocks that are still to be flown; none if those without a gap are enough. Names parts that are there and not whole.
+/// The blocks that have not been run yet; empty if the blocks completed without a gap are enough. Warns of damaged
+/// parts.
 pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Vec<u64>> {
     let (missing, damaged) = folder.missing(campaign);
     let whole = missing.first().copied().unwrap_or(campaign.blocks());
@@ -29,7 +30,7 @@ pub(crate) fn missing(folder: &Folder, campaign: &Campaign) -> anyhow::Result<Ve
     Ok(missing)
 }
 
-/// Seeds after which enough is known, looking at parts in their order.
+/// The number of seeds after which the stopping rule is met, taking the parts in order.
 fn enough(
     campaign: &Campaign,
     parts: impl Iterator<Item = anyhow::Result<Table>>,
@@ -43,13 +44,13 @@ fn enough(
     Ok(None)
 }
 
-/// Puts the parts together and writes table, summary and page; with `partial` also when some are missing.
+/// Combines the parts and writes the table, summary and page; with `partial`, also while parts are missing.
 pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyhow::Result<Results> {
     let missing = missing(folder, campaign)?;
     if !missing.is_empty() && !partial {
         let list = list(&missing);
         return Err(bad_input(format!(
-            "blocks are missing: {list}; fly them, or merge what is there with --partial"
+            "blocks are missing: {list}; run them, or merge the existing ones with --partial"
         )));
     }
     let there = (0..campaign.blocks()).filter(|block| folder.has_part(campaign, *block));
@@ -73,24 +74,25 @@ pub(crate) fn merge(folder: &Folder, campaign: &Campaign, partial: bool) -> anyh
     if missing.is_empty() {
         folder.tidy();
     }
-    Ok(Results { findings, sha256: table::hex(&Sha256::digest(&bytes)) })
+    Ok(Results { findings, sha256: hex::encode(Sha256::digest(&bytes)) })
 }
 
-/// The table of a campaign's folder, or of a file.
+/// The table in a campaign folder, or in a file.
 pub(crate) fn read(path: &Path) -> anyhow::Result<Table> {
     let file = if path.is_dir() { path.join("results.parquet") } else { path.to_owned() };
     let shown = file.display();
     let open = foreign::open_regular(&file)
-        .map_err(|error| bad_input(format!("{shown}: {error}; `tankops campaign merge` writes it")))?;
+        .map_err(|error| bad_input(format!("{shown}: {error}; create it with `tankops campaign merge`")))?;
     let (table, is_proven) = Table::read(open).map_err(|error| bad_input(format!("{shown} {error}")))?;
     if !is_proven {
-        let why = "an earlier tankops or another program wrote it; damage to it would go unnoticed";
-        warn_line(&format!("{shown} carries no digest: {why}"));
+        let why =
+            "it was written by an older tankops or by another program, and damage to it cannot be detected";
+        warn_line(&format!("{shown} has no digest: {why}"));
     }
     Ok(table)
 }
 
-/// Numbers with ranges, as Slurm and people read them: `3,7-9`.
+/// Numbers with ranges, as Slurm writes them: `3,7-9`.
 pub(crate) fn list(numbers: &[u64]) -> String {
     let runs = numbers.chunk_by(|a, b| *b == a + 1);
     let run = |run: &[u64]| match run {

@@ -1,11 +1,11 @@
-//! A campaign as an array of Slurm jobs: one task for each block.
+//! Runs a campaign as a Slurm job array, one task per block.
 
 use super::{folder::Folder, results::list};
 use anyhow::{Context, bail};
 use planner_host::PluginDirs;
 use std::{fs, path::PathBuf, process::Command};
 
-/// Writes the script of the array and gives its path.
+/// Writes the script of the job array and returns its path.
 pub(crate) fn script(
     folder: &Folder,
     name: &str,
@@ -14,8 +14,8 @@ pub(crate) fn script(
 ) -> anyhow::Result<PathBuf> {
     let folder =
         Folder::new(&fs::canonicalize(folder.path()).with_context(|| folder.path().display().to_string())?);
-    fs::create_dir_all(folder.path().join("slurm")).context("making a folder for the output of Slurm")?;
-    let program = std::env::current_exe().context("finding the program itself")?;
+    fs::create_dir_all(folder.path().join("slurm")).context("creating a folder for the output of Slurm")?;
+    let program = std::env::current_exe().context("locating the program itself")?;
     let quoted = |path: &std::path::Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
     let folders = plugins.folders.iter().filter_map(|folder| fs::canonicalize(folder).ok());
     let plugin_dirs =
@@ -41,10 +41,11 @@ pub(crate) fn script(
     Ok(here.join("slurm.sh"))
 }
 
-/// Submits the script; the number of the job.
+/// Submits the script; returns the job number.
 pub(crate) fn submit(script: &std::path::Path) -> anyhow::Result<String> {
     let sbatch = Command::new("sbatch").arg("--parsable").arg(script).output();
-    let answer = sbatch.context("sbatch cannot be started; --print only writes the script")?;
+    let answer =
+        sbatch.context("cannot start sbatch; use --print to write the script without submitting it")?;
     if !answer.status.success() {
         bail!("sbatch: {}", String::from_utf8_lossy(&answer.stderr).trim());
     }

@@ -1,4 +1,5 @@
-//! Flies blocks of a campaign on some threads: mission by mission, so that no thread waits for another one's block.
+//! Runs blocks of a campaign on several threads. Threads take single missions, so that no thread waits for another
+//! thread's block.
 
 use super::{folder::Folder, pilot::Pilot};
 use crate::stop_signal::StopSignal;
@@ -16,29 +17,29 @@ use std::{
     time::Instant,
 };
 
-/// What is worked on, and how.
+/// The blocks to run, and the settings for running them.
 pub(crate) struct Work<'a> {
     pub campaign: &'a Campaign,
     pub folder: &'a Folder,
     pub plugins: &'a PluginDirs,
     pub found: &'a Found,
-    /// Blocks, in this order; those that have a part are passed over.
+    /// The blocks, in order; a block that already has a part is skipped.
     pub blocks: Vec<u64>,
     pub threads: usize,
-    /// Whether other workers take blocks of the same folder, so that each has to be claimed first.
+    /// Whether other workers take blocks from the same folder, so that each block must be claimed first.
     pub pulls: bool,
-    /// Seconds of one core after which no further block is begun.
+    /// The limit in core seconds; once it is reached, no further block is started.
     pub budget_s: Option<f64>,
     pub stop: &'a StopSignal,
-    /// Called after every mission.
+    /// Called after each mission.
     pub on_row: &'a (dyn Fn(&Row) + Sync),
 }
 
-/// Blocks that are being flown.
+/// The blocks in progress.
 #[derive(Default)]
 struct Queue<'a> {
     blocks: VecDeque<u64>,
-    /// The block whose missions are handed out, and those that are left of it.
+    /// The block whose missions are being handed out, and its remaining missions.
     current: Option<(u64, Range<u64>)>,
     open: BTreeMap<u64, Vec<(Row, String)>>,
     spent_s: f64,
@@ -46,11 +47,11 @@ struct Queue<'a> {
     failure: Option<anyhow::Error>,
 }
 
-/// A block whose missions were all flown.
+/// A block whose missions are all finished.
 type Whole = (u64, Vec<(Row, String)>);
 
 impl Work<'_> {
-    /// Flies until there is nothing left, or a reason to end before; an incomplete block leaves nothing behind.
+    /// Runs until no blocks remain or there is a reason to stop early. An incomplete block writes nothing.
     pub(crate) fn fly(&self) -> anyhow::Result<()> {
         let queue = Mutex::new(Queue {
             blocks: self.blocks.iter().copied().collect(),
@@ -92,7 +93,7 @@ impl Work<'_> {
         }
     }
 
-    /// The next mission and its block.
+    /// Takes the next mission and its block.
     fn next(&self, queue: &mut Queue<'_>) -> Option<(u64, u64)> {
         loop {
             if let Some((block, cases)) = &mut queue.current
@@ -111,7 +112,7 @@ impl Work<'_> {
         }
     }
 
-    /// Keeps a row; the whole block when it was the last one.
+    /// Stores a row; returns the whole block if this row completes it.
     fn keep(&self, queue: &mut Queue<'_>, block: u64, row: (Row, String), wall_s: f64) -> Option<Whole> {
         queue.spent_s += wall_s;
         let rows = queue.open.get_mut(&block)?;
@@ -138,7 +139,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Looks whether the parts that are there without a gap are enough.
+    /// Checks whether the blocks completed without a gap are enough.
     fn look(&self, queue: &Mutex<Queue<'_>>, is_enough: &AtomicBool) -> anyhow::Result<()> {
         let mut queue = lock(queue);
         let Some((watch, next)) = &mut queue.until else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! For authors of planners.
+//! Commands for planner authors.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -10,16 +10,16 @@ pub(crate) struct NewPlannerArgs {
     /// Language of the planner.
     #[arg(long, value_name = "LANG", default_value = "rust")]
     pub lang: Lang,
-    /// Folder in which the new folder is created.
+    /// Folder to create the new folder in.
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub out: PathBuf,
-    /// Folder of the crate `planner-api` (Rust only); default: the one installed with tankops or that it was built with, else
-    /// the published one.
+    /// Folder of the crate `planner-api` (Rust only); default: the crate installed with tankops or the one it was built
+    /// with, else the published crate.
     #[arg(long, value_name = "DIR")]
     pub api: Option<PathBuf>,
 }
 
-/// A language for planners.
+/// The language of a new planner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Lang {
     /// Rust, with the crate `planner-api`.
@@ -32,13 +32,13 @@ pub(crate) enum Lang {
 
 #[derive(Debug, Args)]
 pub(crate) struct ReplayWorkerArgs {
-    /// Folder `crash-N` in the folder of a run.
+    /// Folder `crash-N` inside a run folder.
     #[arg(value_name = "BUNDLE")]
     pub bundle: PathBuf,
     /// Run the plugin's process in gdb, without deadlines.
     #[arg(long, conflicts_with = "core")]
     pub gdb: bool,
-    /// Have gdb leave a core dump and the calls of all threads in the bundle where the plugin crashes again.
+    /// Have gdb write a core dump and the backtraces of all threads into the bundle if the plugin crashes again.
     #[arg(long)]
     pub core: bool,
 }

@@ -1,27 +1,27 @@
-//! Campaigns: many missions.
+//! Campaigns of many missions.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
-/// What to do with a campaign.
+/// A subcommand of `campaign`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum CampaignCommand {
-    /// Fly a campaign and show the results; missions already flown are kept.
+    /// Run a campaign and show the results; missions that are already complete are not repeated.
     Run(RunCampaignArgs),
     /// Check a plan and freeze it with its scenarios, so that several machines can work on it.
     Prepare(OutArgs),
-    /// Fly blocks of a campaign that was prepared.
+    /// Run blocks of a prepared campaign.
     Work(WorkArgs),
-    /// Show how far a campaign is; exit code 1 while blocks are missing.
+    /// Show the progress of a campaign; exit code 1 while blocks are missing.
     Status {
         /// Folder of the campaign.
         dir: PathBuf,
     },
-    /// Put the blocks together: results.parquet, summary.json and summary.html.
+    /// Combine the blocks into results.parquet, summary.json and summary.html.
     Merge {
         /// Folder of the campaign.
         dir: PathBuf,
-        /// Also when blocks are missing.
+        /// Merge even if blocks are missing.
         #[arg(long)]
         partial: bool,
     },
@@ -38,12 +38,12 @@ pub(crate) struct OutArgs {
     pub out: Option<PathBuf>,
 }
 
-/// What flies a campaign.
+/// Where a campaign runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Engine {
     /// All cores of this machine
     Local,
-    /// An array of Slurm jobs, one task for each block
+    /// A Slurm job array, one task per block
     Slurm,
 }
 
@@ -51,13 +51,13 @@ pub(crate) enum Engine {
 pub(crate) struct RunCampaignArgs {
     #[command(flatten)]
     pub out: OutArgs,
-    /// What flies the missions.
+    /// Where to run the missions.
     #[arg(long, default_value = "local")]
     pub engine: Engine,
-    /// Number of missions at once; 0: one per core.
+    /// Number of missions run in parallel; 0: one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub jobs: usize,
-    /// Begin no further block after so many core hours, counted over all runs of the campaign: 5ch.
+    /// Start no further block after this many core hours, for example 5ch, counted over all runs of the campaign.
     #[arg(long, value_name = "TIME", value_parser = core_hours)]
     pub budget: Option<f64>,
     /// With --engine slurm: write the script, and print the command that submits it.
@@ -69,16 +69,16 @@ pub(crate) struct RunCampaignArgs {
 pub(crate) struct WorkArgs {
     /// Folder of the campaign.
     pub dir: PathBuf,
-    /// Fly this block.
+    /// Run this block only.
     #[arg(long, value_name = "N", conflicts_with_all = ["shard", "pull"])]
     pub block: Option<u64>,
-    /// Fly every Nth block, beginning with I, which counts from 0.
+    /// Run every Nth block, beginning with block I; I counts from 0.
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<(u64, u64)>,
-    /// Share the blocks with other workers of the same folder: each takes what nobody has.
+    /// Share the blocks with other workers in the same folder: each takes a block that nobody else holds.
     #[arg(long)]
     pub pull: bool,
-    /// Number of missions at once; 0: one per core.
+    /// Number of missions run in parallel; 0: one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
 }
@@ -87,12 +87,12 @@ pub(crate) struct WorkArgs {
 pub(crate) struct CompareArgs {
     /// Folder of a campaign, or its results.parquet.
     pub first: PathBuf,
-    /// The other one.
+    /// Folder or results.parquet of the campaign to compare it with.
     pub second: PathBuf,
     /// Column to compare.
     #[arg(long, value_name = "METRIC", default_value = "success")]
     pub metric: String,
-    /// Column that makes groups, for example planner or scenario.
+    /// Column to group by, for example planner or scenario.
     #[arg(long, value_name = "COLUMN")]
     pub by: Option<String>,
     /// Print JSON.
@@ -100,14 +100,16 @@ pub(crate) struct CompareArgs {
     pub json: bool,
 }
 
-/// Core hours as seconds of one core.
+/// Parses core hours; returns core seconds.
 fn core_hours(text: &str) -> Result<f64, String> {
     let hours =
         text.strip_suffix("ch").and_then(|hours| hours.parse().ok()).filter(|hours: &f64| *hours >= 0.0);
-    hours.map(|hours| 3600.0 * hours).ok_or_else(|| "write core hours, as 5ch or 0.5ch".into())
+    hours.map(|hours| 3600.0 * hours).ok_or_else(|| "write core hours, for example 5ch or 0.5ch".into())
 }
 
 fn shard(text: &str) -> Result<(u64, u64), String> {
     let parts = text.split_once('/').and_then(|(at, of)| Some((at.parse().ok()?, of.parse().ok()?)));
-    parts.filter(|(at, of)| at < of).ok_or_else(|| "write I/N, as 0/3, 1/3 and 2/3 for three shards".into())
+    parts
+        .filter(|(at, of)| at < of)
+        .ok_or_else(|| "write I/N, for example 0/3, 1/3 and 2/3 for three shards".into())
 }

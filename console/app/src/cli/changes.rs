@@ -1,9 +1,9 @@
-//! What may be changed in a scenario.
+//! Changes to a scenario from the command line.
 
 use clap::Args;
 use scenario::Settings;
 
-/// What may be changed in a scenario from the command line.
+/// The changes to a scenario from the command line.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Changes {
     /// Planner to use instead of the scenario's.

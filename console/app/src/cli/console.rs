@@ -1,45 +1,47 @@
-//! The console and the replay of a past run.
+//! The options of the console and of the replay.
 
 use super::{Changes, LogsArg};
 use clap::Args;
 use interactive::{By, Drill, Options, Replay};
 use std::path::PathBuf;
 
-/// What shows the model: a terminal, a script or plain sentences.
+/// The output of the console: a terminal, a script's result or plain sentences.
 #[derive(Debug, Default, Args)]
 pub(crate) struct ScreenArgs {
-    /// Number of colours: none, 16, 256 or true (24 bit); default: that of config.toml, or what the terminal has.
+    /// Number of colours: none, 16, 256 or true (24 bit); default: the setting in config.toml, or what the terminal
+    /// supports.
     #[arg(long, value_name = "NUMBER", visible_alias = "color", value_parser = interactive::config::colours)]
     pub colour: Option<tui::Colours>,
     /// Run console commands from a file instead of the keyboard, without a terminal; exit code 1 if a line fails.
     #[arg(long, value_name = "FILE", conflicts_with = "plain")]
     pub script: Option<PathBuf>,
-    /// Print what changes as sentences, one a line, and read console commands from stdin: for screen readers and logs.
+    /// Print changes as sentences, one per line, and read console commands from stdin: for screen readers and logs.
     #[arg(long)]
     pub plain: bool,
-    /// Characters of the map and the charts; default: what the terminal's environment promises.
+    /// Character set of the map and the charts; default: chosen from the terminal's environment variables.
     #[arg(long, value_name = "SET")]
     pub glyphs: Option<GlyphSet>,
 }
 
 #[derive(Debug, Default, Args)]
 pub(crate) struct ConsoleArgs {
-    /// Scenario: a file, or the name of one in the folder `scenarios`; default: the demo.
+    /// Scenario file, or the name of a scenario in the folder `scenarios`; default: the demo.
     pub scenario: Option<PathBuf>,
     #[command(flatten)]
     pub changes: Changes,
     #[command(flatten)]
     pub logs: LogsArg,
-    /// Speed of the simulation at first: 0.25 to 64 times real time, or `max`; default: that of config.toml, or 1.
+    /// Initial speed of the simulation: 0.25 to 64 times real time, or `max`; default: the setting in config.toml, or
+    /// 1.
     #[arg(long, value_name = "FACTOR", value_parser = tui::Speed::parse)]
     pub speed: Option<tui::Speed>,
     #[command(flatten)]
     pub screen: ScreenArgs,
-    /// Look on at a run that another console has open, or at a past one: its folder, or its name in the logs folder. No order
-    /// can be given.
+    /// Watch a run that another console has open, or view a past run: its folder, or its name in the logs folder. No
+    /// orders can be given.
     #[arg(long, value_name = "RUN", conflicts_with_all = ["scenario", "Changes", "speed", "script", "drill"])]
     pub view: Option<PathBuf>,
-    /// Make a part of the console fail while the robot moves, to see that the run and the terminal survive it.
+    /// Make a part of the console fail while the robot moves, to test that the run and the terminal survive.
     #[arg(long, value_name = "PART", hide = true)]
     pub drill: Option<DrillArg>,
 }
@@ -48,12 +50,12 @@ pub(crate) struct ConsoleArgs {
 pub(crate) struct ReplayArgs {
     /// Run folder, its name in the logs folder, or `latest`.
     pub run: PathBuf,
-    /// Another run to compare it with.
+    /// Second run to compare with the first.
     #[arg(long, value_name = "RUN")]
     pub compare: Option<PathBuf>,
     #[command(flatten)]
     pub logs: LogsArg,
-    /// Speed at first: 0.25 to 64 times real time, or `max`.
+    /// Initial speed: 0.25 to 64 times real time, or `max`.
     #[arg(long, value_name = "FACTOR", value_parser = tui::Speed::parse)]
     pub speed: Option<tui::Speed>,
     #[command(flatten)]
@@ -68,16 +70,16 @@ impl From<ReplayArgs> for Options {
     }
 }
 
-/// Characters that the terminal's font has.
+/// A character set for the map and the charts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum GlyphSet {
-    /// Octants of Unicode 16, dots without gaps: terminal and font must have them
+    /// Unicode 16 octants: dots without gaps; need support by terminal and font
     Octant,
     /// Braille dots.
     Braille,
     /// Half blocks and letters.
     Half,
-    /// 7 bit only.
+    /// 7-bit ASCII only.
     Ascii,
 }
 
@@ -114,12 +116,12 @@ impl From<ConsoleArgs> for Options {
     }
 }
 
-/// A part of the console that fails on purpose.
+/// The part of the console to fail on purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum DrillArg {
-    /// The thread that draws panics.
+    /// The drawing thread panics.
     PanicScreen,
-    /// The thread that flies panics.
+    /// The engine thread panics.
     PanicEngine,
 }
 

@@ -1,4 +1,4 @@
-//! A mission: flown headless, planned, forecast.
+//! Options for running, planning and forecasting a mission.
 
 use super::{Changes, LogsArg};
 use clap::Args;
@@ -6,13 +6,13 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// Scenario: a file, or the name of one in the folder `scenarios`.
+    /// Scenario file, or the name of a scenario in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
     #[command(flatten)]
     pub logs: LogsArg,
-    /// Write neither journal nor recording.
+    /// Do not write a journal or a recording.
     #[arg(long)]
     pub no_record: bool,
     /// Hold planners to the console's real-time deadlines (for planner authors): a step that is not answered within 60 %
@@ -26,10 +26,10 @@ pub(crate) struct RunArgs {
     pub json: bool,
 }
 
-/// A planner in shadow of a run.
+/// Options for a planner in shadow.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ShadowArgs {
-    /// Fly this planner in shadow: it plans and commands beside the one that drives, and moves nothing.
+    /// Run this planner in shadow: it plans and commands beside the driving planner, but moves nothing.
     #[arg(long, value_name = "ID")]
     pub shadow: Option<String>,
     /// Set a parameter of the planner in shadow.
@@ -42,7 +42,7 @@ pub(crate) struct ShadowArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
-    /// Scenario: a file, or the name of one in the folder `scenarios`.
+    /// Scenario file, or the name of a scenario in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
@@ -62,7 +62,7 @@ pub(crate) struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct AccuracyArgs {
-    /// Scenario: a file, or the name of one in the folder `scenarios`.
+    /// Scenario file, or the name of a scenario in the folder `scenarios`.
     pub scenario: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
@@ -75,12 +75,12 @@ pub(crate) struct AccuracyArgs {
     /// Overwrite existing files.
     #[arg(long, requires = "svg")]
     pub force: bool,
-    /// Find the best places on the wall for this many stations, 3 to 32.
+    /// Find the best positions on the wall for this many stations, 3 to 32.
     #[arg(long, value_name = "N")]
     pub advise: Option<usize>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite() && *seconds > 0.0);
-    seconds.ok_or_else(|| "write seconds, more than 0".into())
+    seconds.ok_or_else(|| "write a time in seconds, more than 0".into())
 }

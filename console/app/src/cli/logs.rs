@@ -1,19 +1,19 @@
-//! Where runs are kept.
+//! The folder of the runs.
 
 use clap::Args;
 use planner_host::user_folder;
 use std::path::PathBuf;
 
-/// Where runs are kept.
+/// The option for the folder of the runs.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct LogsArg {
-    /// Folder that holds the runs; default: `logs` if there is such a folder here, else `$XDG_STATE_HOME/tankops/logs`.
+    /// Folder for runs; default: `logs` if it exists in the current folder, else `$XDG_STATE_HOME/tankops/logs`.
     #[arg(long, value_name = "DIR")]
     pub logs: Option<PathBuf>,
 }
 
 impl LogsArg {
-    /// The folder that holds the runs.
+    /// The folder of the runs.
     pub(crate) fn folder(&self) -> PathBuf {
         let here = PathBuf::from("logs");
         let of_user = || user_folder("XDG_STATE_HOME", ".local/state").map(|folder| folder.join("logs"));

@@ -1,4 +1,4 @@
-//! What `tankops locate` says to people.
+//! The text that `tankops locate` prints.
 
 use super::{figures, name_of};
 use crate::cli::LocateArgs;
@@ -8,13 +8,13 @@ use report::forecast::line_of_stations;
 use scenario::Scenario;
 use std::fmt::Write as _;
 
-/// A speed of sound that is less known than this, as a share, does not serve to correct ranges.
+/// If the speed of sound is less certain than this, as a share, it is not good enough to correct ranges.
 const DOUBTFUL_SCALE: f64 = 0.005;
 
-/// An error of the speed of sound of more standard deviations than this is worth a word.
+/// An error of the speed of sound is reported if it exceeds this many standard deviations.
 const SURE_SIGMAS: f64 = 4.0;
 
-/// Lines of a label and what it labels.
+/// Lines that each begin with a label.
 #[derive(Default)]
 struct Lines(String);
 
@@ -24,7 +24,7 @@ impl Lines {
         let _ = writeln!(self.0, "{label:<16} {}", value.as_ref());
     }
 
-    /// Several lines under one label.
+    /// Appends several lines under one label.
     fn lines(&mut self, label: &str, values: impl IntoIterator<Item = String>) {
         let mut label = label;
         for value in values {
@@ -33,7 +33,7 @@ impl Lines {
     }
 }
 
-/// The figures for people.
+/// The results as text for people.
 pub(super) fn human(
     args: &LocateArgs,
     scenario: &Scenario,
@@ -54,16 +54,16 @@ pub(super) fn human(
     text.line("fixes", format!("{fixes} of {} emissions{by_word}", tally.emissions));
     text.lines("sides", sides(scenario, doubts));
     if let Some(off_m) = start_off_m(scenario, tally) {
-        let note = "the track is wrong until three fixes in a row agree; correct the start";
+        let note = "the track is wrong until three consecutive fixes agree; correct the start";
         text.line(
             "start",
-            format!("the first fix lies {off_m:.2} m from robot.start_m of the scenario: {note}"),
+            format!("the first fix is {off_m:.2} m from robot.start_m of the scenario: {note}"),
         );
     }
     tally.failed.iter().for_each(|(why, count)| text.line("no fix", format!("{count} times: {why}")));
     for (id, count) in &tally.left_out {
         let name = name_of(scenario, *id);
-        text.line("left out", format!("station {name} from {count} fixes: its residual exceeded the gate"));
+        text.line("left out", format!("station {name} from {count} fixes: residual exceeded the gate"));
     }
     let metres = |[mean_m, most_m]: [f64; 2]| format!("{mean_m:.3} m mean, {most_m:.3} m maximum");
     let figures = [
@@ -82,7 +82,7 @@ pub(super) fn human(
 fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
     text.line("readings", format!("{shown}, {} rows of {}", survey.rows, survey.kind.word()));
     if let Some([first, last]) = &survey.dates {
-        text.line("time", format!("{first} to {last} (UTC); mission time counts from the first"));
+        text.line("time", format!("{first} to {last} (UTC); mission time counts from the first reading"));
     }
     if survey.bad > 0 {
         text.line("left out", format!("{} bad rows", survey.bad));
@@ -95,12 +95,15 @@ fn of_file(text: &mut Lines, survey: &Survey, shown: &str) {
         text.line(
             "motion",
             format!(
-                "not used: {contradicting} of {sound} fixes contradict it; check the sign and the unit of forward_m, sideways_m and \
-                 turn_rad, the robot's start heading, and the stations"
+                "not used: {contradicting} of {sound} fixes contradict it; check the sign and unit of \
+                 forward_m, sideways_m and turn_rad, the robot's start heading, and the stations"
             ),
         );
     } else if !survey.has_motion {
-        text.line("motion", "not measured; assumed up to the robot's maximum speed in any direction");
+        text.line(
+            "motion",
+            "not measured; the robot is assumed to move in any direction at up to its maximum speed",
+        );
     }
 }
 
@@ -128,11 +131,11 @@ fn of_sound(
         );
     }
     if found.range_scale.is_some_and(|[_, sigma]| sigma > DOUBTFUL_SCALE) {
-        text.line("", "poorly known: the robot has to come near stations and go far from them");
+        text.line("", "poorly determined: the robot must pass both close to stations and far from them");
     }
 }
 
-/// Errors of sound and stations that the residuals prove.
+/// Errors of the speed of sound, the clocks and the stations that the residuals prove.
 fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(scale) = survey.verdict.scale.filter(|scale| scale.is_proven) {
@@ -142,15 +145,15 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
         let fits =
             speed.map_or_else(String::new, |speed| format!("; a speed of sound of {speed:.1} m/s fits"));
         lines.push(format!(
-            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of sound, or find it with \
-             --find sound-speed"
+            "all ranges are {long} by {percent:.2} ± {sigma:.2} %{fits}: no fix is ok; correct the speed of \
+             sound, or estimate it with --find sound-speed"
         ));
     }
     if let Some(offset) = survey.verdict.offset_m.filter(|offset| offset.is_proven) {
         let long = if offset.value > 0.0 { "too long" } else { "too short" };
         lines.push(format!(
-            "all ranges are {long} by {:.3} ± {:.3} m: no fix is ok; correct the clocks or the height of the sensors, or find the \
-             offset with --find clock-offset",
+            "all ranges are {long} by {:.3} ± {:.3} m: no fix is ok; correct the clocks or the height of the \
+             sensors, or estimate the offset with --find clock-offset",
             offset.value.abs(),
             offset.sigma
         ));
@@ -166,8 +169,8 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
     for (id, wrong) in survey.verdict.stations.iter().filter(|(_, wrong)| wrong.is_proven) {
         let long = if wrong.value > 0.0 { "too long" } else { "too short" };
         lines.push(format!(
-            "the ranges of station {} are {long} by {:.3} ± {:.3} m: no fix is ok; correct its place in the scenario, its clock or its \
-             threshold, or leave out its rows",
+            "the ranges of station {} are {long} by {:.3} ± {:.3} m: no fix is ok; correct its position in the \
+             scenario, its clock or its threshold, or leave out its rows",
             name_of(scenario, id.0),
             wrong.value.abs(),
             wrong.sigma
@@ -176,13 +179,13 @@ fn residuals(args: &LocateArgs, scenario: &Scenario, survey: &Survey) -> Vec<Str
     lines
 }
 
-/// Stations that were read several times in one emission, and scatter too much for repetitions.
+/// Stations with several readings in one emission that scatter too widely to be repetitions.
 fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let repeats = &survey.repeats;
     if repeats.are_narrow() {
         return vec![format!(
-            "the readings of one station in one emission scatter {:.2} times as far as the noise of the scenario: they count as one \
-             reading",
+            "readings of one station in one emission have {:.2} times the scatter of the noise in the scenario: \
+             they count as one reading",
             repeats.factor()
         )];
     }
@@ -190,7 +193,7 @@ fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
         return Vec::new();
     };
     let mut lines = vec![format!(
-        "{} has {} readings at {:.3} s, {:.0} mm apart: repetitions or another emission?",
+        "{} has {} readings at {:.3} s, {:.0} mm apart: repetitions, or separate emissions?",
         name_of(scenario, worst.station.0),
         worst.count,
         worst.t_s - survey.first_s,
@@ -199,17 +202,19 @@ fn repetitions(scenario: &Scenario, survey: &Survey) -> Vec<String> {
     let emissions = repeats.emissions;
     lines.push(if repeats.are_wide() {
         format!(
-            "in {emissions} emissions readings of one station scatter {:.1} times as far as the noise of the scenario: none of their \
-             fixes is ok; give each emission its own time, or its name in a column `emission`",
+            "in {emissions} emissions, readings of one station have {:.1} times the scatter of the noise in the \
+             scenario: none of their fixes is ok; give each emission its own time, or its own name in a column \
+             `emission`",
             repeats.factor()
         )
     } else {
-        format!("{} of {emissions} emissions with several readings of a station: their fixes are not ok", repeats.wide)
+        format!("{} of {emissions} emissions with several readings of a station scatter too widely: their fixes \
+                 are not ok", repeats.wide)
     });
     lines
 }
 
-/// Readings that no place in the tank explains.
+/// Readings that fit no position in the tank.
 fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     let all: u64 = doubts.impossible.values().map(|refused| refused.count).sum();
     if all == 0 {
@@ -223,14 +228,14 @@ fn impossible(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
         let range = if refused.range_m.is_finite() {
             format!("{:.3} m", refused.range_m)
         } else {
-            "no number".into()
+            "not a number".into()
         };
         format!("station {name}: {range} at {:.3} s{times}; at most {:.2} m", refused.t_s, refused.most_m)
     }));
     lines
 }
 
-/// What decides between fixes and their mirror images.
+/// How the choice between fixes and their mirror images was made.
 fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     let &Doubts { sides_by_walls, sides_by_track, sides_open, .. } = doubts;
     let all = sides_by_walls + sides_by_track + sides_open;
@@ -241,15 +246,15 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
         scenario.sim.world.stations.iter().filter(|station| doubts.mirrored_by.contains(&station.id.0));
     let line = line_of_stations(&stations.cloned().collect::<Vec<_>>());
     let mut lines =
-        vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits as well")];
+        vec![format!("{all} fixes have a mirror image on the other side of {line}, which fits equally well")];
     if sides_by_walls > 0 {
-        lines.push(format!("{sides_by_walls} decided by the wall: the other place lies behind it"));
+        lines.push(format!("{sides_by_walls} decided by the wall: the other position is behind it"));
     }
     if sides_by_track > 0 {
         lines.push(format!("{sides_by_track} decided by robot.start_m and the track from there"));
     }
     if sides_open > 0 {
-        let start = if doubts.contradicts_start { "robot.start_m contradicts both places; " } else { "" };
+        let start = if doubts.contradicts_start { "robot.start_m contradicts both positions; " } else { "" };
         lines.push(format!(
             "{sides_open} cannot be decided and are not ok: {start}correct robot.start_m, or add a station off the line"
         ));
@@ -257,30 +262,30 @@ fn sides(scenario: &Scenario, doubts: &Doubts) -> Vec<String> {
     lines
 }
 
-/// When the tool was on.
+/// The periods in which the tool was on.
 fn tool(survey: &Survey) -> String {
     let Some(stretches) = &survey.tool_on_s else {
-        return "not known when it was on, so no coverage is stated (add a column tool_on, or --tool-on FILE)"
+        return "unknown when it was on, so no coverage is stated (add a column tool_on, or use --tool-on FILE)"
             .into();
     };
     if stretches.is_empty() {
-        return "never on, so no floor is scanned".into();
+        return "never on, so no floor was scanned".into();
     }
     let on_s: f64 = stretches.iter().map(|[from_s, to_s]| to_s - from_s).sum();
     let heading = if survey.has_motion {
         ""
     } else {
-        "; without measured motion the heading is not known, so that no floor counts"
+        "; without measured motion the heading is unknown, so no floor counts as scanned"
     };
     let stretches = match stretches.len() {
         1 => "1 stretch".to_owned(),
-        n => format!("{n} stretches"),
+        n => format!("{n} periods"),
     };
     format!("on for {on_s:.1} s in {stretches}{heading}")
 }
 
-/// How far the first fix is from the start that the scenario states, metres, if that is more than both can be wrong and the robot
-/// can have come.
+/// The distance in metres of the first fix from the start in the scenario, if it exceeds what the errors of both and
+/// the robot's motion can explain.
 fn start_off_m(scenario: &Scenario, tally: &Tally) -> Option<f64> {
     let (first, error_95_m) = tally.first_fix_m.zip(tally.first_fix_error_95_m)?;
     let mission = &scenario.mission;

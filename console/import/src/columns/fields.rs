@@ -1,11 +1,11 @@
-//! The fields of a list of columns, and the numbers in them.
+//! The fields of a list of columns, and parsing of their numbers.
 
 use super::marks::Marks;
 use csv::StringRecord;
 
-/// So much of the name of a field is repeated in a message, characters.
+/// The longest part of a field name that messages repeat, in characters.
 const LONGEST_NAME: usize = 40;
-/// Units of length with their metres.
+/// Units of length, with their size in metres.
 const UNITS: [(&str, f64); 7] = [
     ("m", 1.0),
     ("cm", 1e-2),
@@ -16,7 +16,7 @@ const UNITS: [(&str, f64); 7] = [
     ("feet", 0.3048),
 ];
 
-/// A length that a list states of each column.
+/// A length that a list gives for each column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     X,
@@ -24,28 +24,29 @@ pub(super) enum Quantity {
     Radius,
 }
 
-/// Where the fields stand, with the metres to the unit of each.
+/// The fields of a list: their positions and units.
 pub(super) struct Fields {
     names: Vec<String>,
-    /// By [`Quantity`].
+    /// The position and the unit in metres, indexed by [`Quantity`].
     lengths: [(usize, f64); 3],
     name: Option<usize>,
-    /// Fields that say nothing here.
+    /// The names of unused fields.
     pub unused: Vec<String>,
 }
 
-/// A field, and what is wrong with it.
+/// A result whose error is a field and its problem.
 type Wrong<T> = Result<T, (String, String)>;
 
 impl Fields {
-    /// The fields that the first line names.
+    /// Interprets the first line of a list.
     pub(super) fn new(header: &StringRecord) -> Wrong<Self> {
         let names: Vec<String> =
             header.iter().map(|name| name.chars().take(LONGEST_NAME).collect()).collect();
         let (mut lengths, mut name, mut unused): ([Option<(usize, f64)>; 3], _, _) =
             ([None; 3], None, Vec::new());
         for (index, written) in names.iter().enumerate() {
-            let twice = || (written.clone(), "says what another field says; keep one of them".to_owned());
+            let twice =
+                || (written.clone(), "has the same meaning as another field; remove one of them".to_owned());
             match meaning(written).map_err(|what| (written.clone(), what))? {
                 Meaning::Length(quantity, unit_m) => {
                     if lengths[quantity as usize].replace((index, unit_m)).is_some() {
@@ -61,7 +62,7 @@ impl Fields {
         let found = |quantity: Quantity, field: &str| {
             lengths[quantity as usize].ok_or_else(|| {
                 let what =
-                    "missing in the first line, as in x_m,y_m,radius_m (also diameter; mm, cm, in, ft)";
+                    "missing in the first line; write for example x_m,y_m,radius_m (also diameter; mm, cm, in, ft)";
                 let there = format!("{what}; the fields are: {}", names.join(", "));
                 (field.to_owned(), there.chars().take(400).collect())
             })
@@ -71,17 +72,17 @@ impl Fields {
         Ok(Self { names, lengths, name, unused })
     }
 
-    /// What the first line calls a length.
+    /// The name of the field for a quantity in the first line.
     pub(super) fn name_of(&self, quantity: Quantity) -> &str {
         &self.names[self.lengths[quantity as usize].0]
     }
 
-    /// The name of a column, if there is a field for it.
+    /// The name of a column, if there is a name field.
     pub(super) fn name<'a>(&self, record: &'a StringRecord) -> Option<&'a str> {
         record.get(self.name?)
     }
 
-    /// A length of a column, metres; its number is shown to the marks of the list.
+    /// A quantity of a column in metres; also passes the number to `marks`.
     pub(super) fn metres(
         &self,
         record: &StringRecord,
@@ -102,14 +103,14 @@ impl Fields {
     }
 }
 
-/// What a field means.
+/// The meaning of a field.
 enum Meaning {
     Length(Quantity, f64),
     Name,
     Other,
 }
 
-/// What the name of a field means: a word and a unit, as `x_m`, `X [mm]` or `Diameter in cm`.
+/// Interprets the name of a field: a word and a unit, as in `x_m`, `X [mm]` or `Diameter in cm`.
 fn meaning(name: &str) -> Result<Meaning, String> {
     let lower = name.to_lowercase();
     let words: Vec<&str> =
@@ -124,11 +125,11 @@ fn meaning(name: &str) -> Result<Meaning, String> {
     };
     let unit = match words[1..] {
         [unit] | ["in", unit] => unit,
-        [] => return Err("names no unit; write it behind the name, as in x_m or x [mm]".into()),
+        [] => return Err("has no unit; append one, as in x_m or x [mm]".into()),
         _ => return Ok(Meaning::Other),
     };
     let unit_m = UNITS.iter().find(|(known, _)| *known == unit).map(|(_, unit_m)| unit_m * share);
     unit_m
         .map(|unit_m| Meaning::Length(quantity, unit_m))
-        .ok_or_else(|| format!("`{unit}` is not a known unit of length; write m, cm, mm, in or ft"))
+        .ok_or_else(|| format!("`{unit}` is not a known unit of length; use m, cm, mm, in or ft"))
 }

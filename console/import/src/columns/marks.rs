@@ -1,9 +1,11 @@
-//! Which mark a list writes in its numbers: a decimal point or a comma, and whether it may separate thousands instead.
+//! Determines whether the numbers of a list use a decimal point or a decimal comma, and whether this mark might
+//! separate thousands instead.
 
-/// Millimetres to the metre: nobody measures a column to the micrometre, so three digits behind a mark are thousands there.
+/// One millimetre in metres. Columns are not measured to the micrometre, so three digits after a mark in millimetres
+/// may be a group of thousands.
 const MILLIMETRE_M: f64 = 1e-3;
 
-/// A number with a mark, and where it stands.
+/// A number with a mark, and its position.
 #[derive(Debug, Clone)]
 struct Seen {
     line: u64,
@@ -11,21 +13,21 @@ struct Seen {
     written: String,
 }
 
-/// The marks of the numbers of a list so far.
+/// The marks seen so far in the numbers of a list.
 #[derive(Debug, Default)]
 pub(super) struct Marks {
-    /// The line that is being read.
+    /// The current line.
     pub line: u64,
     point: Option<Seen>,
     comma: Option<Seen>,
-    /// The first number in millimetres that may have a separator of thousands,
+    /// The first number in millimetres whose mark may be a thousands separator.
     grouped: Option<Seen>,
-    /// and whether another number shows that the mark is one of decimals.
+    /// Whether another number shows that the mark is a decimal mark.
     has_decimals: bool,
 }
 
 impl Marks {
-    /// Takes in a number as it is written.
+    /// Inspects a number as written.
     pub(super) fn see(&mut self, written: &str, field: &str, unit_m: f64) {
         let is_number =
             !written.is_empty() && written.chars().all(|c| c.is_ascii_digit() || "+-.,".contains(c));
@@ -43,7 +45,7 @@ impl Marks {
         }
     }
 
-    /// Line, field and reason if it is not clear what the numbers mean.
+    /// The line, field and reason if the meaning of the numbers is ambiguous.
     pub(super) fn doubt(self) -> Option<(u64, String, String)> {
         if let (Some(point), Some(comma)) = (&self.point, &self.comma) {
             let [first, second] = if (point.line, &point.field) <= (comma.line, &comma.field) {
@@ -52,7 +54,7 @@ impl Marks {
                 [comma, point]
             };
             let what = format!(
-                "`{}`, and `{}` in line {}: two decimal marks in one list; write one of them throughout, and no \
+                "`{}`, and `{}` in line {}: two decimal marks in one list; use only one of them, and no \
                  thousands separators",
                 second.written, first.written, first.line
             );
@@ -64,7 +66,7 @@ impl Marks {
             written.replace(['.', ','], ""),
         ];
         let what =
-            format!("`{written}` can mean {short} mm or {long} mm; write it without thousands separators");
+            format!("`{written}` could be {short} mm or {long} mm; write it without thousands separators");
         Some((line, field, what))
     }
 }
@@ -92,8 +94,8 @@ mod tests {
 
     #[test]
     fn thousands_are_suspected_where_all_numbers_in_millimetres_look_like_it() {
-        assert!(doubt(&["500", "4.000", "-12.500"], 1e-3).unwrap().contains("can mean 4 mm or 4000 mm"));
-        assert!(doubt(&["4,000"], 1e-3).unwrap().contains("can mean 4 mm or 4000 mm"));
+        assert!(doubt(&["500", "4.000", "-12.500"], 1e-3).unwrap().contains("could be 4 mm or 4000 mm"));
+        assert!(doubt(&["4,000"], 1e-3).unwrap().contains("could be 4 mm or 4000 mm"));
         for clear in [["4.000", "1.5"], ["4.000", "0.250"], ["4.000", "2500.125"]] {
             assert_eq!(doubt(&clear, 1e-3), None, "{clear:?}");
         }

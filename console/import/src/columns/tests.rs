@@ -49,10 +49,10 @@ fn all_bad_rows_are_named() {
         read_bytes(text.as_bytes()).unwrap_err().lines().collect::<Vec<_>>(),
         [
             "c.csv, line 3, x_m: `x` is not a number; write it without a unit and without thousands separators",
-            "c.csv, line 4: 3 cells, but the first line names 4",
-            "c.csv, line 5, radius_m: -1 m for the radius; it must be greater than 0",
-            "c.csv, line 5, name: `A` occurs twice",
-            "c.csv, line 6, x_m: (30, 2) lies outside the tank of 10 m; x and y count from its centre",
+            "c.csv, line 4: 3 cells, but the first line has 4",
+            "c.csv, line 5, radius_m: the radius is -1 m; it must be greater than 0",
+            "c.csv, line 5, name: the name `A` is used twice",
+            "c.csv, line 6, x_m: (30, 2) is outside the tank of radius 10 m; x and y are measured from its centre",
         ]
     );
 }
@@ -61,22 +61,19 @@ fn all_bad_rows_are_named() {
 fn errors_name_line_and_field() {
     let message = |text: &str| read_bytes(text.as_bytes()).unwrap_err();
     let header = "x_m,y_m,radius_m\n";
-    assert_eq!(
-        message("x,y_m\n"),
-        "c.csv, line 1, x: names no unit; write it behind the name, as in x_m or x [mm]"
-    );
+    assert_eq!(message("x,y_m\n"), "c.csv, line 1, x: has no unit; append one, as in x_m or x [mm]");
     assert_eq!(
         message("# a\nx_m,y [furlong],radius_m\n"),
-        "c.csv, line 2, y [furlong]: `furlong` is not a known unit of length; write m, cm, mm, in or ft"
+        "c.csv, line 2, y [furlong]: `furlong` is not a known unit of length; use m, cm, mm, in or ft"
     );
     assert_eq!(
         message("x_m,y_m,Nr\n1,2,3\n"),
-        "c.csv, line 1, radius_m: missing in the first line, as in x_m,y_m,radius_m (also diameter; mm, cm, in, ft); the \
-         fields are: x_m, y_m, Nr"
+        "c.csv, line 1, radius_m: missing in the first line; write for example x_m,y_m,radius_m (also diameter; mm, cm, in, ft); \
+         the fields are: x_m, y_m, Nr"
     );
     assert_eq!(
         message("x_m,y_m,radius_m,diameter_mm\n"),
-        "c.csv, line 1, diameter_mm: says what another field says; keep one of them"
+        "c.csv, line 1, diameter_mm: has the same meaning as another field; remove one of them"
     );
     assert_eq!(
         message(&format!("{header}1,2,0.3\n1,b,0.3\n")),
@@ -88,19 +85,21 @@ fn errors_name_line_and_field() {
     );
     assert_eq!(
         message(&format!("{header}1,2,0\n")),
-        "c.csv, line 2, radius_m: 0 m for the radius; it must be greater than 0"
+        "c.csv, line 2, radius_m: the radius is 0 m; it must be greater than 0"
     );
     assert_eq!(
         message(&format!("{header}11,2,0.3\n")),
-        "c.csv, line 2, x_m: (11, 2) lies outside the tank of 10 m; x and y count from its centre"
+        "c.csv, line 2, x_m: (11, 2) is outside the tank of radius 10 m; x and y are measured from its centre"
     );
-    assert_eq!(message(&format!("{header}1,2\n")), "c.csv, line 2: 2 cells, but the first line names 3");
+    assert_eq!(message(&format!("{header}1,2\n")), "c.csv, line 2: 2 cells, but the first line has 3");
     let far = "# a\r\nx_m,y_m,radius_m\r\n1,1,0.2\r\n# b\r\n\r\n2,b,0.2";
     for text in [far.to_owned(), far.replace('\r', ""), far.replace('\n', "")] {
         assert!(message(&text).starts_with("c.csv, line 6, y_m: "), "{}", message(&text));
     }
-    assert_eq!(message(header), "c.csv: no columns: below the first line there are no rows");
-    assert!(message(&format!("{header}1,1,\u{0}0.2")).contains("line 2: not a text: it holds a byte 0"));
+    assert_eq!(message(header), "c.csv: no columns: the list has no rows below the first line");
+    assert!(
+        message(&format!("{header}1,1,\u{0}0.2")).contains("line 2: not a text file: contains a zero byte")
+    );
 }
 
 #[test]
@@ -108,8 +107,8 @@ fn thousands_beside_decimals_are_refused_with_both_lines() {
     let text = b"name;x_mm;y_mm;diameter_mm\nA;4.000;250,5;500\nB;-4.000;1.250;500,0\n";
     assert_eq!(
         read_bytes(text).unwrap_err(),
-        "c.csv, line 2, y_mm: `250,5`, and `4.000` in line 2: two decimal marks in one list; write one of them \
-         throughout, and no thousands separators"
+        "c.csv, line 2, y_mm: `250,5`, and `4.000` in line 2: two decimal marks in one list; use only one of \
+         them, and no thousands separators"
     );
 }
 
@@ -118,6 +117,6 @@ fn columns_on_one_spot_are_named() {
     let text = b"name,x_m,y_m,radius_m\nA,1,1,0.3\nB,4,1,0.3\nC,1.004,1,0.3\nD,1.5,1,0.3\n";
     assert_eq!(
         read_bytes(text).unwrap().notes,
-        ["`C` (line 4) stands in `A` (line 2): their centres are 4 mm apart"]
+        ["`C` (line 4) overlaps `A` (line 2): their centres are 4 mm apart"]
     );
 }

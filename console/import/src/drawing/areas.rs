@@ -1,33 +1,33 @@
-//! Closed outlines: the shell, and what stands on the floor.
+//! Closed outlines: the shell, and objects on the floor.
 
 use super::{entities::Outline, rings};
 use crate::plan::{MOST_CORNERS, hull, round};
 use std::f64::consts::{PI, TAU};
 use world::{Boundary, Point, Shape, Vector, shape::ring_area_m2};
 
-/// Both sides of a shell are drawn no farther apart than this, metres.
+/// The largest distance in metres between the two drawn sides of a shell.
 const PLATE_M: f64 = 0.25;
-/// A shell of many corners loses some where no floor is lost beyond one of these, metres.
+/// Tolerances in metres for the floor that may be lost by removing corners of the shell, tried in this order.
 const TOLERANCES_M: [f64; 4] = [1e-3, 2e-3, 5e-3, 1e-2];
-/// Discs nearer to each other than this, in place and size, are one that is drawn twice, metres.
+/// Discs whose positions and radii differ by less than this, in metres, are one disc drawn twice.
 const TWICE_M: f64 = 5e-3;
-/// Outlines of a smaller radius than this enclose nothing, metres.
+/// Outlines of a smaller radius than this, in metres, enclose nothing.
 const SMALLEST_M: f64 = 1e-3;
-/// Corners of the polygon around the tip of a wide line.
+/// The number of corners of the polygon that replaces the round tip of a wide line.
 const N_TIP: usize = 16;
 
 /// A closed outline.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Area {
-    /// Its corners; none if it is drawn as a circle.
+    /// The corners; empty for a circle.
     points: Vec<Point>,
-    /// Centre, least and largest radius, if it is round.
+    /// The centre, the smallest and the largest radius, if the outline is round.
     round: Option<(Point, f64, f64)>,
-    /// Half the width of the line, metres.
+    /// Half the width of the line in metres.
     half_width_m: f64,
 }
 
-/// The closed outlines among some, and the lines that close none.
+/// Finds the closed outlines; also returns the lines that do not close an outline.
 pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, Vec<Vec<Point>>) {
     let (mut areas, mut chains) = (Vec::new(), Vec::new());
     for outline in outlines {
@@ -44,7 +44,7 @@ pub(super) fn areas(outlines: impl Iterator<Item = Outline>) -> (Vec<Area>, Vec<
     }
     let (rings, open) = rings::closed(chains);
     areas.extend(rings.into_iter().map(|ring| Area::new(ring, 0.0)));
-    // What encloses nothing is not an outline.
+    // Remove outlines that enclose nothing.
     areas.retain(|area| area.size_m() + area.half_width_m > SMALLEST_M);
     (areas, open)
 }
@@ -54,12 +54,12 @@ impl Area {
         Self { round: round(&points), points, half_width_m }
     }
 
-    /// Its corners; none of a circle.
+    /// The corners; empty for a circle.
     pub(super) fn corners(&self) -> &[Point] {
         &self.points
     }
 
-    /// Larger extent, metres.
+    /// The larger extent in metres.
     pub(super) fn across_m(&self) -> f64 {
         let of_corners = || {
             let (low, high) = world::shape::bounds_of(&self.points);
@@ -68,7 +68,7 @@ impl Area {
         self.round.map_or_else(of_corners, |(_, _, largest_m)| 2.0 * largest_m)
     }
 
-    /// Radius of a circle as large as its inner side, metres.
+    /// The radius in metres of a circle with the same area as the inner side.
     fn size_m(&self) -> f64 {
         let middle_m = self
             .round
@@ -76,7 +76,7 @@ impl Area {
         middle_m - self.half_width_m
     }
 
-    /// As a convex shape, and whether that added anything.
+    /// The convex shape of the area, and whether it is larger than the area.
     pub(super) fn convex(&self) -> (Shape, bool) {
         if let Some((center, _, largest_m)) = self.round {
             return (Shape::Disc { center, radius_m: largest_m + self.half_width_m }, false);
@@ -95,7 +95,8 @@ impl Area {
     }
 }
 
-/// A convex polygon around another of many corners: its sides touch that one in evenly spread directions.
+/// A convex polygon with fewer corners that contains the given one. Its sides touch the given polygon in evenly spread
+/// directions.
 fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
     const N_SIDES: usize = 96;
     if ring.len() <= MOST_CORNERS {
@@ -114,7 +115,7 @@ fn of_few_corners(ring: Vec<Point>) -> Vec<Point> {
     hull(&(0..N_SIDES).map(corner).collect::<Vec<_>>())
 }
 
-/// Convex shapes of all areas, each once, and the numbers, from 1, of those that were not convex.
+/// The convex shapes of all areas without duplicates, and the numbers, from 1, of the shapes that were not convex.
 pub(super) fn shapes(areas: &[Area]) -> (Vec<Shape>, Vec<usize>) {
     let (mut shapes, mut grown): (Vec<Shape>, Vec<usize>) = (Vec::new(), Vec::new());
     for area in areas {
@@ -127,7 +128,7 @@ pub(super) fn shapes(areas: &[Area]) -> (Vec<Shape>, Vec<usize>) {
     (shapes, grown)
 }
 
-/// Whether two shapes are one that is drawn twice, as a column and its hatching.
+/// Whether two shapes are the same object drawn twice, for example a column and its hatching.
 fn is_twice(one: &Shape, other: &Shape) -> bool {
     match (one, other) {
         (Shape::Disc { center: a, radius_m: r }, Shape::Disc { center: b, radius_m: s }) => {
@@ -137,7 +138,7 @@ fn is_twice(one: &Shape, other: &Shape) -> bool {
     }
 }
 
-/// The shell among some areas: the largest, or the inner side if both sides are drawn. Gives the rest, too.
+/// Finds the shell: the largest area, or the inner side if both sides are drawn. Also returns the remaining areas.
 pub(super) fn shell(mut areas: Vec<Area>, notes: &mut Vec<String>) -> Option<(Area, Vec<Area>)> {
     areas.sort_by(|a, b| b.size_m().total_cmp(&a.size_m()));
     let largest_m = areas.first()?.size_m();
@@ -145,22 +146,23 @@ pub(super) fn shell(mut areas: Vec<Area>, notes: &mut Vec<String>) -> Option<(Ar
     let rest = areas.split_off(n_sides);
     if n_sides > 1 {
         notes.push(format!(
-            "SHELL: {n_sides} outlines within {PLATE_M} m of each other; the innermost is the shell"
+            "SHELL: {n_sides} outlines within {PLATE_M} m of each other; the innermost was taken as the shell"
         ));
     }
     Some((areas.pop()?, rest))
 }
 
-/// The floor within the shell, and its centre if it is round. Corners beyond [`MOST_CORNERS`] are spared where that loses
-/// hardly any floor; what is still too many is for the reader of scenarios to refuse.
+/// The floor inside the shell, and its centre if it is round. If there are more than [`MOST_CORNERS`] corners, some are
+/// removed where this loses hardly any floor. The scenario reader refuses a shell that still has too many.
 pub(super) fn boundary(shell: &Area, notes: &mut Vec<String>) -> (Boundary, Option<Point>) {
     if let Some((center, least_m, _)) = shell.round {
         return (Boundary::Circle { radius_m: least_m - shell.half_width_m }, Some(center));
     }
     if shell.half_width_m > 0.0 {
         let width_m = 2.0 * shell.half_width_m;
-        notes
-            .push(format!("SHELL: drawn {width_m:.3} m wide; the floor was taken to the middle of the line"));
+        notes.push(format!(
+            "SHELL: the line is {width_m:.3} m wide; the floor was taken to extend to the middle of the line"
+        ));
     }
     let mut ring = shell.points.clone();
     if ring_area_m2(&ring) < 0.0 {
@@ -175,15 +177,16 @@ pub(super) fn boundary(shell: &Area, notes: &mut Vec<String>) -> (Boundary, Opti
     let least = spared.iter().find(|(vertices, _)| fits(vertices)).unwrap_or(&spared[spared.len() - 1]);
     let (vertices, lost_m) = least.clone();
     notes.push(format!(
-        "SHELL: {n} corners; {} of them were kept, by which at most {lost_m} m of floor beside the shell are lost",
+        "SHELL: {n} corners were reduced to {}; this loses at most {lost_m} m of floor along the shell",
         vertices.len()
     ));
     (Boundary::Polygon { vertices }, None)
 }
 
-/// A counter-clockwise ring without corners whose chord stays on the floor and within a tolerance of them.
+/// Removes corners of a counter-clockwise ring if the chord that replaces them stays on the floor and within a
+/// tolerance.
 fn thinned(ring: &[Point], tolerance_m: f64) -> Vec<Point> {
-    /// Corners that one chord may replace.
+    /// The largest number of corners that one chord may replace.
     const LONGEST: usize = 1000;
     let n = ring.len();
     let mut kept = Vec::new();

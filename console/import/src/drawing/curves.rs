@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 use world::{Point, Vector};
 
-/// Longest arc between two points of a curve, radians.
+/// The largest angle between two points of a curve, in radians.
 const STEP_RAD: f64 = 0.05;
-/// Points for each stretch of a spline between two knots.
+/// The number of points for each stretch of a spline between two knots.
 const SPLINE_POINTS: usize = 12;
-/// Points of a spline at most.
+/// The largest number of points of a spline.
 const SPLINE_MOST: usize = 20_000;
 
-/// Points of an arc counter-clockwise, angles in degrees.
+/// Points of an arc, counter-clockwise; angles in degrees.
 pub(super) fn arc(center: Point, radius: f64, [from_deg, to_deg]: [f64; 2]) -> Vec<Point> {
     let from = from_deg.to_radians();
     let sweep = (to_deg - from_deg).rem_euclid(360.0).to_radians();
@@ -27,7 +27,7 @@ pub(super) fn along_arc(center: Point, radius: f64, from: f64, sweep: f64) -> Ve
     (0..=n).map(point).collect()
 }
 
-/// Points of a polyline; a bulge is the tangent of a quarter of the arc to the next vertex.
+/// Points of a polyline. A bulge is the tangent of a quarter of the arc's angle to the next vertex.
 pub(super) fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
     let n = vertices.len();
     let mut points = Vec::new();
@@ -49,8 +49,8 @@ pub(super) fn chain(vertices: &[(Point, f64)], is_closed: bool) -> Vec<Point> {
     points
 }
 
-/// Points of a part of an ellipse, by its centre, its long half axis, the share of the short one, and parameters in radians;
-/// and whether it is all of it, then without the first point.
+/// Points of an elliptic arc, given by its centre, long half axis, ratio of the half axes, and parameters in radians.
+/// Also returns whether it is a whole ellipse; then the first point is left out.
 pub(super) fn ellipse(center: Point, long: Vector, share: f64, [from, to]: [f64; 2]) -> (Vec<Point>, bool) {
     let short = Vector::new(-long.y, long.x) * share;
     let sweep = if to > from { (to - from).min(TAU) } else { (to - from).rem_euclid(TAU) };
@@ -65,11 +65,11 @@ pub(super) struct Spline {
     pub degree: usize,
     pub knots: Vec<f64>,
     pub controls: Vec<Point>,
-    /// As many as there are controls, or none if all are 1.
+    /// One weight per control point, or empty if all are 1.
     pub weights: Vec<f64>,
 }
 
-/// Points of a B-spline (de Boor's algorithm); none if its numbers do not fit together.
+/// Points of a B-spline (de Boor's algorithm); empty if its numbers are inconsistent.
 pub(super) fn spline(spline: &Spline) -> Option<Vec<Point>> {
     let Spline { degree, knots, controls, weights } = spline;
     let (degree, n) = (*degree, controls.len());
@@ -108,8 +108,8 @@ pub(super) fn spline(spline: &Spline) -> Option<Vec<Point>> {
     (points.len() > 1 && points.iter().all(|p| p.x.is_finite() && p.y.is_finite())).then_some(points)
 }
 
-/// Points of a smooth curve through some points (Catmull and Rom): drawings that state no more leave the curve to the
-/// program that shows them.
+/// Points of a smooth curve through given points (Catmull–Rom). Drawings that state only these points leave the curve
+/// to the program that displays them.
 pub(super) fn through(points: &[Point]) -> Vec<Point> {
     let n = points.len();
     if n < 3 || n * SPLINE_POINTS > SPLINE_MOST {

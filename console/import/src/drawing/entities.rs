@@ -1,4 +1,4 @@
-//! What a drawing holds, in metres and with its blocks taken apart.
+//! The entities of a drawing, in metres, with all blocks expanded.
 
 use super::{
     curves::{along_arc, arc, chain, ellipse, spline, through},
@@ -9,47 +9,49 @@ use nalgebra::{Affine2, Rotation2, Translation2};
 use std::{collections::HashMap, f64::consts::TAU};
 use world::{Point, Vector};
 
-/// Blocks within blocks are followed this far.
+/// The deepest nesting of blocks that is expanded.
 const DEEPEST: usize = 16;
-/// Entities and insertions that are looked at, at most: a small file can insert blocks within blocks without end.
+/// The largest number of entities and insertions that are processed. Nested insertions can make even a small file
+/// expand without end.
 pub(super) const MOST: usize = 1_000_000;
 
-/// An outline, metres.
+/// An outline in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Outline {
     Circle { center: Point, radius_m: f64 },
     Chain { points: Vec<Point>, is_closed: bool, width_m: f64 },
 }
 
-/// An entity, with its outlines: none if it has none that can be used.
+/// An entity with its outlines; empty if it has no usable outlines.
 pub(super) struct Drawn {
     pub layer: String,
-    /// What programs call it.
+    /// The name of its type in DXF.
     pub kind: String,
     pub outlines: Vec<Outline>,
-    /// Its text and where that stands, metres.
+    /// The text, and its position in metres.
     pub label: Option<(Point, String)>,
 }
 
-/// Everything in the model space of a drawing with some metres to the unit; none if that is more than [`MOST`].
+/// Expands everything in the model space of a drawing; `None` if there is more than [`MOST`]. `unit_m` is the size of
+/// the drawing's unit in metres.
 pub(super) fn all(drawing: &Drawing, unit_m: f64) -> Option<Vec<Drawn>> {
     let blocks = drawing.blocks.iter();
-    // Drawings tell names apart without regard to capitals.
+    // Names in drawings are not case-sensitive.
     let blocks: Blocks<'_> =
         blocks.map(|block| (block.head.text(2).unwrap_or_default().to_uppercase(), block)).collect();
     let mut unfolded = Unfolded { found: Vec::new(), n_left: MOST };
     let place = Place { map: scaling(unit_m, unit_m), layer: None };
-    // Code 67 is 1 for what lies on the paper.
+    // Code 67 is 1 for entities in paper space.
     for entity in drawing.entities.iter().filter(|entity| entity.number(67, 0.0) < 0.5) {
         collect(entity, &blocks, &place, 0, &mut unfolded)?;
     }
     Some(unfolded.found)
 }
 
-/// What was found so far.
+/// The entities found so far.
 struct Unfolded {
     found: Vec<Drawn>,
-    /// What may still be looked at.
+    /// The number of entities and insertions that may still be processed.
     n_left: usize,
 }
 
@@ -62,7 +64,7 @@ impl Unfolded {
 
 type Blocks<'a> = HashMap<String, &'a Block>;
 
-/// Where a block is put.
+/// The placement of a block.
 struct Place {
     map: Affine2<f64>,
     layer: Option<String>,
@@ -72,7 +74,7 @@ fn scaling(x: f64, y: f64) -> Affine2<f64> {
     Affine2::from_matrix_unchecked(nalgebra::Matrix3::new_nonuniform_scaling(&Vector::new(x, y)))
 }
 
-/// Adds an entity, or what is in the block that it inserts; none when there is too much.
+/// Adds an entity, or the contents of the block that it inserts; `None` if there are too many.
 fn collect(
     entity: &Entity,
     blocks: &Blocks<'_>,
@@ -112,7 +114,8 @@ fn collect(
     Some(())
 }
 
-/// Adds the attributes of an insertion. One of them names what is inserted: the first whose tag says so, else the first.
+/// Adds the attributes of an insertion. One of them serves as its name: the first attribute with a name tag, else the
+/// first.
 fn attributes(insert: &Entity, layer: &str, map: &Affine2<f64>, unfolded: &mut Unfolded) -> Option<()> {
     let naming = insert.parts.iter().position(labels::is_name_tag).unwrap_or(0);
     for (index, attribute) in insert.parts.iter().enumerate() {
@@ -128,7 +131,7 @@ fn attributes(insert: &Entity, layer: &str, map: &Affine2<f64>, unfolded: &mut U
     Some(())
 }
 
-/// Where the rows and columns of an insertion lie.
+/// The offsets of the rows and columns of an insertion.
 fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     let count = |code: i32| insert.number(code, 1.0).clamp(1.0, 1000.0) as usize;
     let (columns, rows) = (count(70), count(71));
@@ -136,7 +139,7 @@ fn copies(insert: &Entity) -> impl Iterator<Item = Vector> {
     (0..columns * rows).map(move |k| Vector::new((k % columns) as f64 * dx, (k / columns) as f64 * dy))
 }
 
-/// A text and where it stands.
+/// The text of an entity and its position.
 fn label(entity: &Entity, map: &Affine2<f64>) -> Option<(Point, String)> {
     let text = labels::text(entity)?;
     let is_aligned = [72, 73, 74].iter().any(|code| entity.number(*code, 0.0) > 0.5);
@@ -145,7 +148,7 @@ fn label(entity: &Entity, map: &Affine2<f64>) -> Option<(Point, String)> {
         let map = if entity.kind == "MTEXT" { *map } else { *map * mirroring(entity.number(230, 1.0)) };
         return Some((map * at, text));
     }
-    // A text that is not aligned to the left has a second point, by which it is.
+    // A text that is not aligned left has a second point, which is its position.
     let [x, y] = [(11, 10), (21, 20)].map(|(own, first)| entity.number(own, entity.number(first, 0.0)));
     Some((*map * mirroring(entity.number(230, 1.0)) * Point::new(x, y), text))
 }
@@ -164,7 +167,7 @@ fn outlines(entity: &Entity, map: &Affine2<f64>) -> Vec<Outline> {
 
 fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
     let at = |x: i32, y: i32| Some(Point::new(entity.numbers(x).next()?, entity.numbers(y).next()?));
-    // Lines are in the coordinates of the drawing, all others in those of their own plane.
+    // LINE entities use the coordinates of the drawing; all other entities use those of their own plane.
     let in_plane = *map * mirroring(entity.number(230, 1.0));
     let scale = map.matrix().fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
     let chain_of = |points: Vec<Point>, map: &Affine2<f64>, is_closed: bool| {
@@ -187,7 +190,7 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             let angles_deg = [entity.number(50, 0.0), entity.number(51, 360.0)];
             chain_of(arc(at(10, 20)?, entity.number(40, 0.0), angles_deg), &in_plane, false)
         }
-        // In the coordinates of the drawing: the centre, the long half axis from there, and the share of the short one.
+        // In the coordinates of the drawing: the centre, the long half axis from there, and the ratio of the half axes.
         "ELLIPSE" => {
             let ends = [entity.number(41, 0.0), entity.number(42, TAU)];
             let (points, is_closed) = ellipse(at(10, 20)?, at(11, 21)?.coords, entity.number(40, 1.0), ends);
@@ -203,7 +206,7 @@ fn outline(entity: &Entity, map: &Affine2<f64>) -> Option<Outline> {
             };
             chain_of(points, map, entity.has_flag(1))
         }
-        // Corners of a filled area; the last two come crosswise.
+        // Corners of a filled area; the last two are swapped.
         "SOLID" | "TRACE" => {
             let mut corners = vec![at(10, 20)?, at(11, 21)?];
             corners.extend([at(13, 23), at(12, 22)].into_iter().flatten());
@@ -222,18 +225,18 @@ fn polyline(entity: &Entity, in_plane: &Affine2<f64>, scale: f64) -> Option<Outl
     let corners: Vec<(Point, f64)> =
         corners.iter().map(|[x, y, bulge]| (Point::new(*x, *y), *bulge)).collect();
     let is_closed = entity.has_flag(1);
-    // A width for all, or that at the beginning of every stretch.
+    // One width for all stretches, or a width at the start of each stretch.
     let width = entity.numbers(43).chain(entity.numbers(40)).fold(0.0, f64::max);
     let points: Vec<Point> = chain(&corners, is_closed).iter().map(|point| in_plane * point).collect();
     (points.len() > 1).then_some(Outline::Chain { points, is_closed, width_m: width * scale })
 }
 
-/// Planes that are looked at from below have x to the other side.
+/// In a plane that is seen from below, x points the other way.
 fn mirroring(normal_z: f64) -> Affine2<f64> {
     scaling(if normal_z < 0.0 { -1.0 } else { 1.0 }, 1.0)
 }
 
-/// Whether a map keeps circles round.
+/// Whether a transformation maps circles to circles.
 fn is_even(map: &Affine2<f64>) -> bool {
     let linear = map.matrix().fixed_view::<2, 2>(0, 0).into_owned();
     let (x, y) = (linear.column(0).norm(), linear.column(1).norm());

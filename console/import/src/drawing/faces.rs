@@ -1,7 +1,7 @@
-//! What lines that cross and meet enclose: the faces of the plane that they divide.
+//! The faces that crossing and meeting lines enclose.
 //!
-//! Lines are cut where others cross or end at them, what ends nowhere is left out, and every face is walked around along its
-//! half edges.
+//! Lines are cut where other lines cross or end at them, loose ends are removed, and each face is traced along its half
+//! edges.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use world::{
@@ -9,25 +9,26 @@ use world::{
     shape::{bounds_of, ring_area_m2},
 };
 
-/// Places nearer to each other than this are one, metres: drawings end seams this far short of another, or beyond it.
+/// Points closer than this, in metres, are merged: seams in drawings end this far short of other seams, or beyond them.
 const SAME_M: f64 = 5e-3;
-/// Straight pieces that are compared with each other at most.
+/// The largest number of straight pieces that are compared with each other.
 const MOST_PIECES: usize = 20_000;
-/// What remains of a line beyond the last one that it meets and is shorter than this is not a line of its own, metres.
+/// A remainder of a line beyond the last line that it meets does not count as a loose line if it is shorter than this,
+/// in metres.
 const LOOSE_M: f64 = 0.1;
 
 type Piece = [Point; 2];
 
-/// What lines enclose.
+/// The faces that lines enclose.
 #[derive(Debug, PartialEq, Default)]
 pub(super) struct Faces {
-    /// Counter-clockwise outlines. One with an island is given without the hole.
+    /// Counter-clockwise outlines. If a face has an island, its outline ignores the hole.
     pub rings: Vec<Vec<Point>>,
-    /// Straight pieces that end at no other line and so divide nothing.
+    /// The number of straight pieces that end at no other line and so divide nothing.
     pub n_loose: usize,
 }
 
-/// What lines enclose; none if they have more than [`MOST_PIECES`].
+/// Finds the faces that lines enclose; `None` if the lines have more than [`MOST_PIECES`] pieces.
 pub(super) fn faces(lines: &[Vec<Point>]) -> Option<Faces> {
     let pieces: Vec<Piece> =
         lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]).collect();
@@ -36,7 +37,7 @@ pub(super) fn faces(lines: &[Vec<Point>]) -> Option<Faces> {
     }
     let cuts = cuts(&pieces);
     let mut nodes = Nodes::default();
-    // What is drawn counts before what is worked out.
+    // Register drawn points before computed ones, so that they take precedence.
     let ends: Vec<[usize; 2]> = pieces.iter().map(|piece| piece.map(|end| nodes.at(end))).collect();
     let mut graph = Graph::default();
     for (([from, to], piece), cuts) in ends.iter().zip(&pieces).zip(cuts) {
@@ -48,7 +49,7 @@ pub(super) fn faces(lines: &[Vec<Point>]) -> Option<Faces> {
     Some(Faces { rings: graph.rings(&nodes.places), n_loose })
 }
 
-/// Where each piece is cut, as rising shares of its length.
+/// The positions at which each piece is cut, as ascending shares of its length.
 fn cuts(pieces: &[Piece]) -> Vec<Vec<f64>> {
     let boxes: Vec<(Point, Point)> = pieces.iter().map(|piece| bounds_of(piece)).collect();
     let mut from_west: Vec<usize> = (0..pieces.len()).collect();
@@ -75,7 +76,7 @@ fn cuts(pieces: &[Piece]) -> Vec<Vec<f64>> {
     cuts
 }
 
-/// Where a place lies on a piece, if it does, as a share of its length.
+/// The position of a point on a piece as a share of its length, if the point is on it.
 fn foot([a, b]: Piece, place: Point) -> Option<f64> {
     let along = b - a;
     let share = (place - a).dot(&along) / along.norm_squared();
@@ -83,7 +84,7 @@ fn foot([a, b]: Piece, place: Point) -> Option<f64> {
     is_on.then_some(share)
 }
 
-/// Where two pieces cross, as shares of their lengths.
+/// The position on each of two pieces, as a share of its length, at which they cross.
 fn crossing([a, b]: Piece, [c, d]: Piece) -> Option<(f64, f64)> {
     let (one, other, between) = (b - a, d - c, c - a);
     let turn = one.perp(&other);
@@ -94,7 +95,7 @@ fn crossing([a, b]: Piece, [c, d]: Piece) -> Option<(f64, f64)> {
     ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then_some((s, t))
 }
 
-/// Places, each once.
+/// Points without duplicates.
 #[derive(Default)]
 struct Nodes {
     places: Vec<Point>,
@@ -102,7 +103,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// The node at a place: the nearest one that is known there, or else a new one.
+    /// The node at a point: the nearest known node, or else a new one.
     fn at(&mut self, place: Point) -> usize {
         let cell = |v: f64| (v / SAME_M).floor() as i64;
         let (x, y) = (cell(place.x), cell(place.y));
@@ -121,7 +122,7 @@ impl Nodes {
     }
 }
 
-/// Which nodes are joined by a line.
+/// The nodes, and which of them are joined by a line.
 #[derive(Default)]
 struct Graph {
     beside: BTreeMap<usize, BTreeSet<usize>>,
@@ -135,7 +136,7 @@ impl Graph {
         }
     }
 
-    /// Takes away what ends at nothing; returns how many pieces of some length that were.
+    /// Removes loose ends; returns how many of the removed pieces were longer than [`LOOSE_M`].
     fn prune(&mut self, places: &[Point]) -> usize {
         let mut ends: Vec<usize> =
             self.beside.iter().filter(|(_, others)| others.len() == 1).map(|(node, _)| *node).collect();
@@ -153,9 +154,9 @@ impl Graph {
         n_loose
     }
 
-    /// The faces that are enclosed, in the order of their first nodes.
+    /// The enclosed faces, in the order of their first nodes.
     fn rings(&self, places: &[Point]) -> Vec<Vec<Point>> {
-        // Around each node counter-clockwise.
+        // Neighbours of each node, counter-clockwise.
         let angle = |from: usize, to: usize| {
             let way = places[to] - places[from];
             way.y.atan2(way.x)
@@ -177,8 +178,8 @@ impl Graph {
                 while walked.insert((from, to)) {
                     ring.push(places[from]);
                     let ways = &around[&to];
-                    // The face lies to the left: on to the next line clockwise.
-                    let back = ways.iter().position(|way| *way == from).expect("lines go both ways");
+                    // The face is to the left: continue with the next line clockwise.
+                    let back = ways.iter().position(|way| *way == from).expect("every line goes both ways");
                     (from, to) = (to, ways[(back + ways.len() - 1) % ways.len()]);
                 }
                 if ring.len() > 2 && ring_area_m2(&ring) > 0.0 {

@@ -1,4 +1,4 @@
-//! The text of a DXF file: pairs of lines, a code and a value, in sections.
+//! Parser for DXF text: pairs of lines, a code and a value, in sections.
 
 use super::curves::Spline;
 use crate::{
@@ -8,53 +8,53 @@ use crate::{
 };
 use world::Point;
 
-/// What a drawing holds, by its codes.
+/// An entity as its codes and values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entity {
-    /// As the file names it: `LINE`, `CIRCLE`, `INSERT`, ...
+    /// The type as in the file: `LINE`, `CIRCLE`, `INSERT`, ...
     pub kind: String,
     groups: Vec<(i32, String)>,
-    /// The vertices of a `POLYLINE`, the attributes of an `INSERT`.
+    /// The vertices of a `POLYLINE`, or the attributes of an `INSERT`.
     pub parts: Vec<Entity>,
 }
 
-/// A named part of a drawing.
+/// A block: a named part of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Block {
-    /// By itself, with the name and the base point.
+    /// The block record, with the name and the base point.
     pub head: Entity,
     pub entities: Vec<Entity>,
 }
 
-/// A drawing, as far as floors need it.
+/// The parts of a drawing that floors need.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Drawing {
-    /// `$INSUNITS` of the header.
+    /// The value of `$INSUNITS` in the header.
     pub units: Option<i32>,
-    /// Layers that are switched off or frozen.
+    /// The layers that are off or frozen.
     pub hidden: Vec<String>,
     pub blocks: Vec<Block>,
     pub entities: Vec<Entity>,
 }
 
 impl Entity {
-    /// Codes and values, in their order.
+    /// Codes and values in file order.
     pub(super) fn groups(&self) -> &[(i32, String)] {
         &self.groups
     }
 
-    /// The first value of a code.
+    /// The first value with this code.
     pub(super) fn text(&self, code: i32) -> Option<&str> {
         self.groups.iter().find(|(known, _)| *known == code).map(|(_, value)| value.as_str())
     }
 
-    /// All values of a code that are finite numbers.
+    /// All values with this code that are finite numbers.
     pub(super) fn numbers(&self, code: i32) -> impl Iterator<Item = f64> + '_ {
         let values = self.groups.iter().filter(move |(known, _)| *known == code);
         values.filter_map(|(_, value)| value.parse().ok()).filter(|number: &f64| number.is_finite())
     }
 
-    /// The first number of a code, or what holds without it.
+    /// The first number with this code, or the default.
     pub(super) fn number(&self, code: i32, default: f64) -> f64 {
         self.numbers(code).next().unwrap_or(default)
     }
@@ -64,12 +64,12 @@ impl Entity {
         self.number(70, 0.0) as i32 & bit != 0
     }
 
-    /// Points by the codes of their coordinates.
+    /// Points, given by the codes of their coordinates.
     pub(super) fn points(&self, x: i32, y: i32) -> Vec<Point> {
         self.numbers(x).zip(self.numbers(y)).map(|(x, y)| Point::new(x, y)).collect()
     }
 
-    /// The numbers of a `SPLINE`; without controls if it is stated by the points that it passes through.
+    /// The data of a `SPLINE`; without control points if it is given by the points that it passes through.
     pub(super) fn spline(&self) -> Spline {
         Spline {
             degree: self.number(71, 3.0).max(0.0) as usize,
@@ -96,14 +96,14 @@ impl Entity {
 }
 
 impl Drawing {
-    /// Reads a drawing.
+    /// Reads the groups of a drawing.
     ///
     /// # Errors
-    /// It cannot be read, is binary, is cut off, or has a line without a code where one must be.
+    /// The file cannot be read, is binary or truncated, or has a line without a code where a code is required.
     pub(super) fn read(input: &Input) -> Result<Self, ImportError> {
         let bytes = &input.bytes;
         if bytes.starts_with(b"AutoCAD Binary DXF") {
-            return Err(ImportError::of_input(input, "a binary DXF; save it as ASCII (text) DXF"));
+            return Err(ImportError::of_input(input, "a binary DXF file; save it as ASCII (text) DXF"));
         }
         let text = decoded(bytes, code_page_of(bytes).and_then(code_page));
         let mut drawing = Self::default();
@@ -173,14 +173,14 @@ impl Drawing {
                 _ => {}
             }
         }
-        // What is missing could be columns.
-        Err(ImportError::of_input(input, "the drawing is cut off: it does not end with EOF; save it again"))
+        // The missing part could contain columns.
+        Err(ImportError::of_input(input, "the drawing is truncated: it does not end with EOF; save it again"))
     }
 
-    /// Takes what a record of a table says.
+    /// Handles a record of a table.
     fn take_record(&mut self, record: &Entity) {
         const FROZEN: i32 = 1;
-        // Layers that are off have a negative colour.
+        // The colour of a layer that is off is negative.
         let is_hidden = || record.has_flag(FROZEN) || record.number(62, 7.0) < 0.0;
         if record.kind == "LAYER" && is_hidden() {
             self.hidden.extend(record.text(2).map(str::to_owned));
@@ -193,13 +193,13 @@ impl Entity {
         Self { kind: kind.to_owned(), groups: Vec::new(), parts: Vec::new() }
     }
 
-    /// The part that is being read, or the entity itself.
+    /// The subentity being read, or the entity itself.
     fn innermost(&mut self) -> &mut Self {
-        if self.parts.is_empty() { self } else { self.parts.last_mut().expect("it is not empty") }
+        if self.parts.is_empty() { self } else { self.parts.last_mut().expect("not empty") }
     }
 }
 
-/// Begins an entity; vertices belong to the polyline before them, attributes to the insertion.
+/// Begins an entity; a vertex belongs to the preceding polyline, and an attribute to the insertion.
 fn begin(entities: &mut Vec<Entity>, kind: &str) {
     match (kind, entities.last_mut()) {
         ("VERTEX", Some(last)) if last.kind == "POLYLINE" => last.parts.push(Entity::new(kind)),
@@ -209,7 +209,7 @@ fn begin(entities: &mut Vec<Entity>, kind: &str) {
     }
 }
 
-/// What the header says of the encoding.
+/// The encoding stated in the header.
 fn code_page_of(bytes: &[u8]) -> Option<&str> {
     const KEY: &[u8] = b"$DWGCODEPAGE";
     let at = bytes.windows(KEY.len()).position(|window| window == KEY)?;
@@ -217,7 +217,7 @@ fn code_page_of(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(value).ok()
 }
 
-/// A name in which letters stand as `\U+00FC`.
+/// Decodes a name with letters written as `\U+00FC`.
 pub(super) fn unescaped(name: &str) -> String {
     let mut parts = name.split("\\U+");
     let mut whole = parts.next().unwrap_or_default().to_owned();

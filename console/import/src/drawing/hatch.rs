@@ -6,21 +6,21 @@ use super::{
 };
 use world::Point;
 
-/// Groups `code value`, in their order.
+/// Groups `code value` in file order.
 struct Groups<'a> {
     all: &'a [(i32, String)],
     at: usize,
 }
 
 impl Groups<'_> {
-    /// The number of a code, which is the next one of interest.
+    /// Skips to the next group with this code and returns its number.
     fn number(&mut self, code: i32) -> Option<f64> {
         let step = self.all[self.at..].iter().position(|(known, _)| *known == code)?;
         self.at += step + 1;
         self.all[self.at - 1].1.parse().ok().filter(|number: &f64| number.is_finite())
     }
 
-    /// The number of a code if it comes next.
+    /// The number of the next group, if it has this code.
     fn next_number(&mut self, code: i32) -> Option<f64> {
         (self.all.get(self.at)?.0 == code).then(|| self.number(code)).flatten()
     }
@@ -29,13 +29,13 @@ impl Groups<'_> {
         Some(Point::new(self.number(x)?, self.number(x + 10)?))
     }
 
-    /// How many of something follow: no more than there are groups.
+    /// The number of items that follow, limited by the number of groups.
     fn count(&mut self, code: i32) -> Option<usize> {
         Some((self.number(code)?.max(0.0) as usize).min(self.all.len()))
     }
 }
 
-/// The closed edges of a hatched area; what cannot be read is left out, and what follows it.
+/// The closed edges of a hatched area. An unreadable edge and everything after it are left out.
 pub(super) fn rings(groups: &[(i32, String)]) -> Vec<Vec<Point>> {
     let mut groups = Groups { all: groups, at: 0 };
     let mut rings = Vec::new();
@@ -51,7 +51,7 @@ pub(super) fn rings(groups: &[(i32, String)]) -> Vec<Vec<Point>> {
 }
 
 fn path(groups: &mut Groups<'_>) -> Option<Vec<Vec<Point>>> {
-    /// The path is one polyline.
+    /// The path is a single polyline.
     const POLYLINE: u32 = 2;
     let flags = groups.number(92)? as u32;
     if flags & POLYLINE != 0 {
@@ -67,7 +67,7 @@ fn path(groups: &mut Groups<'_>) -> Option<Vec<Vec<Point>>> {
     }
     let n = groups.count(93)?;
     let edges: Option<Vec<Vec<Point>>> = (0..n).map(|_| edge(groups)).collect();
-    // The end of an edge is the beginning of another; a whole circle is closed by itself.
+    // An edge ends where the next begins; a whole circle is closed in itself.
     Some(rings::closed(edges?.into_iter().map(|points| (points, false)).collect()).0)
 }
 

@@ -2,18 +2,18 @@
 
 use super::groups::{Entity, unescaped};
 
-/// Letters of a name that are kept.
+/// The number of letters of a name that are kept.
 const LONGEST: usize = 40;
 
-/// Words in the tags of attributes that name or number something.
+/// Words in the tags of attributes that hold a name or number.
 const NAME_TAGS: [&str; 12] =
     ["NO", "NR", "NUM", "NUMBER", "NUMMER", "NAME", "ID", "TAG", "MARK", "POS", "PLATE", "BLECH"];
 
-/// The text of an entity on one line and without its formatting; none if it has none.
+/// The text of an entity on one line without formatting; `None` if it has no text.
 pub(super) fn text(entity: &Entity) -> Option<String> {
     let plain = match entity.kind.as_str() {
         "TEXT" | "ATTRIB" => signs(entity.text(1)?),
-        // Long ones come in pieces.
+        // Long texts are split into several groups.
         "MTEXT" => {
             let pieces = entity.groups().iter().filter(|(code, _)| *code == 3 || *code == 1);
             unformatted(&signs(&pieces.map(|(_, piece)| piece.as_str()).collect::<String>()))
@@ -26,14 +26,14 @@ pub(super) fn text(entity: &Entity) -> Option<String> {
     (!name.is_empty()).then_some(name)
 }
 
-/// Whether the tag of an attribute says that it names or numbers something.
+/// Whether the tag of an attribute indicates a name or number.
 pub(super) fn is_name_tag(attribute: &Entity) -> bool {
     let tag = attribute.text(2).unwrap_or_default().to_uppercase();
     let mut words = tag.split(|letter: char| !letter.is_alphabetic());
     words.any(|word| NAME_TAGS.contains(&word))
 }
 
-/// Letters and signs that stand as `\U+00FC` and `%%c`; underlining is left out.
+/// Decodes letters and signs written as `\U+00FC` and `%%c`; underlining is dropped.
 fn signs(text: &str) -> String {
     let mut text = unescaped(text);
     let all = [("%%c", "Ø"), ("%%d", "°"), ("%%p", "±"), ("%%u", ""), ("%%o", ""), ("%%k", ""), ("%%%", "%")];
@@ -43,7 +43,7 @@ fn signs(text: &str) -> String {
     text
 }
 
-/// A formatted text without its codes: `{\fArial|b1;P-\H2x;07}` is `P-07`.
+/// Removes the formatting codes of a text: `{\fArial|b1;P-\H2x;07}` becomes `P-07`.
 fn unformatted(text: &str) -> String {
     let mut plain = String::new();
     let mut letters = text.chars();

@@ -1,27 +1,27 @@
-//! Outlines that are nearly closed: what keeps them open, and where outlines cross themselves.
+//! Outlines that are nearly closed: finds their gaps, and finds where outlines cross themselves.
 
 use world::{Point, shape::bounds_of};
 
-/// Lines whose ends are compared with each other at most, the longest ones.
+/// The largest number of lines whose ends are compared with each other; the longest are taken.
 const MOST_LINES: usize = 400;
-/// Nobody overlooks a gap that is wider than this share of the outline.
+/// A gap wider than this share of the outline is obvious to the user and is not reported.
 const WIDEST_SHARE: f64 = 0.25;
-/// Sides that are compared with each other at most.
+/// The largest number of sides that are compared with each other.
 const MOST_SIDES: usize = 5_000;
 
-/// An outline that would be closed but for gaps.
+/// An outline that is closed except for gaps.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NearMiss {
-    /// Its larger extent, metres.
+    /// The larger extent in metres.
     pub across_m: f64,
-    /// How many gaps it has,
+    /// The number of gaps.
     pub n_gaps: usize,
-    /// and the ends of the widest, metres.
+    /// The ends of the widest gap, in metres.
     pub widest: [Point; 2],
 }
 
 impl NearMiss {
-    /// For people, in the terms of the drawing: places in its units.
+    /// A description with positions in the units of the drawing.
     pub(super) fn told(&self, unit_m: f64) -> String {
         let [a, b] = self.widest;
         let gap = match self.n_gaps {
@@ -29,7 +29,7 @@ impl NearMiss {
             n => format!("{n} gaps, the widest"),
         };
         format!(
-            "an outline of {:.3} m across is nearly closed: {gap} of {:.1} mm, from {} to {} in the drawing",
+            "an outline {:.3} m across is nearly closed: {gap} of {:.1} mm, from {} to {} in the drawing",
             self.across_m,
             (b - a).norm() * 1000.0,
             place(a, unit_m),
@@ -38,9 +38,9 @@ impl NearMiss {
     }
 }
 
-/// A place in the coordinates of a drawing.
+/// Formats a position in the coordinates of a drawing.
 pub(super) fn place(at: Point, unit_m: f64) -> String {
-    // A thousandth of a millimetre, in any unit.
+    // At least a thousandth of a millimetre, in any unit.
     let digits = if unit_m > 0.1 { 6 } else { 3 };
     let shown = |v: f64| {
         let text = format!("{:.digits$}", v / unit_m + 0.0);
@@ -56,13 +56,13 @@ struct End {
     at: Point,
 }
 
-/// Lines that are joined over gaps.
+/// Lines that are joined across gaps.
 struct Joined {
     lines: Vec<usize>,
     gaps: Vec<[Point; 2]>,
 }
 
-/// The largest outline that lines enclose but for gaps: ends are joined in pairs, the nearest first.
+/// The largest outline that lines would close but for gaps; ends are joined in pairs, nearest first.
 pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
     let extent = |lines: &[usize]| {
         let corners: Vec<Point> =
@@ -94,7 +94,7 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
             continue;
         }
         (is_used[a], is_used[b]) = (true, true);
-        // From left to right, whichever line was drawn first.
+        // From left to right, regardless of which line was drawn first.
         let mut gap = [ends[a].at, ends[b].at];
         gap.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         let (one, other) = (group_of[ends[a].line], group_of[ends[b].line]);
@@ -116,17 +116,17 @@ pub(super) fn nearest(open: &[Vec<Point>]) -> Option<NearMiss> {
     best
 }
 
-/// A ring of joined lines, if its gaps are small beside it.
+/// The ring of joined lines, if its gaps are small compared with its size.
 fn miss(joined: &Joined, across_m: f64) -> Option<NearMiss> {
     let width_m = |gap: &[Point; 2]| (gap[1] - gap[0]).norm();
     let widest = *joined.gaps.iter().max_by(|a, b| width_m(a).total_cmp(&width_m(b)))?;
-    // Ends that are joined are those of neighbours.
+    // Joined ends closer than this belong to adjacent lines and are not gaps.
     let n_gaps = joined.gaps.iter().filter(|gap| width_m(gap) > super::rings::SAME_M).count().max(1);
     let is_near = width_m(&widest) <= WIDEST_SHARE * across_m;
     is_near.then_some(NearMiss { across_m, n_gaps, widest })
 }
 
-/// Where a closed outline crosses itself, if it does and has no more sides than are looked at.
+/// The point at which a closed outline crosses itself, if any; `None` if it has more sides than [`MOST_SIDES`].
 pub(super) fn crossing(ring: &[Point]) -> Option<Point> {
     let n = ring.len();
     if n > MOST_SIDES {
@@ -139,7 +139,7 @@ pub(super) fn crossing(ring: &[Point]) -> Option<Point> {
         let (one, other) = (b - a, d - c);
         let turn = one.perp(&other);
         let (s, t) = ((c - a).perp(&other) / turn, (c - a).perp(&one) / turn);
-        // Sides that only touch bound a floor all the same.
+        // An outline whose sides only touch still encloses a floor.
         let is_within = |share: f64| share > 1e-9 && share < 1.0 - 1e-9;
         (is_within(s) && is_within(t)).then(|| a + one * s)
     })
@@ -161,14 +161,14 @@ mod tests {
         let miss = nearest(&[std::slice::from_ref(&small), &large[..]].concat()).unwrap();
         assert_eq!(
             miss.told(0.001),
-            "an outline of 10.000 m across is nearly closed: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \
+            "an outline 10.000 m across is nearly closed: 2 gaps, the widest of 20.0 mm, from (9980, 0) to \
              (10000, 0) in the drawing"
         );
         assert!(
             nearest(&[small])
                 .unwrap()
                 .told(1.0)
-                .contains("an outline of 1.000 m across is nearly closed: one gap of")
+                .contains("an outline 1.000 m across is nearly closed: one gap of")
         );
         assert_eq!(nearest(&[line(&[(0.0, 0.0), (5.0, 0.0)])]), None, "a line is not an outline");
         assert_eq!(nearest(&[]), None);

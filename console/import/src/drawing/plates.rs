@@ -1,4 +1,4 @@
-//! The plates of a floor: closed outlines, or what seams and the shell enclose.
+//! The plates of a floor: closed outlines, or the areas between seams and the shell.
 
 use super::{entities::Outline, faces, near};
 use crate::{
@@ -15,15 +15,15 @@ use world::{
     shape::{mean_of, ring_area_m2, ring_contains},
 };
 
-/// Corners of a round plate, and of a round shell that seams divide.
+/// The number of corners of a round plate, and of a round shell divided by seams.
 const N_ROUND: [usize; 2] = [120, 720];
-/// A strip narrower than this lies between both edges of an overlap and is not a plate, metres.
+/// A strip narrower than this, in metres, is between the two edges of an overlap and is not a plate.
 const NARROWEST_M: f64 = 0.1;
-/// A point nearer than this to the line between its neighbours is not a corner, metres.
+/// A point closer than this, in metres, to the line between its neighbours is not a corner.
 const STRAIGHT_M: f64 = 2e-4;
-/// Most that an outline of too many corners is drawn in, metres.
+/// The largest distance in metres by which an outline with too many corners may shrink.
 const COARSEST_M: f64 = 0.05;
-/// Plates whose middles are so near to each other from south to north are of one row, metres.
+/// Plates whose centres differ by less than this from south to north, in metres, form a row.
 const ROW_M: f64 = 0.25;
 
 /// A text of the drawing.
@@ -31,14 +31,14 @@ const ROW_M: f64 = 0.25;
 pub(super) struct Label {
     pub at: Point,
     pub text: String,
-    /// Whether it lies on a layer of plates.
+    /// Whether the text is on a layer of plates.
     pub is_of_plates: bool,
-    /// Layer and kind, for a note on what was not used.
+    /// The layer and type, for a note on unused entities.
     pub what: String,
 }
 
-/// Plates in the tank frame, to which the drawing of some metres to the unit is moved. Of `labels` those are left that name
-/// none.
+/// Finds the plates in the tank frame. `moved` maps the drawing to this frame, and `unit_m` is the size of its unit in
+/// metres. Afterwards, `labels` holds only the labels that name no plate.
 pub(super) fn plates(
     outlines: Vec<Outline>,
     labels: &mut Vec<Label>,
@@ -57,12 +57,13 @@ pub(super) fn plates(
     rings.retain(|ring| !is_wholly_outside(boundary, &Shape::Polygon { vertices: ring.clone() }));
     let n_outside = n - rings.len();
     if n_outside > 0 {
-        notes.push(format!("PLATES: {n_outside} outlines outside the shell are left out"));
+        notes.push(format!("PLATES: {n_outside} outlines outside the shell were left out"));
     }
     if rings.len() > MOST_PLATES {
         let n = rings.len();
         notes.push(format!(
-            "PLATES: {n} plates are not read, at most {MOST_PLATES} are; keep the seams of the floor only on the layer"
+            "PLATES: {n} plates were not read, the limit is {MOST_PLATES}; keep only the seams of the floor on \
+             the layer"
         ));
         return Vec::new();
     }
@@ -72,12 +73,12 @@ pub(super) fn plates(
     named(rings, labels, notes)
 }
 
-/// The points of an outline, the first again at the end of a closed one; and whether it is closed.
+/// The points of an outline, with the first repeated at the end of a closed one, and whether it is closed.
 fn line(outline: Outline, moved: &Isometry2<f64>) -> (Vec<Point>, bool) {
     let (mut points, is_closed) = match outline {
         Outline::Circle { center, radius_m } => (around(center, radius_m, N_ROUND[0]), true),
         Outline::Chain { points, is_closed, .. } => {
-            // A polyline that ends where it begins is closed, whatever its flag says.
+            // A polyline that ends where it begins is closed, whatever its flag states.
             let ends = points.first().zip(points.last());
             let meets = points.len() > 3 && ends.is_some_and(|(a, b)| (a - b).norm() < 1e-6);
             (points, is_closed || meets)
@@ -94,7 +95,8 @@ fn around(center: Point, radius_m: f64, n: usize) -> Vec<Point> {
     (0..n).map(|k| center + world::Vector::new(at(k).cos(), at(k).sin()) * radius_m).collect()
 }
 
-/// Counter-clockwise outlines: the closed ones if all are, else what all of them and the shell enclose.
+/// Counter-clockwise outlines: the closed outlines if all are closed, else the faces that all outlines and the shell
+/// enclose.
 fn rings(
     lines: Vec<(Vec<Point>, bool)>,
     boundary: &Boundary,
@@ -109,7 +111,7 @@ fn rings(
             if let Some(at) = crossing {
                 let at = drawn_at(at);
                 notes.push(format!(
-                    "PLATES: an outline that crosses itself at {at} in the drawing is left out"
+                    "PLATES: an outline that crosses itself at {at} in the drawing was left out"
                 ));
             }
             crossing.is_none()
@@ -130,20 +132,20 @@ fn rings(
     let all: Vec<Vec<Point>> = lines.into_iter().map(|(line, _)| line).chain([shell]).collect();
     let Some(mut faces) = faces::faces(&all) else {
         notes.push(format!(
-            "PLATES: {n_lines} lines are too many to be seams; keep the seams only on the layer, or draw each plate as a \
-             closed polyline"
+            "PLATES: {n_lines} lines are too many to be seams; keep only seams on the layer, or draw each plate \
+             as a closed polyline"
         ));
         return Vec::new();
     };
     if faces.rings.len() < 2 {
         notes.push(format!(
-            "PLATES: {n_lines} lines that divide no floor are left out; draw seams from seam to seam or to the shell"
+            "PLATES: {n_lines} lines that divide no floor were left out; draw seams from seam to seam or to the shell"
         ));
         return Vec::new();
     }
     if faces.n_loose > 0 {
         notes.push(format!(
-            "PLATES: {} lines end at no other and divide nothing; draw seams from seam to seam or to the shell",
+            "PLATES: {} lines end at no other line and divide nothing; draw seams from seam to seam or to the shell",
             faces.n_loose
         ));
     }
@@ -152,24 +154,25 @@ fn rings(
     let n_narrow = n - faces.rings.len();
     if n_narrow > 0 {
         notes.push(format!(
-            "PLATES: {n_narrow} strips narrower than {NARROWEST_M} m are left out; their floor belongs to the plates beside"
+            "PLATES: {n_narrow} strips narrower than {NARROWEST_M} m were left out; their area was added to the \
+             adjacent plates"
         ));
     }
     faces.rings
 }
 
-/// Width of a strip as long as an outline and of its area, metres.
+/// The width in metres of a strip with the area and perimeter of an outline.
 fn width_m(ring: &[Point]) -> f64 {
     let around_m: f64 = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| (b - a).norm()).sum();
     2.0 * ring_area_m2(ring).abs() / around_m
 }
 
-/// Leaves out corners at which an outline goes straight on.
+/// Removes corners at which an outline goes straight.
 fn straighten(ring: &mut Vec<Point>) {
     without_corners(ring, STRAIGHT_M);
 }
 
-/// Leaves out corners that are too many for a scenario.
+/// Reduces the corners of an outline to the limit of a scenario.
 fn coarsen(ring: &mut Vec<Point>, notes: &mut Vec<String>) {
     let (n, mut off_m) = (ring.len(), STRAIGHT_M);
     while ring.len() > MOST_CORNERS && off_m < COARSEST_M {
@@ -178,11 +181,12 @@ fn coarsen(ring: &mut Vec<Point>, notes: &mut Vec<String>) {
     }
     if n > ring.len() {
         let kept = ring.len();
-        notes.push(format!("PLATES: of {n} corners of an outline {kept} were kept, to within {off_m:.4} m"));
+        notes
+            .push(format!("PLATES: an outline of {n} corners was reduced to {kept}, to within {off_m:.4} m"));
     }
 }
 
-/// Leaves out corners whose neighbours' line passes all that it replaces within a distance.
+/// Removes corners if the line between their neighbours is within a distance of everything that it replaces.
 fn without_corners(ring: &mut Vec<Point>, off_m: f64) {
     let corners = std::mem::take(ring);
     let n = corners.len();
@@ -195,7 +199,7 @@ fn without_corners(ring: &mut Vec<Point>, off_m: f64) {
         };
         at = (at + 2..=n).take_while(is_spared).last().unwrap_or(at + 1);
     }
-    // Where the outline begins there need not be a corner.
+    // The outline need not begin at a corner.
     if let [second, .., last] = ring[1..]
         && ring.len() > 3
         && off(last, second, ring[0]) < off_m
@@ -204,7 +208,7 @@ fn without_corners(ring: &mut Vec<Point>, off_m: f64) {
     }
 }
 
-/// Gives plates their names, and puts small ones first, so that one within another counts.
+/// Names the plates, and puts small plates first, so that a plate within another takes precedence.
 fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String>) -> Vec<DrawnPlate> {
     let mut sorted: Vec<(Point, Vec<Point>)> = rings.into_iter().map(|ring| (mean_of(&ring), ring)).collect();
     let row = |at: &Point| (at.y / ROW_M).round() as i64;
@@ -229,7 +233,7 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     let n_numbered = sorted.len() - given.len();
     if n_numbered > 0 {
         notes.push(format!(
-            "PLATES: {n_numbered} of {} plates have no text of their own and are numbered from south to north",
+            "PLATES: {n_numbered} of {} plates have no text of their own and were numbered from south to north",
             sorted.len()
         ));
     }
@@ -240,8 +244,8 @@ fn named(rings: Vec<Vec<Point>>, labels: &mut Vec<Label>, notes: &mut Vec<String
     order.into_iter().map(plate).collect()
 }
 
-/// Which label names which plate: the first on a layer of plates that lies in it, else the only one of any layer; none that
-/// several plates would have.
+/// The label of each plate: the first label on a layer of plates inside it, else the only label of any other layer
+/// inside it. A label inside several plates names none of them.
 fn given(plates: &[(Point, Vec<Point>)], order: &[usize], labels: &[Label]) -> BTreeMap<usize, usize> {
     let mut within: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, label) in labels.iter().enumerate() {

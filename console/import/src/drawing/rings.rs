@@ -1,15 +1,15 @@
-//! Lines that end where others begin, joined to closed outlines.
+//! Joins lines that begin where others end into closed outlines.
 
 use std::collections::HashMap;
 use world::Point;
 
-/// Ends nearer than this are one, metres.
+/// Ends closer than this, in metres, are joined.
 pub(super) const SAME_M: f64 = 2e-3;
 
 /// Points, and whether the last is joined to the first.
 pub(super) type Chain = (Vec<Point>, bool);
 
-/// Chains by where they end, so that a drawing of a hundred thousand lines is joined at once.
+/// Chains by their ends, so that a drawing of a hundred thousand lines is joined quickly.
 struct Ends {
     chains: Vec<Option<Vec<Point>>>,
     by_cell: HashMap<(i64, i64), Vec<usize>>,
@@ -26,7 +26,7 @@ impl Ends {
         Self { chains: chains.into_iter().map(Some).collect(), by_cell }
     }
 
-    /// Takes out a chain that begins or ends at a place, turned so that it begins there.
+    /// Removes and returns a chain that begins or ends at a point, reversed if necessary so that it begins there.
     fn take_at(&mut self, place: Point) -> Option<Vec<Point>> {
         let (x, y) = cell(place);
         let around =
@@ -53,7 +53,7 @@ impl Ends {
 }
 
 fn cell(at: Point) -> (i64, i64) {
-    // Far beyond any tank, places share a cell.
+    // Points far beyond any tank share a cell.
     ((at.x / SAME_M) as i64, (at.y / SAME_M) as i64)
 }
 
@@ -61,7 +61,7 @@ fn is_same(a: Option<&Point>, b: Option<&Point>) -> bool {
     a.zip(b).is_some_and(|(a, b)| (a - b).norm() < SAME_M)
 }
 
-/// Closed rings of chains, each with whether it is closed already, and the chains that close nothing.
+/// Joins chains, each with a flag for closed chains, into closed rings. Also returns the chains that close no ring.
 pub(super) fn closed(chains: Vec<Chain>) -> (Vec<Vec<Point>>, Vec<Vec<Point>>) {
     let (mut rings, mut open, mut loose) = (Vec::new(), Vec::new(), Vec::new());
     for (points, is_closed) in chains {

@@ -1,19 +1,20 @@
-//! What the layers of a drawing hold.
+//! The roles of layers in a drawing.
 
 use super::entities::Drawn;
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 
-/// Layers that a message lists at most.
+/// The largest number of layers that a message lists.
 const LISTED: usize = 20;
 
-/// What a layer holds.
+/// What a layer contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 pub enum Role {
     /// The inner side of the shell.
     Shell,
-    /// Columns, or other things that stand on the floor.
+    /// Columns, or other objects on the floor.
     Columns,
-    /// Pipes, as lines.
+    /// Pipes, drawn as lines.
     Pipes,
     /// Sumps, which become no-go zones.
     Sump,
@@ -21,8 +22,22 @@ pub enum Role {
     NoGo,
     /// Plates of the floor, or the seams between them.
     Plates,
-    /// Nothing of the floor.
+    /// Nothing that belongs to the floor.
     Ignored,
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Shell => "shell",
+            Self::Columns => "columns",
+            Self::Pipes => "pipes",
+            Self::Sump => "sumps",
+            Self::NoGo => "no-go zones",
+            Self::Plates => "plates",
+            Self::Ignored => "ignored layers",
+        })
+    }
 }
 
 impl Role {
@@ -42,29 +57,29 @@ impl Role {
     }
 }
 
-/// Which layer holds what: what somebody says of a layer, else one word of its name.
+/// The roles of layers: as assigned, else by a word of the layer's name.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layers(Vec<(Role, String)>);
 
 impl Layers {
-    /// Layers with what they hold, besides those whose names say it.
+    /// Creates assignments of roles to layers, in addition to those by name.
     pub fn new(named: Vec<(Role, String)>) -> Self {
         Self(named)
     }
 
-    /// What a layer holds.
+    /// The roles of a layer.
     pub(super) fn roles(&self, layer: &str) -> Vec<Role> {
         let is_named = |(_, name): &&(Role, String)| is_same(name, layer);
         let named: Vec<Role> = self.0.iter().filter(is_named).map(|(role, _)| *role).collect();
         if named.is_empty() { by_name(layer).into_iter().collect() } else { named }
     }
 
-    /// The layers that somebody says hold this.
+    /// The layers assigned to this role.
     pub(super) fn stated(&self, role: Role) -> Vec<&str> {
         self.0.iter().filter(|(known, _)| *known == role).map(|(_, name)| name.as_str()).collect()
     }
 
-    /// A layer of these on which nothing lies.
+    /// The first assigned layer that is empty or missing.
     pub(super) fn missing(&self, all: &[Drawn]) -> Option<&str> {
         let is_there = |name: &str| all.iter().any(|drawn| is_same(&drawn.layer, name));
         self.0.iter().map(|(_, name)| name.as_str()).find(|name| !is_there(name))
@@ -75,14 +90,14 @@ fn is_same(one: &str, other: &str) -> bool {
     one.trim().to_uppercase() == other.trim().to_uppercase()
 }
 
-/// The role of a layer by one word of its name.
+/// The role of a layer by a word of its name.
 fn by_name(layer: &str) -> Option<Role> {
     let whole = layer.replace(['-', '_', ' '], "");
     let mut words = layer.split(|c: char| !c.is_alphanumeric()).chain([whole.as_str()]);
     words.find_map(Role::named).filter(|role| *role != Role::Ignored)
 }
 
-/// The layers of a drawing with what lies on each, for people.
+/// Lists the layers of a drawing with their contents, for messages.
 pub(super) fn list(all: &[Drawn]) -> String {
     let mut layers: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
     for drawn in all {
@@ -101,6 +116,8 @@ pub(super) fn list(all: &[Drawn]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
 
     #[test]
     fn the_layers_that_reports_have_are_known() {
@@ -124,5 +141,14 @@ mod tests {
         assert_eq!(roles("no go"), [Role::NoGo]);
         assert_eq!(roles("0"), [Role::Shell, Role::Columns]);
         assert_eq!(roles("ignore"), []);
+    }
+
+    #[test]
+    fn every_role_has_a_word_of_its_own() {
+        let all: [Role; Role::COUNT] =
+            [Role::Shell, Role::Columns, Role::Pipes, Role::Sump, Role::NoGo, Role::Plates, Role::Ignored];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a drawing holds, by what its layers are.
+//! The entities of a drawing, sorted by the roles of their layers.
 
 use super::{
     Assumed, areas,
@@ -11,14 +11,14 @@ use nalgebra::Isometry2;
 use std::collections::{BTreeMap, BTreeSet};
 use world::{Boundary, DrawnPlate, Point, Shape};
 
-/// What lies on the layers of each role.
+/// The outlines of each role.
 pub(super) struct Sorted {
-    /// Metres to the unit of the drawing, for places in messages.
+    /// The size of the drawing's unit in metres, for positions in messages.
     unit_m: f64,
     by_role: BTreeMap<Role, Vec<Outline>>,
-    /// Whether a layer holds columns besides the shell.
+    /// Whether the layer of the shell also holds columns.
     is_shared: bool,
-    /// Texts, if there are plates that they may name.
+    /// Texts that may name plates; empty if there are no plates.
     labels: Vec<Label>,
 }
 
@@ -55,14 +55,13 @@ impl Sorted {
             if hidden.contains(&drawn.layer) {
                 in_the_dark.insert(drawn.layer.clone());
             }
-            let role = role.expect("it was looked at");
+            let role = role.expect("the role was checked above");
             sorted.is_shared |= role == Role::Shell && roles.contains(&Role::Columns);
             sorted.by_role.entry(role).or_default().extend(drawn.outlines);
         }
         note_unused(unused, notes);
-        let used = |layer| {
-            format!("layer {layer} is off or frozen in the drawing; what lies on it was used all the same")
-        };
+        let used =
+            |layer| format!("layer {layer} is off or frozen in the drawing, but its contents were used");
         notes.extend(in_the_dark.into_iter().map(used));
         sorted
     }
@@ -71,10 +70,10 @@ impl Sorted {
         self.by_role.remove(&role).unwrap_or_default().into_iter()
     }
 
-    /// The shell, and what else on its layer is a column.
+    /// The shell, and other areas on its layer, which are columns.
     ///
     /// # Errors
-    /// Why there is none: empty, or what is nearly one, or that it crosses itself.
+    /// Why there is no shell; empty if there is no outline at all. An outline may be nearly closed, or cross itself.
     pub(super) fn shell(
         &mut self,
         notes: &mut Vec<String>,
@@ -95,14 +94,16 @@ impl Sorted {
         }
         if let Some(at) = near::crossing(shell.corners()) {
             let at = near::place(at, self.unit_m);
-            return Err(format!("the outline crosses itself at {at} in the drawing; draw it once around"));
+            return Err(format!(
+                "the outline crosses itself at {at} in the drawing; draw it without crossings"
+            ));
         }
         self.note_open(Role::Shell, &open, notes);
         if self.is_shared {
             return Ok((shell, rest));
         }
         if !rest.is_empty() {
-            notes.push(format!("SHELL: {n} closed outlines; the largest is the shell"));
+            notes.push(format!("SHELL: {n} closed outlines; the largest was taken as the shell"));
         }
         Ok((shell, Vec::new()))
     }
@@ -119,11 +120,13 @@ impl Sorted {
         self.note_open(role, &open, notes);
         all.extend(more);
         let (shapes, grown) = areas::shapes(&all);
-        notes.extend(grown.iter().map(|k| format!("{name} {k} is not convex; its convex hull was taken")));
+        notes.extend(
+            grown.iter().map(|k| format!("{name} {k} is not convex and was replaced by its convex hull")),
+        );
         shapes
     }
 
-    /// The plates of the floor; texts that name none are noted.
+    /// The plates of the floor; texts that name no plate are noted.
     pub(super) fn plates(
         &mut self,
         boundary: &Boundary,
@@ -149,7 +152,7 @@ impl Sorted {
         }
         let miss =
             near::nearest(open).map(|miss| format!("; {}", miss.told(self.unit_m))).unwrap_or_default();
-        notes.push(format!("{role:?}: {} lines that close no outline are left out{miss}", open.len()));
+        notes.push(format!("{role}: {} lines that do not close an outline were left out{miss}", open.len()));
     }
 
     pub(super) fn pipes(&mut self, assumed_m: f64, notes: &mut Vec<String>) -> Vec<Shape> {
@@ -167,13 +170,15 @@ impl Sorted {
         };
         let shapes: Vec<Shape> = self.take(Role::Pipes).filter_map(&mut shape).collect();
         if n_thin > 0 {
-            notes.push(format!("PIPES: {n_thin} lines without a width were taken as {assumed_m} m wide"));
+            notes
+                .push(format!("PIPES: {n_thin} lines without a width were assumed to be {assumed_m} m wide"));
         }
         shapes
     }
 }
 
-/// Layers with lines of their own, which their texts name; layer 0 holds anything.
+/// The layers with lines of their own. A text on such a layer names these lines; layer 0 is exempt, since it can hold
+/// anything.
 fn lined_layers(all: &[Drawn]) -> BTreeSet<String> {
     let lined = all.iter().filter(|drawn| !drawn.outlines.is_empty() && drawn.layer != "0");
     lined.map(|drawn| drawn.layer.clone()).collect()

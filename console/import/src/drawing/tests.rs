@@ -69,10 +69,10 @@ fn a_round_tank_in_millimetres_is_centred_and_scaled() {
     assert_eq!(
         plan.notes,
         [
-            "(20.000, 15.000) m of the drawing is [0, 0] here",
-            "PIPES: 1 lines without a width were taken as 0.1 m wide",
-            "PLATES: 1 lines that divide no floor are left out; draw seams from seam to seam or to the shell",
-            "column 2 lies outside the shell and is left out",
+            "(20.000, 15.000) m in the drawing is [0, 0] in the scenario",
+            "PIPES: 1 lines without a width were assumed to be 0.1 m wide",
+            "PLATES: 1 lines that divide no floor were left out; draw seams from seam to seam or to the shell",
+            "column 2 is outside the shell and was left out",
         ]
     );
 }
@@ -96,8 +96,8 @@ fn two_half_circles_are_a_round_shell_and_lines_in_any_order_a_straight_one() {
     assert_eq!(
         plan.notes,
         [
-            "the drawing names no unit; one unit was taken as 1 m",
-            "column 1 is not convex; its convex hull was taken"
+            "the drawing states no unit; one unit was taken as 1 m",
+            "column 1 is not convex and was replaced by its convex hull"
         ]
     );
 }
@@ -107,12 +107,12 @@ fn what_is_missing_is_named() {
     let error = |units: &str, entities: &str| read_text(units, "", entities, &plain()).unwrap_err();
     assert_eq!(
         error("", SHELL),
-        "d.dxf: the header ($INSUNITS) names no unit of length; state it with --units, as in --units mm"
+        "d.dxf: the header ($INSUNITS) states no unit of length; state it with --units, for example --units mm"
     );
     assert_eq!(
         error(",9 $INSUNITS,70 6", "0 LINE,8 SHELL,10 0,20 0,11 1,21 1"),
-        "d.dxf: no circle and no closed outline on a layer SHELL; draw the inner side of the shell there, or say which \
-         layer holds it, as in --layer SHELL=0; layers: `SHELL` (1 LINE)"
+        "d.dxf: no circle or closed outline on the layer SHELL; draw the inner side of the shell there, or name its \
+         layer, for example --layer SHELL=0; layers: `SHELL` (1 LINE)"
     );
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("d.dxf");
@@ -200,7 +200,7 @@ fn a_drawing_that_is_cut_off_is_refused_for_what_is_missing_could_be_columns() {
     fs::write(&file, "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\nSHELL\n10\n0\n20\n0\n40\n5\n").unwrap();
     let message = read(&Input::read(&file).unwrap(), &plain()).unwrap_err().to_string();
     assert!(
-        message.ends_with("the drawing is cut off: it does not end with EOF; save it again"),
+        message.ends_with("the drawing is truncated: it does not end with EOF; save it again"),
         "{message}"
     );
 }
@@ -221,11 +221,11 @@ fn layers_of_any_name_are_read_if_somebody_says_what_they_hold() {
     assert_eq!(plan.notes, Vec::<String>::new());
     assert_eq!(
         with_layers(&[(Role::Shell, "Wand")], entities).unwrap_err(),
-        "d.dxf: nothing lies on a layer `Wand`; layers: `Column-Text` (1 CIRCLE), `Mantel` (1 CIRCLE), `Stützen` (1 CIRCLE)"
+        "d.dxf: layer `Wand` is empty or does not exist; layers: `Column-Text` (1 CIRCLE), `Mantel` (1 CIRCLE), `Stützen` (1 CIRCLE)"
     );
     let plan = with_layers(&[(Role::Shell, "Mantel"), (Role::Ignored, "Column-Text")], entities).unwrap();
     assert!(
-        plan.notes.iter().any(|note| note.starts_with("no columns and no pipes were found")),
+        plan.notes.iter().any(|note| note.starts_with("no columns or pipes were found")),
         "{:?}",
         plan.notes
     );
@@ -268,12 +268,12 @@ fn a_stated_unit_counts_more_than_the_header_and_a_tank_of_a_wrong_size_is_refus
     let in_millimetres = |unit_m| read_text(",9 $INSUNITS,70 4", "", small, &Assumed { unit_m, ..plain() });
     assert_eq!(
         in_millimetres(None).unwrap_err(),
-        "d.dxf: the shell is 0.024000 m across, with 0.001 m to the unit of the drawing; tanks of 1 to 1000 m are read: \
-         state the unit, as in --units mm"
+        "d.dxf: the shell is 0.024000 m across if a unit of the drawing is 0.001 m; tanks must be 1 to 1000 m across: \
+         state the unit, for example --units mm"
     );
     let plan = in_millimetres(Some(1.0)).unwrap();
     assert_eq!(plan.boundary, Boundary::Circle { radius_m: 12.0 });
-    assert_eq!(plan.notes, ["one unit was taken as 1 m, as stated; the header says 0.001 m"]);
+    assert_eq!(plan.notes, ["one unit was taken as 1 m, as given; the header states 0.001 m"]);
 }
 
 #[test]
@@ -367,8 +367,8 @@ fn old_encodings_hidden_layers_and_coordinates_of_a_survey() {
     assert_eq!(
         plan.notes,
         [
-            "layer SHELL is off or frozen in the drawing; what lies on it was used all the same",
-            "(3500010.000, 5800005.000) m of the drawing is [0, 0] here",
+            "layer SHELL is off or frozen in the drawing, but its contents were used",
+            "(3500010.000, 5800005.000) m in the drawing is [0, 0] in the scenario",
         ]
     );
 }
@@ -429,7 +429,7 @@ fn closed_outlines_are_plates_as_they_are_drawn() {
         plan.plates[1].vertices_m.iter().all(|at| ((at - Point::new(2.0, 0.0)).norm() - 1.0).abs() < 1e-3)
     );
     assert!(
-        plan.notes.contains(&"PLATES: 1 outlines outside the shell are left out".into()),
+        plan.notes.contains(&"PLATES: 1 outlines outside the shell were left out".into()),
         "{:?}",
         plan.notes
     );
@@ -473,18 +473,18 @@ const GAPPED: &str = "0 LINE,8 SHELL,10 0,20 0,11 9980,21 0,0 LINE,8 SHELL,10 10
 
 #[test]
 fn an_outline_with_a_gap_is_named_with_its_place() {
-    let told = "an outline of 10.000 m across is nearly closed: one gap of 20.0 mm, from (9980, 0) to (10000, 0) in the \
+    let told = "an outline 10.000 m across is nearly closed: one gap of 20.0 mm, from (9980, 0) to (10000, 0) in the \
                 drawing; join the ends there";
     assert_eq!(
         read_text(",9 $INSUNITS,70 4", "", GAPPED, &plain()).unwrap_err(),
-        format!("d.dxf: no shell on a layer SHELL: {told}; layers: `SHELL` (4 LINE)")
+        format!("d.dxf: no shell on the layer SHELL: {told}; layers: `SHELL` (4 LINE)")
     );
     // A column drawn on the same layer is not a shell.
     let with_column = format!("{GAPPED}0 CIRCLE,8 SHELL,10 3000,20 3000,40 1000");
     assert_eq!(
         read_text(",9 $INSUNITS,70 4", "", &with_column, &plain()).unwrap_err(),
         format!(
-            "d.dxf: no shell on a layer SHELL: the largest closed outline is 2.000 m across, but {told}; layers: `SHELL` \
+            "d.dxf: no shell on the layer SHELL: the largest closed outline is 2.000 m across, but {told}; layers: `SHELL` \
              (1 CIRCLE, 4 LINE)"
         )
     );
@@ -492,7 +492,7 @@ fn an_outline_with_a_gap_is_named_with_its_place() {
     let plan = read_text(",9 $INSUNITS,70 6", "", columns, &plain()).unwrap();
     assert!(
         plan.notes.iter().any(|note| note
-            .starts_with("Columns: 1 lines that close no outline are left out; an outline of 1.000 m across is nearly closed")
+            .starts_with("columns: 1 lines that do not close an outline were left out; an outline 1.000 m across is nearly closed")
             && note.ends_with("one gap of 50.0 mm, from (1, 1) to (1.05, 1) in the drawing")),
         "{:?}",
         plan.notes
@@ -504,7 +504,7 @@ fn an_outline_that_crosses_itself_is_named_with_its_place() {
     let crossed = "0 LWPOLYLINE,8 SHELL,90 4,70 1,10 0,20 0,10 10,20 8,10 10,20 0,10 0,20 2";
     assert_eq!(
         read_text(",9 $INSUNITS,70 6", "", crossed, &plain()).unwrap_err(),
-        "d.dxf: no shell on a layer SHELL: the outline crosses itself at (2, 1.6) in the drawing; draw it once around; layers: \
+        "d.dxf: no shell on the layer SHELL: the outline crosses itself at (2, 1.6) in the drawing; draw it without crossings; layers: \
          `SHELL` (1 LWPOLYLINE)"
     );
 }
@@ -523,7 +523,7 @@ fn a_layer_that_was_named_is_not_asked_for_again() {
     );
     let notes = plan.unwrap().notes;
     assert!(
-        notes.iter().any(|note| note.contains("the layers that are named for them hold none: POSTS")),
+        notes.iter().any(|note| note.contains("the layers assigned to them contain none: POSTS")),
         "{notes:?}"
     );
 }

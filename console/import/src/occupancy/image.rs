@@ -4,19 +4,19 @@ use crate::error::{ImportError, read_file};
 use image::{DynamicImage, ImageFormat, ImageReader};
 use std::{io::Cursor, path::Path};
 
-/// More cells than this along a side are not taken.
+/// The largest number of cells along a side.
 const MOST_CELLS: usize = 8000;
 
-/// What counts of a pixel.
+/// The relevant values of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pixel {
-    /// Brightness, 255 white; 16 bits are rounded to 8, as the map server does.
+    /// The brightness, 255 for white; 16-bit values are rounded to 8 bits, as in the map server.
     pub grey: u8,
-    /// Whether nothing shines through.
+    /// Whether the pixel is fully opaque.
     pub is_opaque: bool,
 }
 
-/// Pixels from the upper left.
+/// The pixels of an image, from the upper left.
 pub(super) struct Image {
     pub columns: usize,
     pub pixels: Vec<Pixel>,
@@ -34,7 +34,7 @@ impl Image {
             [0xff, 0xd8, 0xff, ..] => ImageFormat::Jpeg,
             _ => {
                 return Err(of_file(
-                    "neither PGM (P2, P5) nor PNG nor JPEG; save the map as PGM or PNG".into(),
+                    "not a PGM (P2, P5), PNG or JPEG image; save the map as PGM or PNG".into(),
                 ));
             }
         };
@@ -52,10 +52,10 @@ fn check_size(columns: usize, rows: usize) -> Result<(), String> {
     let is_taken = fits(columns) && fits(rows);
     is_taken
         .then_some(())
-        .ok_or_else(|| format!("{columns} by {rows} cells; 1 to {MOST_CELLS} along a side are taken"))
+        .ok_or_else(|| format!("{columns} by {rows} cells; each side must have 1 to {MOST_CELLS}"))
 }
 
-/// Pixels of a PNG; colours by their luminance (Rec. 601).
+/// Decodes a PNG; colours are converted to luminance (Rec. 601).
 fn portable(image: DynamicImage) -> Vec<Pixel> {
     match image {
         DynamicImage::ImageLuma8(image) => {
@@ -71,8 +71,8 @@ fn portable(image: DynamicImage) -> Vec<Pixel> {
     }
 }
 
-/// A portable grey map: `P5 columns rows most` and one byte, or two for `most` above 255, for each pixel, or `P2` and
-/// numbers.
+/// Decodes a portable grey map: `P5 columns rows largest`, then one byte per pixel, or two if `largest` is above 255;
+/// or `P2`, then numbers.
 fn grey_map(bytes: &[u8]) -> Result<Image, String> {
     let mut at = 2;
     let mut next = || -> Option<usize> {
@@ -90,10 +90,10 @@ fn grey_map(bytes: &[u8]) -> Result<Image, String> {
     };
     let header = (|| Some([next()?, next()?, next()?]))();
     let [columns, rows, most] =
-        header.ok_or("a PGM begins with P5 or P2, columns, rows and largest value")?;
+        header.ok_or("a PGM must begin with P5 or P2, columns, rows and largest value")?;
     check_size(columns, rows)?;
     if !(1..=65_535).contains(&most) {
-        return Err(format!("the largest value is {most}; 1 to 65535 are taken"));
+        return Err(format!("the largest value is {most}; it must be 1 to 65535"));
     }
     let pixel = |value: usize| {
         let grey = (value.min(most) as f64 * 255.0 / most as f64).round() as u8;
@@ -103,14 +103,14 @@ fn grey_map(bytes: &[u8]) -> Result<Image, String> {
     let pixels: Vec<Pixel> = if bytes.starts_with(b"P2") {
         (0..n).map_while(|_| next()).map(pixel).collect()
     } else {
-        // One blank ends the header.
+        // A single blank ends the header.
         let raster = bytes.get(at + 1..).unwrap_or_default();
         let width = if most > 255 { 2 } else { 1 };
         let value = |bytes: &[u8]| bytes.iter().fold(0, |value, byte| value * 256 + usize::from(*byte));
         raster.chunks_exact(width).take(n).map(value).map(pixel).collect()
     };
     if pixels.len() < n {
-        return Err(format!("{} of {n} pixels are there; the file is cut off", pixels.len()));
+        return Err(format!("has only {} of {n} pixels; the file is truncated", pixels.len()));
     }
     Ok(Image { columns, pixels })
 }

@@ -6,10 +6,10 @@ use serde::Deserialize;
 use serde_saphyr::Spanned;
 use std::{f64::consts::TAU, path::Path};
 
-/// The grey that map savers write for cells that nobody has seen.
+/// The grey that map savers write for unseen cells.
 const UNSEEN: u8 = 205;
 
-/// The keys of the file, as they are written.
+/// The keys of the file as written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
@@ -20,7 +20,7 @@ struct Written {
     occupied_thresh: Option<Spanned<f64>>,
     free_thresh: Option<Spanned<f64>>,
     mode: Option<Spanned<String>>,
-    /// Written by converters of ROS 1 maps, with the word occupancy; says nothing that the other keys do not.
+    /// Converters of ROS 1 maps write `occupancy`, which adds nothing to the other keys.
     map_type: Option<Spanned<String>>,
 }
 
@@ -31,19 +31,19 @@ enum Negate {
     Number(i64),
 }
 
-/// How the brightness of a pixel becomes an occupancy.
+/// The conversion of a pixel's brightness to an occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mode {
     /// Free, occupied or unknown.
     Trinary,
-    /// Besides these a share between the thresholds.
+    /// As trinary, but with a share between the thresholds.
     Scale,
-    /// The value is the percentage; above 100 unknown.
+    /// The value is a percentage; above 100 means unknown.
     Raw,
 }
 
 impl Mode {
-    /// By its name, in capitals or not, as the map server takes it.
+    /// The mode of this name; case-insensitive, as in the map server.
     fn named(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "trinary" => Some(Self::Trinary),
@@ -54,18 +54,18 @@ impl Mode {
     }
 }
 
-/// The keys of the file, checked.
+/// The checked settings of the file.
 pub(super) struct Settings {
     pub image: String,
-    /// The line that names it, from 1.
+    /// The line that names the image, from 1.
     pub image_line: usize,
     pub resolution_m: f64,
-    /// Of the lower left corner, metres, and the rotation about it, radians.
+    /// The position of the lower left corner in metres, and the rotation about it in radians.
     pub origin: [f64; 3],
     mode: Mode,
     negate: bool,
     occupied: f64,
-    /// Occupancy up to which a cell is free.
+    /// The occupancy up to which a cell is free.
     pub free: f64,
 }
 
@@ -74,15 +74,16 @@ impl Settings {
         let written: Written = serde_saphyr::from_str(text).map_err(|error| {
             let line = error.location().map(|at| at.line() as usize);
             let whole = error.without_snippet().to_string();
-            // The place stands before the sentence, not after it.
+            // Messages of tankops state the position first, so it is removed from the end.
             let what = whole.rsplit_once(" at line").map_or(whole.as_str(), |(what, _)| what).to_owned();
             match error.without_snippet() {
                 serde_saphyr::Error::DuplicateMappingKey { key, .. } => {
                     wrong(file, text, line, twice(text, key.as_deref(), line))
                 }
                 _ if what.starts_with("missing field") => {
-                    let what =
-                        format!("{what}; a map has at least image and resolution, as in image: map.pgm");
+                    let what = format!(
+                        "{what}; a map needs at least image and resolution, for example image: map.pgm"
+                    );
                     ImportError::of_file(file, what)
                 }
                 _ => {
@@ -98,11 +99,14 @@ impl Settings {
         let at = |line: u64, what: String| wrong(file, text, Some(line as usize), what);
         let image = &written.image;
         if image.value.is_empty() {
-            return Err(at(image.referenced.line(), "no file name; write the image's, as map.pgm".into()));
+            return Err(at(
+                image.referenced.line(),
+                "no file name; write the name of the image, for example map.pgm".into(),
+            ));
         }
         let cell = &written.resolution;
         if !(1e-3..=10.0).contains(&cell.value) {
-            let what = format!("{} m to the cell; 0.001 to 10 are taken", cell.value);
+            let what = format!("{} m per cell; must be 0.001 to 10", cell.value);
             return Err(at(cell.referenced.line(), what));
         }
         let mode = match &written.mode {
@@ -115,19 +119,24 @@ impl Settings {
         let share = |share: Option<&Spanned<f64>>, default: f64| match share {
             None => Ok(default),
             Some(share) if (0.0..=1.0).contains(&share.value) => Ok(share.value),
-            Some(share) => Err(at(share.referenced.line(), format!("{} is not from 0 to 1", share.value))),
+            Some(share) => {
+                Err(at(share.referenced.line(), format!("{} is not between 0 and 1", share.value)))
+            }
         };
         let occupied = share(written.occupied_thresh.as_ref(), 0.65)?;
         let free = share(written.free_thresh.as_ref(), 0.196)?;
-        // Equal ones leave nothing between them, as the map server has it; a scale needs something.
+        // Equal thresholds leave nothing between them, which the map server allows; but scale divides by their
+        // difference.
         if free > occupied || (free >= occupied && mode == Mode::Scale) {
             let line = written.free_thresh.as_ref().or(written.occupied_thresh.as_ref());
             let line = line.map_or(1, |share| share.referenced.line());
             return Err(at(line, format!("free_thresh {free} must be less than occupied_thresh {occupied}")));
         }
         if let Some(kind) = written.map_type.as_ref().filter(|kind| kind.value != "occupancy") {
-            let what =
-                format!("`{}` is not read; this must be an occupancy map, or have no such key", kind.value);
+            let what = format!(
+                "`{}` maps are not supported; use an occupancy map, or leave out this key",
+                kind.value
+            );
             return Err(at(kind.referenced.line(), what));
         }
         let origin = match &written.origin {
@@ -151,12 +160,12 @@ impl Settings {
         !self.is_unseen(pixel) && self.is_bright(pixel)
     }
 
-    /// Whether a pixel has the grey that map savers write for what nobody has seen, and the thresholds take it for floor.
+    /// Whether a pixel has the grey of unseen cells although it would be floor by the thresholds.
     pub(super) fn is_unseen_but_bright(&self, pixel: Pixel) -> bool {
         self.is_unseen(pixel) && self.is_bright(pixel)
     }
 
-    /// The grey of cells that nobody has seen, as map savers write it; none where percentages are written.
+    /// The grey of unseen cells as written by map savers; `None` in raw mode.
     pub(super) fn unseen_grey(&self) -> Option<u8> {
         (self.mode != Mode::Raw).then_some(if self.negate { u8::MAX - UNSEEN } else { UNSEEN })
     }
@@ -171,7 +180,7 @@ impl Settings {
         let occupancy = if self.negate { bright } else { 1.0 - bright };
         match self.mode {
             Mode::Trinary => pixel.is_opaque && occupancy <= self.free && occupancy < self.occupied,
-            // What rounds to nothing of the hundred steps between the thresholds is free, too.
+            // A share that rounds to 0 % between the thresholds is also free.
             Mode::Scale => {
                 pixel.is_opaque && (occupancy - self.free) / (self.occupied - self.free) * 100.0 < 0.5
             }
@@ -180,28 +189,28 @@ impl Settings {
     }
 }
 
-/// What would be right for a key.
+/// The correct form of a key's value.
 fn right_value(key: &str) -> Option<&'static str> {
     Some(match key {
-        "image" => "it must be the image's file name, as map.pgm",
-        "resolution" => "it must be metres to the cell, as 0.05",
-        "origin" => "it must be [x, y, angle] in metres and radians, as [-10.0, -5.0, 0.0]",
+        "image" => "it must be the file name of the image, for example map.pgm",
+        "resolution" => "it must be metres per cell, for example 0.05",
+        "origin" => "it must be [x, y, angle] in metres and radians, for example [-10.0, -5.0, 0.0]",
         "negate" => "it must be 0 or 1",
         "occupied_thresh" | "free_thresh" => "it must be a number from 0 to 1",
         _ => return None,
     })
 }
 
-/// What is said of a key that is there a second time.
+/// A message about a duplicate key.
 fn twice(text: &str, key: Option<&str>, line: Option<usize>) -> String {
     let is_it = |written: &&str| written.split_once(':').is_some_and(|(name, _)| Some(name.trim()) == key);
     let lines = text.lines().take(line.unwrap_or_default().saturating_sub(1)).enumerate();
     let first = lines.filter(|(_, written)| is_it(written)).map(|(k, _)| k + 1).next();
     let first = first.map_or_else(String::new, |first| format!(", first in line {first}"));
-    format!("occurs twice{first}; keep one of them")
+    format!("duplicate key{first}; remove one")
 }
 
-/// x and y in metres and an angle in radians.
+/// Checks an origin: x and y in metres, and an angle in radians.
 fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
     let origin = <[f64; 3]>::try_from(numbers)
         .map_err(|_| format!("{numbers:?} is not [x, y, angle] in metres and radians"))?;
@@ -212,12 +221,12 @@ fn place(numbers: &[f64]) -> Result<[f64; 3], String> {
     let [_, _, angle] = origin;
     if angle.abs() > TAU {
         let right = angle.to_radians();
-        return Err(format!("an angle of {angle} rad is more than a turn; {angle}° would be {right:.4}"));
+        return Err(format!("an angle of {angle} rad is more than one turn; {angle}° would be {right:.4}"));
     }
     Ok(origin)
 }
 
-/// An error at a line; its key is that of the line, or of the last one above that has one.
+/// An error at a line; its key is the key in that line, or the nearest key above it.
 fn wrong(file: &Path, text: &str, line: Option<usize>, what: String) -> ImportError {
     let above = text.lines().take(line.unwrap_or_default()).collect::<Vec<_>>();
     let key_of = |line: &&str| {

@@ -119,22 +119,22 @@ fn errors_name_file_line_and_key() {
     let cases = [
         (
             message("negate: 0\n"),
-            "m.yaml: missing field `image`; a map has at least image and resolution, as in image: map.pgm",
+            "m.yaml: missing field `image`; a map needs at least image and resolution, for example image: map.pgm",
         ),
         (
             with("0.5", "fine"),
-            "m.yaml, line 2, resolution: invalid floating point; it must be metres to the cell, as 0.05",
+            "m.yaml, line 2, resolution: invalid floating point; it must be metres per cell, for example 0.05",
         ),
         (
             with("[1.0, -2.0, 0.0]", "1.0 -2.0 0.0"),
-            "m.yaml, line 3, origin: expected sequence start; it must be [x, y, angle] in metres and radians, as \
-             [-10.0, -5.0, 0.0]",
+            "m.yaml, line 3, origin: expected sequence start; it must be [x, y, angle] in metres and radians, for \
+             example [-10.0, -5.0, 0.0]",
         ),
         (
             with("[1.0, -2.0, 0.0]", "[1.0, -2.0, 90]"),
-            "m.yaml, line 3, origin: an angle of 90 rad is more than a turn; 90° would be 1.5708",
+            "m.yaml, line 3, origin: an angle of 90 rad is more than one turn; 90° would be 1.5708",
         ),
-        (with("0.5", ".nan"), "m.yaml, line 2, resolution: NaN m to the cell; 0.001 to 10 are taken"),
+        (with("0.5", ".nan"), "m.yaml, line 2, resolution: NaN m per cell; must be 0.001 to 10"),
         (
             with("[1.0, -2.0, 0.0]", "[1.0, 2.0]"),
             "m.yaml, line 3, origin: [1.0, 2.0] is not [x, y, angle] in metres and radians",
@@ -155,11 +155,11 @@ fn errors_name_file_line_and_key() {
         ),
         (
             message(&format!("{YAML}negate: 1\n")),
-            "m.yaml, line 7, negate: occurs twice, first in line 4; keep one of them",
+            "m.yaml, line 7, negate: duplicate key, first in line 4; remove one",
         ),
         (
             message(&format!("{YAML}map_type: costmap\n")),
-            "m.yaml, line 7, map_type: `costmap` is not read; this must be an occupancy map, or have no such key",
+            "m.yaml, line 7, map_type: `costmap` maps are not supported; use an occupancy map, or leave out this key",
         ),
     ];
     for (message, wanted) in cases {
@@ -167,12 +167,12 @@ fn errors_name_file_line_and_key() {
     }
     let missing = with("m.pgm", "n.pgm");
     assert!(
-        missing.starts_with("m.yaml, line 1, image: there is no file ") && missing.contains("n.pgm"),
+        missing.starts_with("m.yaml, line 1, image: file ") && missing.contains("n.pgm does not exist"),
         "{missing}"
     );
     let image = |bytes: &[u8]| map(YAML, bytes).unwrap_err().to_string();
-    assert_eq!(image(b"P5 3 3 255 \xfe"), "m.pgm: 1 of 9 pixels are there; the file is cut off");
-    assert_eq!(image(b"GIF89a"), "m.pgm: neither PGM (P2, P5) nor PNG nor JPEG; save the map as PGM or PNG");
+    assert_eq!(image(b"P5 3 3 255 \xfe"), "m.pgm: has only 1 of 9 pixels; the file is truncated");
+    assert_eq!(image(b"GIF89a"), "m.pgm: not a PGM (P2, P5), PNG or JPEG image; save the map as PGM or PNG");
     assert!(image(b"\xff\xd8\xff\xe0").starts_with("m.pgm: the image cannot be read: "));
     assert_eq!(image(b""), "m.pgm: is empty");
 }

@@ -1,24 +1,24 @@
-//! What is wrong with a configuration file, and where.
+//! Faults in configuration files, and their positions.
 
 use mission::spelling::nearest;
 use toml_edit::{Document, Item, TableLike};
 
-/// What is wrong with a place of a configuration file.
+/// A fault at a position in a configuration file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
-    /// Byte of the text.
+    /// The byte offset in the text.
     pub at: usize,
-    /// What is wrong, and what happens instead, as clauses.
+    /// The problem, and optionally its consequence, as clauses.
     pub what: String,
-    /// Byte of another place that has to do with it.
+    /// The byte offset of a second position that is part of the problem.
     pub other: Option<usize>,
-    /// What happens instead, as a clause; empty where `what` says it.
+    /// The consequence, as a clause; empty if `what` states it.
     pub instead: String,
-    /// Whether the line is taken all the same.
+    /// Whether the line takes effect nevertheless.
     pub is_warning: bool,
 }
 
-/// A text and its name, to say where something is.
+/// A text and its name, for locating positions.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
     pub name: &'a str,
@@ -26,7 +26,7 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Name, line and column of a byte.
+    /// The name, line and column of a byte offset.
     fn of(self, at: usize) -> String {
         let before = &self.text.as_bytes()[..at.min(self.text.len())];
         let line = before.split(|byte| *byte == b'\n').count();
@@ -37,12 +37,12 @@ impl Place<'_> {
 }
 
 impl Fault {
-    /// A line that is ignored.
+    /// A fault that causes its line to be ignored.
     pub(super) fn new(at: usize, what: String) -> Self {
         Self { at, what, other: None, instead: "the line is ignored".into(), is_warning: false }
     }
 
-    /// As a line, with every place named.
+    /// The fault as one line, with all its positions.
     pub(super) fn text(&self, place: Place<'_>) -> String {
         let other = self.other.map(|at| format!(", {}", place.of(at))).unwrap_or_default();
         let instead = if self.instead.is_empty() { String::new() } else { format!("; {}", self.instead) };
@@ -50,20 +50,20 @@ impl Fault {
     }
 }
 
-/// Reads a text as TOML; one that is not is ignored as a whole.
+/// Parses a text as TOML; an invalid text is ignored as a whole.
 pub(super) fn document<'a>(text: &'a str, faults: &mut Vec<Fault>) -> Option<Document<&'a str>> {
     match Document::parse(text) {
         Ok(document) => Some(document),
         Err(error) => {
             let at = error.span().map_or(0, |span| span.start);
-            let what = format!("not TOML: {}", error.message().lines().collect::<Vec<_>>().join(", "));
+            let what = format!("invalid TOML: {}", error.message().lines().collect::<Vec<_>>().join(", "));
             faults.push(Fault { instead: "the file is ignored".into(), ..Fault::new(at, what) });
             None
         }
     }
 }
 
-/// Takes every key of a table; an unknown one and one that is not taken are faults.
+/// Passes every key of a table to `take`; unknown keys and errors of `take` are faults.
 pub(super) fn each(
     table: &dyn TableLike,
     known: &[&str],
@@ -83,7 +83,7 @@ pub(super) fn each(
     }
 }
 
-/// Where an item begins.
+/// The byte offset at which an item begins.
 pub(super) fn start(item: &Item) -> usize {
     item.span().map_or(0, |span| span.start)
 }

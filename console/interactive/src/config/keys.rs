@@ -1,4 +1,4 @@
-//! `keys.toml`.
+//! Reads `keys.toml`.
 
 use super::{
     Config,
@@ -15,14 +15,14 @@ use tui::{
     },
 };
 
-/// A binding and where it is written.
+/// A binding and its position in the file.
 struct Written {
     binding: Binding,
     name_at: usize,
     keys_at: Vec<usize>,
 }
 
-/// Reads the keys; a faulty line leaves the preset's keys.
+/// Reads the key bindings; a faulty line keeps the keys of the preset.
 pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
     let mut faults = Vec::new();
     let Some(document) = document(text, &mut faults) else { return faults };
@@ -71,7 +71,7 @@ fn keys_of(item: &Item) -> Result<(Vec<Key>, Vec<usize>), Fault> {
         let at = value.span().map_or(0, |span| span.start);
         let name = value.as_str().ok_or_else(wrong)?;
         let unknown = || {
-            let what = format!("no key {name:?}; write a character, space, enter, up, F5 or Ctrl-L");
+            let what = format!("unknown key {name:?}; write a character, space, enter, up, F5 or Ctrl-L");
             Fault::new(at, what)
         };
         Ok((Key::named(name).ok_or_else(unknown)?, at))
@@ -118,7 +118,7 @@ fn alias(name: &str, item: &Item) -> Result<String, String> {
     if find::named(command).is_none() {
         let near = nearest(command, find::commands().map(|action| action.name));
         let near = near.map(|name| format!("; did you mean {name}?")).unwrap_or_default();
-        return Err(format!("no command {command:?}{near}"));
+        return Err(format!("unknown command {command:?}{near}"));
     }
     Ok(line.to_owned())
 }

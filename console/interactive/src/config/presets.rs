@@ -1,4 +1,4 @@
-//! Parameters of planners under names: a file each in the folder `presets` of the configuration.
+//! Named parameter sets of planners: one file each in the folder `presets` of the configuration.
 
 use super::{
     fault::{Fault, Place, document, each, start},
@@ -14,20 +14,20 @@ use std::{
 use toml_edit::{DocumentMut, Item, Table};
 use tui::model::{Preset, parameter};
 
-/// Largest file that is read, bytes.
+/// The size of the largest file that is read, in bytes.
 const LARGEST: u64 = 1 << 16;
-/// Presets that are read at most.
+/// The largest number of presets that are read.
 const MOST: usize = 200;
 
-/// Every preset, by name.
+/// Loads all presets, sorted by name.
 pub(crate) fn load(planners: &[PlannerInfo]) -> Vec<Preset> {
     presets().map_or_else(Vec::new, |folder| load_from(&folder, planners))
 }
 
-/// Writes a preset into a file of its own; where that is.
+/// Writes a preset to a new file and returns its path.
 ///
 /// # Errors
-/// There is no folder for it, one of this name exists, or the system refuses.
+/// The configuration folder is unknown, a preset of this name exists, or writing fails.
 pub(crate) fn save(name: &str, choice: &PlannerChoice) -> anyhow::Result<PathBuf> {
     save_into(&presets().context("neither XDG_CONFIG_HOME nor HOME is set")?, name, choice)
 }
@@ -90,14 +90,14 @@ fn read_file(file: &Path, planners: &[PlannerInfo]) -> Result<PlannerChoice, Str
     read(&text, planners).map_err(|faults| faults.iter().map(describe).collect::<Vec<_>>().join("; "))
 }
 
-/// Reads a preset. Unlike a configuration it is taken whole or not at all.
+/// Reads a preset. Unlike a configuration, a preset is accepted or refused as a whole.
 fn read(text: &str, planners: &[PlannerInfo]) -> Result<PlannerChoice, Vec<Fault>> {
     let mut faults = Vec::new();
     let (mut id, mut parameters) = (None, None);
     let Some(document) = document(text, &mut faults) else { return Err(faults) };
     each(document.as_table(), &["planner", "parameters"], &mut faults, |key, item, _| {
         if key == "planner" {
-            id = Some(item.as_str().ok_or("must be the id of a planner in quotes")?.to_owned());
+            id = Some(item.as_str().ok_or("must be the id of a planner, in quotes")?.to_owned());
         } else {
             item.as_table_like().ok_or("must be a section")?;
             parameters = Some(item.clone());
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn a_faulty_preset_is_refused_with_file_line_and_key() {
         let cases = [
-            ("planner = ", "soft.toml:1:11: not TOML"),
+            ("planner = ", "soft.toml:1:11: invalid TOML"),
             ("[parameters]\n", "soft.toml:1:1: the key planner is missing"),
             ("planner = \"rpf\"\n", "soft.toml:1:1: the key parameters is missing"),
             ("planner = \"rfp\"\n[parameters]\n", "soft.toml:1:11: planner must be one of: rpf"),

@@ -1,4 +1,4 @@
-//! `config.toml`.
+//! Reads `config.toml`.
 
 use super::{
     Config,
@@ -8,10 +8,10 @@ use mission::Severity;
 use toml_edit::Item;
 use tui::{Colours, Speed, ThemeName, model::console::Bell};
 
-/// Longest time for which an alarm may be shelved, minutes.
+/// The longest time that an alarm can be shelved, in minutes.
 const SHELVE_MAX_MIN: i64 = 24 * 60;
 
-/// Reads the settings; a faulty line leaves its default.
+/// Reads the settings; a faulty line keeps its default.
 pub(super) fn read(config: &mut Config, text: &str) -> Vec<Fault> {
     let mut faults = Vec::new();
     let Some(document) = document(text, &mut faults) else { return faults };
@@ -105,10 +105,10 @@ fn string(item: &Item) -> Result<&str, String> {
     item.as_str().ok_or_else(|| "must be text in quotes".into())
 }
 
-/// Reads how many colours are to be used.
+/// Parses a number of colours.
 ///
 /// # Errors
-/// What it may be.
+/// The allowed values.
 pub fn colours(name: &str) -> Result<Colours, String> {
     match name {
         "none" => Ok(Colours::None),

@@ -64,7 +64,7 @@ shelve_max_min = 30
 #[test]
 fn a_faulty_setting_names_its_place_and_leaves_its_default() {
     let cases = [
-        ("[screen\ntheme = 1", "config.toml:1:8: not TOML: "),
+        ("[screen\ntheme = 1", "config.toml:1:8: invalid TOML: "),
         (
             "oprator = \"lk\"",
             "config.toml:1:1: unknown key \"oprator\"; did you mean operator?; the line is ignored",
@@ -115,14 +115,14 @@ fn a_faulty_binding_names_both_places_and_keeps_the_key() {
             "keys.toml:3:19: \"F5\" is already zoom-in (Plan, Mission, Replay, Result), keys.toml:2:1; zoom-out keeps \"Z\""
                 .to_owned(),
         ),
-        ("[keys]\nzoomin = [\"f\"]\n", "keys.toml:2:1: no action \"zoomin\"; did you mean zoom-in?".to_owned()),
+        ("[keys]\nzoomin = [\"f\"]\n", "keys.toml:2:1: unknown action \"zoomin\"; did you mean zoom-in?".to_owned()),
         (
             "[keys]\nzoom-in = \"f\"\n",
             format!("keys.toml:2:11: keys must be a list, such as [\"f\", \"F5\"]; {ignored}"),
         ),
         (
             "[keys]\nzoom-in = [\"F55\"]\n",
-            format!("keys.toml:2:12: no key \"F55\"; write a character, space, enter, up, F5 or Ctrl-L; {ignored}"),
+            format!("keys.toml:2:12: unknown key \"F55\"; write a character, space, enter, up, F5 or Ctrl-L; {ignored}"),
         ),
         (
             "[keys]\nstart = [\"s\"]\n",
@@ -132,7 +132,7 @@ fn a_faulty_binding_names_both_places_and_keeps_the_key() {
         ),
         ("[keys]\nredraw = [\"Ctrl-B\"]\n", "keys.toml:2:11: \"Ctrl-B\" may never reach tankops: tmux intercepts it".to_owned()),
         ("preset = \"emacs\"\n", format!("keys.toml:1:10: preset must be default, arrows or vim; {ignored}")),
-        ("[alias]\nnight = \"them dark\"\n", format!("keys.toml:2:9: no command \"them\"; did you mean theme?; {ignored}")),
+        ("[alias]\nnight = \"them dark\"\n", format!("keys.toml:2:9: unknown command \"them\"; did you mean theme?; {ignored}")),
         ("[alias]\nhold = \"theme dark\"\n", format!("keys.toml:2:8: \"hold\" is already the command hold; {ignored}")),
     ];
     for (text, line) in cases {

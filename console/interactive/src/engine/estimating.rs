@@ -1,4 +1,4 @@
-//! What the plan that is flown first promises; computed beside the engine, which waits for nothing.
+//! Estimates of the plans made before or at the start, computed on a separate thread so that the engine does not wait.
 
 use super::EngineThread;
 use account::Estimate;
@@ -7,7 +7,7 @@ use std::thread;
 use tui::RunMsg;
 
 impl EngineThread {
-    /// Estimates the plans that were made in a tick before the start, or the first one if none was made by then.
+    /// Estimates the plans made in a tick before the start, or the first plan if none was made before the start.
     pub(super) fn estimate(&mut self, events: &[Event]) {
         if *self.flight.phase() != Phase::Waiting && self.has_estimated {
             return;
@@ -18,7 +18,7 @@ impl EngineThread {
             let (ask, path, complete) = (*ask, path.clone(), *complete);
             let (mission, drawing) = (self.scenario.mission.clone(), self.scenario.sim.world.as_drawn());
             let screen = self.screen.clone();
-            // A system that gives no thread leaves the figures out.
+            // If the thread cannot be started, the estimate is left out.
             let _ = thread::Builder::new().name("estimate".into()).spawn(move || {
                 let estimate = Estimate::new(&mission, &drawing, &path, complete);
                 screen.send(RunMsg::Estimated(ask, Box::new(estimate)));

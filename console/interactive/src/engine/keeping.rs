@@ -1,4 +1,4 @@
-//! What the engine's thread keeps of the run on disk, and what the screen hears of it.
+//! Keeping the run on disk, and reporting its recording to the screen.
 
 use super::EngineThread;
 use crate::pace::Reached;
@@ -9,8 +9,8 @@ use runs::{CLOSE_TIMEOUT, Closed, Kept, RunLog};
 use std::time::{Duration, Instant};
 use tui::{Health, Recording, RunMsg, RunResult};
 
-/// How often the recorder's health is sent to the screen: with the recorder's own look at its files, an operator knows within
-/// a second that the run is not recorded.
+/// The interval at which the screen receives the recorder's health. Together with the recorder's own check of its
+/// files, the operator learns within a second that the run is not being recorded.
 pub(super) const HEALTH_PERIOD: Duration = Duration::from_millis(400);
 
 impl EngineThread {
@@ -49,7 +49,7 @@ impl EngineThread {
         let health = log.health();
         let recording = health.error.map_or(Recording::On, Recording::Failed);
         let reached = self.reached.take(now, self.flight.tick_length());
-        // While the mission waits, its pace says nothing of how it will go on.
+        // While the mission waits, its speed does not predict how fast it will continue.
         let reached_speed = (!self.waits()).then_some(reached);
         self.send(RunMsg::Health(Health { recording, reached_speed, recorder_lag: health.lag }));
     }
@@ -76,7 +76,7 @@ impl EngineThread {
     }
 }
 
-/// What the screen shows of a run that is closed.
+/// The result of a closed run for the screen.
 fn result(closed: &Closed) -> RunResult {
     RunResult {
         summary: Box::new(closed.summary.clone()),

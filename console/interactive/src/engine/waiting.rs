@@ -1,4 +1,4 @@
-//! What the engine's thread waits for between two ticks.
+//! The engine's waits between two ticks.
 
 use super::{EngineThread, keeping::HEALTH_PERIOD};
 use crate::{line::Request, pace::Pace};
@@ -9,18 +9,18 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// With this many messages waiting for the screen, the simulation waits for it.
+/// The number of messages waiting for the screen above which the simulation waits.
 const MOST_BACKLOG: usize = 64;
-/// How long it waits then before it looks again, unless an order comes.
+/// The interval at which this wait rechecks, unless an order arrives.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
-/// How often workers that are being ended are looked after while no ticks pass.
+/// The interval at which ending workers are checked while no ticks pass.
 const LOOK_AFTER: Duration = Duration::from_millis(20);
 
 impl EngineThread {
-    /// Waits for the next tick, or, while no ticks pass, for a request; gives the orders that came and whether to
-    /// close, and then whether in a hurry.
+    /// Waits for the next tick or, while no ticks pass, for a request. Returns the orders received; the second value is
+    /// `Some` if the engine must close, and states whether in a hurry.
     pub(super) fn wait_for(&mut self, pace: &Pace) -> (Vec<Order>, Option<bool>) {
-        // A wake-up from here on belongs to a request that has not been taken yet.
+        // A wake-up after this point belongs to a request that has not been taken yet.
         self.host.clear_wake_ups();
         let mut orders = Vec::new();
         loop {
@@ -36,9 +36,9 @@ impl EngineThread {
                 return (orders, None);
             };
             match request {
-                // Key and screen both order a hold; the second one has nothing left to stop.
+                // Key thread and screen both order a hold; the second order has nothing left to stop.
                 Ok(Request::Order(Order::Hold, _)) if orders.is_empty() && self.is_held_for_good() => {}
-                // What stops the robot does not wait for the tick that is due: the tick comes now.
+                // An order that stops the robot does not wait for the next due tick: it triggers a tick immediately.
                 Ok(Request::Order(order @ (Order::Hold | Order::Abort), at)) => {
                     if self.flight.phase().may_move() {
                         self.stop_asked.get_or_insert(at);
@@ -52,11 +52,11 @@ impl EngineThread {
                     let _ = answer.send(self.flight.forked(&self.scenario));
                 }
                 Ok(Request::Answer(answer)) => {
-                    // Whoever asked may have given up.
+                    // The requester may have stopped waiting.
                     let _ = answer.send(());
                 }
                 Ok(Request::Close { hurry }) => return (orders, Some(hurry)),
-                // A slow mission has ticks further apart than the screen hears of its recording.
+                // If ticks are further apart than health reports, send the report between ticks.
                 Err(RecvTimeoutError::Timeout) if is_ahead || Instant::now() < due => self.send_health(),
                 Err(RecvTimeoutError::Timeout) => return (orders, None),
                 Err(RecvTimeoutError::Disconnected) => return (orders, Some(false)),
@@ -64,7 +64,7 @@ impl EngineThread {
         }
     }
 
-    /// Waits while no ticks pass; looks after workers that are being ended meanwhile.
+    /// Waits for a request while no ticks pass, and meanwhile checks workers that are ending.
     fn wait_for_request(&mut self) -> Result<Request, RecvTimeoutError> {
         while self.host.look_after_leaving() {
             match self.asked.recv_timeout(LOOK_AFTER) {
@@ -75,7 +75,7 @@ impl EngineThread {
         self.asked.recv().map_err(|_| RecvTimeoutError::Disconnected)
     }
 
-    /// Whether screen or recorder is so far behind that the simulation waits for it.
+    /// Whether the screen or the recorder is so far behind that the simulation must wait.
     fn is_ahead(&self) -> bool {
         self.screen.backlog() > MOST_BACKLOG || self.log.as_ref().is_some_and(RunLog::is_behind)
     }

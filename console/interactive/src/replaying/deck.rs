@@ -1,4 +1,4 @@
-//! A reader of a journal at some moment, and how it gets to another one.
+//! A journal reader that is positioned at a moment and can seek to another.
 
 use super::reel::Reel;
 use mission::Event;
@@ -6,45 +6,45 @@ use recording::{JournalError, JournalReader};
 use std::sync::Arc;
 use tui::model::Run;
 
-/// A moment and the end of its tick are one, seconds.
+/// Times within this many seconds of the end of a tick count as that moment.
 const SAME_S: f64 = 1e-6;
 
-/// How the run changed between two moments.
+/// The change of the run between two moments.
 #[derive(Debug)]
 pub(super) enum Moved {
-    /// It went on by these events.
+    /// The run continued with these events.
     On(Vec<Event>),
-    /// It is another one.
+    /// The run was replaced by this one, after a seek.
     To(Box<Run>),
 }
 
-/// A journal that is read at some moment: everything up to it was given away.
+/// A journal that is read up to a moment; all events up to this moment have been returned.
 pub(super) struct Deck {
     pub reel: Arc<Reel>,
     reader: Option<JournalReader>,
-    /// The first event of what comes next.
+    /// The first event after the moment.
     ahead: Option<Event>,
-    /// Mission time of the moment, seconds.
+    /// The mission time of the moment, in seconds.
     pub t_s: f64,
 }
 
 impl Deck {
-    /// A deck that is nowhere yet.
+    /// Creates a deck that is not positioned yet.
     pub(super) fn new(reel: Arc<Reel>) -> Self {
         Self { reel, reader: None, ahead: None, t_s: f64::NEG_INFINITY }
     }
 
-    /// Goes to a moment: everything that happened up to it. `None` as long as nothing of the run is loaded.
+    /// Seeks to a moment and returns the change. Returns `None` if nothing of the run is loaded yet.
     ///
     /// # Errors
-    /// The journal cannot be read there.
+    /// The journal cannot be read at this position.
     pub(super) fn go_to(&mut self, t_s: f64) -> Result<Option<Moved>, JournalError> {
         let (t_s, bytes, frame) = {
             let content = self.reel.content();
             let t_s = t_s.min(content.until_s);
             let after = content.frames.partition_point(|frame| frame.t_s <= t_s + SAME_S);
             let index = after.saturating_sub(1);
-            // As long as no more than a stretch or two are to be read, they are read.
+            // If the moment is at most one or two stretches ahead, read on from here instead of seeking.
             let here = content.frames.partition_point(|frame| frame.t_s <= self.t_s + SAME_S);
             let goes_on = self.reader.is_some() && t_s >= self.t_s && after <= here + 1;
             let Some(frame) = content.frames.get(index) else { return Ok(None) };
@@ -64,7 +64,7 @@ impl Deck {
         Ok(Some(Moved::To(run)))
     }
 
-    /// The events up to a moment, in so many bytes of the journal.
+    /// The events up to a moment, within this many bytes of the journal.
     fn read(&mut self, t_s: f64, bytes: u64) -> Result<Vec<Event>, JournalError> {
         let mut events = Vec::new();
         let Some(reader) = &mut self.reader else { return Ok(events) };

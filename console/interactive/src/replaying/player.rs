@@ -1,4 +1,4 @@
-//! The thread that plays a run back.
+//! The thread that plays back a run.
 
 use super::{
     deck::{Deck, Moved},
@@ -22,21 +22,21 @@ use tui::{
     model::replay::{Align, Side},
 };
 
-/// How often a run that is played moves on.
+/// The interval at which a playing run advances.
 const FRAME: Duration = Duration::from_millis(33);
-/// With this many messages waiting for the screen, time stands still.
+/// The number of messages waiting for the screen above which playback pauses.
 const MOST_BACKLOG: usize = 8;
-/// Longest time that is made up for after a frame that came late.
+/// The longest time that is made up after a late frame.
 const MOST_LATE: Duration = Duration::from_millis(250);
-/// What `max` stands for.
+/// The factor used for the speed `max`.
 const FASTEST: f64 = 1024.0;
 
 enum Request {
     Transport(Transport),
     Speed(Speed),
-    /// More of a run is loaded.
+    /// More of the run is loaded.
     Loaded,
-    /// Nobody looks at the run any more.
+    /// The replay was closed.
     End,
 }
 
@@ -46,14 +46,14 @@ impl Drop for Player {
     }
 }
 
-/// A run that is played back, seen from outside; dropped, it ends.
+/// A handle to a replay; dropping it ends the replay.
 pub(in super::super) struct Player(Sender<Request>);
 
 impl Player {
-    /// Begins to play a run back, at its first moment and paused.
+    /// Begins to play back a run, paused at its first moment.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// The thread cannot be started.
     pub(in super::super) fn begin(run: String, logs: &Path, screen: RunOutbox) -> anyhow::Result<Self> {
         let (requests, asked) = mpsc::channel();
         let wake = requests.clone();
@@ -64,15 +64,15 @@ impl Player {
                 Err(error) => drop(send(&screen, ReplayMsg::Failed(Side::A, format!("{error:#}")))),
             }
         });
-        began.map(|_| Self(requests)).context("starting the thread that plays the run back")
+        began.map(|_| Self(requests)).context("starting the replay thread")
     }
 
-    /// Hands in a request.
+    /// Sends a request to the replay.
     pub(in super::super) fn transport(&self, transport: Transport) {
         let _ = self.0.send(Request::Transport(transport));
     }
 
-    /// Changes the pace.
+    /// Changes the speed.
     pub(in super::super) fn speed(&self, speed: Speed) {
         let _ = self.0.send(Request::Speed(speed));
     }
@@ -91,11 +91,11 @@ struct Playing {
     other: Option<Deck>,
     align: Align,
     speed: f64,
-    /// When the run last moved on, if it is played.
+    /// When the run last advanced; `None` while paused.
     moved: Option<Instant>,
-    /// Mission time that is shown, seconds.
+    /// The mission time shown, in seconds.
     t_s: f64,
-    /// Whether the moment was not there yet.
+    /// Whether the requested moment is not loaded yet.
     waits: bool,
 }
 
@@ -163,7 +163,7 @@ impl Playing {
                 }
             }
             Request::Loaded if self.waits => return self.show(),
-            // The run beside it may have got to the moment.
+            // The compared run may have been loaded up to the moment.
             Request::Loaded | Request::End => return self.show_other(),
         }
         Ok(())
@@ -177,7 +177,7 @@ impl Playing {
         }
     }
 
-    /// Moves on by what has passed since.
+    /// Advances by the time that has passed.
     fn go_on(&mut self) -> Result<(), JournalError> {
         let now = Instant::now();
         let Some(before) = self.moved.replace(now) else { return Ok(()) };
@@ -198,7 +198,7 @@ impl Playing {
         Ok(())
     }
 
-    /// Shows the run at the moment, and the one beside it.
+    /// Shows the run, and the compared run, at the moment.
     fn show(&mut self) -> Result<(), JournalError> {
         let moved = self.deck.go_to(self.t_s)?;
         self.waits = moved.is_none();
@@ -227,7 +227,7 @@ impl Playing {
     }
 }
 
-/// Reads a run, and its report, each in a thread of its own.
+/// Reads a run and its report, each on a separate thread.
 fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -> anyhow::Result<Arc<Reel>> {
     let (own, wake) = (screen.clone(), wake.clone());
     let reel = Reel::begin(folder, move |news| {
@@ -235,7 +235,7 @@ fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -
     })?;
     let (own, folder) = (screen.clone(), folder.to_owned());
     let began = thread::Builder::new().name("replay report".into()).spawn(move || {
-        // Without a report that can be believed there is only the journal to go by.
+        // Without a trustworthy report, only the journal remains.
         let summary = match standing(&folder) {
             Standing::Ended(summary) | Standing::NotRecorded(summary, _) => summary,
             Standing::Running => return,
@@ -244,7 +244,7 @@ fn load(folder: &Path, side: Side, screen: &RunOutbox, wake: &Sender<Request>) -
                     Ok(summary) => Box::new(summary),
                     Err(_) => return,
                 },
-                // The loader says what is wrong with the journal.
+                // The loader reports the problem of the journal.
                 Err(_) => return,
             },
         };

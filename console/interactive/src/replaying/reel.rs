@@ -1,4 +1,4 @@
-//! A journal, read once from beginning to end: copies of the run on the way, and what can be gone to.
+//! A journal, read once from beginning to end, with copies of the run for seeking.
 
 use anyhow::Context;
 use mission::Event;
@@ -18,52 +18,52 @@ use tui::model::{
     replay::{Mark, MarkKind, Marker, Track},
 };
 
-/// Copies of a run that are kept at most.
+/// The largest number of copies of a run.
 pub(super) const MOST_FRAMES: usize = 128;
-/// Bytes of lines between two copies at least: a few milliseconds to read.
+/// The smallest spacing of copies, in bytes of lines; this takes a few milliseconds to read.
 const LEAST_SPACING: u64 = 1 << 18;
-/// Marks of a run at most.
+/// The largest number of marks of a run.
 const MOST_MARKS: usize = 100_000;
-/// How often the screen hears how far the journal is read.
+/// The interval at which the screen receives the progress of the reading.
 const NEWS: Duration = Duration::from_millis(100);
-/// Events that are read at a time, and after so many bytes of lines no more.
+/// The largest number of events read in one batch. A batch also ends after [`BATCH_BYTES`] of lines.
 const BATCH: usize = 512;
 const BATCH_BYTES: u64 = 1 << 18;
-/// What is read ahead, bytes of lines.
+/// The bytes of lines that are read ahead.
 const AHEAD_BYTES: u64 = 1 << 20;
 
-/// The run as its events tell it up to a moment.
+/// The state of the run at a moment, folded from its events.
 pub(super) struct Frame {
-    /// Mission time of the last tick that is in it, seconds.
+    /// The mission time of the last tick included, in seconds.
     pub t_s: f64,
     /// Where the next tick begins.
     pub place: JournalPlace,
     pub run: Arc<Run>,
 }
 
-/// What of a journal was read.
+/// The part of a journal that has been read.
 #[derive(Default)]
 pub(super) struct Content {
     /// Copies of the run, ascending by time.
     pub frames: Vec<Frame>,
     pub track: Track,
     pub until_s: f64,
-    /// Bytes of the journal that were read and understood.
+    /// The bytes of the journal that were read and understood.
     pub bytes: u64,
     pub is_whole: bool,
 }
 
-/// A journal that is read in a thread of its own, as long as somebody holds this.
+/// A journal that a separate thread reads as long as this is held.
 pub(super) struct Reel {
     pub journal: PathBuf,
     content: Mutex<Content>,
 }
 
 impl Reel {
-    /// Begins to read the journal in a folder; `report` hears how far it is, from the thread that reads.
+    /// Begins to read the journal in a folder. The reading thread calls `report` with its progress.
     ///
     /// # Errors
-    /// There is no journal; the system gives no thread.
+    /// There is no journal, or a thread cannot be started.
     pub(super) fn begin(
         folder: &Path,
         report: impl Fn(tui::model::replay::Reel) -> bool + Send + 'static,
@@ -71,7 +71,7 @@ impl Reel {
         Self::begin_spaced(folder, LEAST_SPACING, report)
     }
 
-    /// [`Reel::begin`] with at first so many bytes of lines between two copies.
+    /// [`Reel::begin`] with an initial spacing of copies, in bytes of lines.
     pub(super) fn begin_spaced(
         folder: &Path,
         spacing: u64,
@@ -110,7 +110,7 @@ impl Reel {
     }
 }
 
-/// Events of a journal, each with the place where it begins.
+/// Events of a journal, each with its starting position.
 struct Batch {
     events: Vec<(JournalPlace, Event)>,
     /// Where the next event begins.
@@ -118,10 +118,10 @@ struct Batch {
     end: Option<End>,
 }
 
-/// The journal ends, or cannot be read any further for some reason.
+/// The end of a journal, and the problem if it could not be read completely.
 struct End(Option<String>);
 
-/// Reads a journal until its end, or until nobody wants the events any more.
+/// Reads a journal until its end, or until the receiver is dropped.
 fn read_ahead(mut reader: JournalReader, batches: &Giver<Batch>) {
     loop {
         let mut batch = Batch { events: Vec::with_capacity(BATCH), next: reader.place(), end: None };
@@ -150,13 +150,13 @@ struct Loading {
     reel: Weak<Reel>,
     /// Where the next event begins.
     place: JournalPlace,
-    /// Bytes of the file.
+    /// The size of the file in bytes.
     bytes: u64,
-    /// Bytes of lines between two copies: twice as many whenever there are too many copies.
+    /// The spacing of copies in bytes of lines; doubled whenever there are too many copies.
     spacing: u64,
     run: Run,
     marker: Marker,
-    /// Those that the screen has not heard of.
+    /// The marks that have not been sent to the screen.
     marks: Vec<Mark>,
     n_marks: usize,
     /// Where the last copy was made.
@@ -192,7 +192,7 @@ impl Loading {
             self.end_tick(reel);
         }
         let Some(mark) = self.marker.fold(&mut self.run, event) else { return };
-        // A planner that talks leaves room for what matters.
+        // Limit event marks, so that a talkative planner leaves room for more important marks.
         let most = if mark.kind == MarkKind::Event { MOST_MARKS / 2 } else { MOST_MARKS };
         if self.n_marks < most {
             self.n_marks += 1;
@@ -200,7 +200,7 @@ impl Loading {
         }
     }
 
-    /// A tick is whole.
+    /// Handles the end of a tick.
     fn end_tick(&mut self, reel: &Reel) {
         let (t_s, place) = (self.run.clock.t_s, self.place);
         let mut content = reel.content();
@@ -217,7 +217,7 @@ impl Loading {
         }
     }
 
-    /// Reports how far it is; `false` if nobody listens.
+    /// Reports the progress; returns `false` if the receiver is gone.
     fn tell(
         &mut self,
         report: &impl Fn(tui::model::replay::Reel) -> bool,
@@ -228,7 +228,7 @@ impl Loading {
         let place = self.place;
         let mut content = reel.content();
         if is_whole {
-            // The last tick ends with the journal.
+            // The end of the journal also ends the last tick.
             (content.until_s, content.bytes) = (self.run.clock.t_s, place.bytes);
             content.is_whole = true;
             content.track.add(&self.run);

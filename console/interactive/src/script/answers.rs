@@ -1,9 +1,9 @@
-//! What the mission says to the orders of a script.
+//! Answers of the mission to a script's orders.
 
 use mission::{EventKind, Order};
 use tui::{Msg, RunMsg};
 
-/// The orders that the mission has not answered yet, and why it refused one.
+/// The orders that the mission has not answered yet, and the reason of the first refusal.
 #[derive(Debug, Default)]
 pub(super) struct Answers {
     awaited: Vec<Order>,
@@ -11,28 +11,28 @@ pub(super) struct Answers {
 }
 
 impl Answers {
-    /// These orders were sent.
+    /// Records orders that were sent.
     pub(super) fn await_for<'a>(&mut self, sent: impl IntoIterator<Item = &'a Order>) {
         self.awaited.extend(sent.into_iter().cloned());
     }
 
-    /// Whether an order is not answered yet.
+    /// Whether any order is not answered yet.
     pub(super) fn is_waiting(&self) -> bool {
         !self.awaited.is_empty()
     }
 
-    /// Why the first order that was refused was refused.
+    /// The reason of the first refusal.
     pub(super) fn refusal(&self) -> Option<&str> {
         self.refused.as_deref()
     }
 
-    /// Takes in what a message says to the orders.
+    /// Takes the answers in a message.
     pub(super) fn hear(&mut self, msg: &Msg) {
         let Msg::Run(_, msg) = msg else { return };
         match msg {
             RunMsg::Events(events) => events.iter().for_each(|event| self.take(&event.kind)),
             RunMsg::OrderFailed { order, why } => self.answer(order, Some(why)),
-            // The mission is not there any more, and answers nothing.
+            // The mission is closed and answers nothing more.
             RunMsg::Closed(_) | RunMsg::OpenFailed(_) => self.awaited.clear(),
             _ => {}
         }

@@ -1,11 +1,11 @@
-//! What a script can wait for and demand.
+//! The conditions that a script can wait for or require.
 
 use mission::Phase;
 use std::fmt;
 use tui::Model;
 use world::coverage::percent_text;
 
-/// What can be waited for and demanded.
+/// A condition that a script can wait for or require.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Condition {
     is_negated: bool,
@@ -14,13 +14,13 @@ pub(super) struct Condition {
 
 #[derive(Debug, Clone, PartialEq)]
 enum What {
-    /// `waiting`, `running`, `held`, `ended`, or how it ended.
+    /// `waiting`, `running`, `held`, `ended`, or an outcome.
     Phase(String),
     /// The screen of this name is shown.
     Screen(String),
-    /// At least so many percent of the reachable floor are scanned.
+    /// At least this percentage of the reachable floor is scanned.
     Coverage(f64),
-    /// An alarm contains this text; any alarm if it is empty.
+    /// The text of an alarm contains this; if empty, any alarm.
     Alarm(String),
     /// The screen contains this text.
     Text(String),
@@ -40,10 +40,10 @@ const PHASES: [&str; 10] = [
 ];
 
 impl Condition {
-    /// Reads a condition.
+    /// Parses a condition.
     ///
     /// # Errors
-    /// What is wrong and what would be right.
+    /// The problem, and the correct form.
     pub(super) fn read(text: &str) -> Result<Self, String> {
         let (is_negated, text) = match text.strip_prefix("not ") {
             Some(rest) => (true, rest.trim()),
@@ -54,27 +54,27 @@ impl Condition {
         let bare = value.trim_matches('"').to_owned();
         let what = match word {
             "phase" if PHASES.contains(&value) => What::Phase(bare),
-            "phase" => return Err(format!("no phase `{value}`; there are: {}", PHASES.join(", "))),
+            "phase" => return Err(format!("unknown phase `{value}`; the phases are: {}", PHASES.join(", "))),
             "screen" => screen(value)?,
             "coverage" => coverage(value)?,
             "alarm" => What::Alarm(bare),
             "text" if !bare.is_empty() => What::Text(bare),
             _ => {
                 return Err(format!(
-                    "no condition `{text}`; write phase WORD, screen NAME, coverage >= PERCENT, alarm [TEXT] or \
-                     text TEXT, with or without not before it"
+                    "unknown condition `{text}`; write phase WORD, screen NAME, coverage >= PERCENT, alarm \
+                     [TEXT] or text TEXT, optionally with not before it"
                 ));
             }
         };
         Ok(Self { is_negated, what })
     }
 
-    /// Whether it holds; `screen` draws the screen as text.
+    /// Whether the condition holds; `screen` draws the screen as text.
     pub(super) fn holds(&self, model: &Model, screen: impl Fn(&Model) -> anyhow::Result<String>) -> bool {
         self.is_negated != self.what.holds(model, screen)
     }
 
-    /// What is so instead, as a clause.
+    /// The actual state, as a clause.
     pub(super) fn instead(&self, model: &Model) -> String {
         match &self.what {
             What::Phase(_) => format!("the phase is {}", phase(model.live.run.phase())),
@@ -86,7 +86,7 @@ impl Condition {
                 Some(alarm) => format!("the most severe alarm is: {}", alarm.text),
                 None => "there are no alarms".into(),
             },
-            What::Text(_) => "the screen has other text".into(),
+            What::Text(_) => "the screen does not match".into(),
         }
     }
 }
@@ -111,16 +111,16 @@ fn screen(name: &str) -> Result<What, String> {
     if names.iter().any(|known| known == name) {
         return Ok(What::Screen(name.to_owned()));
     }
-    Err(format!("no screen `{name}`; there are: {}", names.join(", ")))
+    Err(format!("unknown screen `{name}`; the screens are: {}", names.join(", ")))
 }
 
 fn coverage(text: &str) -> Result<What, String> {
     let percent = text.strip_prefix(">=").and_then(|number| number.trim().parse().ok());
     let percent = percent.filter(|percent| (0.0..=100.0).contains(percent));
-    percent.map(What::Coverage).ok_or_else(|| "write coverage >= PERCENT, such as coverage >= 95".into())
+    percent.map(What::Coverage).ok_or_else(|| "write coverage >= PERCENT, for example coverage >= 95".into())
 }
 
-/// Scanned share of the reachable floor, percent.
+/// The scanned share of the reachable floor in percent.
 fn coverage_percent(model: &Model) -> f64 {
     model.live.run.progress.as_ref().map_or(0.0, |progress| 100.0 * progress.covered_reachable)
 }

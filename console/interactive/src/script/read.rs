@@ -1,4 +1,4 @@
-//! The lines of a script.
+//! Parses the lines of a script.
 
 use super::{Condition, Step};
 use tui::{
@@ -6,16 +6,16 @@ use tui::{
     actions::{duration_s, keymap::Keymap},
 };
 
-/// Time that a wait takes at most if the script does not say, seconds.
+/// The default time limit of a wait, in seconds.
 const WITHIN_S: f64 = 60.0;
 
-/// Something and the number of its line.
+/// A value with its line number.
 type Numbered<T> = (usize, T);
 
-/// Reads a script: its steps by the number of their line.
+/// Parses a script into its steps with their line numbers.
 ///
 /// # Errors
-/// Each line that is not a command, by its number, and what is wrong with it.
+/// Each invalid line with its number and the problem.
 pub(super) fn steps(text: &str, keys: &Keymap) -> Result<Vec<Numbered<Step>>, Vec<Numbered<String>>> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
@@ -35,7 +35,7 @@ fn step(line: &str, keys: &Keymap) -> Result<Step, String> {
     match word {
         "wait" => wait(rest.strip_prefix("until ").ok_or("write wait until CONDITION [within DURATION]")?),
         "assert" => Condition::read(rest).map(Step::Assert),
-        "key" => Key::named(rest).map(Step::Key).ok_or_else(|| format!("no key `{rest}`")),
+        "key" => Key::named(rest).map(Step::Key).ok_or_else(|| format!("unknown key `{rest}`")),
         "size" => size(rest).map(Step::Size),
         "picture" if rest.is_empty() => Err("write picture FILE.svg".into()),
         "picture" => Ok(Step::Picture(rest.into())),
@@ -43,12 +43,12 @@ fn step(line: &str, keys: &Keymap) -> Result<Step, String> {
     }
 }
 
-/// Columns and rows, such as `120x36`.
+/// Parses columns and rows, such as `120x36`.
 fn size(text: &str) -> Result<(u16, u16), String> {
     let size =
         text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     let is_screen = |(width, height): &(u16, u16)| (20..=300).contains(width) && (5..=100).contains(height);
-    size.filter(is_screen).ok_or_else(|| format!("no size `{text}`; write 20x5 to 300x100"))
+    size.filter(is_screen).ok_or_else(|| format!("invalid size `{text}`; write 20x5 to 300x100"))
 }
 
 fn wait(text: &str) -> Result<Step, String> {

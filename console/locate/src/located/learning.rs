@@ -1,4 +1,4 @@
-//! What a session says of clocks, sound and stations.
+//! Estimates errors of clocks, sound and stations from a whole session.
 
 use super::Task;
 use crate::{
@@ -10,17 +10,17 @@ use crate::{
 use flight::failure::bad_input;
 use positioning::{Calibration, Integrity, Possible, Ranging, Session, SolverKind, Unknowns};
 
-/// Times that a session is taken at most to find out about clocks and sound,
+/// The estimate of clock and sound errors stops after this many passes over the session, ...
 const ROUNDS: usize = 10;
-/// or until that changes by less than this share of its standard deviation.
+/// ... or once it changes by less than this share of its standard deviation.
 const SETTLED: f64 = 0.1;
-/// Offsets of clocks up to some of these are looked for, metres.
+/// Standard deviation that is assumed for clock offsets before the search, metres.
 const OFFSET_SIGMA_M: f64 = 20.0;
-/// Errors of the speed of sound up to some of these are looked for, as a share.
+/// Standard deviation that is assumed for the error of the speed of sound before the search, as a share.
 const SOUND_SIGMA_RATIO: f64 = 0.05;
-/// A speed of sound that is no better known than this, as a share, was not found.
+/// A speed of sound that is less certain than this, as a share, counts as not found.
 const UNSEEN_SIGMA_RATIO: f64 = 0.05;
-/// By which share ranges may be too long while the speed of sound is sought.
+/// The share by which ranges may be too long while the speed of sound is being estimated.
 pub(super) const MOST_TOO_LONG: f64 = 0.3;
 
 impl Task<'_> {
@@ -29,11 +29,11 @@ impl Task<'_> {
     }
 
     /// # Errors
-    /// Something is sought that such readings never say.
+    /// An estimate was requested that readings of this kind cannot give.
     pub(super) fn check_findable(&self, columns: &Columns) -> anyhow::Result<()> {
         if self.finds_clock_offset && columns.kind() == Kind::Differences {
             return Err(bad_input(format!(
-                "{}: without the time of emission no clock offset can be found; leave out --find clock-offset, or add a \
+                "{}: a clock offset cannot be found without emission times; leave out --find clock-offset, or add a \
                  column emitted_s",
                 self.shown
             )));
@@ -41,7 +41,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// What the session says of clocks and sound, if it was asked for.
+    /// Estimates clock and sound errors from the session, if requested.
     pub(super) fn found(&self, columns: &Columns, repeats: &Repeats) -> anyhow::Result<Option<Found>> {
         if !self.finds() {
             return Ok(None);
@@ -58,7 +58,7 @@ impl Task<'_> {
         self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
     }
 
-    /// What the locator is going to find out about the speed of sound by itself.
+    /// Estimates the error of the speed of sound that the locator will find on its own during the run.
     pub(super) fn found_under_way(
         &self,
         columns: &Columns,
@@ -71,14 +71,14 @@ impl Task<'_> {
         self.calibrated(calibration, repeats).map(|calibration| Some(Found::from(&calibration)))
     }
 
-    /// What the session says of clocks and sound, taken again until it no longer changes.
+    /// Repeats the estimate of clock and sound errors over the session until it no longer changes.
     fn calibrated(&self, mut calibration: Calibration, repeats: &Repeats) -> anyhow::Result<Calibration> {
         let possible = self.possible();
         for _ in 0..ROUNDS {
             let before = (calibration.scale().0, calibration.offset_m().0);
             calibration = calibration.again();
             for moment in self.moments(repeats)? {
-                // A cycle without a position contributes nothing; its fix states why there is none.
+                // A cycle without a position contributes nothing; its fix states the reason.
                 let _ = calibration.take(&self.rangings(&possible, &moment, Kind::Ranges), None);
             }
             let ((scale, scale_sigma), (offset_m, offset_sigma_m)) =
@@ -92,7 +92,7 @@ impl Task<'_> {
         Ok(calibration)
     }
 
-    /// The share by which all ranges are too long, from differences of arrivals alone.
+    /// Estimates the share by which all ranges are too long from arrival differences alone.
     fn scale_of_differences(&self, readings: (&Columns, &Repeats)) -> anyhow::Result<Found> {
         let (mut scale, mut sigma) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {
@@ -108,18 +108,18 @@ impl Task<'_> {
             return Ok(Found::of_scale((scale, sigma)));
         }
         let known = if sigma.is_finite() {
-            format!("only to ± {:.0} %", sigma * 100.0)
+            format!("is known only to ± {:.0} %", sigma * 100.0)
         } else {
-            "not at all".into()
+            "remains unknown".into()
         };
         Err(bad_input(format!(
-            "{}: the speed of sound shows {known} in these differences of arrivals; it takes fixes in many places, each with five \
-             stations or more, or the time of emission (emitted_s)",
+            "{}: the speed of sound {known} from these arrival differences; to find it, \
+             provide fixes in many places with five or more stations each, or the emission time (emitted_s)",
             self.shown
         )))
     }
 
-    /// What the residuals of all fixes say, with what was found out taken out of the ranges.
+    /// Collects the residuals of all fixes, after correcting the ranges for the errors found.
     pub(super) fn judged(
         &self,
         (columns, repeats): (&Columns, &Repeats),
@@ -145,17 +145,18 @@ impl Task<'_> {
         Ok(session)
     }
 
-    /// One range of each station that was heard, of those that can be.
+    /// Returns one range of each station that was heard, without impossible ranges.
     fn rangings(&self, possible: &Possible, moment: &Moment, kind: Kind) -> Vec<Ranging> {
         let locating = &self.scenario.mission.locating;
         let (sets, _) = match kind {
-            // With an offset of clocks any length can be one.
+            // With an unknown clock offset, any length is possible.
             Kind::Ranges if self.finds_clock_offset => (moment.ranges.as_slice().into(), Vec::new()),
             Kind::Ranges => possible.ranges(&moment.ranges),
             Kind::Differences => possible.differences(&moment.ranges),
         };
         let mut rangings = locating.aggregation.aggregate(&sets, &self.noise()).unwrap_or_default();
-        // Of differences it is only known that no station is nearer than the first one: the least spread, the least that is fresh.
+        // Differences only show that no station is nearer than the first one. This assumption gives the least spread
+        // of the ranges, and so the smallest independent part of the error.
         let excess_m = match kind {
             Kind::Ranges => 0.0,
             Kind::Differences => rangings.iter().map(|r| r.range_m).fold(f64::INFINITY, f64::min),

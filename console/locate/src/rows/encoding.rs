@@ -1,4 +1,4 @@
-//! Which encoding a file is in that is not in UTF-8, and what to do about it.
+//! Detects the encoding of a file that is not UTF-8, and suggests what to do about it.
 
 use foreign::{NotUtf8, open_regular};
 use std::{
@@ -6,20 +6,20 @@ use std::{
     path::Path,
 };
 
-/// Bytes of a beginning that are looked at.
+/// The number of bytes examined at the start of a file.
 const BEGINNING: u64 = 64;
-/// Longest line that is read, bytes.
+/// The longest line that is read, bytes.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// What is wrong with a file of two or four bytes a character; `None` if it is not such a file.
+/// Returns the problem with a file that has two or four bytes a character; `None` for any other file.
 pub(super) fn wide(file: &Path) -> Option<String> {
     let mut beginning = Vec::new();
     open_regular(file).ok()?.take(BEGINNING).read_to_end(&mut beginning).ok()?;
     let name = NotUtf8::of(&beginning)?.encoding.filter(|name| name.starts_with("UTF"))?;
-    Some(format!("line 1: text in {name} (\"Unicode text\" of spreadsheets); {}", remedy(name)))
+    Some(format!("line 1: text in {name} (\"Unicode text\" in spreadsheets); {}", remedy(name)))
 }
 
-/// What is wrong with the line of a file that is not UTF-8, by the first such byte in it.
+/// Returns the problem with a line that is not UTF-8, with its first invalid byte.
 pub(super) fn narrow(file: &Path, line: u64) -> String {
     let bytes = bytes_of(file, line).unwrap_or_default();
     let byte = std::str::from_utf8(&bytes).err().and_then(|error| bytes.get(error.valid_up_to()));
@@ -35,7 +35,7 @@ fn remedy(name: &str) -> String {
     format!("save the readings as \"CSV UTF-8\", or convert them: iconv -f {name} -t UTF-8 READINGS")
 }
 
-/// The bytes of a line.
+/// Returns the bytes of a line.
 fn bytes_of(file: &Path, line: u64) -> Option<Vec<u8>> {
     let mut text = BufReader::new(open_regular(file).ok()?);
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! Messages of an MCAP file whose content is a JSON object, each a row.
+//! Reads an MCAP file in which each JSON message gives one row.
 
 use crate::problem::Problem;
 use csv::StringRecord;
@@ -10,32 +10,32 @@ use mcap::{
 use serde_json::{Map, Value};
 use std::{collections::HashMap, fs::File, io::Read};
 
-/// Longest record that is read, bytes: a damaged length is not what memory is asked for.
+/// The longest record that is read, bytes. A damaged length must not make us allocate huge amounts of memory.
 const LONGEST_RECORD: usize = 64_000_000;
 
-/// Longest message that is a row, bytes.
+/// The longest message that is accepted as a row, bytes.
 const LONGEST_ROW: usize = 1 << 16;
-/// So many times as long as the file is what is packed in it at most, and so much is given in any case, bytes.
+/// The unpacked records may be at most this many times as long as the bytes read, plus `FREE_BYTES`.
 const MOST_EXPANSION: u64 = 1000;
 const FREE_BYTES: u64 = 64 << 20;
 
-/// The messages of a file, in the order of the file.
+/// The messages of a file, in file order.
 pub(crate) struct Messages {
     file: File,
     reader: LinearReader,
     /// Topic and encoding of each channel.
     channels: HashMap<u16, (String, String)>,
     header: StringRecord,
-    /// The message that gave the header.
+    /// The first message, whose keys give the header, until it is returned as a row.
     first: Option<Map<String, Value>>,
     count: u64,
-    /// Bytes that were read, and bytes of records in them.
+    /// The number of bytes read, and of the record bytes they contained.
     read: u64,
     held: u64,
 }
 
 impl Messages {
-    /// The messages of a file; the keys of the first one are the names of the columns.
+    /// Opens a file; the keys of its first message name the columns.
     pub(crate) fn open(file: File) -> Result<Self, String> {
         let mut messages = Self {
             file,
@@ -52,7 +52,8 @@ impl Messages {
         let first = messages.message().map_err(|problem| problem.to_string())?;
         let first = first.ok_or_else(|| {
             format!(
-                "no readings; each is to be a message that is a JSON object, as {{\"t_s\": 0.5, \"station\": \"A\"}}; topics: {}",
+                "no readings; each must be a message with a JSON object such as \
+                 {{\"t_s\": 0.5, \"station\": \"A\"}}; topics: {}",
                 messages.topics()
             )
         })?;
@@ -61,7 +62,7 @@ impl Messages {
         Ok(messages)
     }
 
-    /// The topics, each with its encoding, for people.
+    /// Lists the topics, each with its encoding, for people.
     fn topics(&self) -> String {
         let mut topics: Vec<String> =
             self.channels.values().map(|(topic, encoding)| format!("{topic} ({encoding})")).collect();
@@ -91,14 +92,14 @@ impl Messages {
         }
         match message.keys().find(|key| !self.header.iter().any(|name| name == *key)) {
             Some(new) => {
-                let what = format!("the first message had no `{new}`");
+                let what = format!("the key `{new}` is missing in the first message");
                 Err(Problem { line: self.count, column: None, what, is_end: false })
             }
             None => Ok(Some(self.count)),
         }
     }
 
-    /// The next message.
+    /// Returns the next message.
     fn message(&mut self) -> Result<Option<Map<String, Value>>, Problem> {
         let Self { file, reader, channels, count, read, held, .. } = self;
         let problem = |line: u64, what: String| Problem { line, column: None, what, is_end: false };
@@ -113,9 +114,9 @@ impl Messages {
                     *read += length as u64;
                     reader.notify_read(length);
                 }
-                // No record has this number; zeros are what a file that was never written holds.
+                // No record has this number. A file that was never written contains only zeros.
                 LinearReadEvent::Record { opcode: 0, .. } => {
-                    return Err(damaged(*count + 1, &"a record of kind 0"));
+                    return Err(damaged(*count + 1, &"record of kind 0"));
                 }
                 LinearReadEvent::Record { data, .. }
                     if {
@@ -123,7 +124,7 @@ impl Messages {
                         *held > FREE_BYTES + MOST_EXPANSION * *read
                     } =>
                 {
-                    return Err(damaged(*count, &"it unpacks to more than any recording holds"));
+                    return Err(damaged(*count, &"it unpacks to more data than any valid recording holds"));
                 }
                 LinearReadEvent::Record { opcode, data } => match parse_record(opcode, data) {
                     Ok(Record::Channel(channel)) => {
@@ -132,19 +133,19 @@ impl Messages {
                     Ok(Record::Message { header, data }) => {
                         *count += 1;
                         let Some((topic, encoding)) = channels.get(&header.channel_id) else {
-                            return Err(damaged(*count, &"a message without a channel"));
+                            return Err(damaged(*count, &"message without a channel"));
                         };
-                        // Other topics of a recording are none of our business.
+                        // Other topics of a recording are ignored.
                         if encoding == "json" && data.len() > LONGEST_ROW {
                             return Err(problem(
                                 *count,
-                                format!("topic {topic}: a message of {} bytes", data.len()),
+                                format!("topic {topic}: message is too long: {} bytes", data.len()),
                             ));
                         }
                         if encoding == "json" {
                             let row = serde_json::from_slice(&data);
                             let bad =
-                                |error| problem(*count, format!("topic {topic}: no JSON object: {error}"));
+                                |error| problem(*count, format!("topic {topic}: not a JSON object: {error}"));
                             return row.map(Some).map_err(bad);
                         }
                     }

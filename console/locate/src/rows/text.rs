@@ -1,15 +1,15 @@
-//! A text file, byte by byte checked to be one.
+//! Reads a text file and checks every byte.
 
 use std::{
     fs::File,
     io::{self, Read},
 };
 
-/// Longest line that is read, bytes.
+/// The longest line that is read, bytes.
 const LONGEST_LINE: usize = 1 << 16;
 
-/// A file whose bytes are refused where they are not text, so that no reader collects an endless line; every line ends with
-/// a line feed, so that lines can be counted.
+/// A file that refuses bytes that are not text, so that no reader collects an endless line. Every line is returned
+/// with a line feed at its end, so that lines can be counted.
 pub(crate) struct Text {
     file: File,
     in_line: usize,
@@ -25,7 +25,7 @@ impl Text {
         self.file
     }
 
-    /// What a byte becomes, if anything: a carriage return ends a line, and a line feed behind it says nothing more.
+    /// Converts a byte: a carriage return becomes a line feed, and a line feed right after it is dropped.
     fn checked(&mut self, byte: u8) -> io::Result<Option<u8>> {
         let before = std::mem::replace(&mut self.last, byte);
         self.in_line += 1;
@@ -35,8 +35,8 @@ impl Text {
                 self.in_line = 0;
                 Ok(Some(b'\n'))
             }
-            0 => Err(no_text("no text: a byte 0; save the readings as CSV, in UTF-8")),
-            _ if self.in_line > LONGEST_LINE => Err(no_text("no text: a line of more than 65,536 bytes")),
+            0 => Err(no_text("not text: contains a zero byte; save the readings as CSV, in UTF-8")),
+            _ if self.in_line > LONGEST_LINE => Err(no_text("not text: a line has more than 65,536 bytes")),
             _ => Ok(Some(byte)),
         }
     }

@@ -1,74 +1,79 @@
-//! A planner's answer beside the one that is recorded.
+//! Compares a planner's answer with the recorded one.
 
 use super::{Answer, Given};
 use crate::planner::{Cause, Fault, PlannerInfo};
 use planner_api::Command;
 use std::borrow::Cow;
 
-/// What comes of comparing a planner's own answer with the recorded one.
+/// The result of comparing a planner's own answer with the recorded one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Comparison {
-    /// They are the same.
+    /// Both answers are the same.
     Same,
-    /// The recorded answer is not the planner's.
+    /// The recorded answer does not come from this planner.
     NotComparable,
-    /// They differ; the sentence reads on after "it".
+    /// The answers differ; the text completes a sentence that begins with "it".
     Different(String),
 }
 
 impl Comparison {
-    /// Compares two answers to one ask. `as_sent` is what a command becomes on its way to the robot: that is what is
-    /// recorded of the planner that drives, and it changes no command twice.
+    /// Compares two answers to one ask. `as_sent` converts a command to the form in which the robot receives it, because
+    /// that is the form recorded for the active planner. Applying `as_sent` twice changes nothing.
     pub fn of(own: &Answer, recorded: &Answer, as_sent: impl Fn(Command) -> Command) -> Self {
         let why = match (&own.result, &recorded.result) {
             (Ok(Given::Opened(_)), Err(Fault { cause: Cause::Quarantined | Cause::Refused, .. })) => {
                 return Self::NotComparable;
             }
-            // Sound by itself, and refused for this tank by the mission, which does not record it then.
+            // Valid by itself, but refused by the mission for this tank, so the journal does not hold it.
             (Ok(Given::Plan(_)), Err(Fault { cause: Cause::BadOutput, .. })) => return Self::NotComparable,
             (Ok(own_given), Ok(given)) => differs(own_given, given, as_sent)
                 .or_else(|| {
                     (own.said.clone().rounded() != recorded.said)
-                        .then_some(Cow::Borrowed("logs or draws something else"))
+                        .then_some(Cow::Borrowed("logs or draws something different"))
                 })
                 .map(Cow::into_owned),
             (Err(own), Err(fault)) => (own != fault)
                 .then(|| format!("fails with \"{}\" instead of \"{}\"", own.message, fault.message)),
-            (Ok(_), Err(fault)) => Some(format!("does not fail (\"{}\" then)", fault.message)),
+            (Ok(_), Err(fault)) => Some(format!("does not fail (recorded: \"{}\")", fault.message)),
             (Err(own), Ok(_)) => Some(format!("fails: {}", own.message)),
         };
         why.map_or(Self::Same, Self::Different)
     }
 }
 
-/// How a planner that opened is another one than then.
+/// How a planner that was opened differs from the recorded one.
 fn another_planner(own: &PlannerInfo, then: &PlannerInfo) -> String {
     if own.sha256 == then.sha256 {
-        return "offers something else".to_owned();
+        return "has different properties or parameters".to_owned();
     }
     let start = |info: &PlannerInfo| info.sha256.chars().take(12).collect::<String>();
-    format!("is another build (SHA-256 {}... of {}, {}... then)", start(own), own.plugin, start(then))
+    format!(
+        "is a different build (SHA-256 {}... of {}, recorded: {}...)",
+        start(own),
+        own.plugin,
+        start(then)
+    )
 }
 
 fn differs(own: &Given, recorded: &Given, as_sent: impl Fn(Command) -> Command) -> Option<Cow<'static, str>> {
     let is = |differs: bool, how: &'static str| differs.then_some(Cow::Borrowed(how));
     match (own, recorded) {
         (Given::Opened(own), Given::Opened(then)) => {
-            // What encloses a planner is the machine's, not its own.
+            // The sandbox is a property of the machine, not of the planner.
             let own = PlannerInfo { sandbox: then.sandbox.clone(), ..(**own).clone() };
             (own != **then).then(|| another_planner(&own, then).into())
         }
         (Given::Command(own), Given::Command(then)) => {
-            is(as_sent(*own) != as_sent(*then), "commands something else")
+            is(as_sent(*own) != as_sent(*then), "commands something different")
         }
         (Given::Plan(own), Given::Plan(then)) => {
             let is_same = own.path == then.path
                 && own.complete == then.complete
                 && own.legs == then.legs
                 && own.cuts == then.cuts;
-            is(!is_same, "plans another path")
+            is(!is_same, "plans a different path")
         }
-        (own, then) => is(own != then, "gives something else"),
+        (own, then) => is(own != then, "answers with something different"),
     }
 }
 
@@ -104,7 +109,7 @@ mod tests {
         let given = |command| answer(Ok(Given::Command(command)));
         assert_eq!(Comparison::of(&given(waiting), &given(stuck), |_| stuck), Comparison::Same);
         let other = Comparison::of(&given(waiting), &given(stuck), |command| command);
-        assert!(is_different(&other, "commands something else"));
+        assert!(is_different(&other, "commands something different"));
     }
 
     #[test]
@@ -113,7 +118,7 @@ mod tests {
         let dearer = Plan { cost: plan.cost + 1.0, ..plan.clone() };
         assert_eq!(compared(Ok(Given::Plan(dearer)), Ok(Given::Plan(plan.clone()))), Comparison::Same);
         let other = compared(Ok(Given::Plan(Plan::default())), Ok(Given::Plan(plan)));
-        assert!(is_different(&other, "plans another path"));
+        assert!(is_different(&other, "plans a different path"));
     }
 
     #[test]
@@ -136,9 +141,13 @@ mod tests {
             compared(Ok(Given::Opened(Box::new(own))), Ok(Given::Opened(then)))
         };
         let other = against(opened("fedcba9876543210", "fields"));
-        let text = "is another build (SHA-256 fedcba987654... of libplanner_apf.so, 0123456789ab... then)";
+        let text =
+            "is a different build (SHA-256 fedcba987654... of libplanner_apf.so, recorded: 0123456789ab...)";
         assert!(is_different(&other, text), "{other:?}");
-        assert!(is_different(&against(opened("0123456789abcdef", "others")), "offers something else"));
+        assert!(is_different(
+            &against(opened("0123456789abcdef", "others")),
+            "has different properties or parameters"
+        ));
     }
 
     #[test]
@@ -146,7 +155,7 @@ mod tests {
         let (quiet, mut loud) = (answer(Ok(Given::Reconfigured)), answer(Ok(Given::Reconfigured)));
         loud.said.logs.push((LogLevel::Warn, "narrow".into()));
         let other = Comparison::of(&loud, &quiet, |command| command);
-        assert!(is_different(&other, "logs or draws something else"));
+        assert!(is_different(&other, "logs or draws something different"));
     }
 
     #[test]
@@ -158,7 +167,7 @@ mod tests {
         let far = fault(Cause::BadOutput, "it gave a path far outside the tank");
         assert_eq!(compared(Ok(Given::Plan(Plan::default())), Err(far)), Comparison::NotComparable);
         let well = compared(Ok(Given::Reconfigured), Err(panic.clone()));
-        assert!(is_different(&well, "does not fail (\"it panicked\" then)"));
+        assert!(is_different(&well, "does not fail (recorded: \"it panicked\")"));
         assert!(is_different(&compared(Err(panic), Ok(Given::Reconfigured)), "fails: it panicked"));
     }
 }

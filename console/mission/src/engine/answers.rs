@@ -1,4 +1,4 @@
-//! What the answers of planners do.
+//! Processes the answers of planners.
 
 use super::{
     Mission,
@@ -18,7 +18,7 @@ use crate::{
 use planner_api::{Code, Plan, Reason};
 
 impl Mission {
-    /// Takes the answer to an ask. Answers that nobody waits for any more are ignored.
+    /// Processes the answer to an ask. Answers that are no longer expected are ignored.
     pub fn answer(&mut self, answer: Answer) {
         if let Some(pending) = self.driving.worker.answered(answer.ask) {
             return self.answer_driving(pending, answer);
@@ -103,12 +103,12 @@ impl Mission {
         });
     }
 
-    /// Flies a plan from now on. A hold that it was to end, or that blamed another planner, is over.
+    /// Switches to a plan. This ends a hold that waited for the plan or was caused by another planner.
     pub(super) fn take_plan(&mut self, plan: &Plan) {
-        self.drop_better_plan("another plan is flown");
+        self.drop_better_plan("a different plan has been taken");
         self.better_plan_due_s = None;
         self.known.task.take_plan(plan);
-        // Progress is counted along the new plan from here.
+        // From here progress is counted along the new plan.
         self.rules.stuck.restart();
         self.driving.take_plan(plan, &self.known);
         let was_ordered = std::mem::take(&mut self.driving.prepare) == Prepare::Plan;
@@ -116,7 +116,7 @@ impl Mission {
         if hold.resumes == Resumes::ByFallback {
             self.go_on(Gait::Steady);
         } else if was_ordered && (hold.by.blames_planner() || matches!(hold.by, HoldReason::Stuck { .. })) {
-            // The reason is gone with the planner; now it is the operator who lets the robot go on.
+            // The cause is gone with the planner; now the operator decides when the robot moves again.
             self.hold(Hold { by: HoldReason::PlannerReplaced, resumes: Resumes::Never });
         }
     }
@@ -128,14 +128,14 @@ impl Mission {
         self.note_fault(ask, fault, info.as_ref());
         let says_no = matches!(cause, Cause::Planner(_) | Cause::Refused);
         match kind {
-            // It goes on with the values that it has; as a new instance it may take others.
+            // The planner keeps its current values; a new instance may accept the new ones.
             PendingKind::Reconfigure(choice) if says_no => {
                 let unsupported = cause == Cause::Planner(Code::Unsupported);
-                // A planner that was ordered meanwhile stays ordered.
+                // If another planner has been ordered meanwhile, that order stands.
                 if unsupported && self.preparing.is_none() && !self.known.is_running() {
                     let prepare = self.driving.prepare;
                     self.choose(choice, Reason::Operator);
-                    // A plan that was ordered before the start stays ordered.
+                    // If a plan was ordered before the start, that order stands.
                     self.driving.prepare = prepare.max(self.driving.prepare);
                 }
                 return;
@@ -151,7 +151,7 @@ impl Mission {
             self.driving.first_plan = Some(Err(message.clone()));
         }
         if !self.driving.course.has_plan() {
-            // The operator agreed to the plan that was refused, not to one of later.
+            // The operator agreed to the refused plan, not to a later one.
             let tether = self.known.config.tether.as_ref();
             self.known.allow_uncertified(tether.is_some_and(|tether| tether.allow_uncertified));
         }
@@ -162,9 +162,9 @@ impl Mission {
         });
     }
 
-    /// The planner that drives cannot drive the robot on.
+    /// Handles an active planner that cannot continue.
     fn driving_is_no_use(&mut self, by: HoldReason) {
-        self.drop_better_plan("the planner that drives failed");
+        self.drop_better_plan("the active planner failed");
         self.driving.prepare = Prepare::No;
         let is_to_be_held = match &self.known.phase {
             Phase::Running(_) => true,

@@ -1,11 +1,11 @@
-//! What is asked of the planners next.
+//! The next ask to a planner.
 
 use super::{Mission, preparing::Preparing, worker::Worker};
 use crate::ask::{Ask, Awaits};
 
 impl Mission {
-    /// The next thing that is wanted of a planner, if anything is. To be called until it gives nothing, after
-    /// [`Mission::sense`] and after every [`Mission::answer`].
+    /// Returns the next ask to a planner, if any. Call it until it returns `None`, after [`Mission::sense`] and after
+    /// every [`Mission::answer`].
     pub fn poll_ask(&mut self) -> Option<Ask> {
         let waits_for_other = self.preparing.as_ref().is_some_and(Preparing::robot_waits);
         let Self { known, workers, driving, .. } = self;
@@ -16,7 +16,7 @@ impl Mission {
             .or_else(|| self.shadow.as_mut()?.next_ask(&self.known, &mut self.workers))
     }
 
-    /// What the mission would like to have before the tick ends.
+    /// The answer that the mission would like before the tick ends.
     pub fn awaits(&self) -> Awaits {
         if let Some(awaited) = self.driving.awaits(&self.known) {
             return awaited;
@@ -31,7 +31,7 @@ impl Mission {
         }
     }
 
-    /// Whether a planner is being opened or is making a plan, whether or not the robot stands for it.
+    /// Whether a planner is being opened or is making a plan, even if the robot does not wait for it.
     pub fn is_preparing(&self) -> bool {
         let preparing = self.preparing.as_ref().map(|preparing| &preparing.worker);
         let shadow = self.shadow.as_ref().map(|shadow| &shadow.worker);

@@ -1,8 +1,9 @@
-//! After a repair the planner is asked, in a second worker, for a plan for all that is left, while the robot flies on.
+//! Better plans. After a repair, a second worker of the same planner makes a plan for all that is left while the robot
+//! continues.
 //!
-//! It is asked as a candidate, which has no plan to keep to, from a place ahead on the plan that is flown: what is scanned up to
-//! there counts as scanned, and the cable lies as it will lie there. A plan that is better by more than a change is worth is
-//! offered, or taken, when the robot comes to that place; whatever changes the plan that is flown before drops it.
+//! The second worker has no plan to keep to. Its plan begins at a place ahead on the current plan: floor on the way there
+//! counts as scanned, and the cable as laid up to there. If the new plan saves more than a change is worth, it is offered
+//! or taken when the robot reaches that place. Any earlier change of the current plan drops it.
 
 mod worth;
 
@@ -23,36 +24,36 @@ use geometry::PathFollower;
 use planner_api::{Plan, Reason};
 use world::Point;
 
-/// After a find the robot flies on for so long before it is asked for, seconds: what is found often lies in groups, and its
-/// outline is corrected while the robot passes.
+/// Time between a find and the search for a better plan, seconds: obstacles are often found in groups, and their outlines
+/// are corrected while the robot passes.
 const SETTLE_S: f64 = 20.0;
-/// The robot is at the place where the plan begins, metres along its way.
+/// Distance along the path at which the robot counts as having reached the start of the better plan, metres.
 const AT_JOINT_M: f64 = 0.05;
 
-/// How far a plan for all that is left is, which begins at a place on the plan that is flown.
+/// Progress of the better plan, which begins at a place on the current one.
 #[derive(Clone)]
 pub(super) enum Better {
-    /// Its planner is being opened.
+    /// The planner is being opened.
     Opening,
-    /// It is being made, to begin there.
+    /// The plan is being made, to begin at this place.
     Planning(Joint),
-    /// It is better.
+    /// The plan is better and is offered.
     Offered(Box<Offer>),
 }
 
-/// A plan that is better.
+/// A better plan that is offered.
 #[derive(Clone)]
 pub(super) struct Offer {
     joint: Joint,
     plan: Plan,
     flown: Effort,
     better: Effort,
-    /// Whether it was ordered to be taken.
+    /// Whether the operator ordered it to be taken.
     is_ordered: bool,
 }
 
 impl Better {
-    /// Where it begins; `None` until it is asked for.
+    /// The place where the better plan begins; `None` until the planner is asked for it.
     pub(super) fn joint(&self) -> Option<Joint> {
         match self {
             Self::Opening => None,
@@ -63,13 +64,14 @@ impl Better {
 }
 
 impl Mission {
-    /// A repaired plan is flown: another one is looked for, if the mission wants any.
+    /// Schedules the search for a better plan, after a repaired one was taken and if the mission wants better plans.
     pub(super) fn want_better_plan(&mut self) {
         let wanted = self.known.config.wants_better_plans() && self.known.is_coverage();
         self.better_plan_due_s = wanted.then(|| self.known.now_s() + SETTLE_S);
     }
 
-    /// The map has changed: what is being made is out of date, and what is due waits until the map is settled.
+    /// Handles a change of the map: a better plan being made is out of date, and a scheduled search waits until the map
+    /// has settled.
     pub(super) fn postpone_better_plan(&mut self) {
         let is_under_way = self.better().is_some();
         self.drop_better_plan("the map has changed");
@@ -85,19 +87,19 @@ impl Mission {
         }
     }
 
-    /// Whether a better plan is offered and not taken yet.
+    /// Whether a better plan is offered and not ordered yet.
     pub(super) fn has_offer(&self) -> bool {
         matches!(self.better(), Some(Better::Offered(offer)) if !offer.is_ordered)
     }
 
-    /// The better plan is to be flown from where it begins.
+    /// Orders the better plan to be taken at the place where it begins.
     pub(super) fn order_better_plan(&mut self) {
         if let Some(Preparing { role: Role::Better(Better::Offered(offer)), .. }) = &mut self.preparing {
             offer.is_ordered = true;
         }
     }
 
-    /// Gives up a better plan that is being made or offered, if there is one.
+    /// Abandons a better plan that is being made or offered, if any.
     pub(super) fn drop_better_plan(&mut self, why: &str) {
         let dropped = self.preparing.take_if(|preparing| matches!(preparing.role, Role::Better(_)));
         if let Some(Preparing { worker, .. }) = dropped {
@@ -110,7 +112,7 @@ impl Mission {
         self.happened.push(EventKind::BetterPlanDropped { planner: worker.choice.id, why });
     }
 
-    /// Begins to look for a better plan if one is due; takes it, or lets it go, where it begins.
+    /// Starts the search for a better plan if one is due. Takes or drops an offered plan where it begins.
     pub(super) fn lead_better_plan(&mut self) {
         if self.is_better_plan_due() {
             self.better_plan_due_s = None;
@@ -132,7 +134,7 @@ impl Mission {
         match better {
             Better::Offered(offer) if offer.is_ordered || takes_any => self.take_better_plan(),
             Better::Offered(_) => self.drop_better_plan("the robot has passed the place where it begins"),
-            _ => self.drop_better_plan("it came after the robot had passed the place where it begins"),
+            _ => self.drop_better_plan("it arrived after the robot had passed the place where it begins"),
         }
     }
 
@@ -142,7 +144,7 @@ impl Mission {
         is_due && is_steady && self.preparing.is_none() && self.known.is_running()
     }
 
-    /// Judges a plan for all that is left; gives its planner back if it is offered.
+    /// Judges a plan for all that is left; returns its planner if the plan is offered.
     pub(super) fn better_plan_arrived(
         &mut self,
         mut worker: Worker,
@@ -153,7 +155,7 @@ impl Mission {
         let (cover, joint) = (self.known.task.cover()?, better.joint()?);
         let way = cover.way_to(&joint);
         let rest = cover.path_from(&joint);
-        // The turn at the joint counts, too.
+        // The turn where the two plans join counts, too.
         let before = &way[way.len().saturating_sub(2)..way.len().saturating_sub(1)];
         let effort = |path: &[Point]| Effort::of(&[before, path].concat(), &self.known.config.limits);
         let (flown, better) = (effort(&rest), effort(&plan.path));
@@ -177,7 +179,7 @@ impl Mission {
         Some(Preparing { worker, role: Role::Better(Better::Offered(Box::new(offer))) })
     }
 
-    /// The robot is where the better plan begins.
+    /// Switches to the better plan; the robot is at the place where it begins.
     fn take_better_plan(&mut self) {
         let Some(Preparing { worker, role: Role::Better(Better::Offered(offer)) }) = self.preparing.take()
         else {

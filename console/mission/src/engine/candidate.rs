@@ -17,26 +17,28 @@ use crate::{
 use planner_api::{Plan, Reason};
 use world::Shape;
 
-/// A candidate whose plan begins further from the robot than this plans again, metres.
+/// If the candidate's plan begins farther from the robot than this, the candidate plans again, metres.
 pub(super) const NEAR_PLAN_M: f64 = 0.5;
-/// It keeps to that plan if the robot has gone no further, metres: more floor would be scanned twice.
+/// When it plans again, it keeps to its first plan if the robot has moved no farther than this, metres; beyond that, too
+/// much floor would be scanned twice.
 const MOST_GONE_M: f64 = 3.0;
 
-/// A planner that takes over as soon as it has a plan that flies.
+/// A planner that takes over as soon as it has an acceptable plan.
 #[derive(Clone)]
 pub(super) struct Candidate {
-    /// The plan that it is to make.
+    /// The plan that is due.
     due: Due,
-    /// A plan of its own that it is to keep to, other than the one that is flown.
+    /// The candidate's own plan to keep to, different from the one in use.
     keep: Option<Plan>,
-    /// What was found since the plan was asked for that is being made.
+    /// Obstacles found since its plan was requested.
     pub found_since: Vec<Shape>,
-    /// Whether the robot stands until it has planned: by the time that it had, the robot had gone on.
+    /// Whether the robot stands still until the candidate has planned, because the robot had moved too far during the
+    /// first attempt.
     pub robot_waits: bool,
 }
 
 impl Candidate {
-    /// A planner that is still to be opened, why it is to take over, and a plan that it is to keep to.
+    /// Prepares a planner that is still to be opened, with the reason for the change and a plan to keep to.
     pub(super) fn prepare(worker: Worker, reason: Reason, keep: Option<Plan>) -> Preparing {
         let due = Due::from_here(reason);
         let candidate = Self { due, keep, found_since: Vec::new(), robot_waits: false };
@@ -50,7 +52,7 @@ impl Candidate {
 }
 
 impl Mission {
-    /// Takes the plan of a candidate; gives it back unless it has taken over or is closed.
+    /// Processes the plan of a candidate; returns the candidate unless it has taken over or is closed.
     pub(super) fn candidate_planned(
         &mut self,
         worker: Worker,
@@ -61,10 +63,10 @@ impl Mission {
     ) -> Option<Preparing> {
         let gone_m = (self.known.position() - asked.here).norm();
         if gone_m > NEAR_PLAN_M {
-            // The robot went on meanwhile. It plans again from here, and this time the robot waits for it.
+            // The robot moved on meanwhile. The candidate plans again from here, and this time the robot waits.
             self.happened.pass_on(said, worker.id());
             let is_kept = gone_m <= MOST_GONE_M && self.known.is_coverage();
-            // The journal repeats what the planner is asked next.
+            // Recorded because the next ask to the planner includes it.
             let from_here = AskedPlan::from_here(asked.reason, asked.here);
             let planned = is_kept.then(|| Box::new(planned(Some(ask), worker.id(), &from_here, &plan)));
             self.happened.push(EventKind::Discarded { ask, plan: planned });
@@ -91,9 +93,9 @@ impl Mission {
         self.happened.push(EventKind::PlannerRejected { planner: worker.choice.id, why });
     }
 
-    /// Another planner takes over than the one that is being prepared.
+    /// Rejects the planner being prepared because a different one takes over.
     pub(super) fn reject_preparing(&mut self, why: &str) {
-        self.drop_better_plan("another planner drives");
+        self.drop_better_plan("a different planner drives");
         if let Some(Preparing { worker, .. }) = self.preparing.take() {
             self.reject(worker, why.to_owned());
         }

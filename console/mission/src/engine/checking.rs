@@ -1,4 +1,4 @@
-//! What is refused of what planners answer, and which faults count against them.
+//! Which answers of planners are refused, and which faults count against a plugin.
 
 use super::{Mission, known::Known, worker::Worker, workers};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Known {
-    /// Refuses a planner that cannot fly this mission.
+    /// Refuses a planner that cannot do this mission.
     pub(super) fn fitting(&self, worker: &Worker, given: Given) -> Result<Given, Fault> {
         let id = worker.id();
         if let Given::Plan(plan) = &given
@@ -31,7 +31,7 @@ impl Known {
 }
 
 impl Mission {
-    /// Refuses a planner that may not or cannot fly this mission, although it could be opened.
+    /// Refuses a planner that was opened but is quarantined or cannot do this mission.
     pub(super) fn checked(&self, worker: &Worker, given: Given) -> Result<Given, Fault> {
         if let Given::Opened(info) = &given
             && let Some(message) = self.barred(info)
@@ -41,19 +41,19 @@ impl Mission {
         self.known.fitting(worker, given)
     }
 
-    /// Why a planner may not drive again in this mission, if it may not.
+    /// Why a planner cannot drive again in this mission; `None` if it can.
     pub(super) fn barred(&self, info: &PlannerInfo) -> Option<String> {
         let (faults, window_s) = (workers::MOST_FAULTS, workers::WINDOW_S);
         let message = || {
             format!(
-                "planner {} failed {faults} times within {window_s} s and may not drive again in this mission",
+                "planner {} failed {faults} times within {window_s} s and cannot drive again in this mission",
                 info.id
             )
         };
         self.workers.quarantine.holds(&info.sha256).then(message)
     }
 
-    /// Reports a fault of a planner, and counts it against its plugin if it is of the kind that counts.
+    /// Reports a fault of a planner. Counts it against the plugin if its cause is of a kind that counts.
     pub(super) fn note_fault(&mut self, ask: AskId, fault: Fault, of: Option<&PlannerInfo>) {
         let counts =
             !matches!(fault.cause, Cause::Planner(_) | Cause::Refused | Cause::Quarantined | Cause::Starved);
@@ -65,12 +65,12 @@ impl Mission {
     }
 }
 
-/// A planner that was opened and is not let drive.
+/// The fault of a planner that was opened but cannot be used.
 fn refused(info: &PlannerInfo, during: During, cause: Cause, message: String) -> Fault {
     Fault { plugin_sha256: Some(info.sha256.clone()), ..fault(&info.id, during, cause, message) }
 }
 
-/// An answer of another kind than the ask.
+/// The fault of an answer whose kind does not match the ask.
 pub(super) fn mismatch(planner: &str) -> Fault {
     let message = format!("planner {planner} sent an answer that does not match the request");
     fault(planner, During::Step, Cause::Protocol, message)

@@ -1,4 +1,4 @@
-//! The plan of a planner, and the way along it.
+//! The plan of a planner, and the progress along it.
 
 use super::{
     known::Known,
@@ -12,77 +12,78 @@ use geometry::PathFollower;
 use planner_api::{Plan, Reason};
 use world::{ObstacleMap, Point, Shape};
 
-/// The plan that a planner flies, or is to make.
+/// The plan of a planner: in use, or still to be made.
 #[derive(Clone, Default)]
 pub(super) struct Course {
-    /// The plan that is still to be made, or is being made.
+    /// The plan that is due or being made.
     pub due: Option<Due>,
     /// Whether the last plan was for all that was left of the task.
     pub is_whole: bool,
-    /// Its plan, for tasks that do not follow it by themselves.
+    /// Progress along the plan, for tasks that do not track it themselves.
     pub follower: Option<PathFollower>,
-    /// The lines that its plan never crosses.
+    /// The lines that the plan never crosses.
     pub cuts: CutsRule,
-    /// What was found since the plan was asked for that is being made.
+    /// Obstacles found since the plan being made was requested.
     pub found_since: Vec<Shape>,
 }
 
-/// A plan that is wanted.
+/// A plan that is due.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Due {
-    /// Why.
+    /// The reason for the plan.
     pub reason: Reason,
-    /// Whether it is to begin at the anchor, after a return path: from here it was refused for the tether.
+    /// Whether the plan begins at the anchor, after a return path. The plan from the robot's position was refused because of
+    /// the tether.
     pub from_anchor: bool,
 }
 
 impl Due {
-    /// A plan from where the robot stands.
+    /// A plan from the robot's position.
     pub(super) fn from_here(reason: Reason) -> Self {
         Self { reason, from_anchor: false }
     }
 
-    /// A plan from the anchor, after one from where the robot stands was refused.
+    /// A plan from the anchor, after the one from the robot's position was refused.
     pub(super) fn from_anchor(reason: Reason) -> Self {
         Self { reason, from_anchor: true }
     }
 }
 
 impl Course {
-    /// Nothing is planned yet.
+    /// A course without a plan yet.
     pub(super) fn new(reason: Reason) -> Self {
         Self { due: Some(Due::from_here(reason)), ..Self::default() }
     }
 
-    /// Whether there is a plan and no other is due.
+    /// Whether there is a plan and no new one is due.
     pub(super) fn has_plan(&self) -> bool {
         self.due.is_none()
     }
 
-    /// Whether the plan is for all that was left of the task; one that is still to be made is thought to be.
+    /// Whether the plan is for all that was left of the task; assumed true while a plan is due.
     pub(super) fn is_whole(&self) -> bool {
         self.is_whole || self.due.is_some()
     }
 
-    /// Wants another plan, unless one is wanted already.
+    /// Requests a new plan, unless one is due already.
     pub(super) fn want_plan(&mut self, reason: Reason) {
         self.due.get_or_insert(Due::from_here(reason));
     }
 
-    /// Goes along a plan from now on.
+    /// Switches to a plan.
     pub(super) fn take(&mut self, plan: &Plan) {
         (self.due, self.is_whole) = (None, plan.complete);
         self.follower = (!plan.path.is_empty()).then(|| PathFollower::new(plan.path.clone()));
     }
 
-    /// Goes on along the plan to where the robot is.
+    /// Advances along the plan to the robot's position.
     pub(super) fn advance(&mut self, here: Point, map: &ObstacleMap) {
         if let Some(plan) = &mut self.follower {
             plan.advance(here, |at| map.clearance_m(at) >= 0.0);
         }
     }
 
-    /// Watches the cuts of a plan that the robot flies from here.
+    /// Begins to watch the cuts of a plan that begins here.
     pub(super) fn keep_to_cuts(&mut self, plan: &Plan, known: &Known) {
         let anchor = known.tether.as_ref().map(Tether::anchor);
         let lines = if anchor.is_some() { plan.cuts.as_slice() } else { &[] };
@@ -92,7 +93,7 @@ impl Course {
         self.cuts = CutsRule::new(lines, plan.path.get(from).copied(), known.position(), &solids);
     }
 
-    /// What was found while a plan was being made may stand in the way of a task: then another one is due at once.
+    /// Obstacles found while the plan was being made may block the task; if so, requests a new plan immediately.
     pub(super) fn doubt_fresh_plan(&mut self, task: &Task, room_m: f64) {
         let found = std::mem::take(&mut self.found_since);
         if found.iter().any(|shape| task.is_in_the_way(shape, room_m)) {
@@ -100,7 +101,8 @@ impl Course {
         }
     }
 
-    /// A robot that has come off the plan across a cut needs another plan, from the tether as it lies: whether it has.
+    /// Whether the robot has left its plan across a cut. If so, requests a new plan that starts from the tether as it
+    /// lies.
     pub(super) fn has_strayed(&mut self, known: &Known) -> bool {
         let is_lost = known.locator.is_lost();
         let strays = !is_lost && self.cuts.update(known.position(), known.config.limits.radius_m);
@@ -112,7 +114,7 @@ impl Course {
         has_strayed
     }
 
-    /// What was found may stand beside the rest of the plan and yet in the way of its tether: then another plan is due.
+    /// Obstacles that do not block the rest of the plan may still block its tether; if so, requests a new plan.
     pub(super) fn doubt_for_tether(&mut self, known: &Known) {
         let Some(tether) = known.tether.as_ref().filter(|tether| !tether.flies_uncertified()) else { return };
         let Some(rest) = known.task.lanes_left().filter(|_| self.has_plan()) else { return };

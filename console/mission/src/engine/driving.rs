@@ -1,4 +1,4 @@
-//! The planner that drives.
+//! The active planner.
 
 mod asks;
 mod commands;
@@ -18,70 +18,70 @@ pub use commands::Sending;
 use planner_api::{Plan, Reason};
 use world::{Point, Shape};
 
-/// The planner that drives, or that will drive first.
+/// The active planner, or the one that will drive first.
 #[derive(Clone, Default)]
 pub(super) struct Driving {
     pub worker: Worker,
     pub course: Course,
-    /// A plan of its own that it is to keep to, other than the one that is flown.
+    /// The planner's own plan to keep to, different from the one in use.
     pub keep: Option<Plan>,
-    /// How far it is to be prepared while the robot stands.
+    /// How far to prepare the planner while the robot stands still.
     pub prepare: Prepare,
-    /// The plan that it made before the start, or why that may not be run; `None` where nobody looks at it.
+    /// The plan made before the start, or why it cannot be run; `None` if it is not shown to anyone.
     pub first_plan: Option<Result<PlanId, String>>,
-    /// What its live parameters are to become.
+    /// New values for its live parameters, not yet sent.
     pub reconfigure: Option<PlannerChoice>,
-    /// Whether its state is wanted for the instance that replaces it.
+    /// Whether a snapshot of its state is due, for the instance that replaces it.
     pub snapshot_due: bool,
-    /// Mission time of the last snapshot, or of the first command, seconds.
+    /// Mission time of the last snapshot or, before that, of the first command, seconds.
     saved_at_s: Option<f64>,
-    /// Its command for this tick.
+    /// Command of the planner for this tick.
     command: Option<Arrived>,
-    /// The tick for which it was asked last to command.
+    /// The last tick for which a command was requested.
     stepped_at: Option<u64>,
-    /// Whether it answers late.
+    /// Tracks late answers.
     late: LatePlannerRule,
-    /// Whether it says that it cannot go on.
+    /// Tracks commands that report that the planner cannot continue.
     blocked: BlockedRule,
 }
 
-/// How far a planner is to be prepared while the robot stands.
+/// How far a planner is prepared while the robot stands still.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Prepare {
     /// Not at all.
     #[default]
     No,
-    /// It shall be opened.
+    /// Open the planner.
     Open,
-    /// It shall have a plan.
+    /// Make a plan.
     Plan,
 }
 
-/// A plan that was being flown when another planner took over.
+/// The plan that was in use when another planner took over.
 #[derive(Clone)]
 pub(super) struct LeftPlan {
     choice: PlannerChoice,
-    /// What was left of it.
+    /// The rest of the plan.
     plan: Plan,
-    /// Where the robot was.
+    /// The robot's position then.
     at: Point,
 }
 
 impl LeftPlan {
-    /// The plan, for the planner that flew it with the same values, if the robot is still within `near_m` of where it was left:
-    /// whoever is called back goes on with it.
+    /// The plan, if `choice` is the planner that made it, with the same values, and the robot is still within `near_m` of
+    /// where it left the plan: a planner that is switched back to continues its old plan.
     pub(super) fn to_go_on_with(&self, choice: &PlannerChoice, here: Point, near_m: f64) -> Option<Plan> {
         (self.choice == *choice && (self.at - here).norm() < near_m).then(|| self.plan.clone())
     }
 }
 
 impl Driving {
-    /// A planner that drives as soon as it has a plan, why it is asked for one, and how far it is prepared before.
+    /// A planner that drives as soon as it has a plan, with the reason for the plan and how far to prepare it.
     pub(super) fn new(worker: Worker, reason: Reason, prepare: Prepare) -> Self {
         Self { worker, course: Course::new(reason), prepare, ..Self::default() }
     }
 
-    /// A planner that has planned already; what was found since may stand in the way.
+    /// A planner that already has a plan; obstacles found since may block it.
     pub(super) fn with_plan(worker: Worker, found_since: Vec<Shape>, prepare: Prepare) -> Self {
         let course = Course { found_since, ..Course::default() };
         Self { worker, course, prepare, ..Self::default() }
@@ -92,12 +92,12 @@ impl Driving {
         self.worker.id()
     }
 
-    /// Whether it is there and flies a plan.
+    /// Whether the planner is open and has a plan in use.
     pub(super) fn is_flying(&self) -> bool {
         self.worker.is_ready() && self.course.has_plan()
     }
 
-    /// What rules see of it.
+    /// The planner as the rules see it.
     pub(super) fn seen(&self, known: &Known, is_waited_for: bool) -> PlannerSeen<'_> {
         let pending = self.worker.pending.as_ref();
         let owed =
@@ -110,13 +110,13 @@ impl Driving {
         }
     }
 
-    /// Whether its state is asked for, or is about to be.
+    /// Whether a snapshot has been requested or is due.
     pub(super) fn is_saving(&self) -> bool {
         let is_snapshot = self.worker.pending.as_ref().is_some_and(|p| p.kind == PendingKind::Snapshot);
         self.snapshot_due || is_snapshot
     }
 
-    /// Flies a plan from now on.
+    /// Switches to a plan.
     pub(super) fn take_plan(&mut self, plan: &Plan, known: &Known) {
         self.keep = None;
         self.course.keep_to_cuts(plan, known);
@@ -125,19 +125,19 @@ impl Driving {
         self.course.doubt_fresh_plan(&known.task, known.config.room_m());
     }
 
-    /// What is left of the plan that it flies, for the case that it is called back.
+    /// The rest of the current plan, in case the planner is switched back to.
     pub(super) fn left_plan(&self, known: &Known) -> Option<LeftPlan> {
         let plan = self.course.has_plan().then(|| known.task.under_way()).flatten()?;
         Some(LeftPlan { choice: self.worker.choice.clone(), plan, at: known.position() })
     }
 
-    /// Has its worker closed.
+    /// Closes its worker.
     pub(super) fn close(&mut self, workers: &mut Workers, happened: &mut Happened) {
         self.drop_command(happened);
         workers.close(self.leave_worker());
     }
 
-    /// Forgets the instance, which the host closes, and its open requests.
+    /// Forgets the instance, which the host closes, and its open asks.
     pub(super) fn leave_worker(&mut self) -> Option<WorkerId> {
         (self.snapshot_due, self.command, self.reconfigure) = (false, None, None);
         self.worker.leave()

@@ -1,32 +1,32 @@
-//! A mission as it stands now, for a forecast of how it would go on.
+//! A copy of the mission as it is now, for forecasting how it would continue.
 
 use super::Mission;
 use crate::config::BetterPlan;
 use world::{Pose, World, tether::Cable};
 
-/// A mission as it stands now, and everything that a simulation of how it goes on has to start from.
+/// A copy of the mission, with everything that a simulation of its continuation starts from.
 #[derive(Clone)]
 pub struct Fork {
     /// The mission. No planner is open: the first order has to choose one.
     pub mission: Mission,
-    /// The tank as the mission knows it: the drawing, and what was found. What nobody has seen yet is not in it.
+    /// The tank as the mission knows it: the drawing, and what was found. Obstacles that were not seen yet are missing.
     pub world: World,
-    /// Where the robot believes it is.
+    /// The robot's estimated pose.
     pub pose: Pose,
-    /// The cable as it is believed to lie; `None` without a tether.
+    /// The estimated geometry of the cable; `None` without a tether.
     pub cable: Option<Cable>,
 }
 
 impl Mission {
-    /// The mission as it stands now, by the estimate and the map alone.
+    /// Copies the mission as it is now, from the estimate and the map alone.
     ///
-    /// Costs a copy of the coverage grid and of the map.
+    /// Copies the coverage grid and the map.
     pub fn fork(&self) -> Fork {
         let mut mission = self.clone();
         (mission.preparing, mission.shadow) = (None, None);
-        // The robot of the forecast stands.
+        // In the forecast the robot starts at rest.
         mission.known.governor.stand();
-        // Nobody is there to take one.
+        // No operator is present to take one.
         if mission.known.config.better_plan == BetterPlan::Offer {
             mission.known.config.better_plan = BetterPlan::Off;
         }

@@ -1,4 +1,4 @@
-//! Commands that are limited: the robot's speed as the mission knows it, and what is said when a planner is slowed down.
+//! Limiting of commands: the robot's speed as the mission knows it, and the reports about planners that are slowed down.
 
 use super::known::Known;
 use crate::{
@@ -10,26 +10,26 @@ use geometry::{Braking, Drive};
 use planner_api::{Command, Limits};
 use world::{Medium, Mode, SensedMedium, Zone};
 
-/// A planner that is slowed down for this long is named, seconds.
+/// A planner is reported after being slowed down for this long, seconds.
 const NAMED_AFTER_S: f64 = 2.0;
-/// It is named again once it was not slowed down for this long, seconds.
+/// A planner is reported again only after not being slowed down for this long, seconds.
 const NAMED_AGAIN_S: f64 = 10.0;
-/// A speed is limited where less than this share of it is sent.
+/// A speed counts as limited if less than this share of it is sent.
 const LIMITED_SHARE: f64 = 0.9;
 
-/// What the rule that limits commands remembers.
+/// State of the rule that limits commands.
 #[derive(Debug, Clone)]
 pub(super) struct Governor {
     momentum: Momentum,
     /// Whether an amphibious robot walks or swims.
     mode: Mode,
-    /// The medium by the pressure sensor of a robot that has one.
+    /// The medium according to the pressure sensor, for a robot that has one.
     sensed: SensedMedium,
     has_said_that_it_waits: bool,
     limited: Limited,
 }
 
-/// For how long a planner has been slowed down, or not.
+/// How long a planner has been slowed down, or not.
 #[derive(Debug, Clone, Copy, Default)]
 struct Limited {
     for_s: f64,
@@ -38,7 +38,7 @@ struct Limited {
 }
 
 impl Limited {
-    /// One command more; whether it is time to say that the planner is slowed down.
+    /// Records one more command; returns whether to report now that the planner is slowed down.
     fn update(&mut self, is_limited: bool, tick_s: f64) -> bool {
         if !is_limited {
             self.for_s = 0.0;
@@ -53,7 +53,7 @@ impl Limited {
 }
 
 impl Governor {
-    /// That of a robot at rest at its start.
+    /// The state for a robot at rest at its start.
     pub(super) fn new(config: &MissionConfig, zones: &[Zone]) -> Self {
         let mode = Mode::of(Medium::at(zones, config.start.position));
         Self {
@@ -65,19 +65,19 @@ impl Governor {
         }
     }
 
-    /// The robot stands.
+    /// Records that the robot has stopped.
     pub(super) fn stand(&mut self) {
         self.momentum = Momentum::NONE;
     }
 }
 
 impl Known {
-    /// The robot's own speed, metres per second: as far as its acceleration has let it follow the commands.
+    /// The robot's own speed, metres per second: the speed commanded, as far as the robot's acceleration allows it.
     pub(super) fn speed_m_per_s(&self) -> f64 {
         self.governor.momentum.speed_m_per_s()
     }
 
-    /// A command, so slow that the robot can stop after it.
+    /// Returns a command, slowed down so that the robot can stop after it.
     pub(super) fn governed(&self, command: Command) -> Command {
         let (here, momentum) = (self.as_governed(), &self.governor.momentum);
         let reach_m = governor::reach_m(momentum, command.drive, &here);
@@ -91,7 +91,7 @@ impl Known {
         rounded_command(Command { drive, ..command })
     }
 
-    /// Says so when a planner is slowed down for long.
+    /// Reports a planner that has been slowed down for long.
     pub(super) fn note_limit(&mut self, asked: Command, sent: Command) -> Option<EventKind> {
         let (asked_m_per_s, sent_m_per_s) = (speed(asked.drive), speed(sent.drive));
         let is_limited = sent_m_per_s < LIMITED_SHARE * asked_m_per_s;
@@ -100,13 +100,13 @@ impl Known {
         is_named.then_some(EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m })
     }
 
-    /// Keeps account of what the robot does.
+    /// Records the motion that the robot is sent.
     pub(super) fn follow_drive(&mut self, drive: Drive) {
         let here = self.as_governed();
         self.governor.momentum = self.governor.momentum.after(drive, &here);
     }
 
-    /// Takes in what the pressure sensor reads.
+    /// Processes a reading of the pressure sensor.
     pub(super) fn take_pressure(&mut self, pressure_pa: Option<f64>) -> Option<EventKind> {
         let (sensor, pressure_pa) = (self.config.pressure?, pressure_pa?);
         let is_first = !self.knows_medium();
@@ -117,12 +117,13 @@ impl Known {
         Some(EventKind::MediumKnown { medium, pressure_pa })
     }
 
-    /// Whether the robot may move: one with a pressure sensor waits until that has decided how it has to.
+    /// Whether the robot can move: one with a pressure sensor waits until the sensor has decided whether to walk or to
+    /// swim.
     pub(super) fn knows_medium(&self) -> bool {
         self.config.pressure.is_none() || self.governor.sensed.known().is_some()
     }
 
-    /// Walks or swims as the floor under the robot demands.
+    /// Switches between walking and swimming as the floor under the robot requires.
     pub(super) fn update_mode(&mut self) -> Option<EventKind> {
         let amphibious = self.config.limits.amphibious?;
         let by_place = || Medium::at(&self.chart.world().zones, self.locator.position());

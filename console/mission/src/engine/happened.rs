@@ -1,15 +1,15 @@
-//! What has happened in a tick so far.
+//! The events of the current tick.
 
 use crate::{
     ask::Said,
     event::{Event, EventKind},
 };
 
-/// What has happened in this tick so far, in the order in which it is reported.
+/// The events of the current tick so far, in the order in which they are reported.
 #[derive(Clone, Default)]
 pub(super) struct Happened {
     events: Vec<EventKind>,
-    /// What came of the answers of the planner in shadow: reported last, in whatever order answers arrive.
+    /// Results of the answers of the planner in shadow: reported last, whatever order answers arrive in.
     pub of_shadow: Vec<EventKind>,
     /// The end of the mission, reported after all other events of the tick.
     pub ending: Option<EventKind>,
@@ -24,26 +24,26 @@ impl Happened {
         self.events.extend(kinds);
     }
 
-    /// Passes on what a planner drew, reported and said besides its answer.
+    /// Passes on what a planner drew, reported and logged in addition to its answer.
     pub(super) fn pass_on(&mut self, said: Said, planner: &str) {
         self.extend(said.into_events(planner));
     }
 
-    /// Whether something of this kind has happened, in shadow apart.
+    /// Whether an event of this kind has happened, not counting the planner in shadow.
     pub(super) fn has(&self, is_kind: impl Fn(&EventKind) -> bool) -> bool {
         self.events.iter().any(is_kind)
     }
 
     /// The events of a tick that ends at this mission time, seconds.
     pub(super) fn report(&mut self, tick: u64, t_s: f64) -> Vec<Event> {
-        // What it has grown to is kept for the next tick.
+        // The capacity is kept for the next tick.
         let happened = self.events.drain(..).chain(self.of_shadow.drain(..)).chain(self.ending.take());
         happened.map(|kind| Event { tick, t_s, kind }).collect()
     }
 }
 
 impl Said {
-    /// What was said, as events of a planner.
+    /// The drawings, figures and log messages of a planner, as events.
     pub(super) fn into_events(self, planner: &str) -> impl Iterator<Item = EventKind> {
         let Self { drawings, scalars, logs } = self;
         let drawn = (!drawings.is_empty()).then_some(EventKind::Drawn { drawings });

@@ -1,4 +1,4 @@
-//! What the verdicts of rules do: the robot moves, is held, moves again, or the mission ends.
+//! Carries out the verdicts of rules: the robot is held or resumes, or the mission ends.
 
 use super::{
     Mission,
@@ -26,8 +26,8 @@ impl Mission {
         }
     }
 
-    /// After a fault, or where the planner sees no way: the fallback takes over, if there is one; with nobody there to help the
-    /// mission ends.
+    /// After a fault, or where the planner finds no path, the fallback takes over if there is one. In an unattended
+    /// mission without one, the mission ends.
     pub(super) fn replace_failed_planner(&mut self) {
         let Phase::Held(Hold { by, resumes }) = &self.known.phase else { return };
         if *resumes == Resumes::ByFallback {
@@ -39,7 +39,7 @@ impl Mission {
             }
         } else if resumes.is_never() && !self.known.config.attended && self.driving.prepare == Prepare::No {
             let (outcome, message) = match by {
-                // A planner that says that no way exists has not failed.
+                // A planner that reports that no path exists has not failed.
                 HoldReason::Stuck { message } => (Outcome::Stuck, message),
                 HoldReason::PlannerFault { message }
                 | HoldReason::PlanRefused { message }
@@ -51,8 +51,8 @@ impl Mission {
         }
     }
 
-    /// Holds the robot. If only an order could let it move anyway, or for longer than a step, only an order ends this
-    /// hold: the operator's HOLD outlives whatever happens to planners meanwhile.
+    /// Holds the robot. If the robot already moves again only by order, or is only being stepped, this hold ends only by
+    /// order, too: the operator's HOLD stays whatever happens to planners meanwhile.
     pub(super) fn hold(&mut self, Hold { by, resumes }: Hold) {
         let only_by_order = match &self.known.phase {
             Phase::Held(before) => before.resumes.is_never(),
@@ -66,7 +66,7 @@ impl Mission {
         self.driving.drop_command(&mut self.happened);
     }
 
-    /// Lets the robot move again, for good or for one tick.
+    /// Lets the robot move again, with the given gait.
     pub(super) fn resume(&mut self, gait: Gait) {
         self.driving.prepare = Prepare::No;
         self.go_on(gait);
@@ -78,7 +78,7 @@ impl Mission {
         self.known.phase = Phase::Running(gait);
     }
 
-    /// Sends the robot the command of this tick; without one it stands still.
+    /// Sends the command of this tick to the robot; without a command the robot stands still.
     pub(super) fn drive(&mut self) -> Drive {
         let Phase::Running(gait) = self.known.phase else { return Drive::STILL };
         let Some(drive) = self.driving.send(&mut self.known, &mut self.happened) else { return Drive::STILL };

@@ -1,4 +1,4 @@
-//! What a mission knows, its planners apart.
+//! The state of a mission, apart from its planners.
 
 use super::{floor::ScannedFloor, governing::Governor};
 use crate::{
@@ -13,10 +13,10 @@ use crate::{
 use planner_api::Drive;
 use world::{Floor, Point, World};
 
-/// A robot that turns at least this fast turns about in the time that it is given at a corner, radians per second.
+/// A robot that turns at least this fast can turn round within the time allowed at a corner, radians per second.
 const BRISK_RAD_PER_S: f64 = 0.75;
 
-/// Everything that the mission knows of robot, tank and task, and where it stands with them.
+/// The mission's knowledge of robot, tank and task, and its progress.
 #[derive(Clone)]
 pub(super) struct Known {
     pub config: MissionConfig,
@@ -26,18 +26,18 @@ pub(super) struct Known {
     pub chart: Chart,
     pub task: Task,
     pub floor: ScannedFloor,
-    /// `None` without a tether, or if its anchor cannot be.
+    /// `None` without a tether, or if the anchor is not at a possible place.
     pub tether: Option<Tether>,
-    /// The path flown, a point each decimetre.
+    /// The path driven, one point per decimetre.
     pub trail: Vec<Point>,
-    /// What limits the commands.
+    /// State of the rule that limits commands.
     pub governor: Governor,
     /// The command at the end of the last tick.
     pub last_drive: Drive,
 }
 
 impl Known {
-    /// What is known before the start; arguments as of [`Mission::new`](super::Mission::new).
+    /// The state before the start; the arguments are those of [`Mission::new`](super::Mission::new).
     pub(super) fn new(config: MissionConfig, drawing: World, floor: Floor, seed: u64) -> Self {
         let (start, radius_m) = (config.start.position, config.limits.radius_m);
         let tether = config.tether.as_ref();
@@ -88,7 +88,7 @@ impl Known {
         }
     }
 
-    /// How fast time passes for a robot at a corner: one that turns slowly is given longer to come round.
+    /// The rate at which a corner's time limit runs: a robot that turns slowly has more time to turn.
     pub(super) fn briskness(&self) -> f64 {
         (self.config.limits.w_max_rad_per_s / BRISK_RAD_PER_S).min(1.0)
     }

@@ -1,4 +1,4 @@
-//! What each order does. Whether it is accepted is decided by [`Standing::allows`](crate::Standing::allows) alone.
+//! The effect of each order. Whether it is accepted is decided by [`Standing::allows`](crate::Standing::allows) alone.
 
 use super::{
     Mission,
@@ -15,7 +15,7 @@ use planner_api::Reason;
 
 impl Mission {
     pub(super) fn obey(&mut self, order: &Order) {
-        // The order stands in the journal before its effects.
+        // The order precedes its effects in the journal.
         let allowed = self.standing().allows(order).map_err(|why| why.to_string());
         if let Err(why) = allowed.and_then(|()| self.known.check_place(order)) {
             self.happened.push(EventKind::OrderRefused { order: order.clone(), why });
@@ -26,7 +26,7 @@ impl Mission {
             Order::Plan => self.plan_ahead(),
             Order::Start | Order::StartPlan(_) => self.start(),
             Order::NoteChecks(_) | Order::NoteOutlooks(_) | Order::Note(_) => {}
-            // The simulator obeys it.
+            // The simulator carries this order out.
             Order::Inject(_) => self.stay_held(),
             Order::UseStation { station, used, .. } => {
                 self.known.locator.use_station(*station, *used);
@@ -64,7 +64,7 @@ impl Mission {
         }
     }
 
-    /// The planner makes its plan while the mission waits, so that the operator sees it before anything moves.
+    /// The planner makes its plan while the mission waits, so that the operator sees the plan before anything moves.
     fn plan_ahead(&mut self) {
         self.driving.course.want_plan(Reason::Start);
         self.driving.prepare = Prepare::Plan;
@@ -75,15 +75,15 @@ impl Mission {
         self.known.phase = Phase::Running(Gait::Steady);
     }
 
-    /// From now on only an order lets the robot move; a hold of which that is true already keeps its reason.
+    /// From now on only an order lets the robot move; a hold that already ends only by order keeps its reason.
     fn hold_by_order(&mut self) {
         if self.known.phase.may_move() {
             self.hold(Hold { by: HoldReason::Operator, resumes: Resumes::Never });
         }
     }
 
-    /// A hold that was to end by itself now ends by an order: nobody who changes planners, or which stations are heard,
-    /// expects the robot to move.
+    /// A hold that would have ended automatically now ends only by order: someone who changes planners or excludes
+    /// stations does not expect the robot to move.
     pub(super) fn stay_held(&mut self) {
         if let Phase::Held(hold) = &self.known.phase
             && !hold.resumes.is_never()
@@ -92,14 +92,15 @@ impl Mission {
         }
     }
 
-    /// Another planner, or the same one with other parameters, is to take over.
+    /// Changes to another planner, or to the same one with other parameters.
     ///
-    /// The one before stays until the other has a plan that may be flown, unless it could not drive on anyway: then it is
-    /// replaced at once, so that the operator can have a plan of the other flown that is refused for the tether.
+    /// The current planner stays until the new one has a plan that may be run. If the current one could not continue
+    /// anyway, it is replaced immediately. The operator can then run the new planner's plan even if that is refused
+    /// because of the tether.
     pub(super) fn choose(&mut self, choice: PlannerChoice, reason: Reason) {
         self.stay_held();
         self.cancel_promotion();
-        self.drop_better_plan("another planner was chosen");
+        self.drop_better_plan("a different planner was chosen");
         let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { reason };
         let goes_on = self.driving.takes_live(&choice).then(|| self.known.task.under_way()).flatten();
@@ -117,7 +118,7 @@ impl Mission {
         }
     }
 
-    /// Puts a planner in the place of the one that drives, whose worker is closed.
+    /// Replaces the active planner and closes its worker.
     pub(super) fn replace_driving(&mut self, driving: Driving) {
         self.left = self.driving.left_plan(&self.known);
         self.driving.close(&mut self.workers, &mut self.happened);
@@ -126,7 +127,7 @@ impl Mission {
 
     fn set_parameter(&mut self, key: &str, value: &ParamValue) {
         self.drop_better_plan("a parameter was changed");
-        // A change on top of a change that is under way.
+        // A change on top of one that is still in progress.
         let prepared = self.preparing.as_ref().map(|preparing| &preparing.worker.choice);
         let newest = prepared.filter(|choice| choice.id == self.driving.id());
         let base = newest.or_else(|| self.driving.newest_change());

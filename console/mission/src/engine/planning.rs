@@ -1,34 +1,34 @@
-//! Plans: whether one may be flown.
+//! Evaluates plans: whether one may be run.
 
 use super::{known::Known, requests::AskedPlan};
 use crate::{ask::AskId, event::EventKind};
 use planner_api::{Leg, LegTag, Plan};
 use world::{Point, polyline};
 
-/// A plan shorter than this leads nowhere, metres.
+/// A shorter plan leads nowhere, metres.
 const NO_WAY_M: f64 = 0.01;
 
-/// A plan as it would be flown, with what there is to say of it.
+/// A plan as it would be run, with its events.
 pub(super) struct Evaluated {
     /// The plan, after the return path that the mission put before it.
     pub plan: Plan,
-    /// That it was made, and its certificate for the tether.
+    /// The event that the plan was made, and its certificate for the tether.
     pub events: Vec<EventKind>,
-    /// Why it is not flown.
+    /// Why the plan is not run.
     pub objection: Option<Objection>,
 }
 
-/// Why a plan is not flown.
+/// The reason for not running a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Objection {
-    /// Whether it is because of the tether.
+    /// Whether the tether is the reason.
     pub by_tether: bool,
-    /// Why, as a sentence.
+    /// The reason, as a sentence.
     pub message: String,
 }
 
 impl Known {
-    /// Judges a plan on the map as it is known now.
+    /// Evaluates a plan on the map as known now.
     pub(super) fn evaluate(
         &self,
         ask: Option<AskId>,
@@ -42,7 +42,7 @@ impl Known {
         Evaluated { plan, events, objection }
     }
 
-    /// Why a plan is not flown; its certificate goes into the events.
+    /// Why a plan is not run; its certificate is added to the events.
     pub(super) fn objection(
         &self,
         planner: &str,
@@ -53,7 +53,7 @@ impl Known {
         by_tether.or_else(|| self.objection_to_way(planner, plan))
     }
 
-    /// Why a plan is not safe for the tether; its certificate goes into the events.
+    /// Why a plan is not safe for the tether; its certificate is added to the events.
     fn certified(&self, planner: &str, plan: &Plan, events: &mut Vec<EventKind>) -> Option<Objection> {
         let tether = self.tether.as_ref()?;
         let certificate = tether.certify(plan, self.chart.world(), self.task_ends_at_anchor());
@@ -64,8 +64,8 @@ impl Known {
         refused.then(|| Objection { by_tether: true, message: message() })
     }
 
-    /// Refuses a first plan that leads nowhere while there is floor to scan: the robot would be back at the anchor at
-    /// once, and the mission complete.
+    /// Refuses a first plan that leads nowhere while there is floor to scan: the robot would be back at the anchor
+    /// immediately, and the mission complete.
     fn objection_to_way(&self, planner: &str, plan: &Plan) -> Option<Objection> {
         let coverage = &self.floor.coverage;
         if polyline::length_m(&plan.path) >= NO_WAY_M || self.task.lanes_left().is_some() {
@@ -82,7 +82,7 @@ impl Known {
     }
 }
 
-/// That a plan was made, after its return path.
+/// The event that a plan was made, including its return path.
 pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan: &Plan) -> EventKind {
     EventKind::Planned {
         ask,
@@ -97,7 +97,7 @@ pub(super) fn planned(ask: Option<AskId>, planner: &str, asked: &AskedPlan, plan
     }
 }
 
-/// A plan with a return path before it.
+/// Puts the return path before a plan.
 pub(super) fn after(return_path: &[Point], mut plan: Plan) -> Plan {
     let Some(last) = return_path.len().checked_sub(1) else { return plan };
     let shifted = |leg: &Leg| Leg { first: leg.first + last + 1, last: leg.last + last + 1, ..*leg };

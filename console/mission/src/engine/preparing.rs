@@ -1,4 +1,4 @@
-//! What is prepared beside the planner that drives: another one that is to take over, or a better plan.
+//! Preparations in the background while a planner drives: a candidate, or a better plan.
 
 use super::{
     Mission,
@@ -15,24 +15,24 @@ use crate::{
     planner::Fault,
 };
 
-/// A planner that is prepared while another one drives.
+/// A planner that is being prepared while another one drives.
 #[derive(Clone)]
 pub(super) struct Preparing {
     pub worker: Worker,
     pub role: Role,
 }
 
-/// What a planner is prepared for.
+/// The purpose of the preparation.
 #[derive(Clone)]
 pub(super) enum Role {
-    /// It takes over as soon as it has a plan that flies.
+    /// The planner takes over as soon as it has an acceptable plan.
     Candidate(Candidate),
-    /// It makes a plan for all that is left, which takes the place of the repaired one that is flown.
+    /// The planner makes a plan for all that is left, to replace the repaired plan in use.
     Better(Better),
 }
 
 impl Preparing {
-    /// Whether the robot stands until it has planned.
+    /// Whether the robot stands still until the planner has planned.
     pub(super) fn robot_waits(&self) -> bool {
         matches!(&self.role, Role::Candidate(candidate) if candidate.robot_waits)
     }
@@ -62,12 +62,12 @@ impl Mission {
             Role::Better(_) => return None,
         };
         if plan.is_none() {
-            self.drop_better_plan("too little is left of the plan that is flown");
+            self.drop_better_plan("too little of the current plan is left");
         }
         self.preparing.as_mut()?.worker.ask_for_plan(self.known.tick, plan?)
     }
 
-    /// Takes an answer of a planner that is being prepared.
+    /// Processes an answer of the planner being prepared.
     pub(super) fn answer_preparing(&mut self, pending: Pending, Answer { ask, result, said }: Answer) {
         let Some(mut preparing) = self.preparing.take() else { return };
         let given = result.and_then(|given| self.checked(&preparing.worker, given));
@@ -104,7 +104,7 @@ impl Mission {
                 self.note_fault(ask, fault, worker.info.as_ref());
                 self.reject(worker, why);
             }
-            // Nobody is harmed, so it counts against nobody.
+            // The robot is not affected, so the fault counts against no plugin.
             Role::Better(_) => {
                 self.happened.push(EventKind::PlannerFailed { ask: Some(ask), fault });
                 self.close_better_plan(worker, why);
@@ -112,7 +112,7 @@ impl Mission {
         }
     }
 
-    /// A planner that was prepared drives from now on, with its plan.
+    /// Promotes the planner that was being prepared to the active one, with its plan.
     pub(super) fn take_over(
         &mut self,
         driving: Driving,

@@ -1,4 +1,4 @@
-//! What planners are given with an ask: the inputs of a plan and of a command.
+//! The inputs that planners receive with an ask for a plan or a command.
 
 use super::{course::Due, known::Known};
 use crate::{
@@ -10,36 +10,36 @@ use planner_api::{Drive, Plan, PoseEstimate, Reason};
 use std::sync::Arc;
 use world::{CoverageGrid, Point};
 
-/// How much of the targets and of the plan a planner sees ahead, metres.
+/// Length of the targets and of the plan that a planner receives ahead of the robot, metres.
 const AHEAD_M: f64 = 4.0;
 
-/// What has to be remembered of a plan that is being made.
+/// What the mission remembers about a plan that is being made.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AskedPlan {
     pub reason: Reason,
-    /// The return path before the plan; empty for a plan from where the robot stood.
+    /// The return path before the plan; empty for a plan from the robot's position.
     pub return_path: Vec<Point>,
-    /// Whether that return path was the second try.
+    /// Whether the plan begins at the anchor because the first one was refused for the tether.
     pub from_anchor: bool,
-    /// Whether the planner was to keep to the plan that is flown, changed where the map has changed.
+    /// Whether the planner was asked to keep to its plan and change it only where the map has changed.
     pub is_repair: bool,
-    /// Where the robot stood.
+    /// The robot's position at the time of the ask.
     pub here: Point,
 }
 
 impl AskedPlan {
-    /// A plan from where the robot stands, which is not asked of the planner.
+    /// A plan from the robot's position, without asking the planner.
     pub(super) fn from_here(reason: Reason, here: Point) -> Self {
         Self { reason, return_path: Vec::new(), from_anchor: false, is_repair: false, here }
     }
 }
 
 impl Known {
-    /// The inputs of a plan from the end of a return path, or from where the robot stands.
+    /// The inputs of a plan from the end of a return path, or from the robot's position.
     ///
-    /// A cable that is caught is freed first. A plan that was refused because of the cable out there is asked for once
-    /// more from the anchor, after a way back along the cable: no planner has to know how the cable lies. Planners are given
-    /// of the first `n_flown` points of the path flown.
+    /// A caught cable is freed first. If a plan was refused because of the cable that is out, the planner is asked once
+    /// more from the anchor, after a return along the cable; so no planner has to know how the cable lies. The planner
+    /// receives the first `n_flown` points of the path driven.
     pub(super) fn plan_ask(
         &self,
         Due { reason, from_anchor }: &Due,
@@ -58,8 +58,8 @@ impl Known {
         (asked, ask)
     }
 
-    /// The inputs of a plan for what is left of the task from some place on, with the way to there from the start of the
-    /// mission and what is scanned by then; why it is made, and the plan that it is to keep to.
+    /// The inputs of a plan for what is left of the task at some place: the path from the start of the mission to there,
+    /// the floor scanned by then, the reason for the plan, and the plan to keep to.
     pub(super) fn plan_from(
         &self,
         start: PoseEstimate,
@@ -71,19 +71,19 @@ impl Known {
         PlanAsk { reason, start, task, site: Arc::new(self.chart.site()), previous, under_way }
     }
 
-    /// Whether a plan that was refused for the tether is asked for once more, from the anchor.
+    /// Whether to ask once more, from the anchor, for a plan that was refused because of the tether.
     pub(super) fn may_try_from_anchor(&self, asked: &AskedPlan) -> bool {
         asked.return_path.is_empty() && !asked.from_anchor && self.way_to_anchor().is_some()
     }
 
-    /// The inputs of a command on the way along a task and a plan.
+    /// The inputs of a command, at the current place along a task and a plan.
     pub(super) fn step_ask(&self, task: &Task, plan: Option<&PathFollower>) -> StepAsk {
         let pose = self.locator.pose_estimate();
         let w_rad_per_s = match self.last_drive {
             Drive::Twist { w_rad_per_s, .. } => w_rad_per_s,
             Drive::Velocity(_) => 0.0,
         };
-        // Lanes are followed by the task itself, which knows how far it is.
+        // For lanes the task itself tracks the progress.
         let path_ahead = match task {
             Task::Cover(_) => task.targets_ahead(AHEAD_M),
             Task::Goto(_) | Task::Follow { .. } => plan.map_or(&[][..], |plan| plan.ahead(AHEAD_M)),
@@ -103,7 +103,7 @@ impl Known {
     }
 }
 
-/// What is left of a plan that goes on being flown with a change, for the same planner.
+/// The rest of a plan that the same planner is asked to continue with a change.
 pub(super) fn under_way(task: &Task, reason: &Reason) -> Option<Plan> {
     let goes_on = matches!(reason, Reason::MapChanged | Reason::Blocked | Reason::Recover);
     goes_on.then(|| task.under_way()).flatten()

@@ -1,7 +1,7 @@
-//! The rules that hold the robot, let it move again, ask for another plan, or end the mission.
+//! The rules that hold the robot, let it move again, request a plan, or end the mission.
 //!
-//! Each rule is a type with its own state and an `update` that sees one tick and says what follows from it, if anything.
-//! Nothing else changes a rule's state, and no rule changes anything but its own.
+//! Each rule is a type with its own state and an `update` method, which receives one tick and returns a verdict, if any.
+//! A rule's state is changed by that rule alone.
 
 mod blocked;
 mod cuts;
@@ -50,7 +50,7 @@ impl Rules {
         }
     }
 
-    /// One tick of a mission under way; the first rule that has something to say wins.
+    /// Updates the rules for one tick of a mission in progress; the first rule that returns a verdict decides.
     pub(super) fn update(&mut self, seen: &Seen<'_>, phase: &Phase) -> Option<Verdict> {
         let time_is_up = self.time_limit.update(seen, matches!(phase, Phase::Held(_)));
         if seen.touched {
@@ -74,7 +74,7 @@ impl Rules {
             .or_else(|| if seen.planner.is_waited_for { None } else { stuck.update(seen) })
     }
 
-    /// What lets a robot move again that is held until something has cleared.
+    /// The rules that resume a robot that is held until a condition has cleared.
     fn update_held(&mut self, seen: &Seen<'_>, hold: &Hold) -> Option<Verdict> {
         if hold.resumes != Resumes::WhenCleared {
             return None;
@@ -87,7 +87,7 @@ impl Rules {
         }
     }
 
-    /// The robot is to move again: what was counted before says nothing about what follows.
+    /// Resets the rules when the robot moves again: earlier counts say nothing about what follows.
     pub(super) fn restart(&mut self) {
         self.lost_position = LostPositionRule::default();
         self.stuck.restart();

@@ -1,4 +1,4 @@
-//! What one tick of looking around and scanning adds to the map and to the coverage.
+//! Updates the map and the coverage from what is seen and scanned in one tick.
 
 use super::{
     Mission,
@@ -10,17 +10,17 @@ use crate::{chart::Seen, event::EventKind, passage::Passage, task::Task};
 use planner_api::Reason;
 use world::{Cell, Pose, Readings, Shape, coverage::percent_text, tether::Reach};
 
-/// Floor left out below this is not worth a word at the end, square metres.
+/// A smaller area left out is not mentioned at the end, square metres.
 const WORTH_TELLING_M2: f64 = 0.05;
-/// Areas out of reach that are named at the end.
+/// Maximum number of unreachable areas named at the end.
 const MOST_NAMED: usize = 4;
 
 impl Mission {
-    /// Puts what is seen on the chart; whether the chart has changed.
+    /// Puts what is seen on the chart; returns whether the chart has changed.
     pub(super) fn look_around(&mut self, readings: &Readings) -> bool {
         let (now_s, pose) = (self.known.now_s(), self.known.locator.pose());
         self.known.chart.sight(&readings.sightings, &pose);
-        // A found obstacle is placed by the estimated pose, so a lost robot does not draw maps.
+        // Found obstacles are placed by the estimated pose, so nothing is charted while the position is lost.
         if self.known.locator.is_lost() {
             return false;
         }
@@ -28,7 +28,7 @@ impl Mission {
         if events.is_empty() && !changes_plans {
             return false;
         }
-        // What moves is not part of the floor.
+        // Moving obstacles are not part of the floor.
         let still = events.iter().filter(|event| !self.known.chart.moves(event));
         let shapes: Vec<Shape> = still.filter_map(shape_of).collect();
         let is_due = |task: &Task| {
@@ -59,8 +59,8 @@ impl Mission {
 }
 
 impl Known {
-    /// An obstacle that was found is in the way with the clearance demanded; one that was planned for already and
-    /// stands a little elsewhere only when half of it is gone.
+    /// A newly found obstacle blocks a path within the required clearance. An obstacle that was already planned for and
+    /// whose place was corrected blocks it only within half the clearance.
     fn is_in_the_way(&self, task: &Task, event: &EventKind) -> bool {
         let (radius_m, clearance_m) = (self.config.limits.radius_m, self.config.clearance_m);
         match event {
@@ -130,7 +130,8 @@ impl Known {
         }
     }
 
-    /// The areas to be scanned, or in a mission for all of the floor the parts of it, to which no way leads, as a sentence.
+    /// Describes the requested areas that cannot be reached, as a sentence; in a mission over the whole floor, the amount
+    /// of floor that cannot be reached.
     fn out_of_reach(&self) -> Option<String> {
         let named = |places: &[String]| {
             let more = places.len().saturating_sub(MOST_NAMED);
@@ -153,10 +154,10 @@ impl Known {
         let closed = (0..floor.len()).filter(|cell| floor.kind(*cell) == Cell::Unreachable).count();
         let closed_m2 = closed as f64 * floor.cell_m2();
         let is_worth = closed_m2 > WORTH_TELLING_M2 && !self.task.is_in_part();
-        is_worth.then(|| format!("no way leads to {closed_m2:.1} m² of floor"))
+        is_worth.then(|| format!("no path leads to {closed_m2:.1} m² of floor"))
     }
 
-    /// What the plan left out because the cable does not lead there, as a sentence.
+    /// The floor that the plan left out because the cable does not reach it, as a sentence.
     fn left_beyond_reel(&self) -> Option<String> {
         let (anchor, reach_m) = self.config.cable_reach()?;
         let world = self.chart.world();

@@ -1,5 +1,5 @@
-//! A planner in shadow: it has its own worker, plan and way along it, commands beside the planner that drives, and moves
-//! nothing. Its faults end it and nothing else.
+//! A planner in shadow: it has its own worker, its own plan, and its own progress along it. It computes commands in
+//! parallel with the active planner, but its commands are not sent to the robot. If it fails, only the shadow ends.
 
 mod answers;
 mod promotion;
@@ -23,9 +23,9 @@ use planner_api::{Plan, Reason};
 use promotion::Promotion;
 use world::{Point, Shape};
 
-/// A robot further from the shadow's plan than this has left it, metres.
+/// A robot farther from the shadow's plan than this has left it, metres.
 const NEAR_PLAN_M: f64 = 0.5;
-/// A planner whose plan the robot has left plans again, so often at most, seconds.
+/// Minimum time between two plans when the robot has left the shadow's plan, seconds.
 const PLAN_AGAIN_S: f64 = 10.0;
 
 /// A planner in shadow.
@@ -33,52 +33,52 @@ const PLAN_AGAIN_S: f64 = 10.0;
 pub(super) struct Shadow {
     pub worker: Worker,
     pub course: Course,
-    /// The tick for which it was asked last to command.
+    /// The last tick for which a command was requested.
     stepped_at: Option<u64>,
-    /// How it does.
+    /// The planner's record in shadow.
     pub tally: ShadowTally,
-    /// The task along its own plan.
+    /// The progress of the task along its own plan.
     pub task: Task,
     plan: Plan,
-    /// Whether its plan begins at the anchor because one from where the robot was is refused for the tether.
+    /// Whether its plan begins at the anchor because the one from the robot's position was refused for the tether.
     from_anchor: bool,
-    /// How many points the path flown had when its plan was asked for.
+    /// Number of points of the path driven when its plan was requested.
     n_flown: usize,
-    /// Mission time then, seconds.
+    /// Mission time of that request, seconds.
     asked_at_s: f64,
-    /// What it is asked in this tick depends on the readings alone, and on no other planner's answer.
+    /// What it can be asked in this tick; depends on the sensor readings alone, not on another planner's answers.
     now: Now,
-    /// Whether it is to take over.
+    /// Whether it has been ordered to take over.
     promotion: Promotion,
 }
 
-/// What a planner in shadow may be asked in a tick, as it stands when the tick begins.
+/// What a planner in shadow can be asked in a tick, fixed at the start of the tick.
 #[derive(Debug, Clone, Copy, Default)]
 struct Now {
     /// Whether the robot runs.
     is_running: bool,
-    /// Whether there is anything to plan for: lanes are handed over once the planner that drives has some.
+    /// Whether there is anything to plan for: in coverage missions not until the active planner has a plan.
     may_plan: bool,
-    /// How many points the path flown has.
+    /// Number of points of the path driven.
     n_flown: usize,
 }
 
 impl Mission {
-    /// A planner is to fly in shadow, in place of the one that does.
+    /// Starts a planner in shadow; it replaces the current one.
     pub(super) fn begin_shadow(&mut self, choice: PlannerChoice) {
         self.drop_shadow();
         let reason = Reason::Swap { from: self.driving.id().to_owned() };
         self.shadow = Some(Shadow::new(self.driving.worker.successor(choice), reason, &self.known));
     }
 
-    /// Closes the planner in shadow without a word.
+    /// Closes the planner in shadow without an event.
     pub(super) fn drop_shadow(&mut self) {
         if let Some(mut shadow) = self.shadow.take() {
             self.workers.close(shadow.worker.leave());
         }
     }
 
-    /// No planner flies in shadow any more, by order.
+    /// Ends the shadow by order.
     pub(super) fn end_shadow(&mut self) {
         if let Some(shadow) = &self.shadow {
             let (planner, why) = (shadow.worker.id().to_owned(), "ended by operator".into());
@@ -87,7 +87,7 @@ impl Mission {
         self.drop_shadow();
     }
 
-    /// The planner in shadow has failed.
+    /// Ends the shadow after a failure.
     pub(super) fn close_shadow(&mut self, why: String) {
         if let Some(mut shadow) = self.shadow.take() {
             self.workers.close(shadow.worker.leave());
@@ -114,7 +114,7 @@ impl Shadow {
         }
     }
 
-    /// Follows its plan from where the robot is, beside the planner of this id, which drives.
+    /// Advances along its own plan to the robot's position; `driving` is the id of the active planner.
     pub(super) fn lead(&mut self, known: &Known, driving: &str) {
         let here = known.position();
         self.advance(here, known);
@@ -138,7 +138,7 @@ impl Shadow {
         self.course.advance(here, chart.map());
     }
 
-    /// The map has changed: what was found that planners have to know of, and whether it is in the way of its plan.
+    /// Handles a change of the map: obstacles that were found, and whether they block its plan.
     pub(super) fn map_changed(&mut self, found: &[Shape], is_in_the_way: bool) {
         self.course.found_since.extend_from_slice(found);
         if is_in_the_way {
@@ -146,7 +146,7 @@ impl Shadow {
         }
     }
 
-    /// What it is asked next.
+    /// The next ask to the planner in shadow.
     pub(super) fn next_ask(&mut self, known: &Known, workers: &mut Workers) -> Option<Ask> {
         if self.worker.pending.is_some() {
             return None;
@@ -172,12 +172,12 @@ impl Shadow {
         self.worker.ask(tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 
-    /// Progress along its own plan, if that has a path.
+    /// Progress along its own plan, if the plan has a path.
     fn route(&self) -> Option<&PathFollower> {
         self.task.lanes().or(self.course.follower.as_ref())
     }
 
-    /// Whether a place is at its plan; any is, if it has no path.
+    /// Whether a place is close to its plan; always true if the plan has no path.
     fn is_near(&self, here: Point) -> bool {
         self.route().is_none_or(|route| route.cross_track_m(here) <= NEAR_PLAN_M)
     }

@@ -1,4 +1,4 @@
-//! A robot that is let go until something happens: the end of a lane, or an event.
+//! A robot that is ordered to move until something happens: the end of a lane, or an event.
 
 use super::{Mission, known::Known};
 use crate::{
@@ -8,15 +8,15 @@ use crate::{
 };
 use world::Point;
 
-/// Without lanes a step is this long, metres.
+/// Length of a step without lanes, metres.
 const STEP_M: f64 = 1.0;
 
-/// Where on its plan a robot was let go.
+/// The place on its plan where the robot was released.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlaceOnPlan {
-    /// The stretch of the plan under the robot; `None` without lanes.
+    /// Number of the stretch of the plan under the robot; `None` without lanes.
     leg: Option<usize>,
-    /// Where it was.
+    /// The robot's position then.
     at: Point,
 }
 
@@ -33,7 +33,7 @@ impl Known {
 }
 
 impl Mission {
-    /// Holds a robot that was let go until what has now happened.
+    /// Holds the robot again once the awaited event has happened.
     pub(super) fn end_step(&mut self) {
         let (Phase::Running(Gait::To(to)), Some(from)) = (&self.known.phase, self.stepped_from) else {
             return;

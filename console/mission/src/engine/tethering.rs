@@ -1,4 +1,4 @@
-//! What one tick does to the tether, and the return paths along it.
+//! Updates the tether in each tick, and finds the return paths along it.
 
 use super::{Mission, happened::Happened, known::Known, rules::HOME_M};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 use world::Point;
 
 impl Known {
-    /// Drags the cable along; gives the limit that it has reached in this tick, if any.
+    /// Moves the cable along with the robot; returns the limit reached in this tick, if any.
     pub(super) fn drag_tether(
         &mut self,
         map_changed: bool,
@@ -20,7 +20,7 @@ impl Known {
         if map_changed {
             tether.lay_again(world);
         }
-        // A lost position would wind the cable round whatever the estimate strays past.
+        // With a lost position the cable would be wound round obstacles that only the estimate passes.
         let error_m = (!self.locator.is_lost()).then(|| self.locator.error_95_m());
         if error_m.is_some() {
             tether.drag_to(self.locator.position());
@@ -35,21 +35,23 @@ impl Known {
         reached
     }
 
-    /// Whether plans are flown that are refused for the tether.
+    /// Whether plans are run although they are refused for the tether.
     pub(super) fn allow_uncertified(&mut self, fly: bool) {
         if let Some(tether) = &mut self.tether {
             tether.allow_uncertified(fly);
         }
     }
 
-    /// The way back along the cable, as wide as possible; `None` at the anchor, or if there is none.
+    /// The return path along the cable with as much room as possible; `None` at the anchor, or if there is no return
+    /// path.
     pub(super) fn way_to_anchor(&self) -> Option<Vec<Point>> {
         let (here, tether) = (self.locator.position(), self.tether.as_ref()?);
         let is_out = self.task_ends_at_anchor() && (here - tether.anchor()).norm() > HOME_M;
         if is_out { self.widest(|room_m| tether.return_path(self.chart.world(), room_m)) } else { None }
     }
 
-    /// The way that frees a caught cable and reels it in, as wide as possible; `None` unless it is caught.
+    /// The path that frees a caught cable and reels it in, with as much room as possible; `None` if the cable is not
+    /// caught.
     pub(super) fn way_out(&self) -> Option<Vec<Point>> {
         let tether = self.tether.as_ref().filter(|tether| tether.is_snagged())?;
         if self.plans_ways_home() {
@@ -59,7 +61,7 @@ impl Known {
         }
     }
 
-    /// The first way there is with less and less room beside the hull.
+    /// Searches for a path with a sequence of decreasing room beside the hull; returns the first one found.
     fn widest(&self, way: impl Fn(f64) -> Option<Vec<Point>>) -> Option<Vec<Point>> {
         let rooms =
             [1.0, 0.5, 0.0].map(|share| share * self.config.clearance_m + self.config.limits.radius_m);
@@ -68,7 +70,7 @@ impl Known {
 }
 
 impl Mission {
-    /// How a task that is done ends: with the robot back at the anchor and cable left out it is entangled.
+    /// Ends a task that is done: if the robot is back at the anchor but cable is still out, the outcome is entangled.
     pub(super) fn end_done(&mut self) {
         let back = self.known.task_ends_at_anchor();
         let left =

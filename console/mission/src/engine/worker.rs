@@ -1,4 +1,4 @@
-//! A planner in a worker process: its identity and its open requests.
+//! A planner in a worker process, with its identity and its open asks.
 
 use super::{known::Known, requests::AskedPlan, workers::Workers};
 use crate::{
@@ -7,44 +7,44 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// A planner with its worker process and its open ask, whatever it is there for.
+/// A planner with its worker process and its open ask, whatever its role.
 #[derive(Clone, Default)]
 pub(super) struct Worker {
     pub choice: PlannerChoice,
-    /// Who it is, from the first time that it was opened.
+    /// Its description, known once it has been opened for the first time.
     pub info: Option<PlannerInfo>,
-    /// Which planner drove before it.
+    /// Description of the planner that drove before it.
     pub before: Option<PlannerInfo>,
-    /// The newest state that it saved.
+    /// The last state that it saved.
     pub saved: Option<AskId>,
-    /// The ask that has not been answered yet.
+    /// The open ask.
     pub pending: Option<Pending>,
-    /// The instance that runs; `None` before the first, and after a fault.
+    /// The running instance; `None` before the first one is started, and after a fault.
     instance: Option<WorkerId>,
     n_asks: u32,
 }
 
-/// An ask without an answer.
+/// An open ask.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pending {
     pub id: AskId,
-    /// When it was asked.
+    /// The tick of the ask.
     pub tick: u64,
     pub kind: PendingKind,
 }
 
-/// What was asked, with what has to be remembered until the answer.
+/// The kind of ask, with what the mission must remember until the answer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PendingKind {
     Open,
     Reconfigure(PlannerChoice),
     Plan(AskedPlan),
     Step {
-        /// Whether the robot has not been held and no other plan has been taken since.
+        /// Whether the answer can still be used: the robot has not been held and no new plan has been taken since.
         usable: bool,
     },
     Snapshot,
-    /// A step that was asked of it in shadow, before it took over: the answer is of no use, and not late.
+    /// A step requested in shadow, before the planner took over: the answer is not used and does not count as late.
     StepInShadow,
 }
 
@@ -54,7 +54,7 @@ impl Worker {
         Self { choice, ..Self::default() }
     }
 
-    /// The same planner with other parameters, or another one, to take this one's place.
+    /// A worker for the same planner with other parameters, or for a different one, that will replace this one.
     pub(super) fn successor(&self, choice: PlannerChoice) -> Self {
         let saved = self.saved.filter(|_| choice.id == self.choice.id);
         Self { saved, before: self.seen().cloned(), ..Self::new(choice) }
@@ -65,12 +65,12 @@ impl Worker {
         &self.choice.id
     }
 
-    /// Who it is, or, until it is opened, who drove before it.
+    /// Its description or, until it is opened, that of the planner before it.
     pub(super) fn seen(&self) -> Option<&PlannerInfo> {
         self.info.as_ref().or(self.before.as_ref())
     }
 
-    /// Whether it is loaded and configured, and has not failed since.
+    /// Whether it is open and configured, and has not failed since.
     pub(super) fn is_ready(&self) -> bool {
         self.instance.is_some()
             && !matches!(&self.pending, Some(pending) if pending.kind == PendingKind::Open)
@@ -81,7 +81,7 @@ impl Worker {
         matches!(&self.pending, Some(Pending { kind: PendingKind::Open | PendingKind::Plan(_), .. }))
     }
 
-    /// Has a new instance open this planner.
+    /// Starts a new instance of this planner.
     pub(super) fn open(&mut self, known: &Known, workers: &mut Workers) -> Ask {
         let instance = workers.next();
         (self.instance, self.n_asks) = (Some(instance), 0);
@@ -89,17 +89,17 @@ impl Worker {
         self.number(instance, known.tick, PendingKind::Open, What::Open { choice, site, restore })
     }
 
-    /// Asks something of the instance that runs; `None` without one.
+    /// Sends an ask to the running instance; `None` without one.
     pub(super) fn ask(&mut self, tick: u64, kind: PendingKind, what: What) -> Option<Ask> {
         Some(self.number(self.instance?, tick, kind, what))
     }
 
-    /// Asks for a plan.
+    /// Requests a plan.
     pub(super) fn ask_for_plan(&mut self, tick: u64, (asked, ask): (AskedPlan, PlanAsk)) -> Option<Ask> {
         self.ask(tick, PendingKind::Plan(asked), What::Plan(Box::new(ask)))
     }
 
-    /// Numbers the next ask and remembers it until the answer.
+    /// Numbers the next ask and remembers it until its answer arrives.
     fn number(&mut self, worker: WorkerId, tick: u64, kind: PendingKind, what: What) -> Ask {
         self.n_asks += 1;
         let id = AskId { worker, n: self.n_asks };
@@ -107,12 +107,12 @@ impl Worker {
         Ask { id, what }
     }
 
-    /// What was asked, if this is the ask without an answer, which it has got now.
+    /// Takes the open ask if this is the id of its answer.
     pub(super) fn answered(&mut self, ask: AskId) -> Option<Pending> {
         self.pending.take_if(|pending| pending.id == ask)
     }
 
-    /// Forgets the instance, which is to be closed.
+    /// Forgets the instance, which the caller must close.
     pub(super) fn leave(&mut self) -> Option<WorkerId> {
         self.pending = None;
         self.instance.take()

@@ -1,4 +1,4 @@
-//! The numbers of workers, those to be closed, and plugins that failed too often.
+//! The numbers of workers, the workers to close, and the plugins that failed too often.
 
 mod quarantine;
 
@@ -6,7 +6,7 @@ use crate::ask::{Ask, AskId, What, WorkerId};
 pub(super) use quarantine::{MOST_FAULTS, Quarantine, WINDOW_S};
 use std::collections::VecDeque;
 
-/// Workers of a mission.
+/// The workers of a mission.
 #[derive(Clone, Default)]
 pub(super) struct Workers {
     next: u16,
@@ -15,18 +15,18 @@ pub(super) struct Workers {
 }
 
 impl Workers {
-    /// A number that no worker had before.
+    /// A number that no worker has had before.
     pub(super) fn next(&mut self) -> WorkerId {
         self.next = self.next.wrapping_add(1);
         WorkerId(self.next)
     }
 
-    /// Has a worker closed.
+    /// Marks a worker to be closed.
     pub(super) fn close(&mut self, worker: Option<WorkerId>) {
         self.closing.extend(worker);
     }
 
-    /// The next worker to close, as an ask; nobody waits for an answer.
+    /// The next worker to close, as an ask without an answer.
     pub(super) fn poll(&mut self) -> Option<Ask> {
         let worker = self.closing.pop_front()?;
         Some(Ask { id: AskId { worker, n: u32::MAX }, what: What::Close })

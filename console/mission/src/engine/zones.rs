@@ -1,4 +1,4 @@
-//! No-go zones that the operator draws under way.
+//! No-go zones that the operator draws during a mission.
 
 use super::{
     Mission,
@@ -10,12 +10,13 @@ use crate::{config::TaskConfig, event::EventKind, order::Order};
 use planner_api::Reason;
 use world::{Boundary, Point, Shape, Zone, ZoneKind, shape::ring_area_m2, shortest::GrownFloor};
 
-/// A smaller zone is a slip of the hand, square metres, and so is one with a corner beyond this, metres: a scenario has none either.
+/// Smaller zones are refused as a slip of the hand, square metres. Zones with a corner farther away than the next limit,
+/// metres, are refused, too. Scenarios have the same limits.
 const LEAST_M2: f64 = 0.01;
 const FARTHEST_M: f64 = 1e4;
 
 impl Known {
-    /// Refuses what cannot be where it is ordered: a zone in which the robot stands already, or has to go.
+    /// Refuses an impossible zone: one that the robot is in, or that covers a place where the robot must go.
     ///
     /// # Errors
     /// What is wrong, as a sentence.
@@ -23,21 +24,21 @@ impl Known {
         let Order::DrawZone(corners) = order else { return Ok(()) };
         let is_near = |corner: &Point| corner.x.abs() <= FARTHEST_M && corner.y.abs() <= FARTHEST_M;
         if !corners.iter().all(is_near) {
-            return Err(format!("a corner of a no-go zone is at most {FARTHEST_M} m from the origin"));
+            return Err(format!("corners of a no-go zone must be within {FARTHEST_M} m of the origin"));
         }
         if corners.len() < 3 || ring_area_m2(corners).abs() < LEAST_M2 {
-            return Err(format!("a no-go zone needs corners that enclose at least {LEAST_M2} m²"));
+            return Err(format!("the corners of a no-go zone must enclose at least {LEAST_M2} m²"));
         }
         let shape = Shape::Polygon { vertices: corners.clone() };
         if is_outside(&shape, &self.chart.world().boundary) {
-            return Err("the zone lies outside the tank: corners are in metres, tank frame".into());
+            return Err("the zone lies outside the tank; corners are in metres, tank frame".into());
         }
         let room_m = self.config.room_m();
         let is_within = |place: Point| shape.distance_m(place) < room_m;
         let must_keep = format!("{room_m:.2} m (hull radius and clearance) must stay clear");
         let here = self.locator.position();
         if is_within(here) {
-            return Err(format!("the robot stands in the zone or beside it: {must_keep}"));
+            return Err(format!("the robot is in the zone or too close to it: {must_keep}"));
         }
         let end = match &self.config.task {
             TaskConfig::Cover { .. } if self.config.tether.is_some() => "anchor",
@@ -49,18 +50,18 @@ impl Known {
         let anchor = self.config.tether.as_ref().map(|tether| ("anchor", tether.anchor));
         let places: Vec<(&str, Point)> = end.into_iter().chain(anchor).collect();
         if let Some((what, _)) = places.iter().find(|(_, place)| is_within(*place)) {
-            return Err(format!("the {what} lies in the zone or beside it: {must_keep}"));
+            return Err(format!("the {what} is in the zone or too close to it: {must_keep}"));
         }
         let (before, behind) = (self.floor_outside(None), self.floor_outside(Some(&shape)));
         let is_way = |floor: &GrownFloor, to| floor.shortest(here, to, &mut || true).is_ok();
         let is_closed = |place: Point| !is_way(&behind, place) && is_way(&before, place);
         match places.iter().find(|(_, place)| is_closed(*place)) {
-            Some((what, _)) => Err(format!("the zone would block every way from the robot to the {what}")),
+            Some((what, _)) => Err(format!("the zone would block every path from the robot to the {what}")),
             None => Ok(()),
         }
     }
 
-    /// The floor for the middle of the hull outside no-go zones: those that are drawn, and perhaps another one.
+    /// The floor available to the hull's centre outside the no-go zones: those already drawn, and optionally a new one.
     fn floor_outside(&self, zone: Option<&Shape>) -> GrownFloor {
         let (world, room_m) = (self.chart.world(), self.config.room_m());
         let zones = world.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo).map(|zone| &zone.shape);
@@ -77,8 +78,8 @@ impl Known {
 }
 
 impl Mission {
-    /// Forbids a part of the floor: what is in it need not be scanned, and planners begin again with it on their map. The one
-    /// that drives keeps to its plan as far as it can.
+    /// Closes a part of the floor: it need not be scanned, and planners receive a map with the zone and plan again. The
+    /// active planner keeps to its plan as far as possible.
     pub(super) fn draw_zone(&mut self, corners: &[Point]) {
         let shape = Shape::Polygon { vertices: corners.to_vec() };
         let zone = Zone { name: self.known.free_name(), kind: ZoneKind::NoGo, shape };
@@ -95,7 +96,7 @@ impl Mission {
         let waiting = self.known.is_waiting();
         let reason = if waiting { Reason::Start } else { Reason::MapChanged };
         let again = self.driving.worker.successor(self.driving.worker.choice.clone());
-        // Before the start it goes as far as it was: a plan that is on the screen already is made again.
+        // Before the start the old plan is marked for repair: a plan that is already on the screen is made again.
         let stays = waiting && !self.driving.course.has_plan();
         let prepare = if stays { self.driving.prepare } else { Prepare::Plan };
         self.replace_driving(Driving::new(again, reason, prepare));
@@ -107,7 +108,8 @@ impl Mission {
     }
 }
 
-/// Whether a shape lies outside a wall; what lies beside straight walls, but within their bounds, counts as inside.
+/// Whether a shape is outside a wall. Beside straight walls, everything within the bounding box of the wall counts as
+/// inside.
 fn is_outside(shape: &Shape, wall: &Boundary) -> bool {
     if let Boundary::Circle { radius_m } = wall {
         return shape.distance_m(Point::origin()) >= *radius_m;

@@ -1,11 +1,12 @@
-//! What flying a path takes.
+//! The effort of driving a path.
 
 use planner_api::{Limits, Motion};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{Point, polyline};
 
-/// What flying a path takes a robot at its own speeds, which drives straight on and turns on the spot.
+/// The effort of driving a path at the robot's own speeds. The robot is assumed to drive straight and to turn on the
+/// spot.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Effort {
     /// Its length, metres.
@@ -17,7 +18,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// What a path takes. A robot without a heading turns in no time.
+    /// Computes the effort of a path. A robot without a heading needs no time to turn.
     pub(crate) fn of(path: &[Point], limits: &Limits) -> Self {
         let length_m = polyline::length_m(path);
         let rotation_rad = polyline::turns_rad(path).sum();
@@ -28,7 +29,7 @@ impl Effort {
         Self { length_m, rotation_rad, time_s: length_m / limits.v_max_m_per_s + turning_s }
     }
 
-    /// By how much less it takes than another, in words.
+    /// Describes how much is saved compared with a larger effort.
     pub fn saving(&self, other: &Self) -> String {
         let turns = (other.rotation_rad - self.rotation_rad) / TAU;
         format!(

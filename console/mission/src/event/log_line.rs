@@ -1,4 +1,4 @@
-//! Events as lines for people: the screen's log, the recording and the command line read the same words.
+//! Events as lines of text. The log on the screen, the recording and the command line use the same words.
 
 use super::{
     Event, EventKind, TetherAlarm,
@@ -12,10 +12,10 @@ use planner_api::LogLevel;
 use positioning::Exclusion;
 use world::{Station, StationId, tether::Certificate};
 
-/// A line of the event log: how much it matters, who speaks, what.
+/// A line of the event log: its severity, its source and its text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogLine {
-    /// How much it asks of the operator.
+    /// Severity.
     pub severity: Severity,
     /// `cmd`, `ae`, `plan`, `map`, `robot`, `tether` or `mission`.
     pub source: &'static str,
@@ -24,8 +24,8 @@ pub struct LogLine {
 }
 
 impl Event {
-    /// The event as a line for people, in the screen's log, the recording and on the command line alike; `None` for
-    /// what happens every tick. Stations have the names that the opened run gives them.
+    /// The event as a line of text for the screen's log, the recording and the command line; `None` for events that occur
+    /// every tick. Stations have the names given by the run's first event.
     #[allow(clippy::too_many_lines, reason = "one line for each kind of event")]
     pub fn log_line(&self, stations: &[Station]) -> Option<LogLine> {
         Some(match &self.kind {
@@ -212,7 +212,7 @@ fn of_shadow(kind: &EventKind) -> Option<LogLine> {
         EventKind::ShadowBegan { choice, info, .. } => {
             line(Severity::Info, "plan", format!("planner {} {} flies in shadow", choice.id, info.version))
         }
-        // Its faults are its own: they ask nothing of the operator who flies with another planner.
+        // Faults in shadow require no action by the operator, who is driving with a different planner.
         EventKind::Shadowed { of } => {
             let LogLine { severity, source, text } = match &**of {
                 EventKind::Certified { .. } => of_tether(of)?,
@@ -301,7 +301,7 @@ fn order_text(order: &Order, stations: &[Station]) -> String {
     }
 }
 
-/// Who did something, as the end of what was done.
+/// The end of a sentence that tells who acted: ` by NAME`, or empty.
 fn by_text(by: Option<&String>) -> String {
     by.map_or_else(String::new, |name| format!(" by {name}"))
 }
@@ -343,7 +343,7 @@ fn certificate_text(planner: &str, refused: bool, certificate: &Certificate) -> 
     }
 }
 
-/// A station by its name, or by its number where the tank has none of it.
+/// The name of a station, or its number if the tank does not name it.
 fn station_text(id: StationId, stations: &[Station]) -> String {
     let found = stations.iter().find(|station| station.id == id);
     found.map_or_else(|| format!("station {}", id.0), |station| format!("station {}", station.name))

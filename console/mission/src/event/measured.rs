@@ -1,4 +1,4 @@
-//! Readings of others behind a run that was located and not flown, and the floor that their tool passed.
+//! The readings behind a located run, which came from another system, and the floor that its tool passed.
 
 use crate::config::MissionConfig;
 use planner_api::PoseEstimate;
@@ -6,63 +6,63 @@ use positioning::fix::{ellipse_95, position_covariance};
 use serde::{Deserialize, Serialize};
 use world::{Pose, Tool};
 
-/// A normal error is within so many standard deviations in 95 of 100 cases.
+/// Number of standard deviations within which a normally distributed error stays in 95 of 100 cases.
 const NORMAL_95: f64 = 1.96;
 
-/// Times that differ by less are the same, seconds: they were computed in two ways.
+/// Times that differ by less count as equal, seconds: they were computed in two different ways.
 const TIE_S: f64 = 1e-6;
 
-/// The file of readings behind a run that was located and not flown.
+/// The file of readings behind a located run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Its name.
+    /// Name of the file.
     pub file: String,
-    /// SHA-256 of its bytes, hexadecimal.
+    /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
-    /// What was asked for beside the scenario.
+    /// The options of the command that are not in the scenario.
     #[serde(default)]
     pub asked: Asked,
-    /// Whether the motion between the readings was measured: without it the heading is not known.
+    /// Whether the motion between the readings was measured; without it the heading is unknown.
     #[serde(default)]
     pub has_motion: bool,
-    /// From when to when the tool was on, mission time, seconds, in order; absent if nothing says it.
+    /// Periods in which the tool was on, mission time, seconds, in order; absent if not recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tool_on_s: Option<Vec<[f64; 2]>>,
 }
 
-/// What somebody asked for who had readings located: with it and the scenario, the same comes out again.
+/// The options with which the readings were located. Together with the scenario they reproduce the same result.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Asked {
     /// Speed of sound, metres per second; absent for readings that are distances.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sound_speed_m_per_s: Option<f64>,
-    /// Whether the speed of sound was found from the readings.
+    /// Whether the speed of sound was estimated from the readings.
     pub finds_sound_speed: bool,
-    /// Whether the offset between the clocks was.
+    /// Whether the offset between the clocks was estimated.
     pub finds_clock_offset: bool,
     /// Whether bad rows were left out.
     pub skips_bad_rows: bool,
 }
 
 impl Measured {
-    /// For how long the tool was on, seconds; none if nothing says it.
+    /// How long the tool was on, seconds; `None` if not recorded.
     pub fn on_for_s(&self) -> Option<f64> {
         Some(self.tool_on_s.as_ref()?.iter().map(|[from_s, to_s]| to_s - from_s).sum())
     }
 
-    /// Whether the tool was on all the time from one moment to another, seconds.
+    /// Whether the tool was on for the whole time between two moments, seconds.
     fn is_on(&self, from_s: f64, to_s: f64) -> bool {
         let is_within = |[first_s, last_s]: &[f64; 2]| *first_s <= from_s + TIE_S && to_s <= *last_s + TIE_S;
         self.tool_on_s.iter().flatten().any(is_within)
     }
 }
 
-/// Where a tool passed floor that counts as scanned, by estimates of its place one after the other.
+/// Determines where the tool passed floor that counts as scanned, from successive position estimates.
 ///
-/// A stretch between two estimates counts if the tool was on all the time, the position error was within the limit at both, the
-/// heading is known well enough for the ends of a bar, and the robot cannot have strayed from the straight line by more than
-/// the limit in the meantime. Otherwise only the place itself can count.
+/// A stretch between two estimates counts if four conditions are met: the tool was on all the time; the position error
+/// was within the limit at both ends; the heading is known well enough for the ends of a bar; and the robot cannot have
+/// strayed from the straight line by more than the limit in the meantime. Otherwise only the place itself can count.
 #[derive(Debug, Clone)]
 pub struct ToolTrack {
     measured: Measured,
@@ -73,7 +73,7 @@ pub struct ToolTrack {
 }
 
 impl ToolTrack {
-    /// The tool of a mission by which readings were located.
+    /// The tool of the mission with which the readings were located.
     pub fn new(measured: &Measured, mission: &MissionConfig) -> Self {
         Self {
             measured: measured.clone(),
@@ -84,13 +84,13 @@ impl ToolTrack {
         }
     }
 
-    /// Whether anything says when the tool was on.
+    /// Whether the times when the tool was on were recorded.
     pub fn is_known(&self) -> bool {
         self.measured.tool_on_s.is_some()
     }
 
-    /// Takes the next estimate, at a mission time, seconds; gives the poses between which floor was passed that counts, which
-    /// may be one place; none if nothing counts.
+    /// Adds the next estimate, at a mission time in seconds. If floor counts as scanned, returns the two poses between
+    /// which the tool passed it; both are the same if only a single place counts.
     pub fn visit(&mut self, t_s: f64, estimate: &PoseEstimate) -> Option<(Pose, Pose)> {
         let here = Pose { position: estimate.position, heading_rad: estimate.heading_rad };
         let is_good = self.is_good(estimate);
@@ -118,8 +118,8 @@ impl ToolTrack {
         error_m <= self.limit_m && sideways_m <= self.limit_m
     }
 
-    /// How far a robot can have strayed from a straight way of so many metres in some time, at its top speed: to the tip of the
-    /// triangle of which that way is one side.
+    /// How far a robot can have strayed from a straight line of length `way_m` in a given time at its top speed: the
+    /// height of the triangle over that line.
     fn strays_m(&self, way_m: f64, time_s: f64) -> f64 {
         let half_m = self.v_max_m_per_s * time_s / 2.0;
         (half_m.powi(2) - (way_m / 2.0).powi(2)).max(0.0).sqrt()

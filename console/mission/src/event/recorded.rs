@@ -1,4 +1,4 @@
-//! The answers that a journal holds: each event that closes an ask carries what a mission needs to repeat it.
+//! Answers from a journal. Each event that answers an ask carries what a mission needs to repeat it.
 
 use super::EventKind;
 use crate::{
@@ -8,15 +8,15 @@ use crate::{
 use planner_api::{Command, Leg, Plan, Status};
 use std::collections::VecDeque;
 
-/// Answers asks from a journal, each in the tick in which it was answered when the journal was written.
+/// Answers asks from a journal, each in the tick in which the original answer arrived.
 #[derive(Debug, Default)]
 pub struct RecordedAnswers {
-    /// What was asked and not answered yet, and whether it is a plan.
+    /// The open asks, and whether each is for a plan.
     open: Vec<(AskId, bool)>,
     due: VecDeque<Recorded>,
 }
 
-/// An answer in a journal.
+/// An answer from a journal.
 #[derive(Debug)]
 struct Recorded {
     ask: AskId,
@@ -25,19 +25,19 @@ struct Recorded {
 }
 
 impl RecordedAnswers {
-    /// Takes the recorded events of the tick that begins; answers of an earlier tick that nobody asked for are forgotten.
+    /// Takes the recorded events of the tick that begins; answers of earlier ticks that were not asked for are dropped.
     pub fn begin_tick<'a>(&mut self, events: impl IntoIterator<Item = &'a EventKind>) {
         self.due.clear();
         let mut said = Said::default();
         for event in events {
-            // A planner in shadow answers like any other.
+            // A planner in shadow answers like any other planner.
             let event = if let EventKind::Shadowed { of } = event { of } else { event };
             match event {
                 EventKind::Drawn { drawings } => said.drawings.clone_from(drawings),
                 EventKind::Scalars { scalars } => said.scalars.clone_from(scalars),
                 EventKind::PlannerLogged { level, message, .. } => said.logs.push((*level, message.clone())),
                 closing => {
-                    // What a planner said stands directly before the event that closes its ask.
+                    // Drawings, figures and logs precede the event that answers the ask.
                     let said = std::mem::take(&mut said);
                     if let Some(ask) = closing.closes() {
                         self.due.push_back(Recorded { ask, closing: closing.clone(), said });
@@ -47,7 +47,7 @@ impl RecordedAnswers {
         }
     }
 
-    /// Takes an ask of the mission.
+    /// Registers an ask of the mission.
     pub fn submit(&mut self, ask: &Ask) {
         if ask.what == What::Close {
             self.open.retain(|(open, _)| open.worker != ask.id.worker);
@@ -56,10 +56,10 @@ impl RecordedAnswers {
         }
     }
 
-    /// The next answer of this tick to something that was asked, and whether the mission made use of it: of one that it
-    /// did not the journal does not hold the content.
+    /// The next answer of this tick to an open ask, and whether the original mission used it; the journal does not hold
+    /// the content of unused answers.
     pub fn next_answer(&mut self) -> Option<(Answer, bool)> {
-        // A worker's answers are recorded when they are used, which may be after the next question to it.
+        // A worker's answers are recorded when they are used, which may be after the next ask to that worker.
         let is_open = |recorded: &Recorded| self.open.iter().position(|(open, _)| *open == recorded.ask);
         let (at, open) =
             self.due.iter().enumerate().find_map(|(at, recorded)| Some((at, is_open(recorded)?)))?;
@@ -73,8 +73,8 @@ impl RecordedAnswers {
 }
 
 impl EventKind {
-    /// The ask whose answer this event reports. Each answered ask is reported by exactly one event, in the tick in which
-    /// the answer arrived.
+    /// The ask that this event answers. Each ask is answered by exactly one event, in the tick in which the answer
+    /// arrived.
     pub fn closes(&self) -> Option<AskId> {
         match self {
             Self::PlannerPrepared { ask, .. }
@@ -93,10 +93,11 @@ impl EventKind {
         }
     }
 
-    /// What the planner answered, as far as the mission made use of it; `None` for events that close no ask.
+    /// The planner's answer, as far as the mission used it; `None` for events that answer no ask.
     ///
-    /// The cost of a plan is not recorded, since nobody reads it, and a command is the one that was sent. A plan that no
-    /// planner can have given (the journal was edited) is a fault. A command that was limited is the one that was asked for. `is_plan`: whether a plan was asked for.
+    /// The cost of a plan is not recorded, since nothing reads it. A command is returned as it was sent, or as requested
+    /// if it was limited. A plan that no planner can have made, because the journal was edited, is a fault. `is_plan`
+    /// tells whether the ask was for a plan.
     pub fn recorded_answer(&self, is_plan: bool) -> Option<Result<Given, Fault>> {
         Some(match self {
             Self::PlannerChosen { ask: Some(_), info, .. }
@@ -123,10 +124,10 @@ impl EventKind {
     }
 }
 
-/// The plan as the planner gave it, before the mission put a return path of so many points in front.
+/// The planner's own plan, without the return path of `return_path` points that the mission put before it.
 ///
 /// # Errors
-/// No planner can have given it.
+/// No planner can have made this plan.
 fn without_return_path(
     return_path: usize,
     path: &[world::Point],
@@ -134,7 +135,7 @@ fn without_return_path(
     legs: &[Leg],
     cuts: &[Vec<world::Point>],
 ) -> Result<Plan, Fault> {
-    // The return path has a leg of its own, the first.
+    // The return path has a leg of its own, the first one.
     let own = legs.iter().skip(usize::from(return_path > 0));
     let shifted = |leg: &Leg| {
         let (first, last) = (leg.first.checked_sub(return_path)?, leg.last.checked_sub(return_path)?);
@@ -153,7 +154,7 @@ fn impossible(what: &str) -> Fault {
         planner: String::new(),
         during: During::Plan,
         cause: Cause::BadOutput,
-        message: format!("the planner of the journal {what}"),
+        message: format!("the planner in the journal {what}"),
         partial: Vec::new(),
         plugin_sha256: None,
     }
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(recorded(2, &[leg(0, 2), leg(2, 4)]), Ok(vec![(0, 2)]));
         assert_eq!(
             recorded(2, &[leg(0, 2), leg(1, 4)]),
-            Err("the planner of the journal gave a leg that begins on the return path".into())
+            Err("the planner in the journal gave a leg that begins on the return path".into())
         );
         assert!(recorded(0, &[leg(0, 5)]).unwrap_err().ends_with("to 5 of a path of 5 points"));
         assert!(recorded(usize::MAX, &[leg(0, 0), leg(1, 2)]).is_err());

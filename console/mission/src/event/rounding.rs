@@ -1,9 +1,9 @@
-//! Numbers of events as everybody gets them: no finer than anything in a tank is known.
+//! Rounds the numbers in events to the precision with which quantities in a tank can be known.
 //!
-//! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. This is done
-//! once, where an event leaves the flight: journal, recording, screen and report see the same numbers, and a tick takes a
-//! third of the bytes. What a planner answered is repeated from the journal, so plans stay as they are, and commands are
-//! rounded before they are sent ([`crate::Sending::as_sent`]).
+//! Lengths, angles and shares are rounded to a millionth of their unit, covariances to four significant digits. This
+//! happens once, where an event leaves the mission, so journal, recording, screen and report have the same numbers, and a
+//! tick takes a third of the bytes. Plans are not rounded, because the planners' answers are replayed from the journal.
+//! Commands are rounded before they are sent ([`crate::Sending::as_sent`]).
 
 use super::{Event, EventKind, TetherContact};
 use crate::ask::Said;
@@ -12,24 +12,24 @@ use planner_api::{Command, Drawing, Drive, PoseEstimate};
 use positioning::{Exclusion, Fix, Ranging};
 use world::{Point, Pose};
 
-/// Steps in a unit.
+/// Rounding steps per unit.
 const STEPS: f64 = 1e6;
-/// Larger numbers have no digits to lose, and do not occur in a tank.
+/// Numbers above this are not rounded, and do not occur in a tank.
 const MOST: f64 = 1e9;
 
-/// A number to the millionth; no `-0.0`.
+/// Rounds a number to the nearest millionth; never returns `-0.0`.
 fn rounded(x: f64) -> f64 {
-    // What is added makes a zero of either sign a positive one.
+    // Adding zero turns -0.0 into 0.0.
     if x.abs() < MOST { (x * STEPS).round() / STEPS + 0.0 } else { x }
 }
 
-/// A number to four significant digits; no `-0.0`.
+/// Rounds a number to four significant digits; never returns `-0.0`.
 fn significant(x: f64) -> f64 {
     quickly_significant(x).unwrap_or_else(|| format!("{x:.3e}").parse().map_or(x, |x: f64| x + 0.0))
 }
 
-/// The same without a detour by text, where rounding errors cannot change the last digit: both a number of four digits and a
-/// power of ten up to the 22nd are exact, so their quotient is the number nearest to the decimal one.
+/// Rounds without a conversion to text, for numbers where rounding errors cannot change the last digit. A number of four
+/// digits and a power of ten up to the 22nd are both exact, so their quotient is the number nearest to the decimal one.
 fn quickly_significant(x: f64) -> Option<f64> {
     if x == 0.0 {
         return Some(0.0);
@@ -41,14 +41,14 @@ fn quickly_significant(x: f64) -> Option<f64> {
     (is_clear && (1000.0..9999.5).contains(&digits.abs())).then(|| digits.round() / power)
 }
 
-/// The powers of ten that are exact.
+/// The exact powers of ten.
 const POWERS_OF_TEN: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
     1e19, 1e20, 1e21, 1e22,
 ];
 
 impl Event {
-    /// The event with its numbers rounded; doing it again changes nothing.
+    /// Returns the event with rounded numbers; rounding it again changes nothing.
     #[must_use]
     pub fn rounded(mut self) -> Self {
         round(&mut self.t_s);
@@ -58,7 +58,7 @@ impl Event {
 }
 
 impl Said {
-    /// What was drawn and reported, with its numbers rounded as in events.
+    /// Rounds the numbers in drawings and figures in the same way as in events.
     #[must_use]
     pub(crate) fn rounded(mut self) -> Self {
         self.drawings.iter_mut().for_each(round_drawing);
@@ -67,13 +67,13 @@ impl Said {
     }
 }
 
-/// A number to the millionth, never further from zero: what is within a limit stays within it.
+/// Rounds a number to a millionth towards zero, so that a value within a limit stays within it.
 fn toward_zero(x: f64) -> f64 {
     let nearest = rounded(x);
     if nearest.abs() > x.abs() { rounded(nearest - x.signum() / STEPS) } else { nearest }
 }
 
-/// A command that is sent to the robot, rounded.
+/// Rounds a command that is sent to the robot.
 pub(crate) fn rounded_command(Command { drive, status }: Command) -> Command {
     let drive = match drive {
         Drive::Twist { v_m_per_s, w_rad_per_s } => {

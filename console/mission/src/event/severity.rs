@@ -1,4 +1,4 @@
-//! How much events ask of the operator.
+//! The severity of events for the operator.
 
 use crate::{
     phase::HoldReason,
@@ -7,7 +7,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use world::tether::Certificate;
 
-/// How much an event asks of the operator.
+/// The severity of an event for the operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
@@ -22,8 +22,8 @@ pub enum Severity {
 }
 
 impl Fault {
-    /// How much it asks of the operator: what came too late may be the machine's doing, what was refused has not driven the
-    /// robot, and that no way exists is an answer.
+    /// The severity of a fault. A late answer may be the machine's doing, a refused planner has not driven the robot, and
+    /// "no path exists" is an answer rather than a fault.
     pub fn severity(&self) -> Severity {
         match self.cause {
             _ if self.is_no_way() => Severity::Warn,
@@ -33,7 +33,7 @@ impl Fault {
     }
 }
 
-/// How much a hold asks of the operator.
+/// The severity of a hold.
 pub(super) fn of_hold(by: &HoldReason) -> Severity {
     match by {
         HoldReason::Operator | HoldReason::Stepped | HoldReason::PlannerReplaced => Severity::Info,
@@ -47,8 +47,8 @@ pub(super) fn of_hold(by: &HoldReason) -> Severity {
     }
 }
 
-/// How much the certificate of a plan asks of the operator. One that is refused is not flown, and what follows has an event of
-/// its own: a plan from the anchor, a hold, or nothing, if another planner drives.
+/// The severity of a plan's certificate. A refused plan is not run; what follows has its own event: a plan from the
+/// anchor, a hold, or nothing if a different planner drives.
 pub(super) fn of_certificate(certificate: &Certificate) -> Severity {
     if certificate.certified { Severity::Info } else { Severity::Warn }
 }

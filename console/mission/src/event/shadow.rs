@@ -1,24 +1,25 @@
-//! How a planner does in shadow, by its events: the mission and everybody who reads the events count alike.
+//! The record of a planner in shadow, counted from its events. The mission and all readers of events count in the same
+//! way.
 
 use super::EventKind;
 use serde::{Deserialize, Serialize};
 
-/// So many steps answered in a row, and a planner in shadow may take over.
+/// Number of steps in a row that a planner in shadow must answer before it can take over.
 pub const READY_AFTER: u64 = 10;
 
-/// What a planner has done in shadow.
+/// The record of a planner in shadow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct ShadowTally {
-    /// Steps that it answered in time.
+    /// Number of steps answered in time.
     pub answered: u64,
-    /// Of these, how many since it last missed a tick.
+    /// Number of steps answered since the last missed one.
     pub in_row: u64,
-    /// Ticks that it missed.
+    /// Number of steps missed.
     pub missed: u64,
 }
 
 impl ShadowTally {
-    /// Takes in one event.
+    /// Counts one event.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
             EventKind::Shadowed { of } if matches!(**of, EventKind::Commanded { .. }) => {
@@ -33,7 +34,7 @@ impl ShadowTally {
         }
     }
 
-    /// Whether it may take over.
+    /// Whether the planner can take over.
     pub fn is_ready(&self) -> bool {
         self.in_row >= READY_AFTER
     }

@@ -1,21 +1,21 @@
-//! What events say of the tether.
+//! The tether in events.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use world::Point;
 
-/// Where the cable bears on an obstacle.
+/// A contact of the cable with an obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TetherContact {
     /// Name of the obstacle.
     pub on: String,
     /// Angle by which the cable turns there, radians, counter-clockwise.
     pub wrap_rad: f64,
-    /// Last point of contact, seen from the anchor.
+    /// Last point of contact, counted from the anchor.
     pub at: Point,
 }
 
-/// The taut cable from its anchor over its bends to the robot.
+/// The line of the taut cable from its anchor over its bends to the robot.
 pub fn taut_line(anchor: Point, bends: &[Point], robot: Point) -> Vec<Point> {
     let mut line = Vec::with_capacity(bends.len() + 2);
     line.push(anchor);
@@ -24,15 +24,15 @@ pub fn taut_line(anchor: Point, bends: &[Point], robot: Point) -> Vec<Point> {
     line
 }
 
-/// What may be wrong with the cable.
+/// The alarms of the cable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TetherAlarm {
-    /// The reel runs out.
+    /// The reel is running out.
     Reel {
-        /// Cable out, metres.
+        /// Length of cable paid out, metres.
         out_m: f64,
-        /// Cable there is, metres.
+        /// Length of the cable, metres.
         reel_length_m: f64,
     },
     /// The cable wraps one obstacle.
@@ -44,28 +44,28 @@ pub enum TetherAlarm {
         /// Largest angle allowed, radians.
         limit_rad: f64,
     },
-    /// All wraps together.
+    /// The total wrap is too large.
     WrapTotal {
-        /// Their sum, radians.
+        /// The total wrap, radians.
         sum_rad: f64,
-        /// Largest sum allowed, radians.
+        /// Maximum total wrap, radians.
         limit_rad: f64,
     },
-    /// The reel has paid out more than the cable needs among all obstacles on the map.
+    /// The reel has paid out more than expected from all obstacles on the map.
     Snag {
         /// Cable paid out, metres.
         paid_out_m: f64,
-        /// Cable that the map explains, metres.
+        /// Expected cable length, metres.
         explained_m: f64,
     },
-    /// The hull does not fit along the cable.
+    /// The hull does not fit along the cable on the way back.
     NoReturnPath,
-    /// The robot has left its plan across a line that the plan never crosses: another plan is due.
+    /// The robot has left its plan across a cut, so a new plan is needed.
     Strayed,
 }
 
 impl TetherAlarm {
-    /// The kind in a word.
+    /// The kind of alarm in one or two words.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Reel { .. } => "reel",

@@ -1,13 +1,13 @@
-//! Why a robot stands still.
+//! Why a robot is held.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why the robot stands still.
+/// Why the robot is held.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HoldReason {
-    /// The operator said so.
+    /// The operator ordered it.
     Operator,
     /// The position is lost.
     PositionLost,
@@ -15,37 +15,37 @@ pub enum HoldReason {
     RangesInconsistent,
     /// The planner failed.
     PlannerFault {
-        /// The fault's sentence.
+        /// Message of the fault.
         message: String,
     },
-    /// The planner has not answered for long.
+    /// The planner has not answered for too long.
     PlannerSilent {
-        /// Which, as a sentence.
+        /// The planner, as a sentence.
         message: String,
     },
-    /// The robot gets nowhere, or the planner says that no way leads on.
+    /// The robot makes no progress, or the planner reports that there is no path.
     Stuck {
-        /// Where or why, as a sentence.
+        /// The place or the reason, as a sentence.
         message: String,
     },
     /// The cable has reached a limit.
     Tether {
-        /// Which, as a sentence.
+        /// The limit, as a sentence.
         message: String,
     },
     /// The plan cannot be certified for the tether.
     PlanRefused {
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         message: String,
     },
-    /// A single step is done.
+    /// A single step is complete.
     Stepped,
-    /// The reason went with the planner that was replaced; the operator decides when the robot moves again.
+    /// The planner that caused the hold was replaced; the operator decides when the robot moves again.
     PlannerReplaced,
 }
 
 impl HoldReason {
-    /// Every reason once, in the order of their declaration; for tests that go through all of them.
+    /// All reasons, in the order of their declaration; for tests.
     #[doc(hidden)]
     pub fn every(message: &str) -> Vec<Self> {
         let message = || message.to_owned();
@@ -61,7 +61,7 @@ impl HoldReason {
             Self::Stepped,
             Self::PlannerReplaced,
         ];
-        // A new reason does not compile until it is named here; it belongs in the list above as well.
+        // A new reason does not compile until it is added here; add it to the list above, too.
         for by in &all {
             match by {
                 Self::Operator
@@ -79,7 +79,7 @@ impl HoldReason {
         all
     }
 
-    /// Whether the planner is the cause, so that another one may be the remedy.
+    /// Whether the planner is the cause, so that a different planner may be the remedy.
     pub fn blames_planner(&self) -> bool {
         matches!(self, Self::PlannerFault { .. } | Self::PlannerSilent { .. } | Self::PlanRefused { .. })
     }

@@ -1,18 +1,18 @@
-//! How far a planner's process was closed off before anything of its plugin ran.
+//! The sandbox of a planner's process, set up before any code of its plugin runs.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What the system enforces on the process of a planner, the strongest first. Nothing less than [`Self::Full`] may look
-/// like it.
+/// What the system enforces on the process of a planner, strongest level first. Nothing less than [`Self::Full`] may be
+/// displayed as if it were full.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sandbox {
-    /// No files, network, terminal, processes or other processes' memory.
+    /// No access to files, network, terminal, other processes or their memory.
     Full,
-    /// A part of that; why the rest is missing.
+    /// Only some of these restrictions; the text tells why the others are missing.
     Partial(String),
-    /// A process with limits on memory and files, and nothing else; why.
+    /// Only limits on memory and files; the text tells why.
     None(String),
 }
 

@@ -1,4 +1,4 @@
-//! The standing of a mission, folded from its events.
+//! The standing of a mission, computed from its events.
 
 mod ready;
 
@@ -13,32 +13,32 @@ use crate::{
 use ready::Ready;
 use serde::{Deserialize, Serialize};
 
-/// The standing of a mission as it follows from its events, for those who see nothing else of the mission.
+/// The standing of a mission as it follows from its events, for code that sees nothing but the events.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoldedStanding {
-    /// What the mission is doing.
+    /// The phase of the mission.
     pub phase: Phase,
-    /// How the robot was let go by the last order.
+    /// The gait of the last order that released the robot.
     gait: Option<Gait>,
     /// The limit of the position error, metres, while the position counts as lost.
     lost: Option<f64>,
     /// Whether the ranges contradict each other.
     is_alarmed: bool,
-    /// The planner that was opened last to drive.
+    /// The active planner, as last opened.
     planner: Option<Box<PlannerInfo>>,
-    /// How the planner in shadow does; `None` without one.
+    /// The record of the planner in shadow; `None` without one.
     #[serde(default)]
     shadow: Option<ShadowTally>,
-    /// Whether a better plan is offered and not taken yet.
+    /// Whether a better plan is offered and not ordered yet.
     #[serde(default)]
     has_offer: bool,
-    /// What a start would begin with, and who plans.
+    /// The plan that a start would begin with, and its planner.
     #[serde(default)]
     ready: Ready,
 }
 
 impl FoldedStanding {
-    /// Takes in one event; they must come in the order of the journal.
+    /// Processes one event; events must come in the order of the journal.
     pub fn apply(&mut self, event: &EventKind) {
         match event {
             EventKind::RunOpened(run) => *self = Self { ready: Ready::of(run), ..Self::default() },

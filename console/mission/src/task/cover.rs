@@ -1,4 +1,4 @@
-//! Scanning the floor along the legs of a plan, and coming back to the anchor.
+//! Scanning the floor along the legs of a plan, and returning to the anchor.
 
 use super::rest_of;
 use crate::ask::TaskLeft;
@@ -7,28 +7,29 @@ use planner_api::{self as api, LegTag, Plan};
 use std::{collections::HashSet, sync::Arc};
 use world::{CoverageGrid, ObstacleMap, Point, Shape, coverage::regions, polyline};
 
-/// Blocks of floor handed to planners are this share of a lane wide.
+/// Size of the blocks of floor that planners receive, as a share of the lane width.
 const BLOCK_LANES: f64 = 0.25;
 
-/// A corner that is nearer than this and does not come nearer is given up after a while, metres.
+/// A corner closer than this is given up if the robot stops getting closer to it, metres.
 const NEAR_CORNER_M: f64 = 0.3;
-/// That while, seconds: longer than a turn on the spot takes.
+/// Time until it is given up, seconds: longer than a turn on the spot takes.
 const CORNER_PATIENCE_S: f64 = 6.0;
-/// What counts as coming nearer, metres.
+/// Minimum change that counts as getting closer, metres.
 const NEARER_M: f64 = 0.01;
 
-/// Progress of a coverage mission. What is scanned is kept by the mission's grid, so any planner can go on from here.
+/// Progress of a coverage mission. The scanned floor is recorded in the mission's grid, so any planner can continue from
+/// here.
 #[derive(Clone)]
 pub(crate) struct Cover {
     anchor: Point,
-    /// What is to be scanned at all; empty for everything.
+    /// The areas to scan; empty for the whole floor.
     regions: Vec<Vec<Point>>,
     tolerance_m: f64,
     position: Point,
     lanes: Option<Lanes>,
-    /// Way along the plans before this one, metres.
+    /// Distance driven along earlier plans, metres.
     before_m: f64,
-    /// Least distance from the corner ahead, metres, and the time since then, seconds.
+    /// Minimum distance from the corner ahead so far, metres, and the time since then, seconds.
     at_corner: (f64, f64),
 }
 
@@ -37,21 +38,21 @@ pub(crate) struct Cover {
 pub(crate) struct Joint {
     /// The place.
     pub at: Point,
-    /// Way along the plan to it, metres.
+    /// Distance along the plan to it, metres.
     pub station_m: f64,
 }
 
-/// A plan under way.
+/// A plan in progress.
 #[derive(Clone)]
 struct Lanes {
     plan: Arc<Plan>,
     follower: PathFollower,
-    /// Stations at which its stretches end, metres.
+    /// Distances along the plan at which its stretches end, metres.
     ends_m: Vec<f64>,
 }
 
 impl Cover {
-    /// Nothing is planned yet.
+    /// A task without a plan yet.
     pub(crate) fn new(anchor: Point, regions: Vec<Vec<Point>>, tolerance_m: f64, start: Point) -> Self {
         Self {
             anchor,
@@ -77,7 +78,7 @@ impl Cover {
         });
     }
 
-    /// Takes the robot's position.
+    /// Updates the robot's position.
     pub(crate) fn advance(&mut self, position: Point, map: &ObstacleMap) {
         self.position = position;
         if let Some(lanes) = &mut self.lanes {
@@ -85,7 +86,7 @@ impl Cover {
         }
     }
 
-    /// Takes some time of moving: a corner that something keeps the robot away from is given up.
+    /// Counts time during which the robot was free to move: a corner that it cannot reach is given up.
     pub(crate) fn wait(&mut self, passed_s: f64) {
         let Some(lanes) = &mut self.lanes else { return };
         let corner_m = lanes.follower.corner_m(self.position).filter(|corner_m| *corner_m < NEAR_CORNER_M);
@@ -101,7 +102,7 @@ impl Cover {
         }
     }
 
-    /// Where to go next; home without a plan.
+    /// The next target; the anchor if there is no plan.
     pub(crate) fn target(&self) -> Point {
         self.lanes.as_ref().map_or(self.anchor, |lanes| lanes.follower.target())
     }
@@ -112,25 +113,25 @@ impl Cover {
         self.lanes.as_ref().map_or_else(home, |lanes| lanes.follower.ahead(length_m))
     }
 
-    /// Whether only some of the floor is to be scanned.
+    /// Whether only a part of the floor is to be scanned.
     pub(crate) fn is_in_part(&self) -> bool {
         !self.regions.is_empty()
     }
 
-    /// What is left of the plan, from the point nearest to the robot on.
+    /// The rest of the plan, from the point nearest to the robot on.
     pub(crate) fn lanes_left(&self) -> Option<&[Point]> {
         self.lanes.as_ref().map(|lanes| lanes.follower.remaining())
     }
 
-    /// What is left of the plan from the target on, without its cost.
+    /// The rest of the plan from the target on, without its cost.
     pub(crate) fn under_way(&self) -> Option<Plan> {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let rest = rest_of(plan, follower.target_m(), &[follower.target()]);
         Some(Plan { cost: 0.0, ..rest })
     }
 
-    /// Whether at least half of the points of a plan are points of the one that is flown: a plan made anew shares a tenth of them,
-    /// a repaired one more than seven tenths.
+    /// Whether at least half of the points of a plan are also points of the current one: a plan made from scratch shares
+    /// a tenth of them, a repaired one more than seven tenths.
     pub(crate) fn keeps_to(&self, plan: &Plan) -> bool {
         let bits = |point: &Point| [point.x.to_bits(), point.y.to_bits()];
         let flown: HashSet<_> = self.lanes.iter().flat_map(|lanes| &lanes.plan.path).map(bits).collect();
@@ -138,8 +139,8 @@ impl Cover {
         2 * kept >= plan.path.len()
     }
 
-    /// The first place at which a stretch of the plan ends at least so far ahead of the robot, or, if that is more than twice as
-    /// far, any point of it; `None` if the plan ends before.
+    /// The first end of a stretch of the plan that is at least `lead_m` ahead of the robot. If it is more than twice as
+    /// far, the first point of the path at least `lead_m` ahead. `None` if the plan ends before.
     pub(crate) fn joint(&self, lead_m: f64) -> Option<Joint> {
         let Lanes { plan, follower, .. } = self.lanes.as_ref()?;
         let stations_m = polyline::stations_m(&plan.path);
@@ -155,7 +156,7 @@ impl Cover {
         Some(Joint { at: plan.path[index], station_m: stations_m[index] })
     }
 
-    /// The way along the plan from the robot to a place on it.
+    /// The path along the plan from the robot to a place on it.
     pub(crate) fn way_to(&self, joint: &Joint) -> Vec<Point> {
         let between = self.lanes.iter().flat_map(|Lanes { plan, follower, .. }| {
             let stations_m = polyline::stations_m(&plan.path);
@@ -165,7 +166,7 @@ impl Cover {
         std::iter::once(self.position).chain(between).collect()
     }
 
-    /// What is left of the path from a place on it.
+    /// The rest of the path from a place on it.
     pub(crate) fn path_from(&self, joint: &Joint) -> Vec<Point> {
         self.lanes
             .as_ref()
@@ -177,36 +178,36 @@ impl Cover {
         self.lanes.as_ref().map(|lanes| &lanes.follower)
     }
 
-    /// What the stretch under the robot is for.
+    /// Purpose of the stretch under the robot.
     pub(crate) fn leg(&self) -> Option<LegTag> {
         let lanes = self.lanes.as_ref()?;
         lanes.plan.legs.get(self.leg_index()?).map(|leg| leg.tag)
     }
 
-    /// Number of the stretch under the robot; the last one at the end.
+    /// Number of the stretch under the robot; at the end of the plan the last one.
     pub(crate) fn leg_index(&self) -> Option<usize> {
         let lanes = self.lanes.as_ref()?;
         let along_m = lanes.follower.along_m();
-        // The ends of the stretches come one after the other along the plan.
+        // The ends of the stretches are in ascending order.
         let here = lanes.ends_m.partition_point(|end_m| *end_m <= along_m);
         Some(here.min(lanes.ends_m.len().checked_sub(1)?))
     }
 
-    /// Whether the rest of the plan comes nearer than `room_m` to an outline.
+    /// Whether the rest of the plan comes closer than `room_m` to an outline.
     pub(crate) fn is_in_the_way(&self, shape: &Shape, room_m: f64) -> bool {
         let (low, high) = shape.bounds();
         let reach = world::Vector::new(room_m, room_m);
         let (low, high) = (low - reach, high + reach);
         let is_near = |p: &Point| p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y;
-        // The follower's points are close enough together to stand for the path.
+        // The follower's points are close enough together to represent the path.
         let is_in_the_way = |p: &Point| is_near(p) && shape.distance_m(*p) < room_m;
         self.lanes.as_ref().is_none_or(|lanes| lanes.follower.remaining().iter().any(is_in_the_way))
     }
 
-    /// What is left to scan, as boxes of floor. If nothing is left, it is one cell at the anchor: an empty list would
-    /// mean everything.
+    /// What is left to scan, as boxes of floor. If nothing is left, returns one cell at the anchor: an empty list would
+    /// mean the whole floor.
     fn regions_left(&self, coverage: &CoverageGrid, lane_m: f64) -> Vec<Vec<Point>> {
-        // Before the first plan the tool has only been over the start, where it will come by again.
+        // Before the first plan the tool has only passed the start, which it will pass again.
         if self.regions.is_empty() && self.lanes.is_none() {
             return Vec::new();
         }
@@ -217,7 +218,7 @@ impl Cover {
                 && !coverage.is_covered(index)
                 && wanted.as_ref().is_none_or(|w| w[index])
         };
-        // Floor that is asked for in pieces narrower than a lane would fall through blocks.
+        // Requested floor in pieces narrower than a lane could slip between blocks.
         let is_narrow = |region: &Vec<Point>| {
             let (low, high) = world::shape::bounds_of(region);
             (high - low).min() < lane_m
@@ -229,8 +230,8 @@ impl Cover {
         left.into_iter().chain(self.regions_out_of_reach(coverage)).collect()
     }
 
-    /// Areas to be scanned that hold no floor in reach, as they were asked for: planners name them, and their plans are not
-    /// complete.
+    /// Requested areas without reachable floor, exactly as requested: planners report them, and their plans are
+    /// incomplete.
     pub(crate) fn regions_out_of_reach(&self, coverage: &CoverageGrid) -> impl Iterator<Item = Vec<Point>> {
         let floor = coverage.floor();
         let holds_floor = move |region: &Vec<Point>| {
@@ -240,7 +241,7 @@ impl Cover {
         self.regions.iter().filter(move |region| !holds_floor(region)).cloned()
     }
 
-    /// Reachable cells that are left to scan.
+    /// Reachable cells left to scan.
     pub(crate) fn floor_left(&self, coverage: &CoverageGrid) -> Vec<usize> {
         let floor = coverage.floor();
         let wanted = regions::cells_within(floor, &self.regions);
@@ -250,7 +251,7 @@ impl Cover {
             .collect()
     }
 
-    /// What is left, as planners read it.
+    /// What is left, in the form that planners receive.
     pub(crate) fn left(
         &self,
         coverage: &CoverageGrid,
@@ -261,14 +262,15 @@ impl Cover {
         TaskLeft::Cover { anchor: self.anchor, regions, tether, tolerance_m: self.tolerance_m }
     }
 
-    /// Share of the way done, 0 to 1: what was flown along this plan and those before, and what this one has left.
+    /// Share of the distance done, 0 to 1: the distance driven along this plan and earlier ones, relative to that
+    /// distance plus the rest of this plan.
     pub(crate) fn done(&self) -> f64 {
         let flown_m = self.before_m + self.lanes.as_ref().map_or(0.0, |lanes| lanes.follower.along_m());
         let whole_m = flown_m + self.left_m();
         if self.lanes.is_none() || whole_m <= 0.0 { 0.0 } else { flown_m / whole_m }
     }
 
-    /// Way left along the plan, metres.
+    /// Distance left along the plan, metres.
     pub(crate) fn left_m(&self) -> f64 {
         let left_m = |lanes: &Lanes| lanes.follower.length_m() - lanes.follower.along_m();
         self.lanes.as_ref().map_or_else(|| (self.anchor - self.position).norm(), left_m)
@@ -279,7 +281,7 @@ impl Cover {
         self.lanes.as_ref().map(|lanes| lanes.follower.cross_track_m(position))
     }
 
-    /// Whether the plan has been flown to its end and the robot is back at the anchor.
+    /// Whether the robot has reached the end of the plan and is back at the anchor.
     pub(crate) fn is_done(&self, position: Point) -> bool {
         let is_back = (self.anchor - position).norm() <= self.tolerance_m;
         is_back && self.lanes.as_ref().is_some_and(|l| l.follower.is_done(position, self.tolerance_m))

@@ -1,14 +1,14 @@
-//! Which alarms have been raised, and how far each has gone.
+//! The raised alarms and their levels.
 
 use crate::event::{EventKind, TetherAlarm};
 use std::collections::BTreeMap;
 
-/// Share of a limit from which the operator is warned.
+/// Share of a limit at which the operator is warned.
 const NEAR: f64 = 0.8;
-/// Share of a limit below which an alarm is over.
+/// Share of a limit below which an alarm is cleared.
 const EASED: f64 = 0.75;
 
-/// How far an alarm has gone.
+/// The level of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 enum Level {
     #[default]
@@ -24,7 +24,7 @@ pub(super) struct Alarms {
 }
 
 impl Alarms {
-    /// What is newly wrong or right again, at this share of the limit.
+    /// Updates the level of an alarm, as a share of its limit; returns an event if it changed.
     pub(super) fn check(&mut self, alarm: TetherAlarm, share: f64) -> Option<EventKind> {
         let level = self.levels.entry(alarm.word()).or_default();
         let now = match share {
@@ -37,7 +37,7 @@ impl Alarms {
             return Some(EventKind::TetherAlarmRaised { alarm, reached: now == Level::Reached });
         }
         if *level == Level::Reached && share <= 1.0 && share > EASED {
-            // Raised again if the limit is passed again.
+            // Raised again when the limit is exceeded again.
             *level = Level::Near;
             return Some(EventKind::TetherAlarmRaised { alarm, reached: false });
         }

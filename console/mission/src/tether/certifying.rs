@@ -1,4 +1,4 @@
-//! What a plan does to the tether.
+//! The effect of a plan on the tether.
 
 use crate::config::{MissionConfig, TetherConfig};
 use planner_api::{LegTag, Plan};
@@ -7,10 +7,10 @@ use world::{
     tether::{Cable, Case, Certificate, certify},
 };
 
-/// Distance from the anchor within which a task ends at it, metres.
+/// Distance from the anchor within which a task counts as ending there, metres.
 const AT_ANCHOR_M: f64 = 0.3;
 
-/// Judges a plan of a whole mission before anything has moved, on the drawing.
+/// Evaluates a plan of a whole mission on the drawing, before anything has moved.
 pub fn certify_from_start(
     tether: &TetherConfig,
     config: &MissionConfig,
@@ -22,21 +22,21 @@ pub fn certify_from_start(
     certified(tether, config.limits.radius_m, None, path, cuts, drawing, returns)
 }
 
-/// Index of the point of a plan's path at which a return path along the cable ends; 0 without one. A way that ends away
-/// from the anchor is not one, whatever the planner calls it.
+/// Index of the point of a plan's path at which a return path along the cable ends; 0 without one. A path that ends away
+/// from the anchor does not count, whatever the planner calls it.
 pub(crate) fn return_path_ends(plan: &Plan, anchor: Point) -> usize {
     let is_home = |last: usize| plan.path.get(last).is_some_and(|end| (end - anchor).norm() <= AT_ANCHOR_M);
     let first = plan.legs.first().filter(|leg| leg.tag == LegTag::Retract && leg.first == 0);
     first.map(|leg| leg.last).filter(|last| is_home(*last)).unwrap_or(0)
 }
 
-/// Whether the task ends where the tether is made fast.
+/// Whether the task ends at the tether's anchor.
 pub(crate) fn ends_at_anchor(tether: &TetherConfig, config: &MissionConfig) -> bool {
     config.task.end().is_some_and(|end| (end - tether.anchor).norm() <= AT_ANCHOR_M)
 }
 
-/// Evaluates a path with the cable as it lies, or, without one, straight from the anchor; `hull_m` is the room that the
-/// middle of the hull needs, metres.
+/// Evaluates a path from the current geometry of the cable, or without one from a straight cable; `hull_m` is the room
+/// that the hull's centre needs, metres.
 pub(super) fn certified(
     config: &TetherConfig,
     hull_m: f64,

@@ -1,47 +1,48 @@
-//! What the reel has paid out, against what the map explains.
+//! Compares the length paid out by the reel with the length expected from the map.
 //!
-//! The mission's cable knows only obstacles on the map; the true one may catch on a column that nobody has seen yet.
-//! Only the encoder of the reel can reveal that. Two taut cables that lie alike among the same obstacles differ
-//! by no more than their ends do, so more than the position error is a cable that lies otherwise.
+//! The mission's cable passes only obstacles on the map, but the real one may catch on an obstacle that has not been seen
+//! yet. Only the encoder of the reel can reveal this. If two taut cables take the same route among the same obstacles,
+//! their lengths differ by no more than their ends do. A difference larger than the position error therefore means a
+//! different route.
 
 use super::driven::KEPT_M;
 
-/// Cable beyond what the map explains that errors of the map may cause, metres; the position error is added.
+/// Excess length that errors of the map may cause, metres; the position error is added.
 const SLACK_M: f64 = 0.2;
-/// The same by sag and stretch, as a share of the cable that the map explains.
+/// Excess length caused by sag and stretch, as a share of the expected length.
 const SLACK_SHARE: f64 = 0.02;
-/// A reel with no more than this left on it is at its end, metres.
+/// A reel with at most this much cable left counts as empty, metres.
 const AT_END_M: f64 = 0.05;
-/// More has to be out for this long before the cable counts as caught, seconds.
+/// How long the excess must last before the cable counts as caught, seconds.
 const SNAG_S: f64 = 3.0;
-/// Share of the slack below which all cable counts as explained, and a caught one as free.
+/// Share of the permitted excess below which the cable length counts as expected, and a caught cable as free.
 const EXPLAINED: f64 = 0.25;
-/// A caught cable is free at least this much way before the place where the map last explained all of it, metres.
+/// A caught cable is free at least this far before the place where its length was last as expected, metres.
 const FURTHER_BACK_M: f64 = 0.5;
 
-/// What the map makes of the cable.
+/// The cable expected from the map.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Explained {
-    /// Cable that the map explains, metres.
+    /// Expected cable length, metres.
     pub length_m: f64,
-    /// Error of the position with which it was laid, metres.
+    /// Position error with which the cable was laid, metres.
     pub error_m: f64,
-    /// Points of the way driven so far.
+    /// Number of points of the path driven so far.
     pub points: usize,
 }
 
-/// The encoder of the reel, as far as the mission heeds it.
+/// The readings of the reel's encoder that the mission uses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Payout {
     measured_m: Option<f64>,
-    /// For how long more has been out than the map explains, seconds.
+    /// How long the excess has lasted, seconds.
     beyond_s: f64,
-    /// Points of the way driven up to which the map explained all cable.
+    /// Number of points of the path driven up to which the cable length was as expected.
     free_points: usize,
 }
 
 impl Payout {
-    /// A measurement after some time; without one, or with nothing to compare it with, the comparison rests.
+    /// Processes a measurement after some time. Without a measurement or an expected length, the comparison pauses.
     pub(super) fn take(
         &mut self,
         measured_m: Option<f64>,
@@ -52,7 +53,7 @@ impl Payout {
         self.measured_m = measured_m.filter(|out_m| out_m.is_finite());
         let (Some(out_m), Some(explained)) = (self.measured_m, explained) else { return };
         let sag_m = SLACK_SHARE * explained.length_m;
-        // A reel at its end can pay out no more: what has not come to light by then never will.
+        // An empty reel can pay out no more, so a snag not detected by then would never be.
         let is_at_end = out_m >= reel_length_m - AT_END_M;
         let slack_m = SLACK_M + explained.error_m + if is_at_end { 0.0 } else { sag_m };
         let excess_m = out_m - explained.length_m;
@@ -68,7 +69,7 @@ impl Payout {
         self.measured_m
     }
 
-    /// The larger one of what is measured and what the map explains, metres.
+    /// The larger of the measured and the expected length, metres.
     pub(super) fn at_least_m(&self, explained_m: f64) -> f64 {
         self.measured_m.map_or(explained_m, |out_m| out_m.max(explained_m))
     }
@@ -78,14 +79,14 @@ impl Payout {
         self.beyond_s > SNAG_S
     }
 
-    /// Points of the way driven, of so many, to go back to, so that a caught cable comes free: driving back undoes whatever
-    /// driving on has done to it, among obstacles known and unknown.
+    /// Of the `points` of the path driven, the number to go back to so that a caught cable comes free: driving back
+    /// undoes the effect of driving on, among known and unknown obstacles alike.
     ///
-    /// The excess grows with the square of the way since the cable touched: where it is small enough to count as
-    /// explained the cable may have been caught for as long again. Beyond that the cable comes off on the side on which it
-    /// belongs, and the return path along it is clear.
+    /// The excess grows with the square of the distance since the cable touched the obstacle. So where the excess became
+    /// noticeable, the cable may already have been caught for the same distance again. Before that place the cable comes
+    /// off on the correct side, and the return path along it is clear.
     pub(super) fn points_to_go_back_to(&self, points: usize) -> usize {
-        // On the way back there are fewer again.
+        // The path becomes shorter again on the way back.
         let free = self.free_points.min(points);
         let caught = points - free;
         free.saturating_sub(caught + (FURTHER_BACK_M / KEPT_M) as usize)

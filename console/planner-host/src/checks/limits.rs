@@ -1,5 +1,6 @@
-//! What the console accepts of a worker. Whoever wrote the plugin can write to the socket, too, so the console believes only
-//! what it has checked itself: counts and lengths while it reads, before it reserves memory for them, and numbers.
+//! The limits of what the console accepts from a worker. The author of a plugin can write to the socket, too, so the
+//! console trusts only what it has checked itself: counts and lengths while it reads, before it reserves memory for
+//! them, and numbers.
 
 use crate::Progress;
 use crate::parameters::check;
@@ -12,21 +13,21 @@ use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Most planners in a library.
+/// The maximum number of planners in a library.
 pub(crate) const MOST_PLANNERS: usize = 64;
-/// Most of everything that one answer may hold.
+/// The maximum numbers of elements in one answer.
 pub(crate) const MOST_PARAMS: usize = 256;
 pub(crate) const MOST_DRAWINGS: usize = 4096;
 pub(crate) const MOST_SCALARS: usize = 256;
-/// Of the planner; the worker may add one.
+/// For the planner; the worker may add one more.
 pub(crate) const MOST_LOGS: usize = 64;
 pub(crate) const MOST_POINTS: usize = 1_000_000;
 pub(crate) const MOST_CUTS: usize = 10_000;
-/// Most words that a parameter may take: as many as a text holds with the marks between them.
+/// The maximum number of words of a choice parameter: as many as fit into a text with separators between them.
 pub(crate) const MOST_OPTIONS: usize = LONGEST_TEXT;
-/// Longest text, bytes; what a worker sends is shorter.
+/// The maximum length of a text, bytes; workers send shorter ones.
 const LONGEST_TEXT: usize = 16 << 10;
-/// Elements to reserve memory for before reading them.
+/// The number of elements for which memory is reserved before they are read.
 const RESERVED: usize = 1024;
 
 struct AtMost<T, const MOST: usize>(PhantomData<T>);
@@ -42,7 +43,7 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for AtMost<T, MOS
         let mut all = Vec::with_capacity(elements.size_hint().unwrap_or(0).min(MOST).min(RESERVED));
         while let Some(element) = elements.next_element()? {
             if all.len() == MOST {
-                return Err(A::Error::custom("too many"));
+                return Err(A::Error::custom("too many elements"));
             }
             all.push(element);
         }
@@ -50,14 +51,14 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for AtMost<T, MOS
     }
 }
 
-/// Reads a list of no more elements than this.
+/// Reads a list of at most `MOST` elements.
 pub(crate) fn at_most<'de, D: Deserializer<'de>, T: Deserialize<'de>, const MOST: usize>(
     from: D,
 ) -> Result<Vec<T>, D::Error> {
     from.deserialize_seq(AtMost::<T, MOST>(PhantomData))
 }
 
-/// A text that can be shown as it is: nothing in it moves a cursor.
+/// A text that can be displayed safely: it contains no control characters.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Text(pub(crate) String);
 
@@ -69,36 +70,40 @@ impl<'de> Deserialize<'de> for Text {
 
 fn shown<E: Error>(text: &str) -> Result<Text, E> {
     if text.len() > LONGEST_TEXT {
-        return Err(E::custom("too long"));
+        return Err(E::custom("text too long"));
     }
     Ok(Text(plain(text).into_owned()))
 }
 
-/// Reads a text that can be shown as it is.
+/// Reads a text that can be displayed safely.
 pub(crate) fn text<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     Text::deserialize(from).map(|Text(text)| text)
 }
 
-/// The words of a parameter.
+/// Reads the words of a choice parameter.
 pub(crate) fn words<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
     let words = at_most::<_, Text, MOST_OPTIONS>(from)?;
     Ok(words.into_iter().map(|Text(word)| word).collect())
 }
 
-/// Parameters.
+/// Reads parameters.
 pub(crate) fn parameters<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<ParamInfo>, D::Error> {
     let parameters = at_most::<_, Parameter, MOST_PARAMS>(from)?;
     Ok(parameters.into_iter().map(|Parameter(info)| info).collect())
 }
 
-/// Drawings without a number that is not finite.
+/// Reads drawings, all of whose numbers must be finite.
 pub(crate) fn drawings<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Drawing>, D::Error> {
     let drawings = at_most::<_, Drawing, MOST_DRAWINGS>(from)?;
     let are_finite = drawings.iter().all(|drawing| abi::Draw::from(drawing).get().is_some());
-    if are_finite { Ok(drawings) } else { Err(D::Error::custom("a drawing that is not finite")) }
+    if are_finite {
+        Ok(drawings)
+    } else {
+        Err(D::Error::custom("a drawing with a number that is not finite"))
+    }
 }
 
-/// Figures with finite values.
+/// Reads figures, all of whose values must be finite.
 pub(crate) fn scalars<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, f64, String)>, D::Error> {
     let scalars = at_most::<_, (Text, f64, Text), MOST_SCALARS>(from)?;
     if !scalars.iter().all(|(_, value, _)| value.is_finite()) {
@@ -107,14 +112,14 @@ pub(crate) fn scalars<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String,
     Ok(scalars.into_iter().map(|(Text(name), value, Text(unit))| (name, value, unit)).collect())
 }
 
-/// Messages.
+/// Reads log messages.
 pub(crate) fn logs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(LogLevel, String)>, D::Error> {
     const MOST: usize = MOST_LOGS + 1;
     let logs = at_most::<_, (LogLevel, Text), MOST>(from)?;
     Ok(logs.into_iter().map(|(level, Text(message))| (level, message)).collect())
 }
 
-/// How far a worker is closed off, with a reason that can be shown.
+/// Reads the extent of a worker's sandbox, with a reason that can be displayed safely.
 pub(crate) fn sandbox<'de, D: Deserializer<'de>>(from: D) -> Result<Sandbox, D::Error> {
     Ok(match Sandbox::deserialize(from)? {
         Sandbox::Full => Sandbox::Full,
@@ -123,25 +128,25 @@ pub(crate) fn sandbox<'de, D: Deserializer<'de>>(from: D) -> Result<Sandbox, D::
     })
 }
 
-/// Planners with sound ids and parameters, each id once.
+/// Reads planners, which must have valid, distinct ids and valid parameters.
 pub(crate) fn planners<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Described>, D::Error> {
     let planners = at_most::<_, Described, MOST_PLANNERS>(from)?;
     let is_new = |i: usize, id: &String| planners[..i].iter().all(|earlier| earlier.id != *id);
     let are_sound = planners.iter().enumerate().all(|(i, planner)| {
         is_id(&planner.id) && is_new(i, &planner.id) && check(&planner.parameters).is_ok()
     });
-    if are_sound { Ok(planners) } else { Err(D::Error::custom("planners that are not sound")) }
+    if are_sound { Ok(planners) } else { Err(D::Error::custom("invalid planners")) }
 }
 
-/// A share from 0 to 1.
+/// Reads a share from 0 to 1.
 pub(crate) fn share<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     let share = f64::deserialize(from)?;
-    if (0.0..=1.0).contains(&share) { Ok(share) } else { Err(D::Error::custom("no share")) }
+    if (0.0..=1.0).contains(&share) { Ok(share) } else { Err(D::Error::custom("not a share from 0 to 1")) }
 }
 
-/// What a planner is doing, as long as one line shows.
+/// Reads the activity of a planner, which must fit on one line.
 pub(crate) fn doing<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     let what = text(from)?;
     let is_short = what.chars().count() <= Progress::LONGEST;
-    if is_short { Ok(what) } else { Err(D::Error::custom("too long")) }
+    if is_short { Ok(what) } else { Err(D::Error::custom("text too long")) }
 }

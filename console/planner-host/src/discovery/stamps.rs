@@ -7,20 +7,20 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// Times of files are this coarse at most, on the file systems in use: a folder that changed later than this before it was
-/// listed may have changed after it too.
+/// The coarsest resolution of file times on common file systems. If a folder changed less than this before it was
+/// listed, it may have changed again after the listing without a new time.
 const COARSEST: Duration = Duration::from_secs(2);
 
-/// The files of some folders that are named like plugins, as they were written last.
+/// The modification times of all files in some folders that are named like plugins.
 ///
-/// A look costs one call to the system for each folder and each file in it that is named like a plugin: a folder is listed
-/// again only when something was added to it or taken away (a build folder holds thousands of other files).
+/// A look costs one system call for each folder and for each such file. A folder is listed again only after something
+/// in it was added or removed, because a build folder contains thousands of other files.
 #[derive(Debug)]
 pub struct Stamps {
     folders: Vec<Folder>,
 }
 
-/// A file as it was written last.
+/// The path, modification time and length of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileStamp {
     path: PathBuf,
@@ -31,19 +31,19 @@ pub struct FileStamp {
 #[derive(Debug)]
 struct Folder {
     path: PathBuf,
-    /// When the folder had changed last as it was listed, if that listing can be relied on.
+    /// The folder's modification time when it was listed; `None` if that listing cannot be relied on.
     listed: Option<SystemTime>,
     files: Vec<PathBuf>,
 }
 
 impl Stamps {
-    /// For these folders; nothing has been looked at yet.
+    /// Watches these folders; the first look lists them all.
     pub fn of(plugins: &PluginDirs) -> Self {
         let folder = |path: &PathBuf| Folder { path: path.clone(), listed: None, files: Vec::new() };
         Self { folders: plugins.folders.iter().map(folder).collect() }
     }
 
-    /// When each file was written last, and its length, without reading any: a build changes it.
+    /// Returns when each file was last modified, and its length, without reading any. A new build changes the result.
     pub fn look(&mut self) -> Vec<FileStamp> {
         let now = SystemTime::now();
         self.folders.iter_mut().flat_map(|folder| folder.look(now)).collect()

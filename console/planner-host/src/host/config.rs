@@ -6,21 +6,21 @@ use std::time::Duration;
 
 /// Budgets and limits of planners.
 ///
-/// Budgets are charged by a fair clock: a planner that computes pays for the processor time that it gets, one that waits
-/// pays for the time that passes.
+/// Budgets are charged by a fair clock: a planner that computes is charged the processor time it gets, and one that
+/// waits is charged the time that passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HostConfig {
-    /// How workers are started.
+    /// The command that starts a worker.
     pub worker_command: WorkerCommand,
-    /// For loading a library.
+    /// Budget for loading a library.
     pub load_deadline: Duration,
-    /// For making a planner, or giving it new values.
+    /// Budget for creating or reconfiguring a planner.
     pub configure_deadline: Duration,
-    /// For a plan.
+    /// Budget for a plan.
     pub plan_deadline: Duration,
-    /// For a command.
+    /// Budget for a command.
     pub step_deadline: Duration,
-    /// For saving or restoring a planner's private state.
+    /// Budget for saving or restoring a planner's private state.
     pub state_deadline: Duration,
     /// Address space of a worker, bytes.
     pub memory_limit_bytes: u64,
@@ -29,7 +29,7 @@ pub struct HostConfig {
 }
 
 impl HostConfig {
-    /// The usual budgets, with this one for a command.
+    /// Uses the default budgets, except for this one for a command.
     pub fn new(step_deadline: Duration) -> Self {
         Self {
             worker_command: WorkerCommand::default(),
@@ -45,7 +45,7 @@ impl HostConfig {
 }
 
 impl Default for HostConfig {
-    /// With two seconds for a command: a planner that takes longer is not late but hangs.
+    /// A command has two seconds: a planner that takes longer counts as hung, not as late.
     fn default() -> Self {
         Self::new(Duration::from_secs(2))
     }

@@ -1,4 +1,5 @@
-//! Failures as sentences for the operator. They go into the journal: no time, no process id, no address.
+//! Describes failures in sentences for the operator. The sentences go into the journal, so they contain no times,
+//! process ids or addresses.
 
 use crate::supervisor::{Failure, overweight};
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
@@ -7,7 +8,7 @@ use nalgebra::Point2;
 use planner_api::Code;
 use std::fmt;
 
-/// What a planner was doing.
+/// The call that a planner was executing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phase {
     Load,
@@ -15,7 +16,7 @@ pub(crate) enum Phase {
     Plan,
     /// Saving or restoring private state.
     State,
-    /// With the number of the tick.
+    /// Step with this tick number.
     Step(u64),
 }
 
@@ -42,22 +43,22 @@ impl fmt::Display for Phase {
     }
 }
 
-/// A fault with this message.
+/// Creates a fault with this message.
 pub(super) fn new(planner: &str, during: During, cause: Cause, message: String) -> Fault {
     Fault { planner: planner.to_owned(), during, cause, message, partial: Vec::new(), plugin_sha256: None }
 }
 
-/// Values of parameters that a planner does not take.
+/// Creates the fault for parameter values that a planner does not accept.
 pub(super) fn of_parameters(planner: &str, message: String) -> Fault {
     new(planner, During::Configure, Cause::Refused, message)
 }
 
-/// A planner's answer that no robot can follow; `what` reads on after the planner's name.
+/// Creates the fault for an answer that no robot can follow; `what` continues after the planner's name.
 pub(super) fn bad_output(planner: &str, phase: Phase, what: &str) -> Fault {
     new(planner, phase.during(), Cause::BadOutput, format!("planner {planner} {what} during {phase}"))
 }
 
-/// A failure as the fault of a planner.
+/// Converts a failure to a fault of a planner.
 pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
     let fault = |cause, message| new(planner, phase.during(), cause, message);
     match failure {
@@ -100,8 +101,8 @@ pub(crate) fn of(failure: Failure, planner: &str, phase: Phase) -> Fault {
         Failure::Gone => {
             let who =
                 if planner.is_empty() { "the planner".to_owned() } else { format!("planner {planner}") };
-            let why = "its process has ended and it must be chosen again";
-            fault(Cause::Died, format!("{who} cannot do {phase}: {why}"))
+            let why = "its process has ended; choose the planner again";
+            fault(Cause::Died, format!("{who} is not available for {phase}: {why}"))
         }
     }
 }
@@ -116,11 +117,11 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
     match Code::from_number(code) {
         Some(Code::Timeout | Code::Cancelled) => of(Failure::Late, planner, phase),
         Some(Code::Panic) => {
-            let (place, text) = message.split_once(": ").unwrap_or(("an unknown place", &message));
+            let (place, text) = message.split_once(": ").unwrap_or(("an unknown location", &message));
             fault(Cause::Panic, format!("planner {planner} panicked at {place} during {phase}: {text}"))
         }
         Some(Code::Poisoned) => {
-            fault(Cause::Panic, format!("planner {planner} cannot go on during {phase}: {message}"))
+            fault(Cause::Panic, format!("planner {planner} cannot continue during {phase}: {message}"))
         }
         Some(code) => {
             let is_finite = |point: &Point2<f64>| point.x.is_finite() && point.y.is_finite();
@@ -129,7 +130,7 @@ fn of_refusal(refusal: Refusal, planner: &str, phase: Phase) -> Fault {
             Fault { partial, ..fault(Cause::Planner(code), message) }
         }
         None if code == BAD_OUTPUT => bad_output(planner, phase, &message),
-        None => bad_output(planner, phase, &format!("failed with the unknown code {code} ({message})")),
+        None => bad_output(planner, phase, &format!("failed with unknown code {code} ({message})")),
     }
 }
 

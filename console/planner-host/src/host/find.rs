@@ -1,4 +1,4 @@
-//! From a planner's id to the plugin files that may have it.
+//! Finds the plugin files that may contain a planner, by its id.
 
 use crate::discovery::{PluginDirs, PluginFile};
 use crate::survey::Cache;
@@ -6,7 +6,7 @@ use mission::spelling::nearest;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::PathBuf;
 
-/// A plugin file that may have a planner.
+/// A plugin file that may contain a planner.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Candidate {
     pub(super) path: PathBuf,
@@ -15,25 +15,26 @@ pub(super) struct Candidate {
     pub(super) sha256: String,
 }
 
-/// The plugin files, read when they are first needed and again when a planner is missing.
+/// The plugin files. They are read when first needed, and again when a planner is missing.
 pub(super) struct Catalog {
     dirs: PluginDirs,
     cache: Cache,
     plugins: Option<Vec<PluginFile>>,
-    /// Ids of planners that were loaded, each with the file that is the first to have it since the files were read.
+    /// Ids of planners that were loaded, each with the first file that contains it; `None` if that is unknown since the
+    /// files were read again.
     known: BTreeMap<String, Option<Candidate>>,
 }
 
-/// How far the search for a planner has come.
+/// How far the search for a planner has progressed.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) enum Search {
     #[default]
     NotBegun,
-    /// The file from which it was loaded before.
+    /// Tried the file from which the planner was loaded before.
     Known(Candidate),
-    /// All files, as they were read for an earlier planner.
+    /// Tried all files as they were read for an earlier planner.
     Remembered,
-    /// All files, as they were read for this planner: reading them again finds nothing new.
+    /// Tried all files as they were read for this planner: reading them again would find nothing new.
     Fresh,
 }
 
@@ -43,13 +44,13 @@ impl Catalog {
         Self { dirs, cache, plugins: None, known: BTreeMap::new() }
     }
 
-    /// Whether a plugin is refused where its process cannot be closed off completely.
+    /// Whether a plugin is refused if its process cannot be fully sandboxed.
     pub(super) fn requires_sandbox(&self) -> bool {
         self.dirs.requires_sandbox
     }
 
-    /// Continues the search for a planner: the files to be tried next, in this order. None when all were tried; as a plugin
-    /// may have been built meanwhile, the files are read again before, if that is wanted.
+    /// Continues the search for a planner. Returns the files to try next, in order, or `None` when all were tried.
+    /// Since a plugin may have been built meanwhile, the files can be read again before the search gives up.
     pub(super) fn search_on(
         &mut self,
         id: &str,
@@ -63,7 +64,7 @@ impl Catalog {
                 None => (Search::Remembered, self.candidates(id)),
             },
             Search::Known(tried) => {
-                // It could be loaded before: it is tried again before another build takes its place.
+                // This file could be loaded before, so it is tried once more before a different build replaces it.
                 let mut files = self.candidates(id);
                 files.retain(|file| *file != tried);
                 files.push_front(tried);
@@ -76,10 +77,10 @@ impl Catalog {
         Some(files)
     }
 
-    /// Reads the plugin files, and gives those that may have this planner.
+    /// Reads the plugin files and returns those that may contain this planner.
     fn read_for(&mut self, id: &str) -> VecDeque<Candidate> {
         self.plugins = Some(self.dirs.plugins());
-        // A new file may come before the one that had a planner so far.
+        // A new file may come before the file that had a planner so far.
         self.known.values_mut().for_each(|file| *file = None);
         self.candidates(id)
     }
@@ -88,8 +89,7 @@ impl Catalog {
         self.plugins.as_deref().unwrap_or_default()
     }
 
-    /// The files that may have this planner, in the order in which they are to be tried. To know that, all of their bytes are
-    /// searched.
+    /// Returns the files that may contain this planner, in the order in which to try them.
     fn candidates(&self, id: &str) -> VecDeque<Candidate> {
         let is_known_to_lack = |plugin: &PluginFile| {
             self.cache.get(plugin).is_some_and(|planners| planners.iter().all(|info| info.id != id))
@@ -105,18 +105,18 @@ impl Catalog {
             .collect()
     }
 
-    /// Notes that a planner was loaded, from this file if it is the first that has it.
+    /// Notes that a planner was loaded, and from which file if that is the first to contain it.
     pub(super) fn learn(&mut self, id: &str, file: Option<Candidate>) {
         self.known.insert(id.to_owned(), file);
     }
 
-    /// Why there is no planner of this id: by what is known without loading anything.
+    /// Explains why no planner has this id, from what is known without loading anything.
     pub(super) fn not_found(&self, id: &str) -> String {
         let named_so = |plugin: &&PluginFile| plugin.name().contains(&id.replace('-', "_"));
         if let Some((plugin, Err(why))) =
             self.plugins().iter().find(named_so).map(|plugin| (plugin, &plugin.abi))
         {
-            return format!("planner {id} is not there: plugin {} is refused: {why}", plugin.name());
+            return format!("planner {id} is not available: plugin {} is refused: {why}", plugin.name());
         }
         let plugins: BTreeSet<String> = self.plugins().iter().map(named_after).collect();
         match nearest(id, self.known.keys().chain(&plugins).map(String::as_str)) {
@@ -132,7 +132,7 @@ impl Catalog {
     }
 }
 
-/// What a planner would be called after which a plugin file is named.
+/// Derives a planner id from the name of a plugin file.
 fn named_after(plugin: &PluginFile) -> String {
     let stem = plugin.path.file_stem().unwrap_or_default().to_string_lossy();
     let name = stem.split_once("planner_").map_or(&*stem, |(_, name)| name);

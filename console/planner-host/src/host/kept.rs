@@ -1,15 +1,15 @@
-//! What planners leave besides their answers, until it is collected.
+//! What planners leave behind besides their answers, until it is collected.
 
 use crate::remains::{BadEnd, Crash, Printed};
 
-/// Most lines that are kept: the newest.
+/// The maximum number of lines kept; the newest ones stay.
 const MOST_PRINTED: usize = 256;
-/// Most crashes that are kept.
+/// The maximum number of crashes kept.
 const MOST_CRASHES: usize = 4;
-/// Most bad ends that are kept.
+/// The maximum number of bad ends kept.
 const MOST_BAD_ENDS: usize = 16;
 
-/// What was left since the last time.
+/// What was left behind since the last collection.
 #[derive(Default)]
 pub(super) struct Kept {
     pub(super) printed: Vec<Printed>,
@@ -31,7 +31,7 @@ impl Kept {
         }
     }
 
-    /// Notes how a planner ended; a worker without a planner has no author who needs to know.
+    /// Notes a bad end of a planner. A worker without a planner is ignored, because no author needs to know about it.
     pub(super) fn note_bad_end(&mut self, end: BadEnd) {
         if !end.planner.is_empty() && self.bad_ends.len() < MOST_BAD_ENDS {
             self.bad_ends.push(end);

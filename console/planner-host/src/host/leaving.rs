@@ -1,4 +1,4 @@
-//! Retired workers: how the host ends them, and the outcome.
+//! Retired workers: how the host ends them, and what it reports about their ends.
 
 use super::Host;
 use super::spare::Spare;
@@ -10,13 +10,13 @@ use std::time::Instant;
 
 /// A worker that is being ended.
 pub(super) struct Leaving {
-    /// The planner that it had; empty if it had none yet.
+    /// The worker's planner; empty if it had none yet.
     planner: String,
     pub(super) worker: Worker,
 }
 
 impl Host {
-    /// Ends a worker and drops what it was asked.
+    /// Closes a worker and drops its open ask.
     pub(crate) fn close(&mut self, id: WorkerId) {
         if let Some(index) = self.planners.iter().position(|planner| planner.id == id) {
             let mut planner = self.planners.swap_remove(index);
@@ -27,13 +27,13 @@ impl Host {
         self.answers.retain(|answer| answer.ask.worker != id);
     }
 
-    /// Asks a worker to exit by itself, and leaves it to its end.
+    /// Asks a worker to exit, and leaves it to finish.
     pub(super) fn dismiss(&mut self, planner: &str, mut worker: Worker) {
         worker.shut_down();
         self.leave(planner, worker);
     }
 
-    /// Leaves a worker to its end.
+    /// Leaves a worker to finish.
     pub(super) fn leave(&mut self, planner: &str, mut worker: Worker) {
         self.kept.note_printed(planner, worker.take_printed());
         if !worker.is_gone() {
@@ -41,7 +41,7 @@ impl Host {
         }
     }
 
-    /// Asks all workers to exit by themselves, and waits until they have: a moment, or as long as they are given for it.
+    /// Asks all workers to exit, and waits until they have exited or their grace period is over.
     pub fn finish(&mut self) {
         self.place(None);
         self.answers.clear();
@@ -60,9 +60,9 @@ impl Host {
         }
     }
 
-    /// Looks after workers that are being ended, without waiting; whether there are any left.
+    /// Processes workers that are being ended, without waiting. Returns whether any are left.
     ///
-    /// [`Self::next`] does so as well: this is for times when nothing is asked.
+    /// [`Self::next`] does this as well; call this function while no ask is open.
     pub fn look_after_leaving(&mut self) -> bool {
         if !self.leaving.is_empty() {
             self.look(Some(Instant::now()));
@@ -70,7 +70,7 @@ impl Host {
         !self.leaving.is_empty()
     }
 
-    /// Removes a worker that can no longer be asked.
+    /// Removes a worker that can no longer answer.
     pub(super) fn retire(&mut self, id: WorkerId) {
         let unasked = self.planners.iter_mut().find(|planner| planner.id == id && planner.asked.is_none());
         let ended = unasked.and_then(|planner| {
@@ -82,7 +82,7 @@ impl Host {
         }
     }
 
-    /// Does what is due for workers that are being ended, with what the last look found of each.
+    /// Processes the workers that are being ended, given the events of each from the last poll.
     pub(super) fn advance_leaving(&mut self, ready: &[Ready], now: Instant) {
         let mut ready = ready.iter().copied();
         for mut leaving in std::mem::take(&mut self.leaving) {

@@ -1,4 +1,4 @@
-//! A planner that is being opened: what is known of it from stage to stage.
+//! A planner that is being opened, and its data from stage to stage.
 
 mod stages;
 
@@ -19,20 +19,20 @@ pub(crate) struct Opening {
     parameters: Parameters,
     site: WrittenSite,
     restore: Option<AskId>,
-    /// Plugin files that were not tried yet.
+    /// Plugin files that have not been tried yet.
     candidates: VecDeque<Candidate>,
     search: Search,
-    /// Reported when no file has the planner.
+    /// Reported when no file contains the planner.
     first_fault: Option<Fault>,
 }
 
-/// What a planner that is being opened was asked last.
+/// The last request to a planner that is being opened.
 pub(super) enum Stage {
-    /// To load this file.
+    /// Load this file.
     Load(Candidate),
-    /// To make the planner.
+    /// Create the planner.
     Configure(Loaded),
-    /// To continue from an earlier state, with what it said when it was created.
+    /// Restore an earlier state; contains what the planner logged and drew when it was created.
     Restore(Loaded, Said),
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Loaded {
     is_reused: bool,
 }
 
-/// The tank as it goes to the worker.
+/// The site, serialised for the worker.
 struct WrittenSite {
     bytes: Vec<u8>,
     limits: Limits,
@@ -69,7 +69,7 @@ impl WrittenSite {
 }
 
 impl Opening {
-    /// Nothing was tried yet.
+    /// Starts with no file tried.
     pub(crate) fn new(
         planner: &str,
         parameters: &Parameters,
@@ -87,10 +87,11 @@ impl Opening {
         }
     }
 
-    /// A file could not be loaded. The remaining files are still tried; the fault is reported if none has the planner.
+    /// Notes that a file could not be loaded. The remaining files are still tried; the fault is reported if none
+    /// contains the planner.
     fn note(&mut self, failure: Failure, candidate: &Candidate) {
         let fault = fault::of(failure, &self.planner, Phase::Load);
-        // While a library loads, no planner of it is to blame yet.
+        // While a library is loading, the plugin is to blame and not yet a planner.
         let (planner, plugin) = (format!("planner {} ", self.planner), format!("plugin {} ", candidate.name));
         let message = fault.message.replacen(&planner, &plugin, 1);
         let plugin_sha256 = Some(candidate.sha256.clone());
@@ -103,7 +104,7 @@ impl Loaded {
         Self { info: info(planner, sealed, plugin), state_version: planner.state_version, is_reused: false }
     }
 
-    /// Its private state, under the number of the ask that it was saved for.
+    /// Packs the planner's private state with the ask for which it was saved.
     pub(super) fn saved(&self, ask: AskId, state: Vec<u8>) -> Saved {
         let (planner, sha256) = (self.info.id.clone(), self.info.sha256.clone());
         Saved { ask, planner, sha256, version: self.state_version, state }

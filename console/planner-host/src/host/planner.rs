@@ -1,4 +1,4 @@
-//! A planner in its worker: what it is asked, and what it gives.
+//! A planner in its worker: its open ask and its answers.
 
 use super::opening::{Loaded, Opening, Stage};
 use super::said_limit::SaidLimit;
@@ -14,17 +14,17 @@ use mission::{AskId, Given, WorkerId};
 use planner_api::{Command, Limits, PlanRequest, Sensed, Task};
 use std::time::{Duration, Instant};
 
-/// A planner under the number that the mission gave it.
+/// A planner and the worker id that the mission gave it.
 pub(super) struct Planner {
     pub(super) id: WorkerId,
-    /// None when its process has ended.
+    /// `None` when the process has ended.
     pub(super) worker: Option<Worker>,
     pub(super) asked: Option<Asked>,
-    /// None while it is being opened, or when that failed.
+    /// `None` while the planner is being opened, or if that failed.
     pub(super) ready: Option<Ready>,
 }
 
-/// What is wanted of an opened planner, borrowed.
+/// An ask of an opened planner, borrowed.
 pub(crate) enum Wanted<'a> {
     Reconfigure(&'a Parameters),
     Plan(&'a PlanRequest<'a>),
@@ -50,14 +50,14 @@ pub(super) struct Asked {
     pub(super) doing: Doing,
 }
 
-/// What an open ask is about.
+/// The content of an open ask.
 pub(super) enum Doing {
     Open(Box<Opening>, Box<Stage>),
-    /// With all values once it has taken the new ones.
+    /// All parameter values as they will be once the planner has accepted the new ones.
     Reconfigure(Parameters),
-    /// With the robot's limits for the commands that follow.
+    /// The robot's limits for the commands that follow the plan.
     Plan(Limits),
-    /// With the number of the tick.
+    /// The number of the tick.
     Step(u64),
     Snapshot,
 }
@@ -74,7 +74,7 @@ impl Doing {
     }
 }
 
-/// A planner that was opened.
+/// A planner that has been opened.
 pub(super) struct Ready {
     pub(super) loaded: Loaded,
     parameters: Parameters,
@@ -90,9 +90,9 @@ impl Ready {
         Self { loaded, parameters, limits, said_limit: SaidLimit::default() }
     }
 
-    /// Refuses new values of parameters that are unknown or not live; all values with the new ones.
+    /// Merges new parameter values with the current ones; refuses parameters that are unknown or not live.
     ///
-    /// The mission gives all values that were set by hand, so that most of them are those that the planner has.
+    /// The mission always sends all values that were set by hand, so most of them are unchanged.
     fn merged(&self, changed: &Parameters) -> Result<Parameters, Fault> {
         let info = &self.loaded.info;
         let refuse = |message| fault::of_parameters(&info.id, message);
@@ -101,7 +101,7 @@ impl Ready {
             let param = parameters::find(info, key).map_err(refuse)?;
             if !param.live {
                 return Err(refuse(format!(
-                    "parameter `{key}` of planner {} cannot change under way",
+                    "parameter `{key}` of planner {} cannot change during a mission",
                     info.id
                 )));
             }
@@ -113,15 +113,15 @@ impl Ready {
 }
 
 impl Planner {
-    /// A planner that has not been asked for anything.
+    /// Creates a planner without a worker or an ask.
     pub(super) fn new(id: WorkerId) -> Self {
         Self { id, worker: None, asked: None, ready: None }
     }
 
-    /// Asks the worker; what it is asked stays open.
+    /// Sends a request to the worker and leaves the ask open.
     ///
     /// # Errors
-    /// It cannot be asked.
+    /// The worker cannot be asked.
     fn ask(
         &mut self,
         id: AskId,
@@ -130,7 +130,7 @@ impl Planner {
         budget: Duration,
         write: impl FnOnce(&mut Writer),
     ) -> Result<(), Fault> {
-        // A worker on this processor may have answered before this thread runs again.
+        // The time is taken first because a worker on this processor may answer before this thread runs again.
         let at = Instant::now();
         let asked = match &mut self.worker {
             Some(worker) => worker.ask(kind, budget, write),
@@ -142,7 +142,7 @@ impl Planner {
         Ok(())
     }
 
-    /// Gives new values; those that are not given stay.
+    /// Passes new parameter values to the planner; parameters that are not mentioned keep their values.
     pub(super) fn reconfigure(
         &mut self,
         id: AskId,
@@ -160,7 +160,7 @@ impl Planner {
         self.ask(id, Doing::Reconfigure(merged), kind::RECONFIGURE, config.configure_deadline, write)
     }
 
-    /// Asks for a plan.
+    /// Requests a plan.
     pub(super) fn plan(
         &mut self,
         id: AskId,
@@ -179,7 +179,7 @@ impl Planner {
         self.ask(id, Doing::Plan(request.site.limits), kind::PLAN, config.plan_deadline, write)
     }
 
-    /// Asks for a command.
+    /// Requests a command.
     pub(super) fn step(&mut self, id: AskId, sensed: &Sensed<'_>, config: &HostConfig) -> Result<(), Fault> {
         let write = |w: &mut Writer| {
             w.put(&Call { watched: config.wants_drawing, asked: sensed });
@@ -187,17 +187,17 @@ impl Planner {
         self.ask(id, Doing::Step(sensed.tick), kind::STEP, config.step_deadline, write)
     }
 
-    /// Whether it can save its state.
+    /// Whether the planner can save its state.
     pub(super) fn saves_state(&self) -> bool {
         self.ready.as_ref().is_some_and(|ready| ready.loaded.info.snapshots)
     }
 
-    /// Asks for the private state.
+    /// Requests the private state.
     pub(super) fn snapshot(&mut self, id: AskId, config: &HostConfig) -> Result<(), Fault> {
         self.ask(id, Doing::Snapshot, kind::SNAPSHOT, config.state_deadline, |_| {})
     }
 
-    /// Reads the worker's answer, or passes on why there is none.
+    /// Reads the worker's answer, or returns the reason why there is none.
     pub(super) fn read<T>(
         &mut self,
         outcome: Result<(), Failure>,
@@ -207,7 +207,7 @@ impl Planner {
         self.worker.as_mut().map_or(Err(Failure::Gone), |worker| worker.take_answer(read))
     }
 
-    /// What came of new values.
+    /// Processes the answer to new parameter values.
     pub(super) fn reconfigured(&mut self, outcome: Result<(), Failure>, values: Parameters) -> Outcome {
         let answer = self.read(outcome, whole::<Answered<()>>);
         let Answered { said, .. } = answer.map_err(|failure| self.fault(failure, Phase::Configure))?;
@@ -217,7 +217,7 @@ impl Planner {
         Ok((Given::Reconfigured, said))
     }
 
-    /// What came of a plan.
+    /// Processes the answer to a plan request.
     pub(super) fn planned(&mut self, outcome: Result<(), Failure>, limits: Limits) -> Outcome {
         let answer = self.read(outcome, whole::<Answered<GivenPlan>>);
         let Answered { given: GivenPlan(plan), said } =
@@ -229,7 +229,7 @@ impl Planner {
         Ok((Given::Plan(plan), said))
     }
 
-    /// What came of a command.
+    /// Processes the answer to a step.
     pub(super) fn stepped(&mut self, outcome: Result<(), Failure>, tick: u64) -> Outcome {
         let phase = Phase::Step(tick);
         let answer = self.read(outcome, whole::<Answered<Command>>);
@@ -242,22 +242,22 @@ impl Planner {
         Ok((Given::Command(command), said))
     }
 
-    /// The private state; none when the planner cannot provide it now.
+    /// Reads the private state; `None` when the planner cannot provide it now.
     pub(super) fn snapshotted(&mut self, outcome: Result<(), Failure>) -> Result<Option<Vec<u8>>, Fault> {
         let answer = self.read(outcome, |body| Ok(body.0.to_vec()));
         unless_refused(answer.map_err(|failure| self.fault(failure, Phase::State)))
     }
 
-    /// It was asked before it had answered.
+    /// Creates the fault for a request to a planner that has not answered the previous one.
     pub(super) fn busy(&self, phase: Phase) -> Fault {
         let message = format!(
-            "planner {} cannot do {phase}: it has not answered what it was asked before",
+            "planner {} is not available for {phase}: it has not answered the previous request",
             self.name()
         );
         self.blamed(fault::new(self.name(), phase.during(), Cause::Refused, message))
     }
 
-    /// A failure of this planner.
+    /// Converts a failure of this planner to a fault.
     fn fault(&self, failure: Failure, phase: Phase) -> Fault {
         self.blamed(fault::of(failure, self.name(), phase))
     }
@@ -270,13 +270,14 @@ impl Planner {
         self.ready.as_ref().map_or("", |ready| &ready.loaded.info.id)
     }
 
-    /// Adds the file that is to blame to a fault.
+    /// Adds the SHA-256 of the plugin to a fault.
     fn blamed(&self, fault: Fault) -> Fault {
         Fault { plugin_sha256: self.ready.as_ref().map(|ready| ready.loaded.info.sha256.clone()), ..fault }
     }
 }
 
-/// State is a convenience: a planner may refuse to save or restore it, but must not fail doing so.
+/// Turns a refusal into `None`. Saving state is optional: a planner may refuse to save or restore it, but must not fail
+/// doing so.
 pub(super) fn unless_refused<T>(answer: Result<T, Fault>) -> Result<Option<T>, Fault> {
     match answer {
         Ok(answer) => Ok(Some(answer)),

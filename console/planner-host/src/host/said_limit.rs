@@ -1,20 +1,20 @@
-//! How much a planner may say over time: what it says in one step is limited where its answer is read. Steps are counted and
-//! no time, so that equal runs have equal journals.
+//! Limits what a planner may log, report and draw over time; what it sends in one step is limited where its answer is
+//! read. The limits count steps and not time, so that equal runs have equal journals.
 
 use mission::Said;
 use planner_api::{Drawing, LogLevel};
 use std::collections::BTreeSet;
 
-/// Most messages at once; every step adds one, up to this.
+/// The maximum number of messages in one burst; every step adds one to what is allowed.
 const MOST: usize = 64;
-/// Most distinct figures: each is a curve of its own in the recording.
+/// The maximum number of distinct figures: each is a separate curve in the recording.
 const MOST_FIGURES: usize = 128;
-/// Most drawings at once ...
+/// The maximum number of drawings in one burst ...
 const MOST_DRAWINGS: usize = 4096;
-/// ... and this many more with every step.
+/// ... and how many more every step adds.
 const DRAWINGS_A_STEP: usize = 512;
 
-/// What a planner may still say.
+/// What a planner may still log, report and draw.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SaidLimit {
     logs: LogLimit,
@@ -23,7 +23,7 @@ pub(super) struct SaidLimit {
 }
 
 impl SaidLimit {
-    /// Takes what was said in a step, and leaves out what is beyond the limits, with a warning the first time.
+    /// Drops whatever exceeds the limits from what a planner sent in a step, with a warning the first time.
     pub(super) fn take(&mut self, said: &mut Said) {
         self.logs.take(&mut said.logs);
         let warnings = [self.figures.take(&mut said.scalars), self.drawings.take(&mut said.drawings)];
@@ -31,7 +31,7 @@ impl SaidLimit {
     }
 }
 
-/// The figures that a planner has reported.
+/// The names of the figures that a planner has reported.
 #[derive(Debug, Clone, Default)]
 struct FigureLimit {
     names: BTreeSet<String>,
@@ -45,11 +45,11 @@ impl FigureLimit {
             self.names.contains(name) || (self.names.len() < MOST_FIGURES && self.names.insert(name.clone()))
         });
         let is_news = figures.len() < before && !std::mem::replace(&mut self.is_warned, true);
-        is_news.then(|| format!("reports more than {MOST_FIGURES} distinct figures: the others are dropped"))
+        is_news.then(|| format!("reports more than {MOST_FIGURES} distinct figures; the others are dropped"))
     }
 }
 
-/// What a planner may still draw.
+/// The number of drawings that a planner may still make.
 #[derive(Debug, Clone)]
 struct DrawingLimit {
     left: usize,
@@ -69,15 +69,15 @@ impl DrawingLimit {
         drawings.truncate(self.left);
         self.left -= drawings.len();
         let is_news = is_too_much && !std::mem::replace(&mut self.is_warned, true);
-        is_news.then(|| format!("draws more than {DRAWINGS_A_STEP} things a step: the others are left out"))
+        is_news.then(|| format!("draws more than {DRAWINGS_A_STEP} things per step; the others are dropped"))
     }
 }
 
-/// What a planner may still log.
+/// The number of messages that a planner may still log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct LogLimit {
     left: usize,
-    /// It has logged too much: nothing more until there is room for as much again.
+    /// Whether the planner logged too much; its messages are then dropped until the full burst is allowed again.
     is_muted: bool,
 }
 
@@ -88,7 +88,7 @@ impl Default for LogLimit {
 }
 
 impl LogLimit {
-    /// Takes the messages of a step, and drops those beyond the limit, with a warning for the first in a row.
+    /// Drops messages beyond the limit; the first time in a series it adds a warning.
     fn take(&mut self, logs: &mut Vec<(LogLevel, String)>) {
         self.left = (self.left + 1).min(MOST);
         self.is_muted &= self.left < MOST;
@@ -96,7 +96,7 @@ impl LogLimit {
             logs.clear();
         } else if logs.len() > self.left {
             logs.truncate(self.left);
-            let text = format!("logs too much: its messages of the next {MOST} steps are dropped");
+            let text = format!("logs too much; its messages in the next {MOST} steps will be dropped");
             logs.push((LogLevel::Warn, text));
             *self = Self { left: 0, is_muted: true };
         } else {

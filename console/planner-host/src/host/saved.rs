@@ -2,13 +2,13 @@
 
 use mission::{AskId, PlannerInfo};
 
-/// Most states that are kept, each of another worker.
+/// The maximum number of states kept, each from a different worker.
 const MOST: usize = 8;
 
-/// Private state of a planner.
+/// The private state of a planner.
 #[derive(Debug)]
 pub(super) struct Saved {
-    /// The ask that it was saved for.
+    /// The ask for which it was saved.
     pub(super) ask: AskId,
     pub(super) planner: String,
     pub(super) sha256: String,
@@ -16,12 +16,12 @@ pub(super) struct Saved {
     pub(super) state: Vec<u8>,
 }
 
-/// The newest state of every worker, the newest workers last; outlives the workers.
+/// The newest state of every worker, in the order in which they were saved. States outlive their workers.
 #[derive(Debug, Default)]
 pub(super) struct SavedStates(Vec<Saved>);
 
 impl SavedStates {
-    /// Keeps a state in place of an earlier one of the same worker.
+    /// Keeps a state, replacing an earlier one of the same worker.
     pub(super) fn keep(&mut self, saved: Saved) {
         self.0.retain(|earlier| earlier.ask.worker != saved.ask.worker);
         self.0.push(saved);
@@ -29,7 +29,7 @@ impl SavedStates {
         self.0.drain(..surplus);
     }
 
-    /// The state that was saved for an ask, if it is of the same planner, file and version.
+    /// Returns the state that was saved for an ask, if planner, file and version match.
     pub(super) fn fitting(&self, ask: AskId, info: &PlannerInfo, version: u32) -> Option<&[u8]> {
         let fits = |saved: &&Saved| {
             saved.ask == ask

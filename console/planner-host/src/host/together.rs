@@ -1,43 +1,43 @@
-//! A planner on the processor of the thread that asks it.
+//! Runs a planner on the processor of the thread that asks it.
 //!
-//! Whoever waits for every command gains nothing by a second processor: one of the two always sleeps. To hand over the
-//! processor takes a fraction of the time that it takes to wake another one.
+//! A caller that waits for every command gains nothing from a second processor: one of the two always sleeps. Switching
+//! to the other thread on the same processor takes a fraction of the time that waking up a second processor takes.
 
 use crate::supervisor::Worker;
 use rustix::thread::{CpuSet, sched_getaffinity, sched_getcpu, sched_setaffinity};
 use std::time::{Duration, Instant};
 
-/// For this time the two stay where they are; then the system may move them to a less busy processor.
+/// How long the two threads stay on the same processor before the system may move them to a less busy one.
 const STAYS_FOR: Duration = Duration::from_millis(100);
-/// How often a worker is checked for anything else as long as its answers come at once.
+/// How often a worker is checked for other events while its answers come immediately.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
-/// The thread that asks, and perhaps the worker that shares its processor.
+/// The asking thread, and possibly the worker that shares its processor.
 pub(super) struct Together {
-    /// The processors that both may use while they are apart; `None` if there is no choice.
+    /// The processors that both may use while they are separate; `None` if there is only one.
     all: Option<CpuSet>,
-    /// Until when they stay together.
+    /// The time until which they share a processor; `None` while they are separate.
     until: Option<Instant>,
-    /// When the last command was asked for, and when the worker was looked at for anything but answers.
+    /// When the last command was requested, and when the worker was last checked for other events.
     asked: Instant,
     looked: Instant,
 }
 
 impl Together {
-    /// For the thread that calls this. They are apart.
+    /// Creates the state for the calling thread, with no shared processor.
     pub(super) fn new() -> Self {
         let now = Instant::now();
         let all = sched_getaffinity(None).ok().filter(|all| all.count() > 1);
         Self { all, until: None, asked: now, looked: now }
     }
 
-    /// A command is about to be asked of a worker, which is the only one.
+    /// Moves the worker to this processor; call it before a command is requested from the only worker.
     pub(super) fn gather(&mut self, worker: &Worker) {
         let now = Instant::now();
         self.asked = now;
         match self.until {
             Some(until) if now < until => {}
-            // This command finds them apart, and each may wake up on another processor.
+            // This command runs with the two threads separate, so the system may wake each on a different processor.
             Some(_) => self.part(std::iter::once(worker)),
             None if self.all.is_some() && sched_getcpu() < CpuSet::MAX_CPU => {
                 let mut here = CpuSet::new();
@@ -51,7 +51,7 @@ impl Together {
         }
     }
 
-    /// Whether the two share a processor and only an answer is to be expected for now; if not, everything has to be looked at.
+    /// Whether the two share a processor and only an answer is expected for now. If not, everything must be checked.
     pub(super) fn may_look_later(&mut self) -> bool {
         let may = self.until.is_some() && self.asked.saturating_duration_since(self.looked) < LOOK_EVERY;
         if !may {
@@ -60,10 +60,11 @@ impl Together {
         may
     }
 
-    /// Something else is about to be done, for which all processors may be used, by new processes and threads, too.
+    /// Lets this thread and the workers use all processors again. Call it before anything but a command, since new
+    /// processes and threads inherit the setting.
     pub(super) fn part<'a>(&mut self, workers: impl Iterator<Item = &'a Worker>) {
         if let (Some(all), Some(_)) = (&self.all, self.until.take()) {
-            // A thread that cannot be moved is slower, nothing worse.
+            // If a thread cannot be moved, it only runs more slowly.
             let _ = sched_setaffinity(None, all);
             workers.for_each(|worker| worker.stay_on(all));
         }

@@ -1,4 +1,4 @@
-//! A planner that was made, and calls to it.
+//! An instance of a planner, and calls to it.
 
 use super::sink::Sink;
 use crate::wire::answer::{BAD_OUTPUT, Refusal};
@@ -6,7 +6,7 @@ use planner_api::abi::{self, PlanOut, StepOut, Str, Value, lend};
 use planner_api::{Code, Command, Plan, PlanRequest, Sensed, Site};
 use std::ffi::c_void;
 
-/// A planner that was made; dropped through its own table.
+/// An instance of a planner; it is destroyed through its own function table.
 pub(crate) struct Instance {
     table: abi::Planner,
     planner: *mut c_void,
@@ -22,7 +22,7 @@ fn accept(code: i32, sink: &mut Sink<'_>) -> Result<(), Refusal> {
     Err(Refusal { code, message: sink.take_error(), partial })
 }
 
-/// Nothing was handed over that is larger than the console takes.
+/// Checks that the planner passed nothing that is larger than the console accepts.
 fn within_limits(sink: &Sink<'_>) -> Result<(), Refusal> {
     sink.exceeds.map_or(Ok(()), |what| Err(bad_output(format!("gave {what}"))))
 }
@@ -60,12 +60,12 @@ impl Instance {
         });
         accept(code, sink)?;
         if planner.is_null() {
-            return Err(bad_output("gave no instance though it found nothing wrong".to_owned()));
+            return Err(bad_output("reported success but created no instance".to_owned()));
         }
         Ok(Self { table: *table, planner })
     }
 
-    /// Gives new values of live parameters.
+    /// Passes new values of live parameters.
     pub(crate) fn reconfigure(
         &mut self,
         values: &[(String, f64)],
@@ -79,7 +79,7 @@ impl Instance {
         accept(code, sink)
     }
 
-    /// Asks for a plan.
+    /// Requests a plan.
     pub(crate) fn plan(&mut self, request: &PlanRequest<'_>, sink: &mut Sink<'_>) -> Result<Plan, Refusal> {
         let plan = self.table.plan.expect(CHECKED);
         let site = request.site;
@@ -105,7 +105,7 @@ impl Instance {
         })
     }
 
-    /// Asks for a command.
+    /// Requests a command.
     pub(crate) fn step(&mut self, sensed: &Sensed<'_>, sink: &mut Sink<'_>) -> Result<Command, Refusal> {
         let step = self.table.step.expect(CHECKED);
         let obstacles = lend::obstacles(sensed.obstacles);
@@ -117,21 +117,21 @@ impl Instance {
         out.get().map_err(bad_output)
     }
 
-    /// Asks for the private state.
+    /// Requests the private state.
     pub(crate) fn snapshot(&mut self, sink: &mut Sink<'_>) -> Result<Vec<u8>, Refusal> {
         let snapshot = self.table.snapshot.ok_or_else(unsupported)?;
         // SAFETY: as above.
         let code = sink.during(|host| unsafe { snapshot(self.planner, host) });
         accept(code, sink)?;
         if let Some(what) = sink.exceeds {
-            // It goes on without.
+            // The planner continues without its saved state.
             let message = format!("it has {what}");
             return Err(Refusal { code: Code::State as i32, message, partial: Vec::new() });
         }
         Ok(std::mem::take(&mut sink.bytes))
     }
 
-    /// Gives the private state of an earlier instance.
+    /// Passes the private state of an earlier instance.
     pub(crate) fn restore(&mut self, version: u32, state: &[u8], sink: &mut Sink<'_>) -> Result<(), Refusal> {
         let restore = self.table.restore.ok_or_else(unsupported)?;
         // SAFETY: as above.

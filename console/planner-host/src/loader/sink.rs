@@ -1,4 +1,4 @@
-//! The console's services in the worker: copies what a planner hands over, up to a limit.
+//! The console's services in the worker: copies what a planner passes, up to a limit.
 
 use crate::Progress;
 use crate::checks::limits::{MOST_CUTS, MOST_DRAWINGS, MOST_LOGS, MOST_PARAMS, MOST_POINTS, MOST_SCALARS};
@@ -9,18 +9,18 @@ use planner_api::LogLevel;
 use planner_api::abi::{self, Draw, Host, Leg, Param, Str, Vec2, output};
 use std::ffi::c_void;
 
-/// Largest private state, bytes. As of a plan, what is larger is refused; surplus drawings, figures and messages are
-/// counted and dropped.
+/// The maximum size of private state, bytes. State and plans that are too large are refused; surplus drawings, figures
+/// and messages are counted and dropped.
 const MOST_STATE_BYTES: usize = 1 << 20;
 const LONGEST_MESSAGE: usize = 1024;
-/// Longest text of a table, bytes.
+/// The maximum length of a text in a table, bytes.
 pub(super) const LONGEST_TEXT: usize = 4096;
 
-/// Deadline and wishes of the console during a call.
+/// The console's side of a call: deadline, whether drawings are shown, progress.
 pub(crate) trait Watch {
-    /// 0 to continue, 1 when cancelled, 2 when the deadline passed.
+    /// Returns 0 to continue, 1 when cancelled, 2 when the deadline has passed.
     fn should_stop(&self) -> u32;
-    /// Time until the deadline, seconds.
+    /// Returns the time until the deadline, seconds.
     fn time_left_s(&self) -> f64;
     /// Whether drawings are shown.
     fn wants_drawing(&self) -> bool;
@@ -28,13 +28,13 @@ pub(crate) trait Watch {
     fn take_progress(&self, progress: Progress);
 }
 
-/// What a planner hands over during one call.
+/// Collects what a planner passes during one call.
 pub(crate) struct Sink<'a> {
     watch: &'a dyn Watch,
     error: String,
     said: Said,
     n_dropped: usize,
-    /// What exceeds a limit, of things that are worth nothing in part.
+    /// The limit that was exceeded, for things that are useless if incomplete.
     pub(super) exceeds: Option<&'static str>,
     pub(super) params: Vec<ParamInfo>,
     pub(super) points: Vec<Point2<f64>>,
@@ -45,7 +45,7 @@ pub(crate) struct Sink<'a> {
 }
 
 impl<'a> Sink<'a> {
-    /// Nothing yet.
+    /// Creates an empty sink.
     pub(crate) fn new(watch: &'a dyn Watch) -> Self {
         Self {
             watch,
@@ -85,13 +85,13 @@ impl<'a> Sink<'a> {
         call(&raw const host)
     }
 
-    /// The sentence of a refusal.
+    /// Takes the sentence of a refusal.
     pub(super) fn take_error(&mut self) -> String {
         let error = std::mem::take(&mut self.error);
-        if error.is_empty() { "without saying why".to_owned() } else { error }
+        if error.is_empty() { "no reason given".to_owned() } else { error }
     }
 
-    /// What was drawn, reported and said; says itself what was dropped.
+    /// Takes what was drawn, reported and logged; adds a message if anything was dropped.
     pub(crate) fn take_said(&mut self) -> Said {
         let mut said = std::mem::take(&mut self.said);
         if self.n_dropped > 0 {
@@ -105,20 +105,20 @@ impl<'a> Sink<'a> {
     }
 }
 
-/// A text of the plugin for people: at most so many bytes, nothing that moves a cursor.
+/// Converts a text of the plugin for display: at most `most` bytes, without control characters.
 pub(super) fn plain(raw: Str, most: usize) -> String {
-    // SAFETY: the plugin promises that its texts are as long as they say.
+    // SAFETY: the plugin promises that its texts have the stated length.
     foreign::plain(&unsafe { raw.to_text(most) }).into_owned()
 }
 
-/// Takes the first of some things as long as there is room.
+/// Takes as many values as there is room for and counts the rest as dropped.
 fn take<'v, T>(values: &'v [T], have: usize, most: usize, n_dropped: &mut usize) -> &'v [T] {
     let (taken, surplus) = values.split_at(values.len().min(most.saturating_sub(have)));
     *n_dropped += surplus.len();
     taken
 }
 
-/// Takes all of some things, or none if there is no room for all: a part of a path is another path.
+/// Takes all values, or none if there is no room for all: part of a path is a different path.
 fn whole<'v, T>(
     values: &'v [T],
     have: usize,
@@ -133,7 +133,7 @@ fn whole<'v, T>(
     &[]
 }
 
-/// The sink behind a service's first argument.
+/// Returns the sink behind a service's first argument.
 unsafe fn sink<'s>(ctx: *mut c_void) -> &'s mut Sink<'s> {
     // SAFETY: `during` passes the sink, nobody else uses it during the call, and services are called one at a time.
     unsafe { &mut *ctx.cast::<Sink<'s>>() }
@@ -222,7 +222,7 @@ unsafe extern "C" fn take_scalar(ctx: *mut c_void, name: Str, value: f64, unit: 
 }
 
 unsafe extern "C" fn take_progress(ctx: *mut c_void, share: f64, ptr: *const u8, len: usize) {
-    // A share that is not a number carries no information.
+    // A share that is NaN carries no information.
     if share.is_finite() {
         let what = plain(Str { ptr, len }, Progress::LONGEST);
         // SAFETY: as above.
@@ -250,11 +250,11 @@ unsafe extern "C" fn take_param(ctx: *mut c_void, param: *const Param) {
         sink.n_dropped += 1;
         return;
     }
-    // SAFETY: the plugin promises a parameter of the size that it states.
+    // SAFETY: the plugin promises a parameter with the size that it states.
     sink.params.push(param_info(&unsafe { abi::copy_sized(param) }));
 }
 
-/// The level of a number that came over the boundary; unknown ones count as a warning.
+/// Converts a level that came over the boundary; unknown ones count as a warning.
 fn log_level(number: u32) -> LogLevel {
     match number {
         0 => LogLevel::Debug,
@@ -274,7 +274,7 @@ fn param_info(raw: &Param) -> ParamInfo {
             let default = options.get(default as usize).cloned().unwrap_or_default();
             ParamKind::Choice { options, default }
         }
-        // An unknown kind of a later version still is a number.
+        // A parameter kind from a later version is still a number.
         _ => ParamKind::Float { min, max, default },
     };
     ParamInfo {

@@ -1,11 +1,12 @@
-//! What was checked is what runs: the bytes are set aside where nobody can change them while they are loaded.
+//! Makes sure that the bytes that run are the bytes that were checked: they are copied to a place where nobody can
+//! change them while they are loaded.
 
 #[cfg(target_os = "linux")]
 use crate::sandbox::PLUGIN_AT;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes set aside under a path for the loader.
+/// A private copy of the bytes, with a path for the loader.
 pub(super) struct Staged {
     path: PathBuf,
     _place: Place,
@@ -23,7 +24,7 @@ impl Staged {
         &self.path
     }
 
-    /// Keeps the bytes where they are until the process ends: the traces of panics look up names of functions in them.
+    /// Keeps the copy until the process ends, because panic backtraces look up function names in it.
     pub(super) fn keep(self) {
         #[cfg(target_os = "linux")]
         std::mem::forget(self);
@@ -37,20 +38,20 @@ impl Drop for Place {
             Self::Memory { .. } => {}
             #[cfg(any(test, not(target_os = "linux")))]
             Self::Copy(path) => {
-                // It is loaded or refused by now; a copy that stays behind harms nobody.
+                // The library is loaded or refused by now; a leftover copy does no harm.
                 let _ = std::fs::remove_file(path);
             }
         }
     }
 }
 
-/// Sets bytes aside in sealed memory: a worker that is closed off reaches no other place.
+/// Copies bytes to sealed memory, the only place that a sandboxed worker can reach.
 #[cfg(target_os = "linux")]
 pub(super) fn stage(bytes: &[u8]) -> io::Result<Staged> {
     seal(bytes)
 }
 
-/// Sets bytes aside in a private copy.
+/// Copies bytes to a private file.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn stage(bytes: &[u8]) -> io::Result<Staged> {
     copy(bytes)
@@ -67,7 +68,7 @@ fn seal(bytes: &[u8]) -> io::Result<Staged> {
     fcntl_add_seals(&file, SealFlags::WRITE | SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?;
     let fd: OwnedFd = rustix::io::fcntl_dupfd_cloexec(&file, PLUGIN_AT)?;
     let path = PathBuf::from(format!("/proc/self/fd/{}", fd.as_raw_fd()));
-    // Without /proc the loader has no way to it.
+    // Without /proc the loader has no path to the copy.
     std::fs::metadata(&path)?;
     Ok(Staged { path, _place: Place::Memory { _fd: fd } })
 }

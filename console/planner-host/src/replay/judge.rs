@@ -1,4 +1,4 @@
-//! What the console would say of an answer: the same checks in the same sentences as while a mission is flown.
+//! Judges answers as the console would: the same checks and the same sentences as during a mission.
 
 use crate::checks;
 use crate::host::fault::{self, Phase};
@@ -14,7 +14,7 @@ use planner_api::{Command, Drive, Limits, Status};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Knows what was asked so far, as far as an answer depends on it.
+/// The context from earlier requests on which the judgement of an answer depends.
 #[derive(Default)]
 pub(super) struct Judge {
     planner: String,
@@ -22,14 +22,14 @@ pub(super) struct Judge {
     tick: u64,
     /// The robot's limits for the commands that follow.
     limits: Option<Limits>,
-    /// Those of the plan that is asked for: they hold once there is one.
+    /// The limits in the pending plan request; they apply once there is a plan.
     next_limits: Option<Limits>,
-    /// The tank that is planned in.
+    /// The tank in the latest plan request.
     site: Option<Arc<Site>>,
 }
 
 impl Judge {
-    /// Hears a request.
+    /// Notes a request.
     pub(super) fn hear(&mut self, request: &Incoming) -> Read<()> {
         let body = request.body();
         self.kind = request.kind();
@@ -50,7 +50,7 @@ impl Judge {
         Ok(())
     }
 
-    /// What was asked, a step with the number of its tick.
+    /// Returns the name of the latest request; for a step, with the number of its tick.
     pub(super) fn name(&self) -> String {
         match self.kind {
             kind::LOAD => "load".to_owned(),
@@ -73,7 +73,7 @@ impl Judge {
         }
     }
 
-    /// Waits for the answer and checks it; the answer in a few words.
+    /// Waits for the answer, checks it, and describes it in a few words.
     pub(super) fn answer(&mut self, worker: &mut Worker) -> Result<String, Failure> {
         let outcome = loop {
             let ready = wait_for_one(worker, None);
@@ -104,19 +104,20 @@ impl Judge {
         }
     }
 
-    /// The fault that the console makes of it. How long a planner was waited for is said here, where nothing is compared.
+    /// Describes a failure as the fault that the console makes of it. After a timeout it adds the budget, because
+    /// nothing is compared with this text.
     pub(super) fn fault(&self, failure: Failure, budget: Duration) -> Fault {
         let is_of_time = matches!(failure, Failure::Hung | Failure::Late | Failure::Starved);
         let mut fault = fault::of(failure, &self.planner, self.phase());
         if is_of_time {
-            let within = format!(" (it has {:.1} s for it)", budget.as_secs_f64());
+            let within = format!(" (its budget is {:.1} s)", budget.as_secs_f64());
             fault.message.push_str(&within);
         }
         fault
     }
 }
 
-/// As the worker itself says of an answer that it cannot pass on.
+/// Reports an invalid answer in the same way as the worker does.
 fn bad_output(message: String) -> Failure {
     Failure::Planner(Refusal { code: BAD_OUTPUT, message, partial: Vec::new() })
 }

@@ -1,28 +1,29 @@
-//! What a planner may know about a file, looked up by the console: the kernel would look at a path that may have changed.
+//! File status that a planner may receive. The console looks it up itself, because the kernel would use a path that may
+//! have changed since it was checked.
 
 use std::fs::Metadata;
 use std::mem::offset_of;
 use std::os::unix::fs::MetadataExt;
 
-/// The kernel's structure.
+/// The kernel's `stat` structure as bytes.
 type Bytes = [u8; size_of::<libc::stat>()];
 
-/// What a call returns about a file, and where in its memory the planner wants to read it.
+/// The file status that a call returns, and the address where the planner expects it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct About {
     pub(super) to: u64,
     pub(super) bytes: Bytes,
 }
 
-/// About an open file of a thread.
+/// Returns the status of an open file of a thread.
 ///
 /// # Errors
-/// The system's error number; the same below.
+/// The system's error number. The same applies below.
 pub(super) fn descriptor(thread: u32, number: i32) -> Result<Bytes, i32> {
     status(std::fs::metadata(format!("/proc/{thread}/fd/{number}")), libc::EBADF)
 }
 
-/// About a file by its path.
+/// Returns the status of a file by its path.
 pub(super) fn file(path: &str, flags: i32) -> Result<Bytes, i32> {
     let about = match flags & libc::AT_SYMLINK_NOFOLLOW {
         0 => std::fs::metadata(path),
@@ -35,7 +36,7 @@ fn status(about: std::io::Result<Metadata>, otherwise: i32) -> Result<Bytes, i32
     about.map(|about| bytes_of(&about)).map_err(|_| otherwise)
 }
 
-/// The structure as the kernel writes it; what is absent is zero.
+/// Writes the structure as the kernel does; missing fields are zero.
 fn bytes_of(about: &Metadata) -> Bytes {
     macro_rules! place {
         ($field:ident) => {

@@ -1,4 +1,4 @@
-//! seccomp: which system calls a planner may make without asking.
+//! The seccomp filter: the system calls that a planner may make without asking the console.
 
 use super::listener;
 use seccompiler::{
@@ -10,10 +10,10 @@ use std::os::fd::OwnedFd;
 
 type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// What the filter says instead of "ask the console", which the compiler of filters does not know.
+/// A placeholder for "ask the console", which the filter compiler does not support.
 const ASK: u32 = 0x7a5c;
 
-/// Computing, waiting, memory, threads that exist already, and descriptors that are open already.
+/// Calls for computing, waiting, memory, existing threads, and descriptors that are already open.
 const FREE: &[i64] = &[
     libc::SYS_read,
     libc::SYS_write,
@@ -54,7 +54,7 @@ const FREE: &[i64] = &[
     libc::SYS_rt_sigreturn,
     libc::SYS_sigaltstack,
     libc::SYS_restart_syscall,
-    // Makes rules that nothing obeys before `landlock_restrict_self`.
+    // Creates rules that have no effect before `landlock_restrict_self`.
     libc::SYS_landlock_create_ruleset,
     libc::SYS_exit,
     libc::SYS_exit_group,
@@ -62,13 +62,14 @@ const FREE: &[i64] = &[
 
 #[cfg(target_arch = "x86_64")]
 const OLD_FREE: &[i64] = &[libc::SYS_poll, libc::SYS_time, libc::SYS_alarm];
-/// Newer processors do not have the older calls.
+/// Newer processor architectures do not have the older calls.
 #[cfg(not(target_arch = "x86_64"))]
 const OLD_FREE: &[i64] = &[];
 
-/// Installs the filter. Returns where the console learns about calls that it does not allow.
+/// Installs the filter. Returns the descriptor over which the console receives calls that the filter does not allow.
 pub(super) fn install() -> Result<OwnedFd, String> {
-    // The C library starts threads by `clone3`, whose flags no filter can see, and falls back to `clone` if there is none.
+    // The C library starts threads with `clone3`, whose flags no filter can see. Without it, the library falls back to
+    // `clone`.
     let no_clone3 = [(libc::SYS_clone3, Vec::new())].into();
     let no_clone3 = compile(no_clone3, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?;
     apply_filter(&no_clone3).map_err(|error| error.to_string())?;
@@ -101,7 +102,7 @@ fn rules() -> Result<Rules, String> {
     let only = |index, values: &[u64]| -> Result<Vec<SeccompRule>, String> {
         values.iter().map(|value| rule(vec![argument(index, is.clone(), *value)?])).collect()
     };
-    // Signals to itself.
+    // The process may send signals to itself.
     for call in [libc::SYS_kill, libc::SYS_tgkill] {
         rules.insert(call, only(0, &[own])?);
     }
@@ -109,7 +110,7 @@ fn rules() -> Result<Rules, String> {
     rules.insert(libc::SYS_prctl, only(0, &names.map(|name| name as u64))?);
     let flags = [libc::F_GETFD, libc::F_SETFD, libc::F_GETFL];
     rules.insert(libc::SYS_fcntl, only(1, &flags.map(|flag| flag as u64))?);
-    // What counts towards the limit of memory: what is private, does not grow by itself and can be written.
+    // Memory that the memory limit counts: private, writable, and not growing automatically.
     let kinds = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64
         | (libc::MAP_LOCKED | libc::MAP_HUGETLB) as u64;
     let private = argument(3, SeccompCmpOp::MaskedEq(kinds), libc::MAP_PRIVATE as u64)?;
@@ -119,7 +120,7 @@ fn rules() -> Result<Rules, String> {
     };
     rules.insert(libc::SYS_mmap, vec![rule(vec![private, writable()?])?]);
     rules.insert(libc::SYS_mprotect, vec![rule(vec![writable()?])?]);
-    // Everything except taking pages of the machine out of use, which a privileged process may do.
+    // Everything except taking pages of the machine out of use, which a privileged process could do.
     let harmless = argument(2, SeccompCmpOp::Lt, libc::MADV_HWPOISON as u64)?;
     rules.insert(libc::SYS_madvise, vec![rule(vec![harmless])?]);
     // `nice` reads its own priority before it tries to change it.
@@ -127,7 +128,7 @@ fn rules() -> Result<Rules, String> {
         libc::SYS_getpriority,
         vec![rule(vec![argument(0, is.clone(), 0)?, argument(1, is.clone(), 0)?])?],
     );
-    // Limits may be read, not set.
+    // Limits can be read but not set.
     rules.insert(libc::SYS_prlimit64, vec![rule(vec![argument(0, is.clone(), 0)?, argument(2, is, 0)?])?]);
     Ok(rules)
 }

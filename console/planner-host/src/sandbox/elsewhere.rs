@@ -1,4 +1,4 @@
-//! Systems without Landlock and seccomp: nothing is closed off, and this is reported everywhere.
+//! Systems without Landlock and seccomp: there is no sandbox, and this is reported wherever the sandbox is shown.
 
 use super::ClosedOff;
 use mission::Sandbox;
@@ -13,10 +13,10 @@ pub(crate) fn close_files() -> Result<(), String> {
     Ok(())
 }
 
-/// There are none.
+/// Placeholder; this system reports no calls.
 pub(crate) enum Listener {}
 
-/// There are none.
+/// Placeholder; this system reports no calls.
 pub(crate) enum Call {}
 
 pub(crate) enum Verdict {
@@ -47,12 +47,12 @@ pub(crate) fn verdict(call: &Call, _: super::Stage, _: &mut String) -> Verdict {
     match *call {}
 }
 
-/// Address space in addition to the memory of a planner, bytes.
+/// Address space in addition to a planner's memory limit, bytes.
 pub(crate) const MAY_RESERVE: u64 = 1 << 30;
-/// Memory that a worker may have in addition to that of its planner, bytes.
+/// Memory of a worker in addition to its planner's limit, bytes.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
 
-/// Nothing is known of it.
+/// Placeholder; this system counts no such memory.
 #[derive(Default)]
 pub(crate) struct Uncounted;
 

@@ -1,30 +1,31 @@
-//! Landlock: first only libraries can be read, then nothing at all.
+//! Landlock: at first the process can read only libraries, then nothing at all.
 
 use landlock::{
     ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset,
     RulesetAttr, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
-/// Where the loader looks for libraries.
+/// The folders in which the loader looks for libraries.
 pub(super) const LIBRARIES: [&str; 4] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64"];
-/// Where it looks up which of them holds a library.
+/// The index in which the loader looks up the folder of a library.
 pub(super) const LIBRARY_CACHE: &str = "/etc/ld.so.cache";
-/// The newest rules that are used; older kernels enforce those that they know, and seccomp denies the calls of the others.
+/// The newest rules in use. Older kernels enforce the rules they support, and seccomp blocks the calls that the others
+/// would cover.
 const RULES: ABI = ABI::V6;
 
-/// Takes everything but reading libraries from this thread and those that it starts.
+/// Removes all access except reading libraries, from this thread and those that it starts.
 pub(super) fn only_libraries() -> Result<(), String> {
     enforced(restrict(&LIBRARIES, &[LIBRARY_CACHE]))
 }
 
-/// Takes the libraries, too.
+/// Removes access to libraries, too.
 pub(crate) fn nothing() -> Result<(), String> {
     enforced(restrict(&[], &[]))
 }
 
 fn enforced(status: Result<RulesetStatus, RulesetError>) -> Result<(), String> {
     match status {
-        Ok(RulesetStatus::NotEnforced) => Err("this kernel does not have it, or it is off".to_owned()),
+        Ok(RulesetStatus::NotEnforced) => Err("not supported by this kernel, or disabled".to_owned()),
         Ok(_) => Ok(()),
         Err(error) => Err(error.to_string()),
     }
@@ -41,7 +42,7 @@ fn restrict(folders: &[&str], files: &[&str]) -> Result<RulesetStatus, RulesetEr
     let folders = folders.iter().map(|folder| (folder, in_folders));
     let files = files.iter().map(|file| (file, AccessFs::ReadFile.into()));
     for (path, access) in folders.chain(files) {
-        // What does not exist needs no rule.
+        // A path that does not exist needs no rule.
         if let Ok(path) = PathFd::new(path) {
             rules = rules.add_rule(PathBeneath::new(path, access))?;
         }

@@ -1,8 +1,9 @@
-//! The kernel's reports of system calls that are waiting for a decision.
+//! Receives system calls that wait for a decision, as reported by the kernel.
 //!
-//! No safe crate offers the calls that this takes: installing a filter with a listener, receiving a report, asking
-//! whether it still waits, answering it. All of them only pass a structure of the kernel. A fifth closes what was inherited.
-#![expect(unsafe_code, reason = "calls of the kernel that no safe crate offers")]
+//! No safe crate offers the calls that this needs: installing a filter with a listener, receiving a report, checking
+//! whether its call still waits, and answering it. Each of them only passes a structure to the kernel. A fifth closes
+//! inherited descriptors.
+#![expect(unsafe_code, reason = "kernel calls that no safe crate offers")]
 
 use super::Verdict;
 use super::about::About;
@@ -12,12 +13,12 @@ use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, FromRawFd, OwnedFd};
 use std::os::unix::fs::FileExt;
 
-/// Installs a filter in this process, whose threads to come inherit it; what it leaves open is reported to this
-/// descriptor.
+/// Installs a filter in this process; threads that it starts later inherit the filter. Calls that the filter leaves
+/// undecided are reported over the returned descriptor.
 pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
     let program = libc::sock_fprog {
         len: filter.len() as u16,
-        // The kernel only reads it, and both types are the same structure of the kernel.
+        // The kernel only reads the filter, and both types are the same kernel structure.
         filter: filter.as_ptr().cast_mut().cast(),
     };
     // SAFETY: `program` and the filter behind it outlive the call, which copies them.
@@ -32,16 +33,16 @@ pub(super) fn install(filter: &BpfProgram) -> io::Result<OwnedFd> {
     if descriptor < 0 {
         return Err(io::Error::last_os_error());
     }
-    // SAFETY: the kernel has just made this descriptor, and nobody else owns it.
+    // SAFETY: the kernel has just created this descriptor, and nobody else owns it.
     Ok(unsafe { OwnedFd::from_raw_fd(descriptor as i32) })
 }
 
-/// Closes every descriptor of this process above the standard ones except this one.
+/// Closes every descriptor of this process except the standard ones and this one.
 pub(crate) fn close_all_but(kept: BorrowedFd<'_>) {
     let kept = kept.as_raw_fd().cast_unsigned();
     for (first, last) in [(3, kept - 1), (kept + 1, u32::MAX)] {
-        // SAFETY: at the start of a worker nothing owns a descriptor but `kept`. Without this call, before Linux 5.9, what
-        // the console was started with stays open.
+        // SAFETY: when a worker starts, only `kept` has an owner. Before Linux 5.9 the kernel does not have this call,
+        // and descriptors inherited from the console stay open.
         unsafe { libc::syscall(libc::SYS_close_range, first, last, 0) };
     }
 }
@@ -58,23 +59,23 @@ pub(crate) struct Call {
 
 #[cfg(test)]
 impl Call {
-    /// A call of this process itself.
+    /// Creates a call made by this process itself.
     pub(super) fn of(number: i64, arguments: [u64; 6]) -> Self {
         Self { id: 0, thread: std::process::id(), number, arguments }
     }
 }
 
-/// Where a worker's calls are reported.
+/// The descriptor over which a worker's calls are reported.
 #[derive(Debug)]
 pub(crate) struct Listener(OwnedFd);
 
-/// `_IOWR('!', number, size)` of the kernel's header.
+/// `_IOWR('!', number, size)` in the kernel's header.
 const fn request(number: u64, size: usize) -> u64 {
     3 << 30 | (size as u64) << 16 | (b'!' as u64) << 8 | number
 }
 const RECEIVE: u64 = request(0, size_of::<libc::seccomp_notif>());
 const ANSWER: u64 = request(1, size_of::<libc::seccomp_notif_resp>());
-/// `_IOW`: the caller only writes.
+/// `_IOW` in the kernel's header: the caller only writes.
 const IS_WAITING: u64 = request(2, size_of::<u64>()) & !(2 << 30);
 
 impl Listener {
@@ -82,9 +83,10 @@ impl Listener {
         Self(descriptor)
     }
 
-    /// The next waiting call; only to be called when the descriptor is readable. `None` if its thread has ended meanwhile.
+    /// Returns the next waiting call; use it only when the descriptor is readable. `None` if the calling thread has
+    /// ended meanwhile.
     pub(crate) fn next(&self) -> Option<Call> {
-        // SAFETY: all zeros is what the kernel wants to be given, and a value of every field.
+        // SAFETY: the kernel requires all zeros, and zero is valid for every field.
         let mut report: libc::seccomp_notif = unsafe { std::mem::zeroed() };
         // SAFETY: the kernel fills in exactly this structure.
         let received = unsafe { libc::ioctl(self.0.as_raw_fd(), RECEIVE as libc::Ioctl, &raw mut report) };
@@ -92,7 +94,7 @@ impl Listener {
         (received == 0).then(|| Call { id, thread: pid, number: data.nr.into(), arguments: data.args })
     }
 
-    /// Lets a call go on, succeed or fail. A forbidden one never returns: its process is to be killed.
+    /// Lets a call continue, succeed or fail. A forbidden call gets no answer: the caller must kill its process.
     pub(crate) fn answer(&self, call: &Call, verdict: &Verdict) {
         let (error, flags) = match verdict {
             Verdict::Allow => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
@@ -102,16 +104,17 @@ impl Listener {
             Verdict::Forbid(_) => return,
         };
         let mut answer = libc::seccomp_notif_resp { id: call.id, val: 0, error, flags };
-        // SAFETY: the kernel reads exactly this structure. It refuses the answer if the thread has ended meanwhile.
+        // SAFETY: the kernel reads exactly this structure. It rejects the answer if the thread has ended meanwhile.
         unsafe { libc::ioctl(self.0.as_raw_fd(), ANSWER as libc::Ioctl, &raw mut answer) };
     }
 }
 
 impl Listener {
-    /// Writes into the memory of the thread that asked.
+    /// Writes into the memory of the thread that made the call.
     fn tell(&self, call: &Call, about: &About) -> io::Result<()> {
         let memory = File::options().write(true).open(format!("/proc/{}/mem", call.thread))?;
-        // As long as the call waits, its thread has not ended and its number is not another one's: what was opened is its memory.
+        // While the call waits, its thread still exists and its number cannot have been reused, so the opened file is
+        // the memory of that thread.
         // SAFETY: the kernel only reads the number.
         if unsafe { libc::ioctl(self.0.as_raw_fd(), IS_WAITING as libc::Ioctl, &raw const call.id) } != 0 {
             return Err(io::Error::last_os_error());

@@ -1,40 +1,40 @@
-//! Memory of a planner that the kernel does not count.
+//! Limits a planner's memory that the kernel does not count.
 //!
-//! The kernel counts the private memory that can be written (`RLIMIT_DATA`), and that is nearly all of it. Who writes to
-//! memory and then gives up the right to write keeps it uncounted, and address space that can only be read costs tables of
-//! pages. `RLIMIT_AS` does not help: where it is reached, the kernel makes memory writable without counting it. So the calls that
-//! withdraw the right to write, or take address space without it, wait for a decision here.
+//! The kernel counts private writable memory (`RLIMIT_DATA`), which is nearly all of it. There are two gaps: memory
+//! that was written and then made read-only is no longer counted, and read-only address space needs page tables.
+//! `RLIMIT_AS` does not help: when it is reached, the kernel makes memory writable without counting it. So calls that
+//! make memory read-only, or reserve read-only address space, wait for a decision here.
 
 use super::listener::Call;
 use super::verdict::Verdict;
 
-/// Memory that may be made read-only in large pieces, bytes: tables of addresses that libraries fix up, and to spare.
+/// How much memory may be made read-only in large pieces, bytes: enough for the address tables that libraries fix up.
 pub(crate) const MAY_HIDE: u64 = 32 << 20;
-/// Smaller pieces are the guard pages of threads, however many are started; who hides much in them takes so long that the
-/// supervisor sees it, which weighs the process ([`crate::supervisor`]).
+/// Smaller pieces are guard pages of threads and are always allowed. Hiding much memory in small pieces takes so long
+/// that the supervisor, which weighs the process ([`crate::supervisor`]), notices it.
 const SMALL: u64 = 16 << 10;
-/// Address space in addition to the memory of the planner, bytes: stacks of threads, and 64 MB that the C library reserves for each
-/// thread that allocates.
+/// Address space in addition to the planner's memory limit, bytes: thread stacks, and 64 MB that the C library reserves
+/// for each thread that allocates.
 pub(crate) const MAY_RESERVE: u64 = 1 << 30;
 
-/// What a worker has of such memory.
+/// A worker's memory that the kernel does not count.
 #[derive(Debug, Default)]
 pub(crate) struct Uncounted {
-    /// Memory of the planner, bytes.
+    /// The planner's memory limit, bytes.
     limit: u64,
-    /// Address space when it was first looked at, bytes.
+    /// Address space at the first check, bytes.
     own_space: Option<u64>,
     /// Memory that was made read-only in large pieces, bytes.
     hidden: u64,
 }
 
 impl Uncounted {
-    /// For a planner with this limit of memory, bytes.
+    /// Starts counting for a planner with this memory limit, bytes.
     pub(crate) fn of(limit: u64) -> Self {
         Self { limit, ..Self::default() }
     }
 
-    /// Decides about a call, if it is one of these.
+    /// Decides about a call that concerns such memory; `None` for any other call.
     pub(crate) fn verdict(&mut self, call: &Call) -> Option<Verdict> {
         let [_, length, new_length, flags, ..] = call.arguments;
         match call.number {
@@ -47,7 +47,7 @@ impl Uncounted {
             libc::SYS_mmap if flags & libc::MAP_LOCKED as u64 != 0 => {
                 Some(Verdict::Forbid("mmap of locked memory".to_owned()))
             }
-            // Pages of a kind of their own, which are counted nowhere; whoever wants them does without.
+            // Huge pages are not counted anywhere. Programs that ask for them work without them.
             libc::SYS_mmap if flags & libc::MAP_HUGETLB as u64 != 0 => Some(Verdict::Refuse(libc::ENOMEM)),
             libc::SYS_mmap => Some(self.reserve(call, length)),
             _ => None,
@@ -73,7 +73,7 @@ impl Uncounted {
 
 const SHARED_OR_GROWING: u64 = (libc::MAP_SHARED | libc::MAP_PRIVATE | libc::MAP_GROWSDOWN) as u64;
 
-/// Address space of a thread's process, bytes.
+/// Returns the address space of a thread's process, bytes.
 fn space_of(thread: u32) -> Option<u64> {
     let pages = std::fs::read_to_string(format!("/proc/{thread}/statm")).ok()?;
     let pages: u64 = pages.split_ascii_whitespace().next()?.parse().ok()?;

@@ -1,8 +1,8 @@
-//! What the console decides about a call that is not allowed outright.
+//! The console's decisions about system calls that are not allowed outright.
 //!
-//! What a call points at can be changed by another thread while the console looks at it. So a path decides only how a
-//! planner is refused, never that a file may be reached: what may be opened is decided by Landlock, and what is to be known
-//! about a file is looked up by the console itself.
+//! A second thread can change the data that a call points at while the console looks at it. So a path only decides how
+//! a call is refused, never whether a file can be reached: Landlock decides what can be opened, and the console looks
+//! up file status itself.
 
 use super::about::{self, About};
 use super::files::{LIBRARIES, LIBRARY_CACHE};
@@ -12,12 +12,12 @@ use foreign::is_plain;
 use std::fs::File;
 use std::os::unix::fs::FileExt;
 
-/// Threads of a worker, its own two among them.
+/// The maximum number of threads of a worker, including its own two.
 const MOST_THREADS: usize = 64;
-/// Longest path that is looked at, bytes.
+/// The maximum length of a path, bytes.
 const LONGEST_PATH: usize = 256;
-/// What libraries read on the way to other things, and do without: processors, memory, time zone, language. The C library
-/// asks for `overcommit_memory` when it gives memory back.
+/// Files that libraries try to read but do not need: processors, memory, time zone, language. The C library reads
+/// `overcommit_memory` when it returns memory.
 const CURIOUS: [&str; 10] = [
     "/proc/self/",
     "/proc/sys/vm/",
@@ -34,13 +34,13 @@ const CURIOUS: [&str; 10] = [
 /// A decision about a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// It may be made.
+    /// The call is made.
     Allow,
-    /// It is not made but succeeds, and returns this about a file.
+    /// The call is not made but succeeds, and returns this file status.
     Tell(About),
-    /// It fails with this error of the system, and the planner goes on.
+    /// The call fails with this system error, and the planner continues.
     Refuse(i32),
-    /// It is never made, and the process is killed; what was tried.
+    /// The call is never made, and the process is killed; the text is what the planner tried.
     Forbid(String),
 }
 
@@ -57,9 +57,10 @@ pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict
         libc::SYS_open if arguments[1] as i32 & !READING != 0 => written(call, 0),
         #[cfg(target_arch = "x86_64")]
         libc::SYS_open | libc::SYS_stat | libc::SYS_access | libc::SYS_readlink => on_path(call, 0),
-        // All callers fall back to `newfstatat`.
+        // All users of `statx` fall back to `newfstatat`.
         libc::SYS_statx => Verdict::Refuse(libc::ENOSYS),
-        // Terminals are asked for their size and kind by libraries that print; a trace of calls shortens its paths.
+        // Libraries that print ask for the size and type of the terminal; a backtrace needs the current folder to
+        // shorten its paths.
         libc::SYS_ioctl if arguments[1] == libc::TCGETS => Verdict::Refuse(libc::ENOTTY),
         libc::SYS_getcwd => Verdict::Refuse(libc::ENOENT),
         libc::SYS_mmap => Verdict::Forbid("mmap of shared memory".to_owned()),
@@ -68,23 +69,23 @@ pub(crate) fn verdict(call: &Call, stage: Stage, sought: &mut String) -> Verdict
     }
 }
 
-/// How the loader opens a library.
+/// The flags with which the loader opens a library.
 const LOADER_FLAGS: i32 = libc::O_RDONLY | libc::O_CLOEXEC;
-/// How files are opened that are only read.
+/// The flags allowed for files that are only read.
 const READING: i32 = LOADER_FLAGS | libc::O_DIRECTORY | libc::O_NONBLOCK | libc::O_NOCTTY | libc::O_LARGEFILE;
 
-/// Whether this is the call by which a worker ends the loading of its plugin.
+/// Whether a worker ends the loading of its plugin with this call.
 pub(crate) fn ends_loading(call: &Call) -> bool {
     call.number == libc::SYS_landlock_restrict_self
 }
 
-/// A thread is a process that shares everything with its maker.
+/// Decides about `clone`. Only threads are allowed: processes that share everything with their parent.
 fn on_clone(call: &Call) -> Verdict {
     const THREAD: u64 = (libc::CLONE_VM | libc::CLONE_FS | libc::CLONE_FILES) as u64
         | (libc::CLONE_SIGHAND | libc::CLONE_THREAD | libc::CLONE_SYSVSEM) as u64;
     const MAY: u64 = (libc::CLONE_SETTLS | libc::CLONE_PARENT_SETTID | libc::CLONE_CHILD_CLEARTID) as u64
         | (libc::CLONE_CHILD_SETTID | libc::CLONE_DETACHED) as u64;
-    // With these the C library forks and starts programs.
+    // The flags with which the C library forks and starts programs.
     const OF_FORK: u64 = (libc::CLONE_CHILD_CLEARTID | libc::CLONE_CHILD_SETTID) as u64
         | (libc::CLONE_VM | libc::CLONE_VFORK) as u64;
     let flags = call.arguments[0];
@@ -100,8 +101,9 @@ fn on_clone(call: &Call) -> Verdict {
     }
 }
 
-/// A file that is opened to be read: libraries while the plugin is loaded, afterwards the plugin's own bytes, in which
-/// the names of its functions are. Landlock lets nothing else be opened then, whatever the path has become by then.
+/// Decides about opening a file for reading. While the plugin is loading, libraries can be opened, and afterwards only
+/// the plugin's own bytes, which contain the names of its functions. By then Landlock allows nothing else to be opened,
+/// even if the path has changed meanwhile.
 fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut String) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));
@@ -114,7 +116,8 @@ fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut Stri
     if may_be_opened {
         Verdict::Allow
     } else if stage == Stage::Loading && is_library_name(&path) {
-        // The loader tries where a library was when the plugin was built, and then asks whether that folder is there.
+        // The loader first tries the folder where a library was when the plugin was built, and then checks whether that
+        // folder exists.
         path.rsplit_once('/').map_or("", |(folder, _)| folder).clone_into(sought);
         Verdict::Refuse(libc::ENOENT)
     } else {
@@ -122,7 +125,8 @@ fn opened(call: &Call, index: usize, stage: Stage, flags: i32, sought: &mut Stri
     }
 }
 
-/// A question about a file: it is answered for an open one, and for libraries while the plugin is loaded.
+/// Decides about a request for file status: it is answered for open files, and for libraries while the plugin is
+/// loading.
 fn asked_about(call: &Call, stage: Stage, sought: &str) -> Verdict {
     let [descriptor, path, to, flags, ..] = call.arguments;
     let Some(path) = path_at(call.thread, path) else { return Verdict::Forbid(name(call.number)) };
@@ -145,8 +149,8 @@ fn on_path(call: &Call, index: usize) -> Verdict {
         .map_or_else(|| Verdict::Forbid(name(call.number)), |path| of_path(call, &path))
 }
 
-/// A file that is opened to be changed is forbidden whatever it is; but the C library gives names to threads so, and does
-/// without.
+/// Decides about opening a file for writing. It is always forbidden, except that naming a thread merely fails: the C
+/// library tries it but does not depend on it.
 fn written(call: &Call, index: usize) -> Verdict {
     let Some(path) = path_at(call.thread, call.arguments[index]) else {
         return Verdict::Forbid(name(call.number));
@@ -155,7 +159,7 @@ fn written(call: &Call, index: usize) -> Verdict {
     if is_name { Verdict::Refuse(libc::EACCES) } else { forbidden(call, &path) }
 }
 
-/// What honest libraries ask for is refused, and anything else is forbidden.
+/// Refuses paths that ordinary libraries ask for; forbids all others.
 fn of_path(call: &Call, path: &str) -> Verdict {
     let is_harmless =
         path.is_empty() || is_library(path) || CURIOUS.iter().any(|known| path.starts_with(known));
@@ -166,7 +170,7 @@ fn forbidden(call: &Call, path: &str) -> Verdict {
     Verdict::Forbid(format!("{} of {}", name(call.number), for_people(path)))
 }
 
-/// What a thread's memory holds at an address, up to its first zero; nothing if it is not a path of usual length.
+/// Reads the zero-terminated path at an address of a thread's memory; `None` if it cannot be read or is too long.
 fn path_at(thread: u32, address: u64) -> Option<String> {
     let mut bytes = [0; LONGEST_PATH];
     let read = File::open(format!("/proc/{thread}/mem")).and_then(|mem| mem.read_at(&mut bytes, address));
@@ -175,19 +179,19 @@ fn path_at(thread: u32, address: u64) -> Option<String> {
     Some(String::from_utf8_lossy(&bytes[..length]).into_owned())
 }
 
-/// Whether this is a library of the system, or the index of them.
+/// Whether this is a system library or the library index.
 fn is_library(path: &str) -> bool {
-    // The loader also looks whether the folder itself is there.
+    // The loader also checks whether the folder itself exists.
     let is_there = LIBRARIES.iter().any(|folder| path == *folder || is_below(folder, path));
     path == LIBRARY_CACHE || (is_there && !leads_back(path))
 }
 
-/// Whether a path goes up again, out of the folder with which it begins.
+/// Whether a path contains `..` and may so leave its first folder.
 fn leads_back(path: &str) -> bool {
     path.split('/').any(|part| part == "..")
 }
 
-/// Whether a path is this folder, if there is one.
+/// Whether a path is this folder; false if there is no folder.
 fn is_folder(folder: &str, path: &str) -> bool {
     !folder.is_empty() && path.trim_end_matches('/') == folder
 }
@@ -200,7 +204,8 @@ fn is_library_name(path: &str) -> bool {
     path.rsplit('/').next().is_some_and(|name| name.contains(".so"))
 }
 
-/// A path without what moves a cursor, and without numbers of processes, which differ from run to run.
+/// Makes a path fit for display and for the journal: without control characters, and without process ids, which differ
+/// from run to run.
 fn for_people(path: &str) -> String {
     let plain = path.replace(|c| !is_plain(c), "?");
     match plain.strip_prefix("/proc/").and_then(|rest| rest.split_once('/')) {

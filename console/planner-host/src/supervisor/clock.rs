@@ -1,26 +1,26 @@
-//! How long a worker has been busy, fairly: a planner does not pay for a machine that has no time for it.
+//! A fair measure of how long a worker has been busy: a planner is not charged for a busy machine.
 
 use std::time::Duration;
 
 /// A worker that is starved of CPU time is killed after this many budgets of wall time ...
 const MOST_BUDGETS: u32 = 10;
-/// ... but not before this time has passed.
+/// ... but not before this much wall time has passed.
 const LEAST_CAP: Duration = Duration::from_mins(1);
 
-/// A look at a busy process.
+/// The state of a busy process at one look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Load {
-    /// Processor time of all its threads since it was started.
+    /// Processor time of all threads since the process started.
     pub(super) cpu: Duration,
-    /// Whether any thread computes, wants to, or waits for a disk.
+    /// Whether any thread is computing, is ready to compute, or waits for a disk.
     pub(super) is_running: bool,
 }
 
-/// Time that counts against the budget of a request.
+/// The time charged against the budget of a request.
 ///
-/// Between two looks a process that wants the processor is charged the processor time that it got, and never more than
-/// passed on the wall; one that sleeps, is stopped or is deadlocked is charged what passed on the wall. Several threads
-/// cost no more than one.
+/// Time is charged from look to look. A process that wants the processor is charged the processor time that it got, but
+/// never more than the wall time. A process that sleeps, is stopped or is deadlocked is charged the wall time. Several
+/// threads cost no more than one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct FairClock {
     charged: Duration,
@@ -29,9 +29,9 @@ pub(super) struct FairClock {
 }
 
 impl FairClock {
-    /// Takes a look this long after the request; without a look wall time counts.
+    /// Takes a look this long after the request; if there is no `load`, wall time is charged.
     ///
-    /// What a running process used before the first look is not known; it is given that time.
+    /// The processor time that a running process used before the first look is unknown, and is not charged.
     pub(super) fn advance(&mut self, wall: Duration, load: Option<Load>) {
         let slice = wall.saturating_sub(self.wall);
         self.charged += match load {
@@ -44,7 +44,7 @@ impl FairClock {
         self.cpu = load.map(|load| load.cpu).or(self.cpu);
     }
 
-    /// What is left of a budget.
+    /// Returns what is left of a budget.
     pub(super) fn evaluate(&self, budget: Duration) -> Verdict {
         match budget.saturating_sub(self.charged) {
             Duration::ZERO => Verdict::Exhausted,
@@ -57,11 +57,11 @@ impl FairClock {
 /// What is left of a budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// So much.
+    /// This much time is left.
     Left(Duration),
-    /// Nothing.
+    /// Nothing is left.
     Exhausted,
-    /// Something, but the process has been starved of processor time for too long to keep waiting.
+    /// Time is left, but the process has been starved of processor time for too long to keep waiting.
     Starved,
 }
 

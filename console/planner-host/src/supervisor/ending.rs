@@ -1,4 +1,4 @@
-//! How a process ended, in words that are the same in every run.
+//! Describes how a process ended, in words that are the same in every run.
 
 use crate::wire::CHANNEL_LOST;
 use foreign::is_plain;
@@ -9,8 +9,8 @@ use std::process::ExitStatus;
 /// Maximum length of the reported line of output.
 const LONGEST_LINE: usize = 160;
 
-/// "was killed by SIGSEGV (invalid memory access)" and the like; a process that closed its socket and still had to be
-/// killed has no status.
+/// Describes the end of a process, such as "was killed by SIGSEGV (invalid memory access)". A process that closed its
+/// socket and still had to be killed has no status.
 pub(super) fn how_it_ended(status: Option<ExitStatus>) -> String {
     match status.map(|status| (status.signal(), status.code())) {
         Some((Some(signal), _)) if signal != CHANNEL_LOST.as_raw() => {
@@ -24,13 +24,13 @@ pub(super) fn how_it_ended(status: Option<ExitStatus>) -> String {
 fn signal_text(number: i32) -> String {
     let (name, meaning) = match Signal::from_named_raw(number) {
         Some(Signal::ILL) => ("SIGILL", "illegal instruction"),
-        Some(Signal::ABORT) => ("SIGABRT", "out of memory, stack overflow or a call of abort"),
+        Some(Signal::ABORT) => ("SIGABRT", "out of memory, stack overflow or a call to abort"),
         Some(Signal::BUS) => ("SIGBUS", "bad address"),
-        Some(Signal::FPE) => ("SIGFPE", "integer division"),
-        Some(Signal::KILL) => ("SIGKILL", "killed from outside, perhaps for lack of memory"),
+        Some(Signal::FPE) => ("SIGFPE", "arithmetic error, such as integer division by zero"),
+        Some(Signal::KILL) => ("SIGKILL", "killed from outside, perhaps because memory ran out"),
         Some(Signal::SEGV) => ("SIGSEGV", "invalid memory access"),
-        Some(Signal::XFSZ) => ("SIGXFSZ", "a file grew too large"),
-        Some(Signal::TERM) => ("SIGTERM", "asked to end"),
+        Some(Signal::XFSZ) => ("SIGXFSZ", "file size limit exceeded"),
+        Some(Signal::TERM) => ("SIGTERM", "asked to terminate"),
         Some(Signal::INT) => ("SIGINT", "interrupted"),
         Some(Signal::HUP) => ("SIGHUP", "hung up"),
         Some(Signal::SYS) => ("SIGSYS", "a system call that no planner may make"),
@@ -41,14 +41,14 @@ fn signal_text(number: i32) -> String {
         Some(Signal::USR1) => ("SIGUSR1", "sent by itself or from outside"),
         Some(Signal::USR2) => ("SIGUSR2", "sent by itself or from outside"),
         Some(Signal::TRAP) => ("SIGTRAP", "a breakpoint"),
-        Some(Signal::QUIT) => ("SIGQUIT", "asked to end"),
-        Some(Signal::XCPU) => ("SIGXCPU", "used up its processor time"),
+        Some(Signal::QUIT) => ("SIGQUIT", "asked to terminate"),
+        Some(Signal::XCPU) => ("SIGXCPU", "CPU time limit exceeded"),
         _ => return format!("signal {number}"),
     };
     format!("{name} ({meaning})")
 }
 
-/// The last line with anything in it, without what moves a cursor or differs from run to run.
+/// Returns the last informative line, without control characters and without anything that differs from run to run.
 pub(super) fn last_line(output: &[u8]) -> String {
     let text = String::from_utf8_lossy(output);
     let is_informative =
@@ -58,14 +58,15 @@ pub(super) fn last_line(output: &[u8]) -> String {
     without_ids(&visible).trim().chars().take(LONGEST_LINE).collect()
 }
 
-/// Whether a line is one of a trace of calls, as `12: main` and `at src/lib.rs:3`: whether there is one is the user's choice.
+/// Whether a line belongs to a backtrace, like `12: main` and `at src/lib.rs:3`. Backtraces are left out because they
+/// depend on the user's settings.
 fn is_of_trace(line: &str) -> bool {
     let line = line.trim_start();
     let is_numbered = line.split_once(": ").is_some_and(|(number, _)| number.chars().all(is_digit));
     is_numbered || line.starts_with("at ") || line == "stack backtrace:"
 }
 
-/// Drops process and thread ids, as in `thread 'main' (4711) panicked`, and the digits of addresses.
+/// Removes process and thread ids, as in `thread 'main' (4711) panicked`, and the digits of addresses.
 fn without_ids(line: &str) -> String {
     let mut kept = String::with_capacity(line.len());
     let mut rest = line;

@@ -1,26 +1,27 @@
-//! What a process prints, line by line, for people.
+//! Splits the output of a process into lines for people.
 
 use foreign::plain;
 
-/// So many lines are kept until somebody takes them, enough for the trace of a panic; of more only the number is known.
+/// The maximum number of lines kept until they are collected, enough for a panic's backtrace. Lines beyond it are only
+/// counted.
 const MOST: usize = 256;
-/// Longest line, bytes.
+/// The maximum length of a line, bytes.
 const LONGEST: usize = 400;
-/// What stands after a line that is longer.
-const CUT: &[u8] = b" (the rest of this line is not kept)";
+/// Appended to a line that was cut.
+const CUT: &[u8] = b" (rest of the line dropped)";
 
-/// Lines that were printed and not taken yet.
+/// Lines that were printed and not collected yet.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     partial: Vec<u8>,
-    /// Whether the beginning of the current line is kept, and its rest is not.
+    /// Whether the current line was cut, so that the rest of it is ignored.
     is_cut: bool,
     whole: Vec<String>,
     n_dropped: usize,
 }
 
 impl Lines {
-    /// Takes what was printed.
+    /// Adds output.
     pub(super) fn extend(&mut self, bytes: &[u8]) {
         for byte in bytes {
             match byte {
@@ -32,7 +33,7 @@ impl Lines {
         }
     }
 
-    /// A line may have no end.
+    /// Cuts a line that is too long; it might never end.
     fn cut_line(&mut self) {
         self.partial.extend_from_slice(CUT);
         self.end_line();
@@ -52,17 +53,17 @@ impl Lines {
         }
     }
 
-    /// The lines since the last time.
+    /// Takes the lines since the last call.
     pub(super) fn take(&mut self) -> Vec<String> {
         let dropped = std::mem::take(&mut self.n_dropped);
         let mut lines = std::mem::take(&mut self.whole);
         if dropped > 0 {
-            lines.push(format!("({dropped} more lines at once are not kept)"));
+            lines.push(format!("({dropped} more lines dropped)"));
         }
         lines
     }
 
-    /// The lines since the last time, and what was begun: the process prints no more.
+    /// Takes the lines since the last call, including an unfinished one; use it when the process prints no more.
     pub(super) fn take_rest(&mut self) -> Vec<String> {
         if !self.partial.is_empty() {
             self.end_line();
@@ -90,7 +91,7 @@ mod tests {
         let mut lines = Lines::default();
         lines.extend(&b"x\n".repeat(MOST + 3));
         let taken = lines.take();
-        assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines at once are not kept)"));
+        assert_eq!((taken.len(), taken[MOST].as_str()), (MOST + 1, "(3 more lines dropped)"));
         lines.extend(&[b'x'; 10 * LONGEST]);
         let cut = lines.take_rest();
         assert_eq!((cut.len(), cut[0].len()), (1, LONGEST + CUT.len()), "without its end");

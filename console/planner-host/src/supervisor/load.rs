@@ -6,26 +6,26 @@ use rustix::process::Pid;
 use std::fs::{read_dir, read_to_string};
 use std::time::Duration;
 
-/// Looks at a process; `None` where there is no `/proc`.
+/// Reads the load of a process; `None` where there is no `/proc`.
 pub(super) fn load_of(pid: Pid) -> Option<Load> {
     let process = format!("/proc/{}", pid.as_raw_pid());
     let ticks = Stat::of(&read_to_string(format!("{process}/stat")).ok()?)?.ticks;
     let threads = read_dir(format!("{process}/task")).ok()?;
     let mut stats = threads.flatten().filter_map(|thread| {
-        // A thread may end while it is looked at.
+        // A thread may end while it is being read.
         Stat::of(&read_to_string(thread.path().join("stat")).ok()?)
     });
     let cpu = Duration::from_secs(ticks).checked_div(ticks_per_second())?;
     Some(Load { cpu, is_running: stats.any(|stat| matches!(stat.state, 'R' | 'D')) })
 }
 
-/// Memory and threads of a process; `None` where there is no `/proc`.
+/// Reads memory and threads of a process; `None` where there is no `/proc`.
 pub(super) fn memory_of(pid: Pid) -> Option<Memory> {
     memory_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
 }
 
-/// Private memory of a process, bytes: what it has written to, and the tables of its pages. Files that it shares with
-/// others are not part of it.
+/// Reads the private memory of a process, bytes: the pages that it has written to, and its page tables. Files that it
+/// shares with others are not included.
 pub(super) fn weight_of(pid: Pid) -> Option<u64> {
     weight_in(&read_to_string(format!("/proc/{}/status", pid.as_raw_pid())).ok()?)
 }
@@ -49,16 +49,16 @@ fn ticks_per_second() -> u32 {
     u32::try_from(rustix::param::clock_ticks_per_second()).unwrap_or(100)
 }
 
-/// State and processor time of a process or of a thread.
+/// State and processor time of a process or thread.
 #[derive(Debug, PartialEq, Eq)]
 struct Stat {
     state: char,
-    /// Processor time for itself and for the system on its behalf, clock ticks.
+    /// Processor time in user and system mode, clock ticks.
     ticks: u64,
 }
 
 impl Stat {
-    /// Reads a line of `/proc/PID/stat`; the name of the program may contain anything.
+    /// Parses a line of `/proc/PID/stat`; the name of the program may contain anything.
     fn of(line: &str) -> Option<Self> {
         let (_, fields) = line.rsplit_once(')')?;
         let fields: Vec<&str> = fields.split_ascii_whitespace().collect();

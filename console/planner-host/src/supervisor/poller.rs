@@ -1,4 +1,4 @@
-//! The one place where the console waits for workers: a single `poll(2)` over all of them.
+//! The only place where the console waits for workers: a single `poll(2)` over all of them.
 
 use super::ready::Ready;
 use super::waker::WakeReceiver;
@@ -6,12 +6,12 @@ use super::worker::Worker;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::time::{Duration, Instant};
 
-/// Descriptors of two workers and of the wake-ups.
+/// The number of descriptors of two workers and the wake-ups.
 const MOST_USUALLY: usize = 7;
 
-/// Waits until something happens to a worker, a worker has to be looked at, the host is woken, or the given time is
-/// reached, whichever comes first. Notes what has happened to each of the workers, in their order; whether the host was
-/// woken, which is reported once.
+/// Waits until something happens to a worker, a worker must be checked, the host is woken, or the time limit is
+/// reached, whichever comes first. Notes what has happened to each worker, in order. Returns whether the host was
+/// woken; each wake-up is reported once.
 pub(crate) fn wait<'a>(
     wake_ups: Option<&WakeReceiver>,
     workers: impl Iterator<Item = &'a Worker> + Clone,
@@ -28,12 +28,12 @@ pub(crate) fn wait<'a>(
         worker.watched(|(_, descriptor, flags)| watched.push(PollFd::from_borrowed_fd(descriptor, flags)));
         wake_at = worker.wake_at().into_iter().chain(wake_at).min();
     }
-    // From here to the poll nothing may be read from the socket of the wake-ups.
+    // Between here and the poll nothing may be read from the wake-up socket.
     let woken = wake_ups.is_some_and(WakeReceiver::take);
     let left = wake_at.map(|at| at.saturating_duration_since(Instant::now()));
     let left = if woken { Some(Duration::ZERO) } else { left };
     let timeout = left.and_then(|left| Timespec::try_from(left).ok());
-    // After a signal or a timeout nothing has happened: the caller checks the clock and waits again.
+    // After a signal or a timeout nothing has happened; the caller checks the clock and waits again.
     if !matches!(poll(&mut watched, timeout.as_ref()), Ok(1..)) {
         return woken;
     }

@@ -1,4 +1,4 @@
-//! The process of a worker: started, watched, killed and reaped, without ever waiting for it.
+//! The process of a worker: starts, watches, kills and reaps it, without ever waiting for it.
 
 use super::WorkerCommand;
 use super::lines::Lines;
@@ -9,19 +9,20 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-/// Length of the end of the output that is kept, bytes: the trace of a panic is a few kilobytes.
+/// How much of the end of the output is kept, bytes; a panic's backtrace takes a few kilobytes.
 const TAIL: usize = 16 << 10;
-/// The only variable a worker inherits from the console's environment: whether a panic prints its backtrace.
+/// The only variables that a worker inherits from the console's environment: whether a panic prints its backtrace.
 const ENVIRONMENT: [&str; 2] = ["RUST_BACKTRACE", "RUST_LIB_BACKTRACE"];
-/// Most reads of the output in a row, so that a planner that prints endlessly delays nobody.
+/// The maximum number of consecutive reads of the output, so that a planner that prints endlessly does not delay the
+/// others.
 const MOST_READS: usize = 16;
 
-/// A child process and the end of what it printed.
+/// A child process and the end of its output.
 pub(super) struct Process {
     child: Child,
-    /// Readable once the process has ended; absent where the system has no such descriptor.
+    /// Becomes readable when the process ends; `None` where the system has no such descriptor.
     pidfd: Option<OwnedFd>,
-    /// How it ended, once it is reaped.
+    /// The exit status, once the process is reaped.
     status: Option<ExitStatus>,
     output: Option<PipeReader>,
     tail: VecDeque<u8>,
@@ -29,8 +30,8 @@ pub(super) struct Process {
 }
 
 impl Process {
-    /// Starts a worker with this socket as its standard input and almost no environment. It leaves the console's session
-    /// by itself.
+    /// Starts a worker with this socket as its standard input and almost no environment. The worker itself leaves the
+    /// console's session.
     pub(super) fn spawn(command: &WorkerCommand, socket: UnixStream) -> io::Result<Self> {
         let (reader, writer) = io::pipe()?;
         rustix::io::ioctl_fionbio(&reader, true)?;
@@ -43,7 +44,7 @@ impl Process {
             .stdout(writer.try_clone()?)
             .stderr(writer);
         let child = start.spawn()?;
-        // Dropping the command closes our copies of the pipe, so that its end can be seen.
+        // Dropping the command closes our copies of the pipe, so that the end of the output can be detected.
         drop(start);
         let pidfd = pidfd_of(&child);
         Ok(Self {
@@ -56,25 +57,25 @@ impl Process {
         })
     }
 
-    /// Its process id; it is not given to another process before this one is reaped.
+    /// Returns the process id; the system does not reuse it before this process is reaped.
     pub(super) fn pid(&self) -> Pid {
         Pid::from_child(&self.child)
     }
 
-    /// Readable once the process has ended, if the system has such a descriptor.
+    /// Returns the descriptor that becomes readable when the process ends, if the system has one.
     pub(super) fn pidfd(&self) -> Option<BorrowedFd<'_>> {
         self.pidfd.as_ref().map(AsFd::as_fd)
     }
 
-    /// What it prints; none once it has closed its output.
+    /// Returns the pipe with the process's output; `None` once it is closed.
     pub(super) fn output(&self) -> Option<BorrowedFd<'_>> {
         self.output.as_ref().map(AsFd::as_fd)
     }
 
-    /// Reaps the process if it has ended, and returns how it ended.
+    /// Reaps the process if it has ended, and returns its exit status.
     pub(super) fn reap(&mut self) -> Option<ExitStatus> {
         if self.status.is_none() && self.has_ended() {
-            // As long as it is not reaped, its number is that of its own group.
+            // Until the process is reaped, its id cannot belong to a different process group.
             self.kill_group();
             self.status = self.child.try_wait().ok().flatten();
         }
@@ -86,27 +87,27 @@ impl Process {
         waitid(WaitId::Pid(self.pid()), look).is_ok_and(|status| status.is_some())
     }
 
-    /// Kills what the worker may have started; a worker that is closed off starts nothing.
+    /// Kills processes that the worker may have started; a sandboxed worker cannot start any.
     fn kill_group(&self) {
-        // A worker that has not left the console's session yet has no group.
+        // A worker that has not left the console's session yet has no process group.
         let _ = kill_process_group(self.pid(), Signal::KILL);
     }
 
-    /// Whether it was reaped.
+    /// Whether the process has been reaped.
     pub(super) fn is_reaped(&self) -> bool {
         self.status.is_some()
     }
 
-    /// Kills the process unless it was reaped.
+    /// Kills the process unless it has been reaped.
     pub(super) fn kill(&mut self) {
         if self.status.is_none() {
             self.kill_group();
-            // It may have ended by itself.
+            // The process may already have ended.
             let _ = self.child.kill();
         }
     }
 
-    /// Reads what was printed and keeps the end of it.
+    /// Reads new output and keeps the end of it.
     pub(super) fn read_output(&mut self) {
         let mut piece = [0; TAIL];
         for _ in 0..MOST_READS {
@@ -125,12 +126,12 @@ impl Process {
         }
     }
 
-    /// The lines that were printed since the last time.
+    /// Takes the lines printed since the last call.
     pub(super) fn take_lines(&mut self) -> Vec<String> {
         if self.output.is_some() { self.lines.take() } else { self.lines.take_rest() }
     }
 
-    /// The end of what was printed.
+    /// Returns the end of the output.
     pub(super) fn tail(&mut self) -> &[u8] {
         self.tail.make_contiguous()
     }
@@ -141,7 +142,7 @@ fn pidfd_of(child: &Child) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_child(child), rustix::process::PidfdFlags::empty()).ok()
 }
 
-/// Elsewhere the process is polled.
+/// On other systems the process is polled.
 #[cfg(not(target_os = "linux"))]
 fn pidfd_of(_: &Child) -> Option<OwnedFd> {
     None

@@ -1,56 +1,56 @@
-//! What may happen to a worker, and what has.
+//! The kinds of events of a worker, and the events that have happened.
 
 use rustix::event::PollFlags;
 use std::os::fd::BorrowedFd;
 
-/// What a worker's descriptor is for.
+/// The purpose of a worker's descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
-    /// Carries answers, and has room for requests.
+    /// Receives answers and sends requests.
     Socket,
     /// Becomes readable when the process ends.
     Exit,
-    /// What it prints.
+    /// The output of the process.
     Output,
     /// System calls that are waiting for a decision.
     Calls,
 }
 
-/// A descriptor to wait for, and for what.
+/// A descriptor, its purpose, and the events to wait for.
 pub(super) type Watched<'a> = (Source, BorrowedFd<'a>, PollFlags);
 
-/// What has happened to a worker.
+/// The events of a worker since the last poll.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Ready {
     socket: PollFlags,
     /// The process has ended.
     pub(super) exited: bool,
-    /// It printed something, or closed its output.
+    /// The process printed something, or closed its output.
     pub(super) printed: bool,
-    /// A system call of it is waiting for a decision.
+    /// A system call of the process is waiting for a decision.
     pub(super) called: bool,
 }
 
 impl Ready {
-    /// What is known before the first look.
+    /// The state before the first poll.
     pub(super) const NOTHING: Self =
         Self { socket: PollFlags::empty(), exited: false, printed: false, called: false };
 
-    /// Nobody has asked the system, but an answer may have come, and lines before it.
+    /// The assumed state without a poll: an answer may have arrived, preceded by output.
     pub(crate) const PERHAPS_ANSWERED: Self =
         Self { socket: PollFlags::IN, exited: false, printed: true, called: false };
 
-    /// Something arrived, or the other side hung up.
+    /// Whether something arrived, or the other side hung up.
     pub(super) fn readable(self) -> bool {
         !self.socket.difference(PollFlags::OUT).is_empty()
     }
 
-    /// There is room for more of the request.
+    /// Whether the socket has room for more of the request.
     pub(super) fn writable(self) -> bool {
         self.socket.contains(PollFlags::OUT)
     }
 
-    /// Notes what has happened to one of its descriptors.
+    /// Notes what has happened to one of the descriptors.
     pub(super) fn note(&mut self, source: Source, happened: PollFlags) {
         match source {
             Source::Socket => self.socket = happened,

@@ -1,18 +1,18 @@
-//! The last requests to a worker, so that they can be replayed to its plugin.
+//! Records the last requests to a worker, so that they can be replayed to its plugin.
 
 use crate::wire::kind;
 use std::collections::VecDeque;
 
-/// Most requests kept since the last plan.
+/// The maximum number of requests kept from the last plan on.
 const MOST: usize = 200;
-/// Most requests kept that shaped the planner: loading, parameters, state.
+/// The maximum number of requests kept that configured the planner: loading, parameters, state.
 const MOST_LASTING: usize = 64;
 
-/// Frames as they went to the worker.
+/// Frames as they were sent to the worker.
 #[derive(Debug, Default)]
 pub(super) struct Tape {
     lasting: Vec<Vec<u8>>,
-    /// The last plan, and the newest steps after it.
+    /// The last plan request, and the newest steps after it.
     recent: VecDeque<Vec<u8>>,
 }
 
@@ -27,7 +27,7 @@ impl Tape {
             }
             kind::PLAN => self.recent = VecDeque::from([frame.to_vec()]),
             kind::STEP => {
-                // The plan, in front, stays.
+                // The plan request at the front stays.
                 let full = self.recent.len() == MOST;
                 let mut room = full.then(|| self.recent.remove(1)).flatten().unwrap_or_default();
                 room.clear();
@@ -38,7 +38,7 @@ impl Tape {
         }
     }
 
-    /// All of it, in order.
+    /// Returns all recorded requests, in order.
     pub(super) fn bytes(&self) -> Vec<u8> {
         self.lasting.iter().chain(&self.recent).flatten().copied().collect()
     }

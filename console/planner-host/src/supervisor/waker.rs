@@ -1,9 +1,10 @@
 //! Wakes the thread that waits for planners.
 //!
-//! Whether a wake-up is pending is one flag; the socket beside it only ends a wait that has begun. Who sets the flag writes,
-//! after that. The receiver begins to wait only if it has found the flag cleared and has read nothing since: whoever sets it
-//! from then on writes something that nobody else reads. What a wake-up leaves in the socket that was taken before it had
-//! written ends a wait for nothing, and wakes nobody.
+//! A flag states whether a wake-up is pending; the socket only ends a wait that has already begun. A sender sets the
+//! flag first and then writes to the socket. The receiver begins to wait only if it found the flag cleared and has not
+//! read from the socket since, so a sender that sets the flag later writes a byte that nothing else reads. A sender
+//! whose flag was taken before it wrote leaves a byte in the socket. That byte ends one wait too early, which does no
+//! harm.
 
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -11,15 +12,15 @@ use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Makes the current or the next [`Host::next`](crate::Host::next) return without an answer, once. Can be used from any
-/// thread; pending wake-ups count as one.
+/// Makes the current or the next [`Host::next`](crate::Host::next) return once without an answer. Can be used from any
+/// thread; several pending wake-ups count as one.
 #[derive(Debug, Clone)]
 pub struct Waker(Arc<Sender>);
 
 #[derive(Debug)]
 struct Sender {
     is_pending: AtomicBool,
-    /// Absent when the system has no descriptors left; then no worker can be started, and nobody ever waits.
+    /// `None` when the system has no descriptors left; then no worker can be started, and nothing ever waits.
     socket: Option<UnixStream>,
 }
 
@@ -28,7 +29,7 @@ impl Waker {
     pub fn wake(&self) {
         let was_pending = self.0.is_pending.swap(true, Ordering::AcqRel);
         if let Some(mut socket) = self.0.socket.as_ref().filter(|_| !was_pending) {
-            // A full socket already ends the wait, and without a host nothing has to be woken.
+            // A full socket ends the wait anyway, and without a host there is nothing to wake.
             let _ = socket.write(&[1]);
         }
     }
@@ -41,7 +42,7 @@ pub(crate) struct WakeReceiver {
 }
 
 impl WakeReceiver {
-    /// No wake-up is pending.
+    /// Creates a receiver without pending wake-ups.
     pub(crate) fn new() -> Self {
         let pair = UnixStream::pair().and_then(|(sender, receiver)| {
             sender.set_nonblocking(true)?;
@@ -53,12 +54,12 @@ impl WakeReceiver {
         Self { waker: Waker(Arc::new(sender)), socket }
     }
 
-    /// The sending end.
+    /// Returns the sending end.
     pub(crate) fn waker(&self) -> Waker {
         self.waker.clone()
     }
 
-    /// Drops pending wake-ups; whether there were any. Costs no call of the system when there were none.
+    /// Drops pending wake-ups and returns whether there were any. Makes no system call if there were none.
     pub(crate) fn take(&self) -> bool {
         let was_pending = self.waker.0.is_pending.swap(false, Ordering::AcqRel);
         if was_pending {
@@ -67,7 +68,7 @@ impl WakeReceiver {
         was_pending
     }
 
-    /// Reads what wake-ups have written. What is pending stays so.
+    /// Reads everything that wake-ups have written; a pending wake-up stays pending.
     pub(super) fn empty_socket(&self) {
         let mut bytes = [0; 64];
         if let Some(mut socket) = self.socket.as_ref() {
@@ -75,7 +76,7 @@ impl WakeReceiver {
         }
     }
 
-    /// Readable when a wake-up has come during a wait.
+    /// Returns the descriptor that becomes readable when a wake-up comes during a wait.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.socket.as_ref().map(AsFd::as_fd)
     }

@@ -1,4 +1,5 @@
-//! A worker process as a state machine: it is asked, polled when something has happened, and never waited for.
+//! A worker process as a state machine: it receives requests and is polled when something has happened, but is never
+//! waited for.
 
 mod end;
 mod exchange;
@@ -34,22 +35,22 @@ pub(crate) struct Worker {
     socket: UnixStream,
     incoming: Incoming,
     guard: Guard,
-    /// The frame that is being sent, or was sent last.
+    /// The frame that is being sent, or the last one sent.
     writer: Writer,
-    /// Bytes of it that were written.
+    /// The number of bytes of that frame already sent.
     n_sent: usize,
     sequence: u32,
     state: State,
     scale: Scale,
     tape: Tape,
-    /// Whether it had nothing to do when it was asked to end.
+    /// Whether the worker was idle when it was asked to exit.
     leaves_idle: bool,
-    /// How it ended then, if not well; reads on after the planner's name.
+    /// How it exited in that case, if not cleanly; continues after the planner's name.
     bad_end: Option<String>,
 }
 
 impl Worker {
-    /// Starts a worker for a planner with this limit of memory, bytes; nothing is loaded yet.
+    /// Starts a worker for a planner with this memory limit, bytes; nothing is loaded yet.
     pub(crate) fn spawn(command: &WorkerCommand, memory_limit_bytes: u64) -> Result<Self, Failure> {
         let start = || {
             let (socket, theirs) = UnixStream::pair()?;
@@ -77,21 +78,21 @@ impl Worker {
         })
     }
 
-    /// Whether the process has ended and was reaped.
+    /// Whether the process has ended and has been reaped.
     pub(crate) fn is_gone(&self) -> bool {
         matches!(self.state, State::Gone)
     }
 
-    /// Reads which planners the plugin has that it was asked to load, with the worker's own report from before.
+    /// Reads the planners of the plugin that was loaded, and the worker's earlier report on its sandbox.
     pub(crate) fn take_planners(&mut self) -> Result<(Sealed, Vec<Described>), Failure> {
         let Planners(planners) = self.take_answer(whole)?;
-        // A worker that answers without it has not closed itself off.
+        // A worker that answers without that report has not entered its sandbox.
         let sealed = self.guard.sealed().cloned();
         sealed.map(|sealed| (sealed, planners)).ok_or_else(|| self.end(Failure::Protocol))
     }
 
-    /// Has its first thread, which answers, run on these processors alone; threads that it starts from then on do so, too. Where
-    /// the system refuses, it runs where it ran.
+    /// Restricts the worker's first thread, which answers requests, to these processors, as well as threads that it
+    /// starts from then on. If the system refuses, nothing changes.
     #[cfg(target_os = "linux")]
     pub(crate) fn stay_on(&self, processors: &rustix::thread::CpuSet) {
         if !self.process.is_reaped() {
@@ -99,39 +100,39 @@ impl Worker {
         }
     }
 
-    /// The lines that it printed since the last time.
+    /// Takes the lines printed since the last call.
     pub(crate) fn take_printed(&mut self) -> Vec<String> {
         self.process.take_lines()
     }
 
-    /// How it ended when it was asked to, if not well; reads on after the planner's name.
+    /// Takes the description of how the worker exited on request, if not cleanly; continues after the planner's name.
     pub(crate) fn take_bad_end(&mut self) -> Option<String> {
         self.bad_end.take()
     }
 
-    /// What it printed last, once it has ended.
+    /// Takes the last lines printed, once the process has ended.
     pub(crate) fn take_last_printed(&mut self) -> Vec<String> {
         self.process.read_output();
         self.process.take_lines()
     }
 
-    /// Its last requests as they were sent, and the end of what it printed.
+    /// Returns the last requests as they were sent, and the end of the output.
     pub(crate) fn remains(&mut self) -> (Vec<u8>, String) {
         self.process.read_output();
         (self.tape.bytes(), String::from_utf8_lossy(self.process.tail()).into_owned())
     }
 
-    /// Memory of its process, where the system says so.
+    /// Returns the memory of the process, where the system reports it.
     pub(crate) fn memory(&self) -> Option<Memory> {
         memory_of(self.process.pid()).filter(|_| !self.process.is_reaped())
     }
 
-    /// Whether it can be asked.
+    /// Whether the worker can accept a request.
     pub(crate) fn is_idle(&self) -> bool {
         matches!(self.state, State::Idle)
     }
 
-    /// Asks; the outcome comes from [`Self::advance`].
+    /// Sends a request; [`Self::advance`] returns the outcome.
     ///
     /// # Errors
     /// The process no longer exists, or the request is too long.
@@ -145,7 +146,7 @@ impl Worker {
             return Err(Failure::Gone);
         }
         if self.incoming.has_more() {
-            // It sent something unasked after its last answer.
+            // The worker sent something after its last answer without being asked.
             self.kill();
             return Err(Failure::Protocol);
         }
@@ -154,7 +155,7 @@ impl Worker {
         let microseconds = u32::try_from(soft(budget).as_micros()).unwrap_or(u32::MAX).max(1);
         write(self.writer.begin(kind, self.sequence, microseconds));
         self.writer.finish().map_err(|length| {
-            Failure::Console(format!("cannot be asked: the request has {length} bytes, 16 MiB is the most"))
+            Failure::Console(format!("cannot be asked: the request has {length} bytes; the limit is 16 MiB"))
         })?;
         self.tape.note(kind, self.writer.frame());
         self.n_sent = 0;
@@ -164,7 +165,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Writes as much as there is room for.
+    /// Writes as much of the frame as the socket accepts.
     fn send(&mut self, now: Instant) {
         loop {
             let rest = &self.writer.frame()[self.n_sent..];
@@ -180,7 +181,7 @@ impl Worker {
         }
     }
 
-    /// Ends a busy worker that has too much memory.
+    /// Kills a busy worker that uses too much memory.
     fn weigh(&mut self, now: Instant) -> Option<Failure> {
         let is_busy = matches!(self.state, State::Busy(_) | State::Cancelling(..));
         let limit = self.scale.weigh(self.process.pid(), now).filter(|_| is_busy)?;
@@ -191,7 +192,7 @@ impl Worker {
         self.n_sent == self.writer.frame().len()
     }
 
-    /// Reports every descriptor that may change the state.
+    /// Reports every descriptor whose events may change the state.
     pub(super) fn watched<'a>(&'a self, mut watch: impl FnMut(Watched<'a>)) {
         match &self.state {
             State::Idle | State::Gone => return,
@@ -217,7 +218,7 @@ impl Worker {
         }
     }
 
-    /// When it has to be looked at although nothing has happened.
+    /// Returns when the worker must be checked even if nothing has happened.
     pub(super) fn wake_at(&self) -> Option<Instant> {
         let at = match &self.state {
             State::Idle | State::Gone => return None,
@@ -231,7 +232,7 @@ impl Worker {
         at.into_iter().chain(look).min()
     }
 
-    /// Does what is due; the outcome of the request, once there is one. After `Ok` its answer can be taken.
+    /// Does what is due. Returns the outcome of the request once there is one; after `Ok` its answer can be taken.
     pub(crate) fn advance(
         &mut self,
         ready: Ready,

@@ -1,8 +1,8 @@
-//! What plugins were found to hold, kept from one start of tankops to the next, so that not every one is loaded every time.
+//! Caches which planners each plugin contains, so that tankops need not load every plugin each time it starts.
 //!
-//! An entry is believed only if it is complete, and of this same program and system: another build may read a plugin
-//! differently, another kernel may close a process off less. It says what a probe said that was closed off wholly; whoever
-//! flies a planner loads and checks its file again.
+//! An entry is used only if it is complete and was made by the same program on the same system: a different build may
+//! read a plugin differently, and a different kernel may provide a weaker sandbox. An entry contains what a fully
+//! sandboxed probe reported. Before a mission uses a planner, its file is loaded and checked again.
 
 use crate::discovery::{PluginFile, Words, sha256_hex};
 use crate::stamp::{Abi, CONSOLE_ABI};
@@ -15,19 +15,21 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// With more entries than this the folder is emptied: an author's builds are each a new file.
+/// With more entries than this the folder is emptied, since each of an author's builds adds a file.
 const MOST_ENTRIES: usize = 256;
 
-/// A file that was written to less than this ago may be written to again unnoticed: its times are no finer.
+/// A file that changed more recently than this could change again without a new time, because file times are too
+/// coarse.
 const SETTLED: Duration = Duration::from_secs(1);
 
-/// A folder with what plugins hold, one file for each content, and which content lies where, one file for each place.
+/// A folder with one file for each plugin content, which lists its planners, and one file for each path, which states
+/// its content.
 pub(crate) struct Cache {
     folder: Option<PathBuf>,
     circumstances: String,
 }
 
-/// Something that is kept, with the program and the system that found it.
+/// A cached value, with the program and the system that produced it.
 #[derive(Serialize, Deserialize)]
 struct Entry<T> {
     circumstances: String,
@@ -36,7 +38,7 @@ struct Entry<T> {
     kept: T,
 }
 
-/// A plugin file as it was read.
+/// A plugin file as it was last read.
 #[derive(Serialize, Deserialize)]
 struct Place {
     identity: Identity,
@@ -45,25 +47,26 @@ struct Place {
     ids: Option<Vec<String>>,
 }
 
-/// What changes whenever somebody writes to a file: device, inode, length, times of the last writing and of the last change.
+/// Changes whenever the file is written to: device, inode, length, times of the last modification and of the last
+/// status change.
 type Identity = (u64, u64, u64, (i64, i64), (i64, i64));
 
 impl Cache {
-    /// A cache in this folder; without a folder it holds nothing.
+    /// Opens a cache in this folder; without a folder it stays empty.
     pub(crate) fn new(folder: Option<&Path>) -> Self {
         let circumstances = folder.map(|_| circumstances()).unwrap_or_default();
         Self { folder: folder.map(Path::to_owned), circumstances }
     }
 
-    /// The planners of a plugin, if they are known.
+    /// Returns the planners of a plugin, if they are cached.
     pub(crate) fn get(&self, plugin: &PluginFile) -> Option<Vec<PlannerInfo>> {
         let planners: Vec<PlannerInfo> = self.read(&plugin.sha256)?;
-        // The same content may be there under another name.
+        // The same content may exist under a different name.
         let named = |info| PlannerInfo { plugin: plugin.name(), ..info };
         Some(planners.into_iter().map(named).collect())
     }
 
-    /// Keeps the planners of a plugin, as a probe described them; it may have found another file than was read before.
+    /// Stores the planners of a plugin as a probe described them, unless the probe found a different file.
     pub(crate) fn put(&self, plugin: &PluginFile, planners: &[PlannerInfo]) {
         let is_sure =
             |info: &PlannerInfo| info.sandbox == Some(Sandbox::Full) && info.sha256 == plugin.sha256;
@@ -72,7 +75,7 @@ impl Cache {
         }
     }
 
-    /// A plugin file that was read before and has not been touched since.
+    /// Returns a plugin file that was read before and has not been modified since.
     pub(crate) fn seen(&self, path: &Path) -> Option<PluginFile> {
         let Place { identity, sha256, abi, ids } = self.read(&hash_of(path)?)?;
         let (now, _) = identity_of(path)?;
@@ -83,7 +86,7 @@ impl Cache {
         Some(PluginFile { words: Words::Ids(ids), ..plugin })
     }
 
-    /// Notes a plugin file that was just read.
+    /// Stores what was read from a plugin file.
     pub(crate) fn note(&self, plugin: &PluginFile) {
         let settled = identity_of(&plugin.path).filter(|(_, age)| *age > SETTLED);
         if let (Ok(abi), Some((identity, _)), Some(of)) = (&plugin.abi, settled, hash_of(&plugin.path)) {
@@ -103,12 +106,12 @@ impl Cache {
         (entry.of == of && entry.circumstances == self.circumstances).then_some(entry.kept)
     }
 
-    /// A cache that cannot be written counts as missing.
+    /// Writes an entry. Failures are ignored, as if there were no cache.
     fn write<T: Serialize + ?Sized>(&self, of: &str, kept: &T) {
         let Some(file) = self.file_of(of) else { return };
         let entry = Entry { circumstances: self.circumstances.clone(), of: of.to_owned(), kept };
         if let Ok(text) = serde_json::to_string(&entry) {
-            // What others read meanwhile is the old entry or the new one.
+            // Others that read meanwhile get either the old entry or the new one.
             let new = file.with_extension(format!("new-{}", std::process::id()));
             let _ = make_room(&file)
                 .and_then(|()| fs::write(&new, format!("{}\n{text}", sha256_hex(text.as_bytes()))))
@@ -121,13 +124,13 @@ impl Cache {
     }
 }
 
-/// The hash of where a file is.
+/// Returns the hash of a file's absolute path.
 fn hash_of(path: &Path) -> Option<String> {
     let absolute = std::path::absolute(path).ok()?;
     Some(sha256_hex(absolute.as_os_str().as_encoded_bytes()))
 }
 
-/// What distinguishes a file from others and from its earlier contents, and how long ago it was changed.
+/// Returns what distinguishes a file from others and from its earlier contents, and the time since it changed.
 fn identity_of(path: &Path) -> Option<(Identity, Duration)> {
     let about = fs::metadata(path).ok()?;
     let changed =
@@ -145,12 +148,12 @@ fn make_room(file: &Path) -> std::io::Result<()> {
     fs::create_dir_all(folder)
 }
 
-/// This build of tankops and the kernel that it runs on.
+/// Describes this build of tankops and the kernel on which it runs.
 fn circumstances() -> String {
     let program = fs::metadata("/proc/self/exe").or_else(|_| fs::metadata(std::env::current_exe()?)).ok();
     let changed =
         program.as_ref().and_then(|program| program.modified().ok()?.duration_since(UNIX_EPOCH).ok());
-    // Elsewhere nothing closes a process off, and nothing is kept.
+    // On other systems there is no sandbox, so nothing is cached.
     let kernel = |what| fs::read_to_string(format!("/proc/sys/kernel/{what}")).unwrap_or_default();
     format!(
         "tankops {} ({} bytes, changed at {} ns), wire {}, ABI {CONSOLE_ABI}, kernel {} {}",

@@ -1,5 +1,5 @@
-//! Answers: what a library holds, what a planner gives and says, how far it is, why it refuses. Where one is read, it keeps the
-//! limits of `checks/limits.rs`.
+//! Answers: the planners of a library, the results and messages of a planner, its progress, and its refusals. Readers
+//! enforce the limits of `checks/limits.rs`.
 
 use crate::checks::limits::{self, MOST_CUTS, MOST_POINTS};
 use crate::stamp::Abi;
@@ -9,7 +9,7 @@ use nalgebra::Point2;
 use planner_api::{Drawing, Leg, LogLevel, Plan};
 use serde::{Deserialize, Serialize};
 
-/// A planner's refusal as it crosses: the number of its code, its sentence, the part of the way that it found.
+/// A planner's refusal as it is sent: the number of its code, its sentence, and the part of the path that was found.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Refusal {
     pub(crate) code: i32,
@@ -18,20 +18,20 @@ pub(crate) struct Refusal {
     pub(crate) partial: Vec<Point2<f64>>,
 }
 
-/// Code of a refusal that the worker itself makes: the planner's answer is invalid.
+/// Code of a refusal that the worker itself makes because the planner's answer is invalid.
 pub(crate) const BAD_OUTPUT: i32 = 100;
 
-/// A worker that is closed off, and what it is about to load. It says so before anything of the plugin runs: this is
-/// believed of it, and what it says later is the plugin's.
+/// The report of a sandboxed worker before it loads a file. The console trusts it because it is sent before any code of
+/// the plugin runs; everything later could come from the plugin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sealed {
-    /// How far it is closed off.
+    /// The extent of the sandbox.
     #[serde(deserialize_with = "limits::sandbox")]
     pub(crate) sandbox: Sandbox,
-    /// Of the file, hexadecimal.
+    /// SHA-256 of the file, hexadecimal.
     #[serde(deserialize_with = "limits::text")]
     pub(crate) sha256: String,
-    /// Of the file's stamp.
+    /// The ABI version in the file's stamp.
     pub(crate) abi: Abi,
 }
 
@@ -60,7 +60,7 @@ fn parameters<S: serde::Serializer>(parameters: &[ParamInfo], to: S) -> Result<S
     to.collect_seq(parameters.iter().cloned().map(Parameter))
 }
 
-/// A parameter as it crosses. Its own form, in journals, puts the fields of its kind beside the others, by names.
+/// A parameter as it is sent. (Its form in journals puts the fields of its kind beside the others, by name.)
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Parameter(#[serde(with = "ParameterFields")] pub(crate) ParamInfo);
 
@@ -106,7 +106,7 @@ enum KindFields {
     },
 }
 
-/// What a planner gives, and what it drew, reported and said on the way.
+/// The result of a planner, with what it drew, reported and logged during the call.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answered<T> {
     pub(crate) given: T,
@@ -125,7 +125,7 @@ struct SaidFields {
     logs: Vec<(LogLevel, String)>,
 }
 
-/// A plan that a planner gives.
+/// A planner's plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GivenPlan(#[serde(with = "PlanFields")] pub(crate) Plan);
 

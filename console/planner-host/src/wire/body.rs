@@ -1,5 +1,4 @@
-//! Frames under construction and bodies that are read. What a body holds is written by `postcard`: the fields in their order,
-//! without names.
+//! Writes frames and reads their bodies. Bodies are encoded by `postcard`: the fields in order, without names.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -9,14 +8,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Writer(Vec<u8>);
 
 impl Writer {
-    /// Begins a frame, throwing away the one before.
+    /// Begins a frame and discards the previous one.
     pub(crate) fn begin(&mut self, kind: u8, sequence: u32, soft_deadline_us: u32) -> &mut Self {
         self.0.clear();
         self.written(&0_u32.to_le_bytes()).written(&[kind]);
         self.written(&sequence.to_le_bytes()).written(&soft_deadline_us.to_le_bytes())
     }
 
-    /// The finished frame, or its length when that is beyond the limit.
+    /// Returns the finished frame, or its length if that exceeds the limit.
     pub(crate) fn finish(&mut self) -> Result<&[u8], usize> {
         let length = self.0.len() - size_of::<u32>();
         if length > super::LONGEST {
@@ -26,31 +25,31 @@ impl Writer {
         Ok(&self.0)
     }
 
-    /// The frame that was finished last.
+    /// Returns the frame that was finished last.
     pub(crate) fn frame(&self) -> &[u8] {
         &self.0
     }
 
-    /// What was written without a frame around it.
+    /// Returns what was written without a frame around it.
     pub(crate) fn into_bytes(self) -> Vec<u8> {
         self.0
     }
 
-    /// Bytes as they are, which the other side takes from the rest of the body.
+    /// Appends raw bytes, which the other side takes from the rest of the body.
     pub(crate) fn written(&mut self, bytes: &[u8]) -> &mut Self {
         self.0.extend_from_slice(bytes);
         self
     }
 
-    /// A value.
+    /// Appends a value.
     pub(crate) fn put(&mut self, value: &(impl Serialize + ?Sized)) -> &mut Self {
         let so_far = std::mem::take(&mut self.0);
-        self.0 = postcard::to_extend(value, so_far).expect("every array of a message knows its length");
+        self.0 = postcard::to_extend(value, so_far).expect("every array in a message has a known length");
         self
     }
 }
 
-/// A body that is not what its kind says.
+/// The body does not match its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Malformed;
 
@@ -58,11 +57,11 @@ pub(crate) struct Malformed;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Body<'a>(pub(crate) &'a [u8]);
 
-/// What was read, or that it was not there.
+/// The result of reading from a body.
 pub(crate) type Read<T> = Result<T, Malformed>;
 
 impl<'a> Body<'a> {
-    /// Reads a value and goes on behind it.
+    /// Reads a value and advances past it.
     pub(crate) fn take<T: Deserialize<'a>>(&mut self) -> Read<T> {
         let (value, rest) = postcard::take_from_bytes(self.0).map_err(|_| Malformed)?;
         self.0 = rest;
@@ -70,7 +69,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Reads a body as one value.
+/// Reads the entire body as one value.
 pub(crate) fn whole<T: DeserializeOwned>(mut body: Body<'_>) -> Read<T> {
     let value = body.take()?;
     if body.0.is_empty() { Ok(value) } else { Err(Malformed) }

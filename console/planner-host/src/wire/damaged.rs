@@ -1,4 +1,5 @@
-//! Damaged answers and requests: read or refused; never a panic, and no memory for what a length only claims.
+//! Tests damaged answers and requests: they are read or refused, but never cause a panic, and never reserve memory only
+//! because a length claims it.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -60,7 +61,7 @@ proptest! {
         let bytes = &bytes[skipped.index(bytes.len() + 1)..];
         let most = bytes.len();
         let body = || Body(bytes);
-        // No element is shorter than a byte, so nothing that was read has more elements than there were bytes.
+        // Every element takes at least one byte, so nothing that was read has more elements than there were bytes.
         if let Ok(Answered { given: GivenPlan(plan), said }) = body().take::<Answered<GivenPlan>>() {
             prop_assert!(plan.path.len() + plan.legs.len() + plan.cuts.len() <= most);
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
@@ -72,7 +73,7 @@ proptest! {
             prop_assert!(said.drawings.len() + said.scalars.len() + said.logs.len() <= most);
         }
         if let Ok(Refusal { message, partial, .. }) = body().take() {
-            // A character that is not plain is shown as one of three bytes.
+            // A character that is not plain is shown as a character of three bytes.
             prop_assert!(message.chars().count() + partial.len() <= most);
         }
         let _ = (body().take::<Answered<Command>>(), body().take::<Progress>(), body().take::<Sealed>());
@@ -92,8 +93,8 @@ fn what_is_damaged_above_is_good_before() {
     assert!(body.0.is_empty());
 }
 
-/// A frame as long as one may be with the largest count that its first bytes can claim, and then the shortest elements that
-/// there are: a list that its limits did not end would need many times its length as memory.
+/// A frame of maximum length that begins with the largest counts that its first bytes can claim, followed by the
+/// shortest possible elements. A list without a limit would need many times that length as memory.
 #[test]
 fn a_list_of_the_shortest_elements_ends_at_its_limit() {
     fn is_refused<T: serde::de::DeserializeOwned>(before: &[u8]) -> bool {
@@ -103,11 +104,11 @@ fn a_list_of_the_shortest_elements_ends_at_its_limit() {
         let claimed: Read<T> = whole(Body(&bytes[..before.len() + count.len()]));
         read.is_err() && claimed.is_err()
     }
-    // Planners, and the parameters of one.
+    // Planners, and the parameters of one of them.
     assert!(is_refused::<Planners>(&[]) && is_refused::<Planners>(&[1, 1, b'x', 0, 0, 0, 0, 0]));
-    // The words of a parameter: five texts and the number of its kind come before.
+    // The words of a parameter, after five texts and the number of its kind.
     assert!(is_refused::<Planners>(&[1, 1, b'x', 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 3]));
-    // Legs and cuts of a plan: a path without a point, its cost, that it is not complete.
+    // Legs and cuts of a plan, after a path without points, its cost, and the flag for an incomplete plan.
     assert!(is_refused::<Answered<GivenPlan>>(&[0; 10]) && is_refused::<Answered<GivenPlan>>(&[0; 11]));
     // Drawings, figures and messages.
     assert!((0..3).all(|n| is_refused::<Answered<()>>(&[0; 3][..n])));

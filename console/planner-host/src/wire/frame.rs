@@ -1,27 +1,27 @@
-//! Frames over a stream that may deliver them in pieces.
+//! Reads frames from a stream that may deliver them in pieces.
 
 use super::LONGEST;
 use super::body::Body;
 use std::io::{ErrorKind, Read};
 use std::time::Duration;
 
-/// Bytes before the body.
+/// The number of bytes before the body.
 pub(crate) const HEADER: usize = 13;
-/// Where the kind stands in a frame.
+/// The position of the kind in a frame.
 pub(crate) const KIND_AT: usize = 4;
 
-/// What came of waiting for a frame.
+/// The outcome of waiting for a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Received {
-    /// A whole frame; it stays readable until the next call.
+    /// A complete frame; it stays readable until the next call.
     Frame,
     /// The peer has closed the connection.
     Closed,
-    /// The bytes that arrived are not a frame.
+    /// The bytes that arrived do not form a frame.
     Broken,
 }
 
-/// What came of reading from a stream.
+/// The outcome of reading from a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Filled {
     /// Something arrived.
@@ -34,25 +34,25 @@ pub(crate) enum Filled {
     Broken,
 }
 
-/// A length that no frame has.
+/// The length is not valid for a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoFrame;
 
-/// Reads frames; keeps what has arrived of the next one.
+/// Reads frames, and keeps the part of the next one that has already arrived.
 #[derive(Debug, Default)]
 pub(crate) struct Incoming {
     buffer: Vec<u8>,
-    /// Bytes of the buffer that hold data.
+    /// The number of bytes in the buffer that hold data.
     filled: usize,
-    /// Length of the frame at the front that was returned last.
+    /// Length of the current frame, which is at the front of the buffer.
     current: usize,
 }
 
-/// Room for a step's frame, so that most are read at once.
+/// Buffer space for the frame of a step, so that most are read with one call.
 const ROOM: usize = 16 << 10;
 
 impl Incoming {
-    /// Waits for a frame as long as it takes, on a stream that blocks.
+    /// Waits for a frame without a time limit, on a blocking stream.
     pub(crate) fn receive(&mut self, stream: &mut impl Read) -> Received {
         loop {
             match self.next_frame() {
@@ -68,7 +68,7 @@ impl Incoming {
         }
     }
 
-    /// Moves on to the next frame, if all of it has arrived; it stays readable until the next call.
+    /// Advances to the next frame, if it has arrived completely; it stays readable until the next call.
     pub(crate) fn next_frame(&mut self) -> Option<Result<(), NoFrame>> {
         self.forget_current();
         let length = self.front_length()?;
@@ -82,8 +82,8 @@ impl Incoming {
         Some(Ok(()))
     }
 
-    /// Reads what has arrived, at most the rest of the next frame or what there is room for; to be called when there was
-    /// no next frame.
+    /// Reads what has arrived: at most the rest of the next frame, or as much as the buffer has room for. Call it when
+    /// there was no next frame.
     pub(crate) fn fill(&mut self, stream: &mut impl Read) -> Filled {
         let needed = self.front_length().map_or(ROOM, |length| 4 + length.min(LONGEST));
         self.make_room(needed.max(self.filled + 1));
@@ -118,22 +118,22 @@ impl Incoming {
         }
     }
 
-    /// Whether more than the current frame has arrived already.
+    /// Whether data after the current frame has already arrived.
     pub(crate) fn has_more(&self) -> bool {
         self.filled > self.current
     }
 
-    /// Kind of the current frame.
+    /// Returns the kind of the current frame.
     pub(crate) fn kind(&self) -> u8 {
         self.buffer[KIND_AT]
     }
 
-    /// Sequence number of the current frame.
+    /// Returns the sequence number of the current frame.
     pub(crate) fn sequence(&self) -> u32 {
         self.number_at(KIND_AT + 1)
     }
 
-    /// Soft deadline of the current frame.
+    /// Returns the soft deadline of the current frame.
     pub(crate) fn soft_deadline(&self) -> Option<Duration> {
         let microseconds = self.number_at(KIND_AT + 5);
         (microseconds > 0).then(|| Duration::from_micros(microseconds.into()))
@@ -143,7 +143,7 @@ impl Incoming {
         self.buffer[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
     }
 
-    /// Body of the current frame.
+    /// Returns the body of the current frame.
     pub(crate) fn body(&self) -> Body<'_> {
         Body(&self.buffer[HEADER..self.current])
     }

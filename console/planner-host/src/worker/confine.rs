@@ -1,4 +1,4 @@
-//! The privileges and resources that a worker drops before it loads anything.
+//! Drops the privileges and resources that a worker does not need before it loads anything.
 
 use super::Socket;
 use crate::discovery::{MOST_BYTES, PluginDirs, too_large_for_machine};
@@ -17,14 +17,14 @@ use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Barrier};
 
-/// The socket lives above the numbers that careless plugins close; there is only this one descriptor of it.
+/// The descriptor of the socket, the only one. It is above the numbers that careless plugins close.
 const SOCKET_AT: i32 = 200;
 const MOST_FILES: u64 = 256;
-/// Of the first thread; it does not count as memory that can be written.
+/// Maximum size of the first thread's stack, bytes; it does not count as writable memory.
 const LARGEST_STACK: u64 = 16 << 20;
 
-/// Makes sure, before a worker is started, that it can have its socket and its plugin where they belong, and that the system lets
-/// every plugin in these folders be set aside.
+/// Checks before a worker is started that it can have its two descriptors, and that the system allows a copy of every
+/// plugin in these folders.
 ///
 /// # Errors
 /// A sentence about the limit that is too low.
@@ -33,7 +33,7 @@ pub fn check_limits(plugins: &PluginDirs) -> Result<(), String> {
     plugins.candidates().iter().find_map(|path| too_large_for_machine(path)).map_or(Ok(()), Err)
 }
 
-/// Makes sure that a worker can have its socket and its plugin where they belong.
+/// Checks that a worker can have its socket and its plugin at their descriptors.
 ///
 /// # Errors
 /// A sentence about the limit that is too low.
@@ -41,13 +41,13 @@ pub(crate) fn check_descriptors() -> Result<(), String> {
     let last = SOCKET_AT.max(PLUGIN_AT) as u64;
     match getrlimit(Resource::Nofile).current.filter(|limit| *limit <= last) {
         Some(limit) => Err(format!(
-            "a process may open {limit} files, a planner needs {MOST_FILES}: `ulimit -n {MOST_FILES}`"
+            "a process may open only {limit} files, but a planner needs {MOST_FILES}; try `ulimit -n {MOST_FILES}`"
         )),
         None => Ok(()),
     }
 }
 
-/// Takes the socket that came as standard input and puts nothing in its place.
+/// Takes the socket that was passed as standard input and replaces it with an empty input.
 pub(super) fn take_socket() -> io::Result<UnixStream> {
     let socket = rustix::io::fcntl_dupfd_cloexec(io::stdin().as_fd(), SOCKET_AT)?;
     let nothing = std::fs::File::open("/dev/null")?;
@@ -57,8 +57,8 @@ pub(super) fn take_socket() -> io::Result<UnixStream> {
     Ok(socket.into())
 }
 
-/// Drops what a planner does not need, the terminal first. Limits that the system does not grant are ignored: they only
-/// guard against accidents, and the deadlines hold without them.
+/// Drops what a planner does not need, first of all the terminal. Limits that the system does not grant are ignored:
+/// they only guard against accidents, and the deadlines are enforced without them.
 pub(super) fn confine() {
     let _ = setsid();
     limit(Resource::Core, 0);
@@ -72,7 +72,7 @@ pub(super) fn confine() {
     }
 }
 
-/// Closes the process off, and reports to the console how far and for which file, before anything of that plugin runs.
+/// Enters the sandbox and reports its extent and the file to the console, before any code of the plugin runs.
 ///
 /// # Errors
 /// The console cannot be informed; then nothing may be loaded.
@@ -88,7 +88,7 @@ pub(super) fn close_off(
     }
     let sealed = Sealed { sandbox, sha256: file.sha256.clone(), abi: file.abi };
     let mut frame = Writer::default();
-    let frame = frame.begin(kind::SEALED, sequence, 0).put(&sealed).finish().expect("a few words");
+    let frame = frame.begin(kind::SEALED, sequence, 0).put(&sealed).finish().expect("the report is short");
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut descriptors = SendAncillaryBuffer::new(&mut space);
     let listener = listener.as_ref().map(AsFd::as_fd);
@@ -102,21 +102,21 @@ pub(super) fn close_off(
     Ok((sealed.sandbox, reads_libraries))
 }
 
-/// Limits memory to this much in addition to what the worker itself has: that is the planner's. The system counts what is private and
-/// can be written; what a planner does about the rest, the console decides ([`crate::sandbox::Uncounted`]).
+/// Limits the planner's memory to this much in addition to what the worker itself uses. The system counts private
+/// writable memory; the console decides about the rest ([`crate::sandbox::Uncounted`]).
 pub(super) fn limit_memory(bytes: u64) {
     let (_, own_data) = own_memory();
     limit(Resource::Data, own_data.saturating_add(bytes));
 }
 
-/// Limits address space where the console cannot decide about it. Elsewhere this would harm: the system makes memory
-/// writable without counting it when this limit is reached.
+/// Limits address space where the console cannot decide about it. Where it can, this limit would do harm: once it is
+/// reached, the system makes memory writable without counting it.
 fn limit_space(bytes: u64) {
     let (own_space, _) = own_memory();
     limit(Resource::As, own_space.saturating_add(bytes).saturating_add(MAY_RESERVE));
 }
 
-/// Address space of this process, and what of it is memory of its own, bytes; nothing where the system does not say.
+/// Returns the address space of this process and its private memory, bytes; zero where the system does not report it.
 fn own_memory() -> (u64, u64) {
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let bytes_at = |at| {
@@ -126,7 +126,8 @@ fn own_memory() -> (u64, u64) {
     (bytes_at(0), bytes_at(5))
 }
 
-/// Lowers a limit. It is never raised: the guard page that names an overflow of the stack was placed by the limit of the start.
+/// Lowers a limit, but never raises it: the guard page that detects a stack overflow was placed according to the limit
+/// at the start.
 fn limit(resource: Resource, most: u64) {
     let before = getrlimit(resource);
     let most = before.current.into_iter().chain(before.maximum).fold(most, u64::min);
@@ -134,10 +135,10 @@ fn limit(resource: Resource, most: u64) {
 }
 
 /// Starts a thread that ends this process when the console has exited, or when the process ignores a request to shut
-/// down; also in the middle of an endless loop.
+/// down. It works even during an endless loop.
 ///
-/// Returns when that thread is watching. Its start reserves memory, and the console must allow that; a console that has already
-/// asked the worker to shut down may no longer answer.
+/// Returns when that thread is watching. Starting it reserves memory, which the console must allow, and a console that
+/// has already asked the worker to shut down may no longer answer.
 pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     let watches = Arc::new(Barrier::new(2));
     let begun = Arc::clone(&watches);
@@ -147,7 +148,7 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
             let mut sockets = [PollFd::new(&socket, SHUTDOWN_REQUESTED)];
             let happened = poll(&mut sockets, None).map_or(PollFlags::empty(), |_| sockets[0].revents());
             if happened.contains(PollFlags::NVAL) {
-                // The planner closed our descriptor; the main thread finds that out, too, and ends with its own code.
+                // The planner closed our descriptor; the main thread notices that, too, and ends with its own code.
                 return;
             }
             if happened == SHUTDOWN_REQUESTED {
@@ -162,9 +163,9 @@ pub(super) fn die_with_the_console(socket: Socket) -> io::Result<()> {
     Ok(())
 }
 
-/// The console sends nothing more. A full hang-up and errors are reported unasked.
+/// The console sends nothing more. A full hang-up and errors are always reported.
 #[cfg(target_os = "linux")]
 const SHUTDOWN_REQUESTED: PollFlags = PollFlags::RDHUP;
-/// Elsewhere only a full hang-up or an error is reported, and the console has to kill a worker that does not exit.
+/// Other systems report only a full hang-up or an error, and the console must kill a worker that does not exit.
 #[cfg(not(target_os = "linux"))]
 const SHUTDOWN_REQUESTED: PollFlags = PollFlags::empty();

@@ -1,5 +1,6 @@
-//! The soft deadline of the current request, as the planner sees it: only what its process computes is charged, so that a
-//! planner that the machine does not schedule is not late. The console's own clock charges a planner that sleeps, too.
+//! The soft deadline of the current request, as the planner sees it. It charges only the processor time of its own
+//! process, so that a planner is not late because the machine does not schedule it. The console's own clock also
+//! charges a planner that sleeps.
 
 use super::Socket;
 use super::progress_reporter::ProgressReporter;
@@ -13,15 +14,15 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Socket and processor time are looked at no more often than this. Between requests a process computes nothing, so what it had
-/// computed by the beginning of a request is known to within this time, too.
+/// The socket and the processor time are checked at most this often. Between requests a process computes nothing, so
+/// the processor time at the start of a request is known to this accuracy, too.
 const CHECK_PERIOD: Duration = Duration::from_millis(1);
 
-/// Deadline of a request, and whether a CANCEL is waiting behind it.
+/// The deadline of a request, and whether a CANCEL has arrived after it.
 pub(super) struct Deadline {
     socket: Socket,
     budget: Cell<Option<Budget>>,
-    /// When the processor time was looked at before a request, and what it was.
+    /// When the processor time was last read before a request, and its value.
     computed: Cell<(Instant, Duration)>,
     looked: Cell<Instant>,
     cancelled: Cell<bool>,
@@ -30,12 +31,13 @@ pub(super) struct Deadline {
     progress: ProgressReporter,
 }
 
-/// Time for a request: it is used up when that much wall time has passed and this process has computed for as long.
+/// The budget of a request: it is used up when this much wall time has passed and this process has also used that much
+/// processor time.
 #[derive(Debug, Clone, Copy)]
 struct Budget {
     within: Duration,
     began: Instant,
-    /// Processor time of this process when it began.
+    /// Processor time of this process at the start of the request.
     began_cpu: Duration,
 }
 
@@ -46,7 +48,7 @@ impl Budget {
     }
 
     fn is_used_up(&self, now: Instant) -> bool {
-        // Reading the processor time costs a system call; most of the time it is not needed.
+        // Reading the processor time costs a system call and is usually not needed.
         now - self.began >= self.within && self.left(now).is_zero()
     }
 }
@@ -57,7 +59,7 @@ fn processor_time() -> Duration {
 }
 
 impl Deadline {
-    /// No request yet.
+    /// Creates the deadline before the first request.
     pub(super) fn new(socket: &Socket) -> Self {
         let now = Instant::now();
         Self {
@@ -72,10 +74,10 @@ impl Deadline {
         }
     }
 
-    /// A request arrived; only a CANCEL can have arrived behind it.
+    /// Begins a request; anything that has already arrived after it is a CANCEL.
     pub(super) fn begin(&self, request: &Incoming) {
         let now = Instant::now();
-        // Reading it costs a system call, and steps may come every few microseconds.
+        // Reading the processor time costs a system call, and steps may come every few microseconds.
         if now - self.computed.get().0 >= CHECK_PERIOD {
             self.computed.set((now, processor_time()));
         }
@@ -87,7 +89,7 @@ impl Deadline {
         self.progress.begin(request.kind(), request.sequence());
     }
 
-    /// Whether drawings of this request are shown.
+    /// Sets whether drawings of this request are shown.
     pub(super) fn set_watched(&self, watched: bool) {
         self.watched.set(watched);
     }

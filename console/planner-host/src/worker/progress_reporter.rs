@@ -1,4 +1,4 @@
-//! Reports the progress of the current plan to the console, rate-limited to what a person can read.
+//! Reports the progress of the current plan to the console, no faster than a person can read.
 
 use super::Socket;
 use crate::Progress;
@@ -13,7 +13,7 @@ const REPORT_EVERY: Duration = Duration::from_millis(50);
 /// Reports the progress of the current plan to the console.
 pub(super) struct ProgressReporter {
     socket: Socket,
-    /// Sequence number of the request, while it is one for a plan.
+    /// Sequence number of the request, if it is for a plan.
     plan: Cell<Option<u32>>,
     reported_at: Cell<Option<Instant>>,
     /// The newest progress that came too soon after the last report.
@@ -21,19 +21,19 @@ pub(super) struct ProgressReporter {
 }
 
 impl ProgressReporter {
-    /// No request yet.
+    /// Creates the reporter before the first request.
     pub(super) fn new(socket: Socket) -> Self {
         Self { socket, plan: Cell::new(None), reported_at: Cell::new(None), waiting: RefCell::default() }
     }
 
-    /// A request arrived; progress is reported only for a plan.
+    /// Begins a request; progress is reported only for a plan.
     pub(super) fn begin(&self, kind: u8, sequence: u32) {
         self.plan.set((kind == kind::PLAN).then_some(sequence));
         self.reported_at.set(None);
         self.waiting.take();
     }
 
-    /// Takes progress: reports it now, or keeps it for later when the last report is too recent.
+    /// Accepts progress: reports it now, or keeps it for later if the last report is too recent.
     pub(super) fn take(&self, progress: Progress) {
         if self.plan.get().is_some() {
             self.waiting.replace(Some(progress));
@@ -41,7 +41,7 @@ impl ProgressReporter {
         }
     }
 
-    /// Reports waiting progress, if it is time.
+    /// Reports waiting progress if it is due.
     pub(super) fn catch_up(&self, now: Instant) {
         let is_too_soon = self.reported_at.get().is_some_and(|at| now - at < REPORT_EVERY);
         if self.waiting.borrow().is_none() || is_too_soon {
@@ -53,7 +53,7 @@ impl ProgressReporter {
         }
     }
 
-    /// Writes a frame completely or not at all: a console that does not read blocks nothing.
+    /// Writes a frame completely or not at all, so that a console that does not read blocks nothing.
     fn write(&self, writer: &mut Writer) {
         let Ok(mut rest) = writer.finish() else { return };
         let mut flags = SendFlags::DONTWAIT;
@@ -62,7 +62,7 @@ impl ProgressReporter {
             if rest.is_empty() {
                 return;
             }
-            // What has begun must end, or nothing that follows can be read.
+            // A frame that was begun must be completed, or nothing after it could be read.
             flags = SendFlags::empty();
         }
     }

@@ -1,4 +1,4 @@
-//! What a worker holds between two requests, and how it obeys them.
+//! The state of a worker between two requests, and how it executes them.
 
 use super::Socket;
 use super::confine::{close_off, die_with_the_console, limit_memory};
@@ -14,15 +14,15 @@ use mission::Sandbox;
 use mission::ask::{PlanAsk, Site, StepAsk};
 use std::sync::Arc;
 
-/// Why there is no answer.
+/// Why a request has no result.
 pub(super) enum Trouble {
-    /// The library is not a plugin, or does not describe itself.
+    /// The library is not a plugin, or failed to describe itself.
     Refused(String),
-    /// The machine does not let the worker run.
+    /// The machine prevents the worker from running.
     Unable(String),
-    /// The planner said no.
+    /// The planner refused.
     Failed(Refusal),
-    /// The request is not what its kind says.
+    /// The request does not match its kind.
     Malformed,
 }
 
@@ -47,7 +47,7 @@ impl From<NotRead> for Trouble {
     }
 }
 
-/// The library, and the planner that was made from it.
+/// The library, and the planner created from it.
 pub(super) struct Session<'a> {
     deadline: &'a Deadline,
     socket: &'a Socket,
@@ -56,12 +56,12 @@ pub(super) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Nothing loaded yet.
+    /// Creates a session with nothing loaded.
     pub(super) fn new(deadline: &'a Deadline, socket: &'a Socket) -> Self {
         Self { deadline, socket, table: None, instance: None }
     }
 
-    /// Obeys a request and writes the body of its answer.
+    /// Executes a request and writes the body of its answer.
     pub(super) fn obey(&mut self, request: &Incoming, out: &mut Writer) -> Result<(), Trouble> {
         let body = request.body();
         match request.kind() {
@@ -80,7 +80,7 @@ impl<'a> Session<'a> {
         Sink::new(self.deadline)
     }
 
-    /// Loads a library once; describes one planner of it and keeps that, or all of them when none is named.
+    /// Loads a library once. Describes one planner and keeps it, or describes all planners if no id is given.
     fn load(&mut self, body: Body<'_>, sequence: u32, out: &mut Writer) -> Result<(), Trouble> {
         let Some(load) = Load::read(body)? else {
             return Err(Trouble::Refused("worker and console are different builds; restart tankops".into()));
@@ -92,7 +92,7 @@ impl<'a> Session<'a> {
         let library = file.load().map_err(Trouble::Refused)?;
         if reads_libraries {
             close_files()
-                .map_err(|why| Trouble::Refused(format!("its files cannot be closed off: {why}")))?;
+                .map_err(|why| Trouble::Refused(format!("its access to files cannot be blocked: {why}")))?;
         }
         let mut tables = library.tables().map_err(Trouble::Refused)?;
         tables.retain(|table| load.id.is_empty() || table.id == load.id);
@@ -104,7 +104,8 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// From here on the process can only compute. Returns whether files are still to be closed off.
+    /// Enters the sandbox: from here on the process can only compute. Returns whether access to files must still be
+    /// removed.
     fn close_off(
         &self,
         sequence: u32,
@@ -112,13 +113,13 @@ impl<'a> Session<'a> {
         memory_limit_bytes: u64,
         requires_sandbox: bool,
     ) -> Result<bool, Trouble> {
-        let lost = |error| Trouble::Unable(no_worker("cannot be closed off", &error));
+        let lost = |error| Trouble::Unable(no_worker("cannot be sandboxed", &error));
         let (sandbox, reads_libraries) =
             close_off(self.socket, sequence, file, memory_limit_bytes).map_err(lost)?;
         if requires_sandbox && sandbox != Sandbox::Full {
-            return Err(Trouble::Refused(format!("--require-sandbox is set, and the sandbox is {sandbox}")));
+            return Err(Trouble::Refused(format!("--require-sandbox is set, but the sandbox is {sandbox}")));
         }
-        // A thread that had started before would not be closed off.
+        // A thread that started earlier would not be covered by the sandbox.
         die_with_the_console(Arc::clone(self.socket)).map_err(lost)?;
         Ok(reads_libraries)
     }

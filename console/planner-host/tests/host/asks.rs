@@ -19,7 +19,7 @@ fn two_workers_answer_independently() {
     }
     assert!(matches!(desk.ask(TWO, plan()), Ok(Given::Plan(plan)) if plan.complete));
     let fault = desk.ask(ONE, step(0)).unwrap_err();
-    assert!(fault.message.ends_with("it has not answered what it was asked before"), "{fault}");
+    assert!(fault.message.ends_with("it has not answered the previous request"), "{fault}");
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn a_worker_with_an_open_ask_takes_no_other() {
     assert_eq!((refused.ask, planned.ask), (second, first));
     let fault = refused.result.unwrap_err();
     assert_eq!(fault.cause, Cause::Refused);
-    let sentence = "planner faulty cannot do step 0: it has not answered what it was asked before";
+    let sentence = "planner faulty is not available for step 0: it has not answered the previous request";
     assert_eq!(fault.message, sentence);
     assert!(planned.result.is_ok());
 }
@@ -70,7 +70,7 @@ fn a_worker_that_is_not_there_answers_that_it_is_gone() {
     let mut desk = Desk::new(&built(), config());
     desk.submit(ONE, What::Close);
     let fault = desk.ask(ONE, step(3)).unwrap_err();
-    let sentence = "the planner cannot do step 3: its process has ended and it must be chosen again";
+    let sentence = "the planner is not available for step 3: its process has ended; choose the planner again";
     assert_eq!((fault.cause, fault.message.as_str()), (Cause::Died, sentence));
     desk.open(ONE, "none");
     desk.submit(ONE, What::Close);

@@ -172,7 +172,7 @@ fn attacks_in_a_step_are_never_made_and_named_with_planner_call_and_step() {
 fn attacks_in_a_constructor_do_not_even_harm_who_only_lists_planners() {
     for (attack, call) in ATTACKS {
         let sentence =
-            format!("tried {call} while it was loaded, which no planner may do; its process was killed");
+            format!("tried {call} while being loaded, which no planner may do; its process was killed");
         assert_eq!(refusal_of(attack), sentence, "{attack}");
     }
 }
@@ -294,7 +294,7 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
     let text = |text: &str| [&[text.len() as u8], text.as_bytes()].concat();
     // Full, another hash, ABI 1.0.
     let sealed = [vec![0], text("ab"), vec![1, 0]].concat();
-    assert_eq!(refusal_of(&sending(0x84, 1, &sealed)), "sent an invalid reply while it was loaded");
+    assert_eq!(refusal_of(&sending(0x84, 1, &sealed)), "sent an invalid reply while being loaded");
     // One planner: id, name, version, about; no abilities, state 1, no parameters.
     let named = |id: &str| [vec![1], text(id), vec![0; 4], vec![1], vec![0]].concat();
     let surveyed = |done: &str| {
@@ -305,7 +305,7 @@ fn a_library_cannot_say_that_it_is_another_file_or_lies_about_what_it_has() {
     assert_eq!((lying.planners[0].id.as_str(), &lying.planners[0].sha256), ("spiral", &lying.sha256));
     assert_ne!(lying.sha256, honest, "the hash of this very file");
     let unsound = surveyed(&sending(0x80, 1, &named("two words")));
-    assert_eq!(unsound.refused.as_deref(), Some("sent an invalid reply while it was loaded"));
+    assert_eq!(unsound.refused.as_deref(), Some("sent an invalid reply while being loaded"));
 }
 
 /// Writes a frame to the console, in C.

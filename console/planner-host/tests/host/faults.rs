@@ -40,7 +40,7 @@ fn a_panic_names_file_line_step_and_text() {
 fn a_panic_without_text_is_a_panic() {
     let fault = fault_of("panic_payload", config());
     assert_eq!(fault.cause, Cause::Panic);
-    assert!(fault.message.ends_with("the panic carries no text"), "{fault}");
+    assert!(fault.message.ends_with("the panic has no message"), "{fault}");
 }
 
 #[test]
@@ -131,7 +131,8 @@ fn a_planner_that_stops_when_asked_is_late_and_its_process_ends() {
     assert_eq!(fault.message, "planner faulty was too slow: it missed the deadline of step 5");
     let fault = plan(&mut host).unwrap_err();
     assert_eq!(fault.cause, Cause::Died);
-    let sentence = "planner faulty cannot do plan: its process has ended and it must be chosen again";
+    let sentence =
+        "planner faulty is not available for plan: its process has ended; choose the planner again";
     assert_eq!(fault.message, sentence);
     assert_another_drives(&mut host);
 }
@@ -143,7 +144,7 @@ fn numbers_that_no_robot_can_follow_are_caught() {
     assert_eq!(fault.message, "planner faulty gave a speed that is not a number during step 5");
     let fault = fault_of("huge", config());
     assert_eq!(fault.cause, Cause::BadOutput);
-    assert!(fault.message.contains("speed of 1e308 m/s, the robot's limit is 0.3 m/s"), "{fault}");
+    assert!(fault.message.contains("speed of 1e308 m/s; the robot's limit is 0.3 m/s"), "{fault}");
 }
 
 #[test]
@@ -225,14 +226,14 @@ fn parameters_are_checked_before_a_planner_sees_them() {
     assert_eq!(message, "parameter `at_step` of planner faulty takes 0 to 1000000, not -1");
     choose(&mut host, "faulty", &Parameters::new()).unwrap();
     let message = refused(host.reconfigure(&at_step(ParamValue::Int(3))).unwrap_err());
-    assert_eq!(message, "parameter `at_step` of planner faulty cannot change under way");
+    assert_eq!(message, "parameter `at_step` of planner faulty cannot change during a mission");
     assert_eq!(host.stats().faults, 3);
 }
 
 #[test]
 fn without_a_planner_there_is_a_sentence() {
     let fault = step(&mut host(config()), 0).unwrap_err();
-    assert_eq!((fault.cause, fault.message.as_str()), (Cause::Refused, "no planner was chosen yet"));
+    assert_eq!((fault.cause, fault.message.as_str()), (Cause::Refused, "no planner has been chosen"));
 }
 
 #[test]

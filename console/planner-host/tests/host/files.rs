@@ -61,9 +61,9 @@ fn another_abi_is_refused_before_anything_of_it_runs() {
     let source = "#include \"tankops_planner.h\"\nTP_STAMP(9, 0);\n\
                   __attribute__((constructor)) static void boom(void) { *(volatile int *)8 = 1; }\n";
     let (_folder, dirs) = folder_with("newer", source);
-    assert_eq!(refusal(&dirs), "built for planner ABI 9.0, this console uses 1.4: update the console");
+    assert_eq!(refusal(&dirs), "built for planner ABI 9.0; this console uses 1.4: update the console");
     let (_folder, dirs) = folder_with("older", &source.replace("9, 0", "0, 4"));
-    assert_eq!(refusal(&dirs), "built for planner ABI 0.4, this console uses 1.4: rebuild the plugin");
+    assert_eq!(refusal(&dirs), "built for planner ABI 0.4; this console uses 1.4: rebuild the plugin");
 }
 
 const HEAD: &str = "#include \"tankops_planner.h\"\nTP_STAMP(TP_ABI_MAJOR, TP_ABI_MINOR);\n";
@@ -83,9 +83,12 @@ fn a_planner_without_its_functions_is_refused_with_their_names() {
          TP_EXPORT const tp_entry tank_planner_entry = TP_ENTRY(list, 1, \"C\");\n"
     );
     let (_folder, dirs) = folder_with("half", &source);
-    assert_eq!(refusal(&dirs), "planner `half` lacks the function(s): describe, create, destroy, plan, step");
+    assert_eq!(
+        refusal(&dirs),
+        "planner `half` lacks required functions: describe, create, destroy, plan, step"
+    );
     let fault = choose(&mut BlockingHost::new(&dirs, config()), "half", &Parameters::new()).unwrap_err();
-    assert_refused(&fault, &["plugin libplanner_half.so is refused", "lacks the function(s)"]);
+    assert_refused(&fault, &["plugin libplanner_half.so is refused", "lacks required functions"]);
 }
 
 #[test]
@@ -116,7 +119,7 @@ fn a_library_that_crashes_while_it_is_loaded_is_a_line_in_the_list() {
     let source =
         format!("{HEAD}__attribute__((constructor)) static void boom(void) {{ *(volatile int *)8 = 1; }}\n");
     let (_folder, dirs) = folder_with("crash", &source);
-    assert_eq!(refusal(&dirs), "was killed by SIGSEGV (invalid memory access) while it was loaded");
+    assert_eq!(refusal(&dirs), "was killed by SIGSEGV (invalid memory access) while being loaded");
 }
 
 #[test]
@@ -189,5 +192,5 @@ fn a_machine_without_workers_is_not_a_fault_of_plugins() {
     };
     assert_eq!(surveyor(&sound), None);
     let why = surveyor(&none).expect("no process is started");
-    assert!(why.starts_with("cannot be run, its process cannot be started: No such file"), "{why}");
+    assert!(why.starts_with("cannot be run: its process cannot be started: No such file"), "{why}");
 }

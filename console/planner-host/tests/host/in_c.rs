@@ -64,7 +64,7 @@ fn live_values_reach_a_planner_in_c() {
     assert!((turn_rate(&mut host, 1) - 0.5 * 4.0_f64.atan2(3.0)).abs() < 1e-12);
     assert!(host.reconfigure(&gain(99.0)).unwrap_err().message.contains("takes 0.1 to 10 1/s"));
     let speed = Parameters::from([("speed".to_owned(), ParamValue::Float(0.1))]);
-    assert!(host.reconfigure(&speed).unwrap_err().message.contains("cannot change under way"));
+    assert!(host.reconfigure(&speed).unwrap_err().message.contains("cannot change during a mission"));
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn a_live_value_may_change_beside_a_fixed_one_that_was_set_before() {
     choose(&mut host, "direct-c", &values(0.1, 1.0)).unwrap();
     host.reconfigure(&values(0.1, 0.5)).expect("the fixed value is the one that it has");
     let fault = host.reconfigure(&values(0.2, 0.5)).unwrap_err();
-    assert_eq!(fault.message, "parameter `speed` of planner direct-c cannot change under way");
+    assert_eq!(fault.message, "parameter `speed` of planner direct-c cannot change during a mission");
 }
 
 #[test]
@@ -94,11 +94,11 @@ fn answers_that_are_none_are_caught() {
     assert_eq!(spoilt(""), "planner counter gave no command during step 0");
     assert_eq!(
         spoilt("out->drive = TP_TWIST; out->status = 77; out->a = out->b = 0.0;"),
-        "planner counter gave the unknown status 77 during step 0"
+        "planner counter gave unknown status 77 during step 0"
     );
     assert_eq!(
         spoilt("h->error(h->ctx, \"odd\", 3); return 4711;"),
-        "planner counter failed with the unknown code 4711 (odd) during step 0"
+        "planner counter failed with unknown code 4711 (odd) during step 0"
     );
 }
 
@@ -152,10 +152,10 @@ fn legs_that_are_none_are_caught() {
         assert_eq!(fault.cause, Cause::BadOutput);
         fault.message
     };
-    assert_eq!(refused("{9, 0, 1, 0}"), "planner counter gave a leg of the unknown kind 9 during plan");
+    assert_eq!(refused("{9, 0, 1, 0}"), "planner counter gave a leg of unknown kind 9 during plan");
     assert_eq!(
         refused("{0, 0, 3, 0}"),
-        "planner counter gave leg 0 from point 0 to 3 of a path of 3 points during plan"
+        "planner counter gave leg 0 from point 0 to 3 in a path of 3 points during plan"
     );
 }
 

@@ -133,7 +133,7 @@ fn memory_of(moment: &str, attack: &str) -> Result<u64, Fault> {
 }
 
 fn is_over(fault: &Fault) -> bool {
-    fault.cause == Cause::Died && fault.message.contains("took more than its limit of 64 MB of memory")
+    fault.cause == Cause::Died && fault.message.contains("exceeded its memory limit of 64 MB")
 }
 
 #[test]

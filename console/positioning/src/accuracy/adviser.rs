@@ -1,4 +1,4 @@
-//! Where stations should stand.
+//! Advises where to put stations.
 
 use super::{Forecast, Grid, Seen, is_in_sight};
 use crate::fix::ellipse_95;
@@ -6,27 +6,27 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use world::{Boundary, ObstacleMap, Point, Vector, World};
 
-/// Places along the wall that are tried.
+/// The number of candidate places along the wall.
 const CANDIDATES: usize = 72;
-/// Cells along the longer side of the floor that count.
+/// The number of cells along the longer side of the floor in which the error is computed.
 const CELLS: f64 = 28.0;
-/// Rounds of moving every station once.
+/// The most rounds; each round moves every station once.
 const ROUNDS: usize = 12;
-/// Layouts to begin with: even rings, each turned by a part of the spacing.
+/// The number of initial layouts: even rings, each rotated by a different part of the spacing.
 const STARTS: usize = 4;
-/// Number of stations for which there is advice.
+/// The numbers of stations for which advice is available.
 const COUNTS: std::ops::RangeInclusive<usize> = 3..=32;
-/// A place without a fix counts like an error of this share of the tank's size.
+/// The error that a place without a fix counts as, as a share of the tank's size.
 const BLIND_SHARE: f64 = 0.25;
 
-/// Where to put stations, and what to expect then.
+/// The best places for stations, and the expected accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advice {
     /// Places on the wall, metres.
     pub places: Vec<Point>,
     /// Mean over the floor of the longer half axis of the 95 % ellipse, where there is a fix, metres.
     pub mean_error_95_m: f64,
-    /// Its largest value, where there is a fix, metres.
+    /// The largest longer half axis, where there is a fix, metres.
     pub worst_error_95_m: f64,
     /// Share of the floor without a fix.
     pub blind_share: f64,
@@ -35,22 +35,22 @@ pub struct Advice {
 /// Why there is no advice.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AdviceError {
-    /// No advice can be given for this number of stations.
-    #[error("advice is for {} to {} stations, not for {asked}", COUNTS.start(), COUNTS.end())]
+    /// No advice is available for this number of stations.
+    #[error("advice is available for {} to {} stations, not for {asked}", COUNTS.start(), COUNTS.end())]
     Count {
-        /// How many were asked for.
+        /// The number of stations requested.
         asked: usize,
     },
-    /// There is no floor to locate anything on.
+    /// There is no floor on which to locate anything.
     #[error("the tank has no free floor")]
     NoFloor,
 }
 
-/// The best places on the wall for so many stations, whatever stands in the tank as drawn.
+/// Finds the best places on the wall for a number of stations in a tank as drawn.
 ///
-/// Starts from even rings and moves one station after the other to its best place until none moves (an exchange
-/// search), by the mean forecast error over the floor, places without a fix counted as far off. Some tens of
-/// milliseconds for eight stations.
+/// Starts from even rings and moves one station after another to its best place until no move helps (an exchange
+/// search). The criterion is the mean forecast error over the floor, with a large error for places without a fix.
+/// Takes some tens of milliseconds for eight stations.
 ///
 /// # Errors
 /// [`AdviceError`] for fewer than 3 or more than 32 stations, or a tank without floor.
@@ -70,16 +70,16 @@ pub fn advise(drawing: &World, count: usize, forecast: &Forecast) -> Result<Advi
     Ok(problem.advice(&best.0))
 }
 
-/// Candidates evenly around the wall, turned by some candidates.
+/// Returns candidates evenly spaced around the wall, rotated by `turn` of [`STARTS`] parts of the spacing.
 fn even_ring(count: usize, turn: usize) -> Vec<usize> {
     let offset = turn * CANDIDATES / (STARTS * count);
     (0..count).map(|k| (k * CANDIDATES / count + offset) % CANDIDATES).collect()
 }
 
-/// What every candidate contributes to every cell.
+/// The information of every candidate in every cell.
 struct Problem {
     candidates: Vec<Point>,
-    /// Candidate by candidate, cell by cell; nothing heard where an obstacle is in the way.
+    /// By candidate, then by cell; empty where an obstacle blocks the line of sight.
     seen: Vec<Vec<Seen>>,
     n_cells: usize,
     blind_m: f64,
@@ -104,7 +104,7 @@ impl Problem {
         Self { candidates, seen, n_cells: cells.len(), blind_m: BLIND_SHARE * size_m }
     }
 
-    /// The layout after no station gains by moving, and its cost.
+    /// Moves stations until no move helps; returns the layout and its cost.
     fn improved(&self, mut chosen: Vec<usize>) -> (Vec<usize>, f64) {
         let mut cost = self.cost(&self.together(&chosen));
         for _ in 0..ROUNDS {
@@ -169,7 +169,7 @@ fn error_95_m(sum: &Seen) -> Option<f64> {
     sum.covariance().map(|covariance| ellipse_95(&covariance).0)
 }
 
-/// Places evenly along the wall.
+/// Returns places evenly spaced along the wall.
 fn along_wall(boundary: &Boundary) -> Vec<Point> {
     let share = |k: usize| k as f64 / CANDIDATES as f64;
     match boundary {

@@ -1,13 +1,13 @@
-//! Where annuli overlap: mean and covariance of the positions left.
+//! The overlap of annuli: mean and covariance of the possible positions.
 
 use nalgebra::Matrix2;
 use world::{Point, Vector};
 
-/// Cells are divided until the middles of this many are in the region.
+/// Cells are subdivided until this many of their centres are in the region.
 const ENOUGH: usize = 128;
-/// Cells are not divided any more when there are this many: the region is thinner than they are.
+/// Subdivision stops at this many cells: the region is then narrower than the cells.
 const MOST_CELLS: usize = 4096;
-/// Cells are not made smaller than this, metres.
+/// Subdivision stops at this cell size, metres.
 const SMALLEST_M: f64 = 1e-7;
 
 /// The distances from a station that its ranges allow.
@@ -28,7 +28,7 @@ impl Annulus {
         self.outer_m - self.inner_m
     }
 
-    /// Whether it holds some position of a cell.
+    /// Whether the annulus contains any position in a cell.
     fn reaches(&self, cell: &Cell) -> bool {
         let away = (cell.middle - self.at).abs();
         let (nearest, farthest) = ((away - cell.half).sup(&Vector::zeros()), away + cell.half);
@@ -36,7 +36,7 @@ impl Annulus {
     }
 }
 
-/// The positions left, as a distribution.
+/// The possible positions, as a distribution.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Region {
     pub mean: Point,
@@ -44,13 +44,14 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// The overlap of the annuli; `None` if there is none. Of two pieces, about a place and about its mirror, only the
-    /// first counts.
+    /// Returns the overlap of the annuli; `None` if it is empty. If there are two pieces, around a place and its
+    /// mirror image, only the first one counts.
     ///
-    /// A box that holds all of it is divided into ever smaller cells, and those that some annulus does not reach are
-    /// left out, so no part of the region is lost, whatever its shape (set inversion, Jaulin and Walter 1993).
+    /// A box that contains the whole region is divided into smaller and smaller cells. Cells that lie outside an
+    /// annulus are dropped, so no part of the region is lost, whatever its shape (set inversion, Jaulin and Walter
+    /// 1993).
     pub(super) fn of(annuli: &[Annulus], sides: Option<(Point, Point)>) -> Option<Self> {
-        // What lies across the line between the sides is one piece.
+        // A region that extends across the line between the two sides is one piece.
         let sides = sides.filter(|(near, mirror)| weight_at(annuli, nalgebra::center(near, mirror)) == 0.0);
         let is_meant = |cell: &Cell| {
             sides.is_none_or(|(near, mirror)| {
@@ -65,14 +66,14 @@ impl Region {
             let weights: Vec<f64> = cells.iter().map(|cell| weight_at(annuli, cell.middle)).collect();
             let within = weights.iter().filter(|weight| **weight > 0.0).count();
             if within >= ENOUGH || cells.len() >= MOST_CELLS || half.max() < SMALLEST_M {
-                // What no middle is in may be anywhere in the cells.
+                // If no centre is in the region, it may be anywhere in the cells.
                 let even = if within == 0 { 1.0 } else { 0.0 };
                 return Self::summed(cells.iter().zip(weights.iter().map(|weight| weight + even)));
             }
         }
     }
 
-    /// Mean and covariance of cells of one size by their weights.
+    /// Returns the weighted mean and covariance of cells of equal size.
     fn summed<'a>(cells: impl Iterator<Item = (&'a Cell, f64)>) -> Option<Self> {
         let mut cells = cells.peekable();
         let Cell { middle, half } = *cells.peek()?.0;
@@ -84,7 +85,7 @@ impl Region {
             second += offset * offset.transpose() * weight;
         }
         let mean = first / mass;
-        // Within its cell a position is anywhere.
+        // Within its cell, the position is uniformly distributed.
         let within = Matrix2::from_diagonal(&half.map(|half| half * half / 3.0));
         let region =
             Self { mean: middle + mean, covariance: second / mass - mean * mean.transpose() + within };
@@ -93,7 +94,7 @@ impl Region {
     }
 }
 
-/// A rectangle along the axes.
+/// An axis-aligned rectangle.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     middle: Point,
@@ -101,7 +102,7 @@ struct Cell {
 }
 
 impl Cell {
-    /// A cell that holds everything that the annuli have in common.
+    /// Returns a cell that contains the overlap of all annuli.
     fn around(annuli: &[Annulus]) -> Option<Self> {
         let corner = |sign: f64| annuli.iter().map(move |a| a.at + Vector::repeat(sign * a.outer_m));
         let low = corner(-1.0).reduce(|a, b| a.sup(&b))?;
@@ -118,7 +119,7 @@ impl Cell {
     }
 }
 
-/// Likelihood of a position up to a factor near 1; 0 outside any annulus.
+/// Returns the likelihood of a position up to a factor near 1; 0 outside any annulus.
 pub(super) fn weight_at(annuli: &[Annulus], position: Point) -> f64 {
     let mut weight = 1.0;
     for annulus in annuli {

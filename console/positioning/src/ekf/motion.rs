@@ -1,30 +1,30 @@
-//! How the belief moves with the odometry.
+//! Moves the estimate with the odometry.
 
 use super::{Covariance, Ekf, SLIP, State, TURN_BIAS};
 use crate::fix::ELLIPSE_95;
 use nalgebra::{Matrix2, Vector2};
 use world::Odometry;
 
-/// Odometry of one tick beyond this is not the motion of a robot, metres or radians.
+/// Odometry beyond this in one tick is not the motion of a robot, metres or radians.
 const MOTION_LIMIT: f64 = 1e3;
-/// Part of the odometry error that is fresh in every metre, as a share of the part that stays the same.
+/// The part of the odometry error that is independent for every metre, as a share of the persistent part.
 const FRESH_SHARE: f64 = 0.3;
-/// Fresh odometry error across the way as a share of that along it.
+/// Independent odometry error across the path, as a share of that along it.
 const ACROSS_SHARE: f64 = 0.3;
-/// Half width of the 95 % interval of one normal number, in standard deviations.
+/// Half width of the 95 % interval of a normal distribution, in standard deviations.
 const HALF_WIDTH_95: f64 = 1.96;
-/// A heading that is less known than this, radians, does not say which way a motion went.
+/// With a standard deviation of the heading above this, the direction of a motion is unknown, radians.
 const LOST_HEADING_RAD: f64 = 0.35;
-/// Change of slip and turn error within a metre, as a share of what they may be.
+/// Drift of slip and turn error within a metre, as a share of their standard deviations.
 const WANDER_SHARE: f64 = 0.05;
 
 impl Ekf {
-    /// Moves the belief by what the odometry says.
+    /// Moves the estimate by the odometry.
     pub fn predict(&mut self, odometry: &Odometry) {
         self.moved_by(odometry);
     }
 
-    /// Moves the belief; gives what the state after the motion depends on of the state before.
+    /// Moves the estimate; returns the derivative of the new state with respect to the old one.
     pub(crate) fn moved_by(&mut self, odometry: &Odometry) -> Covariance {
         let Odometry { forward_m, sideways_m, turn_rad } = *odometry;
         if ![forward_m, sideways_m, turn_rad].iter().all(|m| m.abs() <= MOTION_LIMIT) {
@@ -42,7 +42,7 @@ impl Ekf {
         let by_heading = Vector2::new(-step.y, step.x);
         by_state.fixed_view_mut::<2, 1>(0, 2).copy_from(&by_heading);
         by_state.fixed_view_mut::<2, 1>(0, SLIP).copy_from(&-unslipped);
-        // The heading turns evenly on the way, so the position sees half of it.
+        // The heading turns evenly along the way, so half of the turn affects the position.
         by_state.fixed_view_mut::<2, 1>(0, TURN_BIAS).copy_from(&(by_heading * -0.5));
         by_state[(2, TURN_BIAS)] = -1.0;
         let gained = self.gained_m2_rad2(forward_m.hypot(sideways_m), turn_rad);
@@ -54,7 +54,8 @@ impl Ekf {
         by_state
     }
 
-    /// Takes back most of the fresh variance across the way: tracks err along it, and the heading does the rest.
+    /// Removes most of the independent variance across the path: tracks err along it, and the heading error covers
+    /// the rest.
     fn narrow_across(&mut self, step: Vector2<f64>, gained_m2: f64) {
         if let Some(along) = step.try_normalize(1e-9) {
             let across = Vector2::new(-along.y, along.x);
@@ -64,7 +65,7 @@ impl Ekf {
         }
     }
 
-    /// Variances that a motion adds.
+    /// Returns the variances that a motion adds.
     fn gained_m2_rad2(&self, way_m: f64, turn_rad: f64) -> State {
         let noise = &self.noise;
         let by_way =
@@ -80,13 +81,13 @@ impl Ekf {
         )
     }
 
-    /// Makes the belief wide enough for a motion that nothing measured: of at most `most_m` metres in any direction, and of at most
+    /// Widens the estimate for an unmeasured motion of at most `most_m` metres in any direction and at most
     /// `most_rad` radians.
     ///
-    /// Every place of the 95 % ellipse, moved by so much, lies in the new ellipse, and its longer half axis grows by just so much:
-    /// of all ellipses that hold the sum of an ellipse and a disc (Kurzhanski) it is the one that is shortest. Several short motions
-    /// give the same as a long one. The covariance does not describe chance then: a robot that drives straight on at its top
-    /// speed is at the rim.
+    /// Every place of the 95 % ellipse, moved by up to `most_m`, lies in the new ellipse, whose longer half axis
+    /// grows by exactly `most_m`. Of all ellipses that contain the sum of an ellipse and a disc (Kurzhanski), this
+    /// one has the shortest longer axis. Several short motions give the same result as one long motion. Here the
+    /// covariance is a bound, not a probability: a robot that drives straight at its top speed is at the rim.
     pub fn wander(&mut self, most_m: f64, most_rad: f64) {
         if !(0.0..=MOTION_LIMIT).contains(&most_m) || !(0.0..=MOTION_LIMIT).contains(&most_rad) {
             return;
@@ -103,20 +104,20 @@ impl Ekf {
         self.keep_sound();
     }
 
-    /// Moves the belief by what the odometry says where the heading may be lost: then only the length of the way counts.
+    /// Moves the estimate by the odometry if the heading may be lost: then only the length of the motion counts.
     pub fn predict_unsure(&mut self, odometry: &Odometry) {
         let way_m = odometry.forward_m.hypot(odometry.sideways_m);
         let is_lost = self.covariance[(2, 2)] > LOST_HEADING_RAD * LOST_HEADING_RAD;
         self.moved_by(odometry);
         if is_lost {
-            // The robot may have gone the opposite way.
+            // The robot may have moved in the opposite direction.
             self.wander(2.0 * way_m, 0.0);
         }
     }
 
-    /// Makes the position as uncertain as if the tracks had slipped all the way of the last motion.
+    /// Makes the position as uncertain as if the tracks had spun during the whole last motion.
     ///
-    /// For a filter whose ranges were refused while the solver finds them sound.
+    /// For a filter that refused ranges which the solver accepts.
     pub fn doubt_motion(&mut self, odometry: &Odometry) {
         let way_m = odometry.forward_m.hypot(odometry.sideways_m);
         if way_m <= MOTION_LIMIT {

@@ -1,4 +1,4 @@
-//! How the ranges of a cycle correct the belief, with tracks that gripped or slipped through.
+//! Corrects the estimate by the ranges of a cycle, whether the tracks gripped or spun.
 
 use super::{Ekf, Update};
 use crate::{
@@ -10,26 +10,26 @@ use crate::{
 use nalgebra::{Matrix2, Vector2};
 use world::{Point, Station};
 
-/// Normal quantile beyond which ranges are refused: one honest cycle in 10 000.
+/// Normal quantile beyond which ranges are refused: one correct cycle in 10 000.
 const GATE_Z: f64 = 3.719;
-/// Steps of an iterated update; three are usual.
+/// The most steps of an iterated update; three are usual.
 const UPDATE_STEPS: usize = 12;
-/// It ends when a step is shorter than this, metres.
+/// The update ends when a step is shorter than this, metres.
 const SETTLED_M: f64 = 1e-5;
-/// Part of a motion that is lost when tracks slip through, on average, and its standard deviation.
+/// The share of a motion that is lost when tracks spin: mean and standard deviation.
 const SLIPPED_THROUGH: (f64, f64) = (0.5, 0.2);
 
 impl Ekf {
-    /// Corrects by all ranges of a cycle at once, unless they are too far off to be true.
+    /// Corrects the estimate by all ranges of a cycle together, unless they are implausibly far off.
     ///
-    /// The position that fits belief and ranges best is searched for (an iterated update), so bent range circles are
-    /// no matter; heading, slip and bias follow by their correlation with the position. Ranges of unknown stations
-    /// are left out.
+    /// Searches for the position that best fits both estimate and ranges (an iterated update), so curved range
+    /// circles do no harm. Heading, slip and bias follow from their correlation with the position. If a range names
+    /// an unknown station, all ranges are refused.
     pub fn update_ranges(&mut self, ranges: &[Ranging], stations: &[Station]) -> Update {
         let Ok(anchors) = anchored(ranges, stations) else { return Update::REFUSED };
         let degrees = u32::try_from(anchors.len()).unwrap_or(u32::MAX);
         let gate = chi_squared_quantile(GATE_Z, degrees);
-        // The comparison also refuses what is not a number.
+        // The comparison also refuses NaN.
         let met = |filter: &Self| filter.meeting(&anchors).filter(|(_, met)| met.cost <= gate);
         let slip_chance =
             if self.last_way.norm() > 0.0 { self.noise.slip_chance.clamp(0.0, 0.5) } else { 0.0 };
@@ -52,7 +52,7 @@ impl Ekf {
         Update { nis, accepted, slipped: share }
     }
 
-    /// The belief if the tracks slipped through in the last motion, as far as `share` says.
+    /// Returns the estimate in case the tracks spun in the last motion, weighted by `share`.
     pub(crate) fn slipped_through(&self, share: f64) -> Self {
         let (mean, sigma) = SLIPPED_THROUGH;
         let mut lost = self.clone();
@@ -64,7 +64,7 @@ impl Ekf {
         lost
     }
 
-    /// The belief after it met the ranges, and how well they met.
+    /// Returns the estimate corrected by the ranges, and how well both agree.
     fn meeting(&self, anchors: &[Anchor]) -> Option<(Self, Meeting)> {
         let prior = self.position_covariance();
         let belief = inverse_of(&prior)?;
@@ -73,7 +73,7 @@ impl Ekf {
         Some((self.with_position(met.position, &met.covariance, &belief), met))
     }
 
-    /// One belief with the mean and covariance of two, of which the other has the given share.
+    /// Returns one estimate with the mean and covariance of a mixture of two; `share` is the weight of `other`.
     fn mixed_with(&self, other: &Self, share: f64) -> Self {
         let state = self.state * (1.0 - share) + other.state * share;
         let spread = |filter: &Self| {
@@ -84,7 +84,7 @@ impl Ekf {
         Self { state, covariance, ..self.clone() }
     }
 
-    /// The belief after its position has become known better; the rest follows by correlation.
+    /// Returns the estimate after a correction of its position; the rest follows from the correlation.
     fn with_position(&self, position: Point, covariance: &Matrix2<f64>, belief: &Matrix2<f64>) -> Self {
         let gain = self.covariance.fixed_view::<5, 2>(0, 0) * belief;
         let lost = self.position_covariance() - covariance;
@@ -96,16 +96,17 @@ impl Ekf {
     }
 }
 
-/// Where belief and ranges meet.
+/// The best compromise between estimate and ranges.
 struct Meeting {
     position: Point,
     covariance: Matrix2<f64>,
     cost: f64,
-    /// Logarithm of the likelihood of the ranges under the belief, up to what only depends on the ranges.
+    /// Logarithm of the likelihood of the ranges given the estimate, except for terms that depend only on the ranges.
     log_evidence: f64,
 }
 
-/// Goes down the sum of the squared errors of belief and ranges; `belief` is the inverse of its covariance.
+/// Minimises the sum of the squared errors of estimate and ranges; `belief` is the inverse of the estimate's
+/// covariance.
 fn best_of_belief_and_ranges(anchors: &[Anchor], start: Point, belief: &Matrix2<f64>) -> Option<Meeting> {
     let cost_at = |slope: &Slope, at: Point| slope.cost + (at - start).dot(&(belief * (at - start)));
     let (mut position, mut damping) = (start, 0.0);

@@ -1,4 +1,4 @@
-//! What the positioner has to know beforehand.
+//! The configuration of the positioner.
 
 use crate::{
     aggregate::Aggregation,
@@ -9,39 +9,40 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use world::{Boundary, Pose, Station};
 
-/// What the positioner has to know beforehand.
+/// The configuration of the positioner.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PositionerConfig {
     /// The surveyed stations.
     pub stations: Vec<Station>,
-    /// Where the robot stands at the start.
+    /// The start pose of the robot.
     pub start: Pose,
     /// Standard deviation of the start's position, metres.
     pub start_sigma_m: f64,
     /// Standard deviation of the start's heading, radians.
     pub heading_sigma_rad: f64,
-    /// How single ranges scatter.
+    /// The scatter of single ranges.
     pub noise: RangeNoise,
-    /// How their times err besides.
+    /// The timing errors of ranges.
     #[serde(default)]
     pub timing: Timing,
-    /// Standard deviation of what all ranges may be too long by as a share, whatever the repetitions.
+    /// Standard deviation of the scale error of all ranges, as a share, which repetitions do not reduce.
     #[serde(default)]
     pub scale_sigma_ratio: f64,
-    /// How odometry errs.
+    /// The errors of odometry.
     pub odometry: MotionNoise,
-    /// How repetitions become one range.
+    /// The method that combines repetitions into one range.
     pub aggregation: Aggregation,
-    /// How ranges become a fix.
+    /// The solver that turns ranges into a fix.
     pub solver: SolverKind,
     /// The wall of the tank: a fix clearly behind it is rejected.
     pub boundary: Option<Boundary>,
-    /// Whether the speed of sound is found out under way; needs four stations.
+    /// Whether the speed of sound is estimated during the mission; needs four stations.
     pub calibrate_sound_speed: bool,
 }
 
 impl PositionerConfig {
-    /// Usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as [`MotionNoise::default`].
+    /// Returns a configuration with usual errors: start surveyed to 5 cm and 0.05 rad, ranges to 3 %, odometry as in
+    /// [`MotionNoise::default`].
     pub fn new(stations: Vec<Station>, start: Pose) -> Self {
         Self {
             stations,

@@ -1,4 +1,4 @@
-//! What a journal says in short: how it ends, and the digest of its lines.
+//! Reads how a journal ends, and computes the digest of its lines.
 
 use super::{
     frames,
@@ -14,12 +14,13 @@ use std::{
     path::Path,
 };
 
-/// How much of the end of a journal without frames is read, bytes; the event `ended` is the last of its run.
+/// Number of bytes read from the end of an uncompressed journal; the event `ended` is the last of its run.
 const TAIL_BYTES: u64 = 64 * 1024;
 
-/// The event with which the run of a journal ended; none if the journal stops before that.
+/// The final event of a journal; `None` if the journal stops before it.
 ///
-/// Only its last frame, or the last 64 kB, are read: this is for lists of many runs, and proves nothing of what comes before.
+/// Only the last frame, or the last 64 kB, are read. This is for lists of many runs, and proves nothing about the
+/// earlier part of the journal.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -39,7 +40,7 @@ pub fn read_ending(path: &Path) -> io::Result<Option<Event>> {
     Ok(parsed.into_iter().find(|event: &Event| matches!(event.kind, EventKind::Ended { .. })))
 }
 
-/// The last bytes that a reader gives, a good deal more than [`TAIL_BYTES`].
+/// The last bytes of a reader, up to 16 times [`TAIL_BYTES`].
 fn tail_of(lines: &mut dyn Read) -> io::Result<Vec<u8>> {
     let most = 16 * TAIL_BYTES as usize;
     let (mut tail, mut chunk) = (Vec::new(), vec![0; most]);
@@ -57,15 +58,16 @@ fn tail_of(lines: &mut dyn Read) -> io::Result<Vec<u8>> {
 /// SHA-256 of the lines of a journal, hexadecimal: equal for equal runs.
 ///
 /// # Errors
-/// It is not a regular file, or cannot be read or decompressed.
+/// The file is not a regular file, or cannot be read or decompressed.
 pub fn events_sha256(path: &Path) -> io::Result<String> {
     events_sha256_while(path, |_| true)
 }
 
-/// [`events_sha256`], given up as soon as `goes_on` says so, which hears how many bytes of lines were read.
+/// Like [`events_sha256`], but stops as soon as `goes_on` returns `false`; `goes_on` receives the number of bytes of
+/// lines read.
 ///
 /// # Errors
-/// As [`events_sha256`]; [`io::ErrorKind::Interrupted`] if it was given up.
+/// As [`events_sha256`]; [`io::ErrorKind::Interrupted`] if it was stopped.
 pub fn events_sha256_while(path: &Path, goes_on: impl FnMut(u64) -> bool) -> io::Result<String> {
     let mut lines = Lines::of(open_regular(path)?, path, FrameStart::default())?;
     digest(lines.text(), goes_on)

@@ -1,5 +1,6 @@
-//! The events of every tick, and plans, read straight into their fields: the general reader of an event first reads it as any value
-//! and then sorts out what it is, which takes several times as long and, for a plan of a million points, as much memory.
+//! A fast reader for the events of every tick and for plans, which reads lines straight into their fields. The
+//! general reader first parses an event as an untyped value and then determines its kind. That takes several times as
+//! long and, for a plan of a million points, several times the memory.
 
 mod within;
 
@@ -12,7 +13,7 @@ use positioning::{Fix, Ranging};
 use serde::Deserialize;
 use world::{CellRun, Point, Pose};
 
-/// Reads a line with the fields of an event, those after `;` may be absent.
+/// Reads a line with the fields of an event; those after `;` are optional.
 macro_rules! read {
     ($line:expr, $kind:ident { $($field:ident: $type:ty),*; $($optional:ident: $some:ty),* }) => {{
         #[derive(Deserialize)]
@@ -27,11 +28,11 @@ macro_rules! read {
     }};
 }
 
-/// The event of a line as this program writes it, if it is one of those of every tick; `None` for any other line, and for one
-/// that cannot be read: the general reader says what is wrong.
+/// The event of a line in the form that this program writes, if it is an event of every tick. `None` for any other
+/// line, and for a faulty one: the general reader then reports the fault.
 pub(super) fn event(line: &[u8]) -> Option<Event> {
     let name = name_of(line)?;
-    // Once for the whole line instead of once for each key.
+    // Checked once for the whole line instead of once for each key.
     let line = std::str::from_utf8(line).ok()?;
     match name {
         b"estimated" => read!(line, Estimated { pose: PoseEstimate; }),
@@ -81,7 +82,7 @@ pub(super) fn event(line: &[u8]) -> Option<Event> {
     }
 }
 
-/// The name of the event, if it stands where this program writes it.
+/// The name of the event, if it is where this program writes it.
 fn name_of(line: &[u8]) -> Option<&[u8]> {
     const KEY: &[u8] = b",\"event\":\"";
     let head = line.get(..line.len().min(96))?;

@@ -1,14 +1,14 @@
-//! Reading a file that somebody else is still writing.
+//! Reads a file that is still being written.
 
 use std::{
     fs::File,
     io::{self, Read},
 };
 
-/// A file whose end is reached only when nobody writes to it any more.
+/// A file whose end is reached only when its writer has stopped.
 pub(super) struct Follow<W> {
     file: File,
-    /// Waits a little; whether somebody still writes.
+    /// Waits briefly; returns whether the file is still being written.
     goes_on: W,
     is_over: bool,
 }
@@ -26,7 +26,7 @@ impl<W: FnMut() -> bool> Read for Follow<W> {
             if length > 0 || self.is_over || into.is_empty() {
                 return Ok(length);
             }
-            // What was written just before the writer stopped is read in one more turn.
+            // One more round reads the bytes written just before the writer stopped.
             self.is_over = !(self.goes_on)();
         }
     }

@@ -1,7 +1,7 @@
-//! Where the frames of a compressed journal begin, without decompressing it.
+//! Finds the frames of a compressed journal without decompressing it.
 //!
-//! A frame of zstd (RFC 8878) says of each of its blocks how long it is; so a file of hours is walked through in milliseconds,
-//! also one whose writer was killed, and needs no index beside it.
+//! A zstd frame (RFC 8878) states the length of each of its blocks. A file of hours is therefore scanned in
+//! milliseconds, even if its writer was killed, and needs no separate index.
 
 use std::{
     fs::File,
@@ -9,16 +9,18 @@ use std::{
 };
 
 const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-/// Magic, frame header descriptor and window descriptor: frames of unknown length and without a dictionary, as are written.
+/// Magic number, frame header descriptor and window descriptor of the frames that we write: of unknown length and
+/// without a dictionary.
 const HEADER_BYTES: u64 = 6;
 const CHECKSUM_BYTES: i64 = 4;
 const BLOCK_HEADER_BYTES: u64 = 3;
 
-/// Frames are named this far apart, bytes of the file: a damaged one may have millions of empty ones.
+/// Minimum distance between two listed frames, bytes of the file: a damaged file may contain millions of empty
+/// frames.
 const BETWEEN: u64 = 4096;
 
-/// Where in the file frames begin, bytes, in order: the first one, and others that are not near to the one before; of what else is
-/// in it only the frames before.
+/// The offsets of frames in the file, bytes, in ascending order: the first frame, and each frame that is far enough
+/// from the one before. If the file contains other data, only the frames before it are listed.
 pub(super) fn starts(file: &File) -> io::Result<Vec<u64>> {
     let mut walk = Walk { file: BufReader::new(file), at: 0 };
     walk.file.rewind()?;
@@ -46,10 +48,10 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Passes a frame; whether there was one as this program writes them.
+    /// Skips a frame; returns whether there was one in the form that this program writes.
     fn frame(&mut self) -> io::Result<bool> {
         let header: [u8; HEADER_BYTES as usize] = self.take()?;
-        // Descriptor: a checksum, no dictionary, no length of the content.
+        // Descriptor: a checksum, no dictionary, no content length.
         if header[..4] != MAGIC || header[4] != 0b100 {
             return Ok(false);
         }
@@ -58,7 +60,7 @@ impl Walk<'_> {
             let [low, middle, high] = self.take()?;
             let header = u32::from_le_bytes([low, middle, high, 0]);
             let (is_last, kind, size) = (header & 1 == 1, header >> 1 & 3, i64::from(header >> 3));
-            // A run of one byte is one byte long.
+            // An RLE block takes one byte in the file, whatever its decompressed length.
             let length = if kind == 1 { 1 } else { size } + if is_last { CHECKSUM_BYTES } else { 0 };
             self.file.seek_relative(length)?;
             self.at += BLOCK_HEADER_BYTES + length as u64;

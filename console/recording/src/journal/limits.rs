@@ -1,60 +1,64 @@
-//! How much a journal may ask of its reader: bytes of a line, of a tick and of everything, and that time goes on.
+//! Limits on what a journal may demand of its reader: bytes per line, per tick and in total, and the order of time.
 //!
-//! No journal that was ever written comes near to these limits, however long its run was; one that was damaged, or made to use up
-//! memory and time, passes them early. What is left costs a reader no more than a run of the same length on disk.
+//! No valid journal comes near these limits, however long its run. A journal that is damaged, or was made to exhaust
+//! memory and time, exceeds them early. A journal within the limits costs a reader no more than a valid one of the
+//! same length on disk.
 
 use mission::{Event, EventKind};
 use std::io;
 
-/// Longest line, bytes: a plan of a million points, the most that a planner may give, with all digits.
+/// Longest line, bytes: a plan of a million points, the most that a planner may return, with all digits.
 pub(super) const MOST_LINE_BYTES: usize = 40 << 20;
-/// Most bytes of the lines of one tick, for what compares whole ticks.
+/// Maximum number of bytes of lines per tick, for readers that compare whole ticks.
 const MOST_TICK_BYTES: u64 = 64 << 20;
-/// Most lines of one tick: two planners that draw as much as they may, many times over.
+/// Maximum number of lines per tick: many times what two planners at their drawing limit need.
 const MOST_TICK_LINES: u32 = 50_000;
-/// Most obstacles that are found and zones that are drawn in a run: each of them stays, and every figure counts it.
+/// Maximum number of obstacles found and zones drawn in a run: each of them persists, and every figure has to count
+/// it.
 const MOST_LASTING: u32 = 20_000;
-/// So many times as long as the file are its lines at most. Those of a mission that is held, which repeat most, are 11 times as long
-/// (decisions.md).
+/// Largest ratio of the lines to the file. The lines of a mission on hold, which repeat most, are 11 times as long as
+/// the file (decisions.md).
 const MOST_EXPANSION: u64 = 200;
-/// So much is given whatever the expansion, bytes.
+/// This many bytes of lines are allowed whatever the ratio.
 const FREE_BYTES: u64 = 16 << 20;
 
-/// Whether the lines can be as long as this, given the size of the file.
+/// Checks that the lines can have this length, given the size of the file.
 pub(super) fn check_expansion(packed: u64, lines: u64) -> io::Result<()> {
     if lines <= FREE_BYTES + MOST_EXPANSION * packed {
         return Ok(());
     }
-    let why =
-        format!("its first {packed} bytes hold more than {lines} bytes of lines, more than any run writes");
+    let why = format!(
+        "its first {packed} bytes contain more than {lines} bytes of lines, more than any run writes"
+    );
     Err(io::Error::new(io::ErrorKind::InvalidData, why))
 }
 
-/// What is said of a line that has no end.
+/// The error about a line without an end.
 pub(super) fn too_long() -> String {
     format!("the line is longer than {} MB, longer than any event", MOST_LINE_BYTES >> 20)
 }
 
-/// Memory that a line may take when it is read by way of any value, bytes.
+/// Memory that a line may use when it is parsed as an untyped value, bytes.
 const MOST_WEIGHT: usize = 32 << 20;
 
-/// Whether a line can be read by way of any value without taking much more memory than its length.
+/// Whether a line can be parsed as an untyped value without using much more memory than its length.
 pub(super) fn is_light(line: &[u8]) -> bool {
-    // So short a line is light whatever it says.
+    // A line this short uses little memory whatever it contains.
     line.len() <= MOST_WEIGHT / 200 || foreign::json_weight(line) <= MOST_WEIGHT
 }
 
-/// Most values and most lists of a line that is read straight into its fields: those of a plan of a million points.
+/// Maximum number of values and lists in a line that is read straight into its fields: those of a plan of a million
+/// points.
 const MOST_VALUES: usize = 4_000_000;
 const MOST_LISTS: usize = 1_500_000;
 
-/// Whether a line can be read straight into its fields without taking much more memory than its length.
+/// Whether a line can be read straight into its fields without using much more memory than its length.
 pub(super) fn is_bearable(line: &[u8]) -> bool {
     let count = |wanted: [u8; 2]| line.iter().filter(|byte| wanted.contains(byte)).count();
     line.len() <= MOST_LISTS || (count(*b",:") <= MOST_VALUES && count(*b"[{") <= MOST_LISTS)
 }
 
-/// How time goes on in a journal.
+/// Checks the order of time in a journal.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pace {
     tick: u64,
@@ -66,14 +70,14 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Takes the next event and the length of its line, bytes.
+    /// Checks the next event and the length of its line, bytes.
     ///
     /// # Errors
-    /// It cannot come after those before, as a sentence.
+    /// The event cannot follow the earlier ones; the error is a sentence.
     pub(super) fn take(&mut self, event: &Event, bytes: usize) -> Result<(), String> {
         let Event { tick, t_s, kind } = event;
         if matches!(kind, EventKind::RunOpened(_)) && std::mem::replace(&mut self.is_opened, true) {
-            return Err("the run opens a second time".to_owned());
+            return Err("the run is opened a second time".to_owned());
         }
         self.lasting +=
             u32::from(matches!(kind, EventKind::ObstacleFound { .. } | EventKind::ZoneDrawn { .. }));
@@ -84,7 +88,7 @@ impl Pace {
         }
         if *tick < self.tick || t_s.is_nan() || *t_s < self.t_s {
             return Err(format!(
-                "time goes back: tick {tick} at {t_s} s comes after tick {} at {} s",
+                "time goes backwards: tick {tick} at {t_s} s comes after tick {} at {} s",
                 self.tick, self.t_s
             ));
         }

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-/// What is read ahead, bytes.
+/// Size of the read buffer, bytes.
 const BUFFER_BYTES: usize = 1 << 18;
 
 /// The lines of a file.
@@ -16,7 +16,7 @@ pub(super) enum Lines {
 }
 
 impl Lines {
-    /// The lines in the bytes of the file of this name, from a place on.
+    /// The lines in the bytes of the file with this name, starting at a place.
     pub(super) fn of(bytes: impl Read + Send + 'static, path: &Path, at: FrameStart) -> io::Result<Self> {
         let bytes: Box<dyn Read + Send> = Box::new(bytes);
         Ok(if is_packed(path) {
@@ -33,7 +33,7 @@ impl Lines {
         }
     }
 
-    /// From where on the file has to be read to get to a place that so many bytes of lines come before.
+    /// The file offset from which to read in order to reach a place, given the number of bytes of lines before it.
     pub(super) fn frame_before(&self, bytes: u64) -> FrameStart {
         match self {
             Self::Plain(_) => FrameStart { file: bytes, content: bytes },

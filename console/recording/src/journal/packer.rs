@@ -1,8 +1,8 @@
-//! Lines of a journal, compressed while they are written.
+//! Compresses the lines of a journal while they are written.
 //!
-//! The file is a row of zstd frames, each with a checksum; `zstdcat` shows the lines. A frame begins with a line and holds
-//! about a megabyte of them, so that a reader can begin anywhere without reading what comes before. Within a frame everything
-//! that was flushed can be read, whatever becomes of the writer.
+//! The file is a sequence of zstd frames, each with a checksum; `zstdcat` shows the lines. A frame starts at the
+//! start of a line and contains about a megabyte of lines, so that a reader can start at any frame without the part
+//! before it. Within a frame, everything that was flushed can be read even if the writer is killed.
 
 use std::io;
 use zstd::{
@@ -10,11 +10,12 @@ use zstd::{
     zstd_safe::Strategy,
 };
 
-/// Bytes of lines in a frame, at least: a reader decompresses as much to get to a place.
+/// Minimum number of bytes of lines in a frame; a reader decompresses this much to reach a place.
 const FRAME_BYTES: usize = 1 << 20;
-/// How matches are looked for: what repeats in a journal is the tick before, so a small table with a look at the four newest
-/// places of each six bytes finds better ones than level 9 of zstd with its table of megabytes, in less than half of the time.
-/// Journals of four scenarios are 3 to 5 % smaller so; larger tables make them larger again, because they lead further back.
+/// Parameters of the match search. A journal mostly repeats the previous tick, so a small table with the four latest
+/// occurrences of each six bytes finds better matches than level 9 of zstd with its table of megabytes, in less than
+/// half the time. Journals of four scenarios become 3 to 5 % smaller. Larger tables make them larger again, because
+/// matches are further back.
 const SEARCH: [CParameter; 6] = [
     CParameter::Strategy(Strategy::ZSTD_greedy),
     CParameter::WindowLog(17),
@@ -23,13 +24,13 @@ const SEARCH: [CParameter; 6] = [
     CParameter::SearchLog(2),
     CParameter::MinMatch(6),
 ];
-/// Bytes that the compressor is offered for its output at a time.
+/// Size of the output buffer that the compressor gets at a time.
 const STEP_BYTES: usize = 16 << 10;
 
 /// Compresses lines.
 pub(super) struct Packer {
     encoder: Encoder<'static>,
-    /// Bytes of lines in the frame that is open.
+    /// Number of bytes of lines in the open frame.
     in_frame: usize,
     /// Whether some of them are not in the output yet.
     holds_back: bool,
@@ -45,7 +46,7 @@ impl Packer {
         Ok(Self { encoder, in_frame: 0, holds_back: false })
     }
 
-    /// Takes a whole line and appends what is compressed so far to `out`.
+    /// Adds a complete line and appends the data compressed so far to `out`.
     pub(super) fn add(&mut self, line: &[u8], out: &mut Vec<u8>) -> io::Result<()> {
         let mut input = InBuffer::around(line);
         while input.pos() < line.len() {
@@ -56,19 +57,19 @@ impl Packer {
         if self.in_frame >= FRAME_BYTES { self.end_frame(out) } else { Ok(()) }
     }
 
-    /// Whether there are lines that could not be read yet from the output.
+    /// Whether some lines cannot be read from the output yet.
     pub(super) fn holds_back(&self) -> bool {
         self.holds_back
     }
 
-    /// Appends what was held back, so that every line can be read.
+    /// Appends the data held back, so that every line can be read.
     pub(super) fn flush(&mut self, out: &mut Vec<u8>) -> io::Result<()> {
         while self.holds_back && with_room(out, |room| self.encoder.flush(room))? > 0 {}
         self.holds_back = false;
         Ok(())
     }
 
-    /// Appends the end of the frame that is open, if there is one.
+    /// Appends the end of the open frame, if there is one.
     pub(super) fn end_frame(&mut self, out: &mut Vec<u8>) -> io::Result<()> {
         while self.in_frame > 0 && with_room(out, |room| self.encoder.finish(room, true))? > 0 {}
         (self.in_frame, self.holds_back) = (0, false);
@@ -76,7 +77,7 @@ impl Packer {
     }
 }
 
-/// Lets the compressor append to `out`; gives what it returns.
+/// Lets the compressor append to `out`; returns the result of the compressor.
 fn with_room(
     out: &mut Vec<u8>,
     step: impl FnOnce(&mut OutBuffer<'_, Vec<u8>>) -> io::Result<usize>,

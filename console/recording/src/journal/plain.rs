@@ -1,18 +1,18 @@
-//! Lines of a journal with plain texts: every reader but the one that compares lines gets them so, and nothing that hides or controls
-//! goes any further, to a screen or into a file.
+//! Cleans the texts in journal lines. Every reader except the one that compares lines receives plain text, so that
+//! hidden or control characters reach neither a screen nor a file.
 
 use foreign::is_plain;
 
-/// What stands in place of a character that is not plain, in JSON.
+/// The replacement for a character that is not plain, in JSON.
 const INSTEAD: &str = "\\ufffd";
 
-/// The line with `\ufffd` in place of what is not plain, as it is or as an escape; `None` for a line that is plain already. Ends of
-/// lines and tabs stay within texts.
+/// The line with `\ufffd` in place of each character that is not plain, literal or escaped; `None` if the line is
+/// plain already. Line breaks and tabs within texts stay.
 pub(super) fn line(line: &[u8]) -> Option<Vec<u8>> {
     if line.iter().all(|byte| matches!(byte, b' '..=b'[' | b']'..=b'~' | b'\n')) {
         return None;
     }
-    // The reader refuses a line that is not text.
+    // The JSON reader refuses a line that is not UTF-8.
     let text = std::str::from_utf8(line).ok()?;
     let (mut plain, mut rest, mut is_changed) = (String::with_capacity(text.len()), text, false);
     while let Some((c, length)) = next(rest) {
@@ -24,7 +24,7 @@ pub(super) fn line(line: &[u8]) -> Option<Vec<u8>> {
     is_changed.then(|| plain.into_bytes())
 }
 
-/// The next character of a text in JSON and how long it is as it is written; no character for an escape that gives none.
+/// The next character of a JSON text, and its length as written; no character for an invalid escape.
 fn next(text: &str) -> Option<(Option<char>, usize)> {
     let first = text.chars().next()?;
     if first != '\\' {
@@ -36,7 +36,7 @@ fn next(text: &str) -> Option<(Option<char>, usize)> {
         Some('b') => (Some('\u{8}'), length),
         Some('f') => (Some('\u{c}'), length),
         Some('u') => escaped(text),
-        // The escape of a quote, a slash or an end of a line: it is plain.
+        // The escape of a quote, a slash or a line break: it is plain.
         _ => (None, length),
     })
 }
@@ -52,7 +52,7 @@ fn escaped(text: &str) -> (Option<char>, usize) {
     match (char::from_u32(u32::from(first)), pair) {
         (Some(alone), _) => (Some(alone), 6),
         (None, Some(pair)) => (Some(pair), 12),
-        // Half of a pair.
+        // Half of a surrogate pair.
         (None, None) => (None, 6),
     }
 }

@@ -1,4 +1,4 @@
-//! Reading a journal, also one whose writer was killed.
+//! Reads a journal, even if its writer was killed.
 
 use super::{
     JournalError, fast,
@@ -20,41 +20,42 @@ use std::{
 /// A line of a journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalLine<'a> {
-    /// Its bytes as they are in the file, without the newline.
+    /// The bytes in the file, without the newline.
     pub raw: &'a [u8],
-    /// What they say, in plain characters ([`foreign::is_plain`]) but for the scenario's text, which stays as it was read. Keys that
-    /// no event has, and white space, are only in `raw`.
+    /// The event in plain characters ([`foreign::is_plain`]), except for the scenario text, which stays as it is in
+    /// the file. Unknown keys and white space are only in `raw`.
     pub event: Event,
 }
 
-/// Where the next event of a journal begins.
+/// The place where the next event of a journal starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JournalPlace {
-    /// Bytes of lines before it.
+    /// Number of bytes of lines before it.
     pub bytes: u64,
-    /// Lines before it.
+    /// Number of lines before it.
     lines: usize,
-    /// From where on the file is read to get there.
+    /// File offset from which to read to reach it.
     frame: FrameStart,
 }
 
 impl JournalPlace {
-    /// Bytes of the file that are read before it; fewer by a part of a frame where the file is compressed.
+    /// Number of bytes of the file before it; less by part of a frame if the file is compressed.
     pub fn file_bytes(&self) -> u64 {
         self.frame.file
     }
 }
 
-/// Reads a journal event by event; as an iterator, or line by line with the bytes of the file.
+/// Reads a journal event by event: as an iterator, or line by line with the bytes of the file.
 ///
-/// Ends after the first error. Holds one line at a time; what asks for more than any journal does is an error.
+/// Reading ends after the first error. The reader holds one line at a time; a journal that exceeds a limit of valid
+/// journals is an error.
 pub struct JournalReader {
     lines: Lines,
     path: PathBuf,
     text: Vec<u8>,
     pace: Pace,
     is_verbatim: bool,
-    /// Bytes of the lines that were read.
+    /// Number of bytes of lines read so far.
     bytes: u64,
     line: usize,
     ended: bool,
@@ -62,10 +63,10 @@ pub struct JournalReader {
     unended_bytes: u64,
 }
 
-/// What is read of the end of a journal without frames, bytes.
+/// Number of bytes read from the end of an uncompressed journal.
 const END_BYTES: u64 = 1 << 20;
 
-/// What the first line of a journal of any version contains.
+/// The content of the first line that is common to journals of all versions.
 #[derive(Deserialize)]
 struct Head {
     event: String,
@@ -76,13 +77,13 @@ impl JournalReader {
     /// Opens a journal.
     ///
     /// # Errors
-    /// [`JournalError::Read`] if there is none.
+    /// [`JournalError::Read`] if there is no journal.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
         Self::of(file, path, FrameStart::default())
     }
 
-    /// Opens a journal whose events are to be compared: their texts stay as they are, whatever characters they have.
+    /// Opens a journal for comparison: texts keep all their characters, even those that are not plain.
     ///
     /// # Errors
     /// As [`JournalReader::open`].
@@ -90,20 +91,20 @@ impl JournalReader {
         Ok(Self { is_verbatim: true, ..Self::open(path)? })
     }
 
-    /// Opens a journal that somebody else may still be writing: at the end of the file `goes_on` is asked, which waits a
-    /// little and says whether more may come. A line of which only a part is there is waited for.
+    /// Opens a journal that may still be written. At the end of the file the reader calls `goes_on`, which waits
+    /// briefly and returns whether more data may come. The reader waits for the rest of a partial line.
     ///
     /// # Errors
-    /// [`JournalError::Read`] if there is none.
+    /// [`JournalError::Read`] if there is no journal.
     pub fn follow(path: &Path, goes_on: impl FnMut() -> bool + Send + 'static) -> Result<Self, JournalError> {
         let file = open_regular(path).map_err(|error| read_error(path, &error))?;
         Self::of(Follow::new(file, goes_on), path, FrameStart::default())
     }
 
-    /// Opens a journal at a place that was met while it was read before.
+    /// Opens a journal at a place that an earlier reader reached.
     ///
     /// # Errors
-    /// [`JournalError::Read`] if there is none any more.
+    /// [`JournalError::Read`] if the journal is gone.
     pub fn open_at(path: &Path, place: JournalPlace) -> Result<Self, JournalError> {
         let JournalPlace { bytes, lines, frame } = place;
         let failed = |error| read_error(path, &error);
@@ -114,8 +115,8 @@ impl JournalReader {
         Ok(Self { bytes, line: lines, ..reader })
     }
 
-    /// Opens a journal somewhat before its end, for who wants to know how far it goes; its first line is not among what is read,
-    /// unless it is short. Lines are counted from there.
+    /// Opens a journal near its end, to find out how far it goes. The first line of the journal is not read, unless
+    /// the journal is short. Lines are counted from the place where reading starts.
     ///
     /// # Errors
     /// As [`JournalReader::open`] and [`JournalReader::next_line`].
@@ -133,14 +134,14 @@ impl JournalReader {
             return Self::open(path);
         }
         let mut end = Self::open_at(path, place_in(length - END_BYTES))?;
-        // It begins within a line.
+        // Reading starts in the middle of a line.
         let mut cut = end.lines.text().take(MOST_LINE_BYTES as u64);
         cut.skip_until(b'\n').map_err(failed)?;
         Ok(end)
     }
 
-    /// Opens a journal at or somewhat before the first event of a mission time, seconds: of what is compressed before it hardly
-    /// anything is read. Lines are then counted from there.
+    /// Opens a journal at or shortly before the first event of a mission time, seconds. Little of the compressed data
+    /// before it is read. Lines are counted from the place where reading starts.
     ///
     /// # Errors
     /// As [`JournalReader::open`] and [`JournalReader::next_line`].
@@ -162,12 +163,12 @@ impl JournalReader {
         Self::open_at(path, place_in(starts.get(first).copied().unwrap_or_default()))
     }
 
-    /// Bytes of the lines that were read.
+    /// Number of bytes of lines read so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Where the next event begins.
+    /// The place where the next event starts.
     pub fn place(&self) -> JournalPlace {
         let frame = self.lines.frame_before(self.bytes);
         JournalPlace { bytes: self.bytes, lines: self.line, frame }
@@ -189,7 +190,7 @@ impl JournalReader {
         })
     }
 
-    /// The next event with the bytes of its line; `None` after the end.
+    /// Reads the next event with the bytes of its line; `None` at the end.
     ///
     /// # Errors
     /// See [`JournalError`]; a last line that is cut off is not an error.
@@ -208,19 +209,19 @@ impl JournalReader {
             }
         }
     }
-    /// After the end: what is missing, if the journal is empty or its last line is cut off.
+    /// After the end: a text about what is missing, if the journal is empty or its last line is cut off.
     pub fn truncated(&self) -> Option<&str> {
         self.truncated.as_deref()
     }
 
-    /// The error of who needs the opening of the run from a journal that ends before it.
+    /// The error for a caller that needs the opening of the run from a journal that ends before it.
     pub fn not_opened(&self) -> JournalError {
         JournalError::NotOpened { path: self.path.clone() }
     }
 
-    /// After the end: how many bytes follow the last newline; 0 in a whole journal.
+    /// After the end: number of bytes after the last newline; 0 in a complete journal.
     ///
-    /// They may be a whole event (only its newline is missing), which is then read like any other.
+    /// These bytes may be a whole event that lacks only its newline; it is then read like any other.
     pub fn unended_bytes(&self) -> u64 {
         self.unended_bytes
     }
@@ -228,7 +229,7 @@ impl JournalReader {
     fn read_event(&mut self) -> Result<Option<Event>, JournalError> {
         self.text.clear();
         self.line += 1;
-        // What one long line took is not kept.
+        // Memory used by one long line is freed.
         self.text.shrink_to(1 << 20);
         let mut line = self.lines.text().take(MOST_LINE_BYTES as u64 + 1);
         let read = line.read_until(b'\n', &mut self.text);
@@ -276,7 +277,7 @@ impl JournalReader {
         let mut event = match quick {
             Some(event) => event,
             None if !limits::is_light(text) => {
-                return Err(self.damaged(1, "the line holds more values than any event does".to_owned()));
+                return Err(self.damaged(1, "the line contains more values than any event does".to_owned()));
             }
             None => serde_json::from_slice(text)
                 .map_err(|error| self.damaged(error.column().max(1), without_position(&error)))?,
@@ -288,7 +289,7 @@ impl JournalReader {
         Ok(event)
     }
 
-    /// The text of the scenario, which is proven by its digest.
+    /// The text of the scenario, which is verified by its digest.
     fn scenario_as_written(&self) -> Option<String> {
         #[derive(Deserialize)]
         struct Written {
@@ -308,13 +309,13 @@ impl JournalReader {
         read_error(&self.path, error)
     }
 
-    /// Whether the first line opens a run, in the version that is read.
+    /// Checks that the first line opens a run, in the version that this program reads.
     fn check_head(&self) -> Result<(), JournalError> {
         let refuse = |why| JournalError::NotAJournal { why, path: self.path.clone() };
         let head: Head =
             serde_json::from_slice(&self.text).map_err(|error| refuse(without_position(&error)))?;
         if head.event != "run_opened" {
-            return Err(refuse(format!("it is {}", head.event)));
+            return Err(refuse(format!("the first event is {}", head.event)));
         }
         let (theirs, ours) = (head.journal_version, JOURNAL_VERSION);
         if theirs != ours {
@@ -332,13 +333,13 @@ impl Iterator for JournalReader {
     }
 }
 
-/// The parser's sentence without its own "at line 1 column 7": every line is a document of its own to it.
+/// The parser's message without its "at line 1 column 7": to the parser, every line is a separate document.
 fn without_position(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.split_once(" at line ").map_or(text.clone(), |(sentence, _)| sentence.to_owned())
 }
 
-/// A place in a file of which nothing is known of the lines before.
+/// A place in a file for which the number of earlier lines is not known.
 fn place_in(file: u64) -> JournalPlace {
     JournalPlace { frame: FrameStart { file, content: 0 }, bytes: 0, lines: usize::from(file > 0) }
 }

@@ -1,10 +1,10 @@
-//! A journal, read tick by tick, to be compared with what is computed again.
+//! Reads a journal tick by tick, for comparison with a recomputed run.
 
 use super::{JournalError, JournalLine, JournalReader};
 use mission::{Event, EventKind, Order, PlannerInfo, RunOpened};
 use std::path::Path;
 
-/// A line as it is in the file, and what it says.
+/// A line: its bytes in the file, and its event.
 type Line = (Vec<u8>, Event);
 
 /// The lines of one tick.
@@ -13,28 +13,28 @@ pub struct RecordedTick {
     /// Its number.
     pub tick: u64,
     lines: Vec<Line>,
-    /// Whether the journal stops in this tick: then only the lines that come before all answers of planners are compared.
+    /// Whether the journal stops in this tick: then only the lines before any planner answer are compared.
     is_cut: bool,
 }
 
-/// Where a journal and what is computed again part.
+/// The first difference between a journal and its recomputation.
 #[derive(Debug, PartialEq)]
 pub struct Difference {
-    /// In which tick.
+    /// The tick.
     pub tick: u64,
     /// The line of the journal.
     pub recorded: String,
-    /// The line that is computed.
+    /// The recomputed line.
     pub computed: String,
 }
 
 impl RecordedTick {
-    /// What happened.
+    /// The events of the tick.
     pub fn events(&self) -> impl Iterator<Item = &EventKind> {
         self.lines.iter().map(|(_, event)| &event.kind)
     }
 
-    /// The orders of the tick, those that were refused too.
+    /// The orders of the tick, including refused ones.
     pub fn orders(&self) -> Vec<Order> {
         let order = |event: &EventKind| match event {
             EventKind::Ordered { order } | EventKind::OrderRefused { order, .. } => Some(order.clone()),
@@ -53,20 +53,20 @@ impl RecordedTick {
         })
     }
 
-    /// Bytes of its lines.
+    /// Number of bytes of its lines.
     pub fn bytes(&self) -> u64 {
         self.lines.iter().map(|(raw, _)| raw.len() as u64).sum()
     }
 
-    /// How many of its lines can be compared.
+    /// Number of its lines that can be compared.
     pub fn n_compared(&self) -> usize {
         self.to_compare().len()
     }
 
-    /// The first line that is not, byte for byte, the one that is computed; `None` if all are.
+    /// The first line that differs, byte for byte, from the recomputed one; `None` if all are equal.
     ///
     /// # Errors
-    /// A computed event cannot be written as JSON.
+    /// A recomputed event cannot be written as JSON.
     pub fn difference(&self, computed: &[Event]) -> Result<Option<Difference>, serde_json::Error> {
         let lines = self.to_compare();
         let end = if self.is_cut { lines.len() } else { lines.len().max(computed.len()) };
@@ -106,7 +106,7 @@ impl RecordedTick {
 /// Reads a journal tick by tick.
 pub struct Ticks {
     reader: JournalReader,
-    /// The first line of the tick that comes next.
+    /// The first line of the next tick.
     ahead: Option<Line>,
     ended: bool,
     no_end: Option<String>,
@@ -116,7 +116,7 @@ impl Ticks {
     /// Opens a journal.
     ///
     /// # Errors
-    /// There is none, or its first line does not open a journal.
+    /// There is no journal, or its first line does not open a run.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let reader = JournalReader::open_verbatim(path)?;
         let mut ticks = Self { reader, ahead: None, ended: false, no_end: None };
@@ -124,7 +124,7 @@ impl Ticks {
         Ok(ticks)
     }
 
-    /// How the run was opened; to be asked before the first tick.
+    /// How the run was opened; must be called before the first tick is read.
     ///
     /// # Errors
     /// [`JournalError::NotOpened`].
@@ -135,10 +135,10 @@ impl Ticks {
         }
     }
 
-    /// The next tick; `None` after the last one.
+    /// Reads the next tick; `None` after the last one.
     ///
     /// # Errors
-    /// A line cannot be understood.
+    /// A line is not a valid event.
     pub fn next_tick(&mut self) -> Result<Option<RecordedTick>, JournalError> {
         let Some(first) = self.ahead.take() else { return Ok(None) };
         let mut recorded = RecordedTick { tick: first.1.tick, lines: vec![first], is_cut: false };
@@ -160,7 +160,7 @@ impl Ticks {
         Ok(Some(recorded))
     }
 
-    /// Why the journal has no end; to be asked after the last tick.
+    /// The reason why the journal has no end; must be called after the last tick.
     pub fn no_end(&self) -> Option<String> {
         self.no_end.clone()
     }

@@ -1,64 +1,64 @@
-//! The lines of a compressed journal, also of one that is still being written or whose writer was killed.
+//! Reads the lines of a compressed journal, even if it is still being written or its writer was killed.
 
 use super::limits::check_expansion;
 use std::io::{self, BufRead, BufReader, Read};
 use zstd::stream::raw::{DParameter, Decoder, InBuffer, Operation, OutBuffer};
 
-/// Frames are remembered this far apart, bytes of lines: a file may have millions of them.
+/// Minimum distance between two stored frames, bytes of lines: a file may contain millions of frames.
 const BETWEEN_FRAMES: u64 = 1 << 18;
-/// How far back what is compressed may point, as a power of two in bytes: what is written here points back by 128 kB, and `zstd`
-/// at its usual levels by no more than this.
+/// Largest distance of back references in compressed data, as a power of two in bytes: this program uses 128 kB, and
+/// `zstd` at its usual levels no more than this.
 const MOST_WINDOW: u32 = 23;
 
-/// Where a frame begins.
+/// The start of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct FrameStart {
-    /// In the file, bytes.
+    /// Its offset in the file, bytes.
     pub file: u64,
-    /// In the lines, bytes.
+    /// Its offset in the lines, bytes.
     pub content: u64,
 }
 
-/// Decompresses frame after frame. A file that stops within one gives what can be read of it.
+/// Decompresses frame after frame. If the file stops within a frame, it returns everything that can be read.
 pub(super) struct Unpacker<R> {
     packed: BufReader<R>,
     decoder: Decoder<'static>,
-    /// Begins of the frames met so far, in order.
+    /// Starts of the frames read so far, in order.
     frames: Vec<FrameStart>,
     at: FrameStart,
     began: FrameStart,
     in_frame: bool,
-    /// Whether the decoder may hold more than it could give.
+    /// Whether the decoder may hold data that it has not returned yet.
     holds_back: bool,
 }
 
 impl<R: Read> Unpacker<R> {
-    /// `at`: where in the file and in the lines the first frame begins.
+    /// `at`: where the first frame starts, in the file and in the lines.
     pub(super) fn new(packed: R, at: FrameStart) -> io::Result<Self> {
         let (packed, mut decoder) = (BufReader::with_capacity(1 << 16, packed), Decoder::new()?);
         decoder.set_parameter(DParameter::WindowLogMax(MOST_WINDOW))?;
         Ok(Self { packed, decoder, frames: Vec::new(), at, began: at, in_frame: false, holds_back: false })
     }
 
-    /// The last frame that begins at or before so many bytes of lines.
+    /// The last frame that starts at or before this number of bytes of lines.
     pub(super) fn frame_before(&self, content: u64) -> FrameStart {
         let after = self.frames.partition_point(|frame| frame.content <= content);
         after.checked_sub(1).map_or(FrameStart::default(), |last| self.frames[last])
     }
 
-    /// Remembers that a frame begins here, unless one begins a little before.
+    /// Stores that a frame starts here, unless a stored frame starts shortly before.
     fn remember(&mut self) {
         if self.frames.last().is_none_or(|last| self.at.content >= last.content + BETWEEN_FRAMES) {
             self.frames.push(self.at);
         }
     }
 
-    /// Gives what the decoder makes of the next bytes of the file, or of none of them.
+    /// Decompresses the next bytes of the file, or returns remaining output if there are none.
     fn decode(&mut self, takes_more: bool, into: &mut [u8]) -> io::Result<usize> {
         let packed = if takes_more { self.packed.fill_buf()? } else { &[] };
         let (mut input, mut output) = (InBuffer::around(packed), OutBuffer::around(into));
         let rest = self.decoder.run(&mut input, &mut output).map_err(|error| {
-            let why = format!("what is compressed from byte {} on is damaged: {error}", self.at.file);
+            let why = format!("the compressed data from byte {} on is damaged: {error}", self.at.file);
             io::Error::new(io::ErrorKind::InvalidData, why)
         })?;
         let (taken, given) = (input.pos(), output.pos());

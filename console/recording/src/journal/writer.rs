@@ -1,10 +1,9 @@
-//! Writing the journal.
+//! Writes the journal.
 
 use super::{JournalError, packer::Packer};
 use crate::{
     backlog::Backlog,
     file::{FileChange, FileWatch},
-    identity::hexadecimal,
 };
 use mission::Event;
 use sha2::{Digest, Sha256};
@@ -15,54 +14,56 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Unwritten events are handed to the system at the latest after this time,
+/// Unwritten events are handed to the system at the latest after this time
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
-/// or when they take this many bytes.
+/// or when they reach this many bytes.
 const FLUSH_BYTES: usize = 64 * 1024;
-/// Events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
+/// Limit of the events that are kept while the file cannot be written, bytes: about 40 minutes of mission time.
 const MOST_WAITING_BYTES: usize = 4 << 20;
 
 /// Writes a journal.
 ///
-/// Events are gathered, compressed and handed to the operating system at least every half second or 64 kB, so that a process
-/// that is killed loses no more than that. The deadline is looked at with every event and by [`JournalWriter::tick`]. So the
-/// lines of equal runs are equal, and where the compressed ones are divided depends on the clock.
+/// Events are collected, compressed and handed to the operating system at least every half second or every 64 kB, so
+/// that a process that is killed loses no more than that. The deadline is checked at every event and by
+/// [`JournalWriter::tick`]. Equal runs therefore have equal lines, but the division of the compressed data depends on
+/// the clock.
 ///
-/// What cannot be written, because the disk is full, is kept and tried again every half second: the journal then is
-/// whole in the end. When more than 4 MB wait, the journal has ended; events after that are not written.
+/// Data that cannot be written, for example because the disk is full, is kept and tried again every half second, so
+/// that the journal is complete in the end. If more than 4 MB are waiting, the journal ends; later events are not
+/// written.
 pub struct JournalWriter {
     backlog: Backlog,
-    /// None if nothing is written.
+    /// `None` if no file is written.
     packer: Option<Packer>,
     file: Option<(File, FileWatch)>,
     line: Vec<u8>,
-    /// Of the lines.
+    /// Digest of the lines.
     hasher: Sha256,
-    /// Of the file.
+    /// Digest of the file.
     file_hasher: Sha256,
     events: u64,
     flushed_at: Instant,
-    /// An event that cannot be written as JSON, or not compressed, ends the journal.
+    /// An event that cannot be written as JSON or compressed ends the journal.
     unwritable: Option<String>,
     reported: Option<JournalError>,
 }
 
-/// What is known about a journal when it is closed.
+/// The final data of a closed journal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JournalEnd {
-    /// SHA-256 of all its lines, hexadecimal; equal for equal runs.
+    /// SHA-256 of all lines, hexadecimal; equal for equal runs.
     pub events_sha256: String,
-    /// How many events it holds.
+    /// Number of events.
     pub events: u64,
-    /// How many bytes the file has.
+    /// Length of the file, bytes.
     pub bytes: u64,
 }
 
 impl JournalWriter {
-    /// Makes a journal where there is none.
+    /// Creates a journal.
     ///
     /// # Errors
-    /// [`JournalError::Create`] if the file exists or cannot be made.
+    /// [`JournalError::Create`] if the file exists or cannot be created.
     pub fn create(path: &Path, now: Instant) -> Result<Self, JournalError> {
         let failed =
             |error: io::Error| JournalError::Create { why: error.to_string(), path: path.to_owned() };
@@ -71,15 +72,15 @@ impl JournalWriter {
         Ok(Self { file: Some((kept, watch)), ..Self::writing_to(Box::new(file), now).map_err(failed)? })
     }
 
-    /// A journal that is written nowhere and only counted and hashed.
+    /// A journal that is only counted and hashed, not written.
     pub fn unwritten(now: Instant) -> Self {
         Self::new(Box::new(io::sink()), None, now)
     }
 
-    /// A journal that goes to any writer, compressed.
+    /// A compressed journal that is written to any writer.
     ///
     /// # Errors
-    /// The compressor has no memory.
+    /// The compressor cannot allocate memory.
     pub fn writing_to(out: Box<dyn Write + Send>, now: Instant) -> io::Result<Self> {
         Ok(Self::new(out, Some(Packer::new()?), now))
     }
@@ -99,7 +100,7 @@ impl JournalWriter {
         }
     }
 
-    /// The file that is written, to have it put on disk by somebody else; none if there is none.
+    /// A handle to the file, for a caller that syncs it to disk; `None` if no file is written.
     pub(crate) fn file(&self) -> Option<&File> {
         self.file.as_ref().map(|(file, _)| file)
     }
@@ -126,15 +127,15 @@ impl JournalWriter {
         self.tick(now)
     }
 
-    /// Hands waiting events to the system if it is time; to be called now and then while nothing happens.
+    /// Hands waiting events to the system if they are due; call it regularly while there are no events.
     ///
     /// # Errors
-    /// Once when the journal cannot be written ([`JournalError::Stalled`]), and once when it has ended
+    /// One error when the journal cannot be written ([`JournalError::Stalled`]), and one when it has ended
     /// ([`JournalError::Write`]).
     pub fn tick(&mut self, now: Instant) -> Result<(), JournalError> {
         let holds_back = self.packer.as_ref().is_some_and(Packer::holds_back);
         let is_waiting = holds_back || self.backlog.waiting_bytes() > 0;
-        // A full disk is asked again now and then, not with every event.
+        // A full disk is tried again at intervals, not with every event.
         let is_much = self.backlog.waiting_bytes() >= FLUSH_BYTES && self.backlog.trouble().is_none();
         let is_old = now.saturating_duration_since(self.flushed_at) >= FLUSH_AFTER;
         if is_old {
@@ -148,11 +149,11 @@ impl JournalWriter {
         self.report()
     }
 
-    /// Hands everything to the system and closes the journal.
+    /// Hands all data to the system and closes the journal.
     ///
     /// # Errors
-    /// [`JournalError::Write`], also if it has been reported before: the journal is not whole.
-    /// [`JournalError::Changed`] if the file on disk is not the one that was written, or has another length.
+    /// [`JournalError::Write`], even if it has been reported before: the journal is not complete.
+    /// [`JournalError::Changed`] if the file on disk is not the one that was written, or has a different length.
     pub fn finish(mut self) -> Result<JournalEnd, JournalError> {
         self.pack(Packer::end_frame);
         self.backlog.drain();
@@ -161,12 +162,12 @@ impl JournalWriter {
             return Err(JournalError::Write { bytes, why: why.to_owned() });
         }
         let [events_sha256, file_sha256] =
-            [self.hasher, self.file_hasher].map(|hasher| hexadecimal(&hasher.finalize()));
+            [self.hasher, self.file_hasher].map(|hasher| hex::encode(hasher.finalize()));
         self.file.map_or(Ok(()), |(_, watch)| watch.check_content(bytes, &file_sha256))?;
         Ok(JournalEnd { events_sha256, events: self.events, bytes })
     }
 
-    /// Has the packer append to what waits; without memory for that the journal ends.
+    /// Lets the packer append to the waiting bytes; if it lacks memory, the journal ends.
     fn pack(&mut self, step: impl FnOnce(&mut Packer, &mut Vec<u8>) -> io::Result<()>) {
         let Some(packer) = &mut self.packer else { return };
         let waiting = self.backlog.waiting();
@@ -177,12 +178,12 @@ impl JournalWriter {
         }
     }
 
-    /// How many bytes the system has got.
+    /// Number of bytes handed to the system.
     pub fn written_bytes(&self) -> u64 {
         self.backlog.written_bytes()
     }
 
-    /// Why the journal is not being written now; none if it is.
+    /// The reason why the journal is not being written at present; `None` if it is.
     pub fn trouble(&self) -> Option<JournalError> {
         let bytes = self.written_bytes();
         let stall = self.backlog.trouble().map(|why| JournalError::Stalled { bytes, why: why.to_owned() });
@@ -193,10 +194,10 @@ impl JournalWriter {
         Some(JournalError::Write { bytes, why })
     }
 
-    /// Whether the path still shows the file that is being written.
+    /// Checks that the path still leads to the file that is being written.
     ///
     /// # Errors
-    /// How it differs.
+    /// The difference.
     pub fn check_file(&self) -> Result<(), FileChange> {
         self.file.as_ref().map_or(Ok(()), |(_, watch)| watch.check(self.written_bytes()))
     }
@@ -205,7 +206,7 @@ impl JournalWriter {
         self.unwritable.is_some() || self.backlog.has_ended()
     }
 
-    /// The trouble there is, if it is another one than was reported.
+    /// The present problem, if it differs from the one last reported.
     fn report(&mut self) -> Result<(), JournalError> {
         let trouble = self.trouble();
         let is_same_kind = trouble.as_ref().map(std::mem::discriminant)

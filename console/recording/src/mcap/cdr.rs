@@ -1,11 +1,11 @@
-//! Common data representation: how ROS 2 lays out messages in bytes.
+//! Common data representation: the binary layout of ROS 2 messages.
 
 use super::ros::{FRAME, Pose3, Stamp};
 
-/// Bytes before the content that alignment does not count: "little endian, plain".
+/// Bytes before the content that do not count for alignment: "little endian, plain".
 const HEAD: [u8; 4] = [0, 1, 0, 0];
 
-/// A message that is being written. Numbers stand at multiples of their length.
+/// A message under construction. Numbers are aligned to their size.
 pub(super) struct Cdr(Vec<u8>);
 
 impl Cdr {
@@ -49,7 +49,7 @@ impl Cdr {
         self.put(value.to_le_bytes())
     }
 
-    /// Its length with the zero at its end, its bytes, and that zero.
+    /// Writes the length including the final zero, then the bytes, then the zero.
     pub(super) fn text(self, text: &str) -> Self {
         let mut written = self.u32(text.len() as u32 + 1);
         written.0.extend(text.as_bytes());

@@ -1,11 +1,11 @@
-//! The messages of ROS 2 that are written, with their definitions as `ros2msg` has them.
+//! The ROS 2 messages that are written, with their definitions in `ros2msg` form.
 
 use world::Pose;
 
-/// The frame of everything.
+/// The frame of all messages.
 pub(super) const FRAME: &str = "tank";
 
-/// A time of ROS.
+/// A ROS time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Stamp {
     pub sec: i32,
@@ -13,7 +13,7 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    /// A mission time, seconds.
+    /// Converts a mission time, seconds.
     pub(super) fn of(t_s: f64) -> Self {
         let nanoseconds = (t_s.max(0.0) * 1e9).round() as u64;
         Self { sec: (nanoseconds / 1_000_000_000) as i32, nanosec: (nanoseconds % 1_000_000_000) as u32 }
@@ -24,7 +24,7 @@ impl Stamp {
     }
 }
 
-/// Place and quaternion, x, y, z and x, y, z, w.
+/// Position and quaternion: x, y, z and x, y, z, w.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pose3(pub [f64; 7]);
 
@@ -35,18 +35,18 @@ impl Pose3 {
     }
 }
 
-/// A type of message.
+/// A message type.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Schema {
     /// Package and name.
     pub name: &'static str,
     own: &'static str,
-    /// The types that it is made of.
+    /// The types that it uses.
     parts: &'static [&'static (&'static str, &'static str)],
 }
 
 impl Schema {
-    /// The definition with those of its parts.
+    /// The definition with those of the types that it uses.
     pub(super) fn text(self) -> String {
         let part = |(name, text): &(&str, &str)| format!("{}\nMSG: {name}\n{text}", "=".repeat(80));
         self.own.to_owned() + &self.parts.iter().map(|named| part(named)).collect::<String>()

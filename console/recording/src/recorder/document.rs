@@ -1,4 +1,4 @@
-//! The mission in words: the text beside the map, and the properties of the recording.
+//! The mission as text: the document beside the map, and the properties of the recording.
 
 use super::tables;
 use crate::rr;
@@ -13,7 +13,7 @@ pub(crate) struct Driver {
     pub info: PlannerInfo,
 }
 
-/// Everything that the text contains.
+/// The content of the document.
 pub(crate) struct Document {
     run: RunOpened,
     drivers: Vec<Driver>,
@@ -44,7 +44,7 @@ impl Document {
         self.floor = floor;
     }
 
-    /// Properties that hold from the start.
+    /// Properties that are known from the start.
     pub(crate) fn run_properties(&self) -> rr::AnyValues {
         let run = &self.run;
         rr::AnyValues::default()
@@ -65,7 +65,7 @@ impl Document {
             .with_component::<rr::Text>("parameters", texts(|driver| parameters(&driver.choice)))
     }
 
-    /// Properties of the end; absent in a run that did not end in good order.
+    /// Properties of the end; absent if the run did not end normally.
     pub(crate) fn end_properties(&self) -> Option<rr::AnyValues> {
         let (outcome, reason) = self.end.as_ref()?;
         let values = rr::AnyValues::default()
@@ -74,7 +74,7 @@ impl Document {
         Some(values)
     }
 
-    /// The text beside the map.
+    /// The document beside the map.
     pub(crate) fn text(&self) -> String {
         let mut text = format!("# {}\n\n", self.run.scenario);
         if let Some((outcome, reason)) = &self.end {
@@ -102,7 +102,7 @@ impl Document {
             ("task", task(&mission.task)),
             ("tick", format!("{} s", mission.tick_s)),
             ("swath", format!("{} m", mission.swath_m)),
-            ("clearance to keep", format!("{} m", mission.clearance_m)),
+            ("required clearance", format!("{} m", mission.clearance_m)),
             ("position error limit (95 %)", format!("{} m", mission.position_limit_m)),
             ("tankops", run.tankops_version.clone()),
         ];
@@ -135,16 +135,16 @@ impl Driver {
 const LEGEND: &str = "
 ## How to read the map
 
-Green is where the robot truly is, pink where it believes it is, with the ellipse that should hold the truth in 95 of
-100 cases. The bar across the robot is what it scans; the key below the tank names the kinds of floor. Red outlines are on the drawing, dark red ones must be
-discovered, orange ones were discovered and stand as estimated. Yellow lines are acoustic-emission ranges, red ones
-were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of the force.
+Green is the true position of the robot, pink its estimated position, with the ellipse that should contain the true
+position in 95 of 100 cases. The bar across the robot is its tool; the key below the tank explains the colours of the
+floor. Red outlines are obstacles on the drawing, dark red ones are still to be found, orange ones were found and are
+drawn where the robot estimates them. Yellow lines are acoustic-emission ranges; red ones were left out of the fix. Arrows are the planner's forces; their length grows with the logarithm of the force.
 
 ## How to read the plots
 
-Pink is what is estimated, green what is true, blue what is claimed or sent. Tether: pink is paid out, green truly out, blue the
-return path, which has gaps where there is none. Wraps: orange is the largest, blue the total. Forces have the colours of
-their arrows. On the timeline `utc` a run begins when its name says and goes on with mission time.
+Pink is estimated, green is true, blue is claimed or sent. Tether: pink is the length paid out, green the true length
+out, blue the return path, with gaps where there is none. Wraps: orange is the largest, blue the total. Forces have the
+colours of their arrows. On the timeline `utc` a run starts at the time in its name and continues in mission time.
 ";
 
 fn parameters(choice: &PlannerChoice) -> String {

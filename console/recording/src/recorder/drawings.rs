@@ -1,6 +1,6 @@
-//! What planners draw to explain themselves, layer by layer.
+//! The drawings with which planners explain their plans, layer by layer.
 //!
-//! What is drawn in a tick is shown for that tick; a layer that is not drawn any more is cleared.
+//! A drawing is shown for the tick in which it is made; a layer without new drawings is cleared.
 
 use super::{
     lane::{Arrows, Circles, Lane, Lines, Numbers, Row, flat},
@@ -12,20 +12,20 @@ use crate::{error::RecordingError, rr};
 use planner_api::{Drawing, Layer};
 use world::Vector;
 
-/// Forces below this are hardly drawn, newton.
+/// Smaller forces are hardly visible, newton.
 const WEAK_N: f64 = 0.01;
 /// Forces of this size are drawn at full length, newton.
 const STRONG_N: f64 = 100.0;
 /// Full length as a share of the tank's smaller side.
 const LONGEST_SHARE: f64 = 0.1;
-/// Layers whose arrows are forces; their sizes are recorded in this order.
+/// Layers whose arrows are forces; their magnitudes are recorded in this order.
 const FORCES: [Layer; 4] = [Layer::Attraction, Layer::Repulsion, Layer::Rotation, Layer::Resultant];
 
-/// How long the arrow of a force is drawn, metres.
+/// The drawn length of the arrow of a force, metres.
 ///
 /// Forces of planners span many powers of ten near an obstacle. The length grows with their logarithm, so that weak
-/// ones can be seen and strong ones stay in the tank; direction and order of size are kept. The true sizes are
-/// recorded as figures.
+/// forces stay visible and strong ones stay in the tank; direction and order of magnitude are kept. The true
+/// magnitudes are recorded as figures.
 fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
     longest_m * ((force_n / WEAK_N).ln_1p() / (STRONG_N / WEAK_N).ln_1p()).min(1.0)
 }
@@ -33,7 +33,7 @@ fn drawn_length_m(force_n: f64, longest_m: f64) -> f64 {
 /// Rows of one kind of drawing on one layer.
 struct Shown<T> {
     lane: Lane<T>,
-    /// How it looks, until it is drawn for the first time.
+    /// Its style, until it is first drawn.
     style: Option<Box<dyn rr::AsComponents + Send>>,
     visible: bool,
 }
@@ -43,7 +43,7 @@ impl<T: Row> Shown<T> {
         Self { lane: Lane::new(path), style: Some(Box::new(style)), visible: false }
     }
 
-    /// Shows what was drawn in this tick, or clears what was drawn before.
+    /// Shows the drawings of this tick, or clears the earlier ones.
     fn show(&mut self, stream: &Stream, at: At, is_empty: bool, row: T) -> Done {
         if is_empty && !self.visible {
             return Ok(());
@@ -76,7 +76,7 @@ pub(crate) struct Drawings {
 }
 
 impl Drawings {
-    /// Nothing drawn yet, in a tank of this smaller side.
+    /// Creates the layers for a tank with this smaller side; nothing is drawn yet.
     pub(crate) fn new(smaller_side_m: f64) -> Self {
         Self {
             sheets: Layer::ALL.into_iter().map(Sheet::new).collect(),
@@ -86,7 +86,7 @@ impl Drawings {
         }
     }
 
-    /// Takes in everything drawn in one tick.
+    /// Adds all drawings of one tick.
     pub(crate) fn show(&mut self, stream: &Stream, at: At, drawings: &[Drawing]) -> Done {
         let longest_m = self.longest_m;
         for sheet in &mut self.sheets {
@@ -177,7 +177,7 @@ fn force_on(layer: Layer, drawings: &[Drawing]) -> Vector {
     drawings.iter().filter_map(force).sum()
 }
 
-/// The name of a layer in the recording.
+/// The entity name of a layer in the recording.
 pub(crate) fn name(layer: Layer) -> &'static str {
     match layer {
         Layer::Attraction => "attraction",

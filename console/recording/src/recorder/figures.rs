@@ -1,4 +1,4 @@
-//! The account of the run, the same as in every report: properties of the recording, tables, and missed areas on the map.
+//! The account of the run, as in every report: properties of the recording, tables, and missed areas on the map.
 
 use super::{
     lane::flat,
@@ -16,27 +16,28 @@ type Done = Result<(), RecordingError>;
 
 /// Name of the property with the figures of the run.
 pub(crate) const FIGURES: &str = "figures";
-/// While the mission lasts, a look at every cell is worth this many cells a tick, and is taken once a minute at most.
+/// During the mission an account is computed at most once a minute, and less often on a large floor: each tick pays
+/// for this many cells.
 const CELLS_PER_TICK: usize = 50;
 const LEAST_PERIOD_S: f64 = 60.0;
-/// Missed areas with a label.
+/// Maximum number of missed areas with a label.
 const LABELLED: usize = 12;
 
-/// When the account was written last, and how often it is.
+/// Time and interval of the last account.
 pub(crate) struct Accounting {
     period_ticks: i64,
     written: i64,
 }
 
 impl Accounting {
-    /// Nothing has happened yet.
+    /// State before any event.
     pub(crate) fn open(run: &RunOpened, at: At) -> Self {
         let least = (LEAST_PERIOD_S / run.mission.tick_s).round() as i64;
         let period_ticks = least.max((run.floor.len() / CELLS_PER_TICK) as i64);
         Self { period_ticks, written: at.tick }
     }
 
-    /// Whether the last one is so old that the next is due: a run that is killed has one, too.
+    /// Whether the next account is due. A run that is killed then has a recent one, too.
     pub(crate) fn is_due(&self, at: At) -> bool {
         at.tick - self.written >= self.period_ticks
     }
@@ -50,7 +51,7 @@ impl Accounting {
     }
 }
 
-/// Missed areas; while the mission lasts, those that no plan leads to any more.
+/// Missed areas; during the mission, those that no plan leads to any more.
 pub(crate) fn missed(areas: &[Area<MissReason>], is_over: bool) -> Vec<&Area<MissReason>> {
     areas.iter().filter(|area| is_over || area.reason != MissReason::NotReached).collect()
 }
@@ -59,7 +60,7 @@ fn draw(stream: &Stream, at: At, areas: &[&Area<MissReason>]) -> Done {
     let (labelled, more) = areas.split_at(areas.len().min(LABELLED));
     for (path, areas, first) in [(paths::MISSED, labelled, 1), (paths::MISSED_MORE, more, LABELLED + 1)] {
         let label = |(area, number): (&&Area<MissReason>, usize)| format!("{number}: {:.2} m²", area.area_m2);
-        // Not as boxes: the viewer puts the labels of those where they were without the turn of the map.
+        // No boxes: the viewer would place their labels as if the map were not flipped.
         let outline = |area: &&Area<MissReason>| {
             let corners = rectangle(area.low, area.high);
             rr::LineStrip2D::from_iter(corners.iter().chain(corners.first()).map(|corner| flat(*corner)))
@@ -75,7 +76,7 @@ fn draw(stream: &Stream, at: At, areas: &[&Area<MissReason>]) -> Done {
     Ok(())
 }
 
-/// The figures of a run as numbers; what is not known is absent.
+/// The figures of a run as numbers; unknown ones are absent.
 fn properties(summary: &Summary) -> rr::AnyValues {
     let values = numbers(summary).into_iter().fold(rr::AnyValues::default(), |values, (name, number)| {
         values.with_component_from_data(name, Arc::new(rr::Float64Array::from(vec![number])) as rr::ArrayRef)

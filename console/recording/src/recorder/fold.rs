@@ -1,4 +1,4 @@
-//! The fold from events to entities.
+//! Folds events into entities.
 
 use super::{
     document::Document,
@@ -27,7 +27,7 @@ pub(crate) struct Fold {
     opened: Option<Box<Opened>>,
 }
 
-/// The state of a recording whose world is known.
+/// The state of a recording with a known world.
 struct Opened {
     tick: Tick,
     table: Table,
@@ -35,17 +35,18 @@ struct Opened {
     rangings: Rangings,
     residuals: Residuals,
     drawings: Drawings,
-    /// Absent if the mission is not there to scan floor.
+    /// `None` if scanning is not the task of the mission.
     raster: Option<Raster>,
     accounting: Accounting,
     states: States,
     document: Document,
-    /// Whether the plan before had lines that are never crossed.
+    /// Whether the plan before had cuts.
     has_cuts: bool,
 }
 
 impl Fold {
-    /// Takes in an event and returns how many ticks it closed: none or one. `account` is that of the events before it.
+    /// Adds an event and returns the number of ticks that it closed: none or one. `account` is that of the events
+    /// before it.
     pub(crate) fn apply(
         &mut self,
         event: &Event,
@@ -72,7 +73,7 @@ impl Fold {
         }
     }
 
-    /// Closes what is open at the end of the run, of which the summary is given.
+    /// Closes everything that is open at the end of the run, with the given summary.
     pub(crate) fn finish(&mut self, summary: &Summary, stream: &Stream) -> Done {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         let at = opened.tick.at;
@@ -192,7 +193,7 @@ impl Opened {
         self.table.push(stream, &tick)
     }
 
-    /// Writes an account, and shows it in the text beside the map.
+    /// Writes an account, and shows it in the document beside the map.
     fn account(&mut self, summary: &Summary, stream: &Stream, at: At) -> Done {
         self.accounting.write(summary, stream, at)?;
         self.document.accounted(summary.floor.clone());
@@ -214,7 +215,7 @@ fn draw_found(stream: &Stream, at: At, obstacle: &Obstacle) -> Done {
 
 fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
     let Some(line) = event.log_line(stations) else { return Ok(()) };
-    // The viewer has no level for WATCH, and shows a word of its own without a colour.
+    // The viewer has no level for WATCH; it shows an unknown level as plain text without a colour.
     let level = match line.severity {
         Severity::Info => rr::TextLogLevel::INFO,
         Severity::Watch => "WATCH",
@@ -225,8 +226,8 @@ fn log(stream: &Stream, event: &Event, stations: &[Station], at: At) -> Done {
     stream.once(&format!("{}/{}", paths::LOG, line.source), at, &text)
 }
 
-/// The name of an event as the journal has it.
+/// The name of an event in the journal.
 fn name_of(event: &Event) -> String {
     let json = serde_json::to_value(event).unwrap_or_default();
-    json["event"].as_str().unwrap_or("something unreadable").to_owned()
+    json["event"].as_str().unwrap_or("an unreadable event").to_owned()
 }

@@ -1,6 +1,6 @@
-//! Rows of one entity that wait to be sent together.
+//! Rows of one entity that are collected and sent together.
 //!
-//! One chunk for 500 rows costs a fifteenth of the bytes of chunks of two rows, so what happens every tick is gathered.
+//! One chunk for 500 rows takes a fifteenth of the bytes of chunks of two rows, so rows of every tick are collected.
 
 use super::{
     stream::{At, Stream},
@@ -8,18 +8,18 @@ use super::{
 };
 use crate::{error::RecordingError, rr};
 
-/// A point as the recording has it, metres.
+/// A point in the format of the recording, metres.
 pub(crate) type Flat = [f32; 2];
 
-/// A point or vector as the recording has it.
+/// A point or vector in the format of the recording.
 pub(crate) fn flat<T: Into<[f64; 2]>>(point: T) -> Flat {
     let [x, y] = point.into();
     [x as f32, y as f32]
 }
 
-/// Something that can be sent in columns.
+/// A value that can be sent in columns.
 pub(crate) trait Row: Sized {
-    /// The columns of many rows, one row a moment.
+    /// The columns of many rows, one row per moment.
     fn columns(rows: &[Self]) -> Result<Vec<rr::SerializedComponentColumn>, rr::SerializationError>;
 }
 
@@ -56,7 +56,7 @@ impl<T: Row> Lane<T> {
     }
 }
 
-/// Where a rigid body stands; what is drawn below its entity moves with it.
+/// The pose of a rigid body; everything below its entity moves with it.
 pub(crate) struct Placed {
     pub at: Flat,
     pub angle_rad: f32,
@@ -97,7 +97,7 @@ impl Row for f64 {
     }
 }
 
-/// Some numbers that belong together, always as many.
+/// A fixed number of values that belong together.
 pub(crate) struct Numbers<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Row for Numbers<N> {
@@ -107,7 +107,7 @@ impl<const N: usize> Row for Numbers<N> {
     }
 }
 
-/// Arrows: foot and vector.
+/// Arrows: start and vector.
 pub(crate) struct Arrows(pub Vec<(Flat, Flat)>);
 
 impl Row for Arrows {
@@ -133,7 +133,7 @@ impl Row for Circles {
     }
 }
 
-/// Straight lines: from and to.
+/// Straight lines: start and end.
 pub(crate) struct Lines(pub Vec<[Flat; 2]>);
 
 impl Row for Lines {
@@ -144,7 +144,7 @@ impl Row for Lines {
     }
 }
 
-/// Straight lines, each in a colour of its own.
+/// Straight lines, each with its own colour.
 pub(crate) struct InkedLines(pub Vec<([Flat; 2], [u8; 4])>);
 
 impl Row for InkedLines {

@@ -1,7 +1,7 @@
-//! How the viewer opens a recording: map on the left, figures, states and log on the right.
+//! The layout in which the viewer opens a recording: map on the left, figures, states and log on the right.
 //!
 //! The layout is embedded in the recording. The SDK's builders lack some view properties (bounds, background, axes,
-//! ways); they are appended to the same blueprint store by the paths that the viewer reads them from.
+//! trails). We append these to the same blueprint store, under the paths from which the viewer reads them.
 
 use super::{
     paths,
@@ -18,7 +18,7 @@ use rr::AsComponents;
 /// Margin around the tank as a share of its size.
 const MARGIN: f64 = 0.06;
 
-/// A property of a view that the SDK's builders do not know.
+/// A property of a view that the SDK's builders lack.
 struct Extra {
     path: String,
     what: Vec<rr::SerializedComponentBatch>,
@@ -59,7 +59,7 @@ fn build(
         patch.log_serialized_batches(extra.path, false, extra.what)?;
     }
     messages.extend(store.take().into_iter().filter(|message| matches!(message, rr::LogMsg::ArrowMsg(..))));
-    // A stream into memory and its store hold each other: without this, the threads of both would outlive the run.
+    // A memory stream and its store keep each other alive: without this, the threads of both would outlive the run.
     scratch.disconnect();
     patch.disconnect();
     Ok((messages, rr::BlueprintActivationCommand { blueprint_id: id, make_active: true, make_default: true }))
@@ -111,7 +111,7 @@ impl Sketch {
             .with_origin(format!("/{}", paths::STATE))
             .with_contents(["$origin/**"])
             .into();
-        // As long as the run is, also while it is being read.
+        // The full length of the run, even while it is still being read.
         let link = view::TimeAxis::update_fields().with_link(view_part::LinkAxis::LinkToGlobal);
         self.add(&view_path(&states), "TimeAxis", &link);
         let log = self.log();
@@ -129,7 +129,7 @@ impl Sketch {
         .into()
     }
 
-    /// How the planner does its work: one plot at a time, the most informative first.
+    /// Plots of the planner's internal figures: one at a time, the most informative first.
     fn planning(&mut self, task: &TaskConfig, has_tether: bool) -> bp::ContainerLike {
         let forces = self.plot("Forces [N]", &[paths::FORCE_SIZES], None);
         let figures = self.plot_with_legend("Planner", paths::PLANNER_SCALARS);
@@ -154,7 +154,7 @@ impl Sketch {
         }
     }
 
-    /// The event log: the path only repeats what the text says.
+    /// The event log without the path column, which only repeats the text.
     fn log(&mut self) -> bp::ContainerLike {
         let log = bp::TextLogView::new("Events").with_origin(format!("/{}", paths::LOG)).into();
         let shown = |kind| view_data::TextLogColumn { visible: true.into(), kind };
@@ -168,7 +168,7 @@ impl Sketch {
         self.plot_with_legend("Residuals [m]", paths::RESIDUALS)
     }
 
-    /// A plot of everything below an entity, whose names are known only later.
+    /// A plot of everything below an entity; the names are known only later.
     fn plot_with_legend(&mut self, name: &str, below: &str) -> bp::ContainerLike {
         let plot = self.plot_of(name, &[&format!("{below}/**")], None);
         let legend = view::PlotLegend::new().with_corner(view_part::Corner2D::RightTop);
@@ -176,7 +176,7 @@ impl Sketch {
         plot
     }
 
-    /// A plot without a legend, which would lie on the curves: its name says what they are, or the text beside the map.
+    /// A plot without a legend, which would cover the curves; its name or the document beside the map explains them.
     fn plot(&mut self, name: &str, entities: &[&str], range: Option<[f64; 2]>) -> bp::ContainerLike {
         let plot = self.plot_of(name, entities, range);
         self.add(&view_path(&plot), "PlotLegend", &view::PlotLegend::new().with_visible(false));
@@ -212,7 +212,8 @@ fn view_path(view: &bp::ContainerLike) -> String {
     }
 }
 
-/// The part of the map that is seen at first: the tank with a margin and the key below it, turned over like the map itself.
+/// The part of the map that is shown initially: the tank with a margin and the key below it, flipped like the map
+/// itself.
 fn bounds(run: &RunOpened) -> view::VisualBounds2D {
     let (mut low, high) = run.world.boundary.bounds();
     let margin = MARGIN * (high - low).max();

@@ -1,10 +1,10 @@
-//! Names of the entities: where in the recording things are found.
+//! Entity paths of the recording.
 
-/// The property that says how the run ended.
+/// The property that states how the run ended.
 pub(crate) const END: &str = "__properties/end";
 /// Root of the map's view.
 pub(crate) const MAP: &str = "map";
-/// The tank frame, turned over for the viewer.
+/// The tank frame, flipped for the viewer.
 pub(crate) const WORLD: &str = "map/world";
 pub(crate) const TANK: &str = "map/world/tank";
 pub(crate) const START: &str = "map/world/start";
@@ -17,7 +17,7 @@ pub(crate) const PLATE_NAMES: &str = "map/world/plates/names";
 /// The largest missed areas, with labels, and the others.
 pub(crate) const MISSED: &str = "map/world/missed";
 pub(crate) const MISSED_MORE: &str = "map/world/missed/more";
-/// What the colours mean.
+/// The key to the colours.
 pub(crate) const KEY: &str = "map/world/key";
 pub(crate) const KEY_NAMES: &str = "map/world/key/names";
 pub(crate) const STATIONS: &str = "map/world/ae/stations";
@@ -30,19 +30,19 @@ pub(crate) const CUTS: &str = "map/world/path/cuts";
 pub(crate) const TARGET: &str = "map/world/path/target";
 pub(crate) const WAY_TRUE: &str = "map/world/way/true";
 pub(crate) const WAY_ESTIMATE: &str = "map/world/way/est";
-/// The true pose; what is below it moves with it.
+/// The true pose; everything below it moves with it.
 pub(crate) const TRUE: &str = "map/world/robot/true";
 pub(crate) const HEADING: &str = "map/world/robot/true/heading";
 pub(crate) const HULL: &str = "map/world/robot/true/hull";
-/// What the tool scans.
+/// The scanning tool.
 pub(crate) const SWATH: &str = "map/world/robot/true/swath";
-/// The estimated position, turned as its 95 % ellipse is.
+/// The estimated position, rotated like its 95 % ellipse.
 pub(crate) const ESTIMATE: &str = "map/world/robot/est";
-/// Arrows of planners, one entity a layer below it.
+/// Arrows of planners, one entity per layer below it.
 pub(crate) const FORCES: &str = "map/world/forces";
-/// Circles and lines of planners, one entity a layer and kind below it.
+/// Circles and lines of planners, one entity per layer and kind below it.
 pub(crate) const DRAWN: &str = "map/world/drawn";
-/// The taut cable by the estimate, and where it bears.
+/// The taut cable by the estimate, and its contacts.
 pub(crate) const TETHER: &str = "map/world/tether";
 pub(crate) const TETHER_ANCHOR: &str = "map/world/tether/anchor";
 pub(crate) const TETHER_CONTACTS: &str = "map/world/tether/contacts";
@@ -56,10 +56,10 @@ pub(crate) const SPEED: &str = "scalars/speed";
 pub(crate) const SPEED_SENT: &str = "scalars/speed_commanded";
 pub(crate) const CLEARANCE: &str = "scalars/clearance";
 pub(crate) const CROSS_TRACK: &str = "scalars/cross_track";
-/// Residuals of the ranges, one entity a station below it.
+/// Residuals of the ranges, one entity per station below it.
 pub(crate) const RESIDUALS: &str = "scalars/residual";
 pub(crate) const FORCE_SIZES: &str = "scalars/forces";
-/// Figures that planners report, one entity a name below it.
+/// Figures reported by planners, one entity per name below it.
 pub(crate) const PLANNER_SCALARS: &str = "scalars/planner";
 
 pub(crate) const TETHER_OUT: &str = "scalars/tether/out";
@@ -73,7 +73,7 @@ pub(crate) const STATE: &str = "state";
 pub(crate) const STATE_PLANNER: &str = "state/planner";
 pub(crate) const STATE_MISSION: &str = "state/mission";
 pub(crate) const STATE_POSITION: &str = "state/position";
-/// The event log, one entity a source below it.
+/// The event log, one entity per source below it.
 pub(crate) const LOG: &str = "log";
 pub(crate) const SUMMARY: &str = "mission/summary";
 pub(crate) const SCENARIO: &str = "mission/scenario";

@@ -1,4 +1,5 @@
-//! Ranges from their stations towards the believed position: the gap between tip and robot is the residual.
+//! Ranges, drawn from their stations towards the estimated position: the gap between the tip and the robot is the
+//! residual.
 
 use super::{
     lane::{Flat, InkedLines, Lane, flat},
@@ -18,12 +19,12 @@ pub(crate) struct Rangings {
 }
 
 impl Rangings {
-    /// Nothing was heard yet.
+    /// State before any range.
     pub(crate) fn new() -> Self {
         Self { ranges: Lane::new(paths::RANGES), fixes: Lane::new(paths::FIX) }
     }
 
-    /// Takes in a tick that is over.
+    /// Adds a completed tick.
     pub(crate) fn push(&mut self, stations: &[Station], tick: &Tick) {
         if let Some(ranges) = &tick.ranges {
             let ink = |range: &Ranging| {
@@ -52,11 +53,12 @@ fn line(range: &Ranging, stations: &[Station], tick: &Tick) -> Option<[Flat; 2]>
     Some([flat(station.position), flat(station.position + towards * range.range_m)])
 }
 
-/// The residuals of each station: measured minus expected range, also of those that were rejected for it.
+/// The residuals of each station: measured minus expected range, including stations that were rejected because of
+/// them.
 pub(crate) struct Residuals(Vec<(StationId, Lane<f64>)>);
 
 impl Residuals {
-    /// The stations of a run, and how their curves look.
+    /// The stations of a run, and the styles of their curves.
     pub(crate) fn open(stream: &Stream, stations: &[Station]) -> Result<Self, RecordingError> {
         let mut lanes = Vec::new();
         for (station, color) in stations.iter().zip(style::SERIES.into_iter().cycle()) {
@@ -67,7 +69,7 @@ impl Residuals {
         Ok(Self(lanes))
     }
 
-    /// Takes in a tick that is over.
+    /// Adds a completed tick.
     pub(crate) fn push(&mut self, tick: &Tick) {
         let Some(fix) = &tick.fix else { return };
         for (station, lane) in &mut self.0 {

@@ -1,4 +1,4 @@
-//! The scanned floor as a picture.
+//! The scanned floor as an image.
 
 use super::{
     paths,
@@ -9,12 +9,12 @@ use crate::{error::RecordingError, rr};
 use mission::event::RunOpened;
 use world::{Cell, CellRun, FloorClass, KindRun};
 
-/// Seconds of mission time between two pictures of a small floor.
+/// Mission time between two images of a small floor, seconds.
 const PERIOD_S: f64 = 5.0;
-/// Large floors are pictured more rarely: cells for each tick between two pictures.
+/// The interval is longer for a large floor: one tick per this many cells.
 const CELLS_PER_TICK: usize = 500;
 
-/// How a cell is written by what it counts as; class 0 is not drawn.
+/// Value of a cell of each class; class 0 is not drawn.
 fn id(class: FloorClass) -> u8 {
     match class {
         FloorClass::Outside => 0,
@@ -25,12 +25,12 @@ fn id(class: FloorClass) -> u8 {
     }
 }
 
-/// How a cell is written that was not scanned.
+/// Value of a cell that was not scanned.
 fn unscanned(kind: Cell) -> u8 {
     id(FloorClass::of(kind, 0))
 }
 
-/// The scanned floor, and when it was pictured last.
+/// The scanned floor, and the time of its last image.
 pub(crate) struct Raster {
     classes: Vec<u8>,
     width: usize,
@@ -41,7 +41,7 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
-    /// The floor of a run, and how its cells look.
+    /// The floor of a run, and the style of its cells.
     pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
         let floor = &run.floor;
         let place = rr::Transform3D::from_translation_scale(
@@ -56,7 +56,7 @@ impl Raster {
         };
         let classes = [
             class(FloorClass::Outside, "no floor", [0, 0, 0, 0]),
-            class(FloorClass::Unreachable, "out of reach", style::OUT_OF_REACH),
+            class(FloorClass::Unreachable, "unreachable", style::OUT_OF_REACH),
             class(FloorClass::Scanned, "scanned", style::SCANNED),
             class(FloorClass::ToDo, "to do", style::TO_DO),
             class(FloorClass::Missed, "missed", style::MISSED),
@@ -76,7 +76,7 @@ impl Raster {
         })
     }
 
-    /// Takes in newly scanned cells.
+    /// Adds newly scanned cells.
     pub(crate) fn mark(&mut self, runs: &[CellRun]) {
         for run in runs {
             let (first, count) = (run.0 as usize, run.1 as usize);
@@ -88,7 +88,7 @@ impl Raster {
         }
     }
 
-    /// Takes in cells that became another kind of floor.
+    /// Adds cells whose class changed.
     pub(crate) fn change(&mut self, changes: &[KindRun]) {
         for KindRun(kind, first, count) in changes {
             let first = (*first as usize).min(self.classes.len());
@@ -102,7 +102,7 @@ impl Raster {
         }
     }
 
-    /// The mission has ended: what was to do is missed.
+    /// The mission has ended: floor still to do is now missed.
     pub(crate) fn end(&mut self) {
         for class in self.classes.iter_mut().filter(|class| **class == id(FloorClass::ToDo)) {
             *class = id(FloorClass::Missed);
@@ -110,13 +110,13 @@ impl Raster {
         }
     }
 
-    /// Pictures the floor if it changed and the last picture is old enough.
+    /// Writes an image if the floor has changed and the last image is old enough.
     pub(crate) fn picture_if_due(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
         let due = self.pictured.is_none_or(|tick| at.tick - tick >= self.period_ticks);
         if due { self.picture(stream, at) } else { Ok(()) }
     }
 
-    /// Pictures the floor if it changed.
+    /// Writes an image if the floor has changed.
     pub(crate) fn picture(&mut self, stream: &Stream, at: At) -> Result<(), RecordingError> {
         if !self.changed || self.classes.is_empty() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! What stands still: tank, obstacles, zones, stations, preset path, and how everything else is drawn.
+//! The static scene: tank, obstacles, zones, stations, preset path, and the styles of everything else.
 
 use super::{
     lane::{Flat, flat},
@@ -13,17 +13,17 @@ use world::{Boundary, Obstacle, Point, Shape, Tool, Vector, Zone, ZoneKind};
 
 type Done = Result<(), RecordingError>;
 
-/// More labels than this hide the map; the names are there on hovering.
+/// More labels than this would hide the map; the names still appear on hovering.
 const MOST_LABELS: usize = 12;
-/// Half the size of the cross that stands for an obstacle without extent, metres.
+/// Half the size of the cross that marks an obstacle without extent, metres.
 const CROSS_M: f64 = 0.08;
 
-/// Places nearer to each other than this share a label, metres.
+/// Points closer together than this share a label, metres.
 const LABEL_M: f64 = 0.5;
 
-/// Draws everything that stands still.
+/// Draws the static scene.
 pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
-    // The viewer draws y downwards in two dimensions. The picture is turned over once, here; the data stays true.
+    // The viewer's 2D view has y pointing down. The view is flipped once, here; the data stays true.
     let upright = [[1.0_f32, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
     stream.always(paths::WORLD, &rr::Transform3D::from_mat3x3(upright))?;
     draw_wall(stream, &run.world.boundary)?;
@@ -36,7 +36,7 @@ pub(crate) fn draw(stream: &Stream, run: &RunOpened) -> Done {
     draw_stations(stream, run)?;
     draw_task(stream, run)?;
     let at = run.mission.start.position;
-    // A coverage mission ends where it starts: two labels at one place cannot be read.
+    // A coverage mission ends where it starts: two labels at one place would be unreadable.
     let ends_here =
         matches!(&run.mission.task, TaskConfig::Cover { anchor, .. } if (anchor - at).norm() < LABEL_M);
     let start = rr::Points2D::new([flat(at)]).with_colors([style::color(style::WALL)]);
@@ -73,7 +73,7 @@ fn draw_zones(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::ZONES, &drawn_zones(zones))
 }
 
-/// A zone that was drawn under way.
+/// A zone that was drawn during the run.
 pub(super) fn draw_zone(stream: &Stream, at: At, zone: &Zone) -> Done {
     let path = format!("{}/{}", paths::ZONES, zone.name.replace(' ', "-"));
     stream.once(&path, at, &drawn_zones(std::slice::from_ref(zone)))
@@ -93,7 +93,7 @@ fn drawn_zones(zones: &[Zone]) -> rr::LineStrips2D {
         .with_draw_order(-5.0)
 }
 
-/// The seams of the plates, and their names where most of each plate is.
+/// The seams of the plates, and the name of each plate where most of it is.
 fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
     let Some(layout) = &run.plates else { return Ok(()) };
     let seams = layout.seams(&run.world.boundary);
@@ -116,16 +116,16 @@ fn draw_plates(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::PLATE_NAMES, &names)
 }
 
-/// What the colours mean: a row of dots below the tank.
+/// The key to the colours: a row of dots below the tank.
 fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
     let floor = match &run.mission.task {
         TaskConfig::Goto { .. } => &[][..],
-        TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("out of reach", style::OUT_OF_REACH)],
+        TaskConfig::Follow { .. } => &[("scanned", style::SCANNED), ("unreachable", style::OUT_OF_REACH)],
         TaskConfig::Cover { .. } => &[
             ("scanned", style::SCANNED),
             ("to do", style::TO_DO),
             ("missed", style::MISSED),
-            ("out of reach", style::OUT_OF_REACH),
+            ("unreachable", style::OUT_OF_REACH),
         ],
     };
     let ways = [("true", style::TRUE), ("estimated", style::ESTIMATE), ("planned", style::PLAN)];
@@ -142,7 +142,7 @@ fn draw_key(stream: &Stream, run: &RunOpened) -> Done {
         .with_colors(entries.iter().map(|(_, color)| style::color(*color)))
         .with_radii([style::on_screen(6.0)]);
     stream.always(paths::KEY, &dots)?;
-    // Labels have the colour of their points, and floor is dark.
+    // Labels have the colour of their points, and the floor is dark.
     let names = rr::Points2D::new(places())
         .with_colors([style::color(style::WALL)])
         .with_radii([style::on_screen(1.0)])
@@ -180,7 +180,8 @@ fn draw_end(stream: &Stream, at: Point, label: Option<&str>) -> Done {
     stream.always(paths::GOAL, &end.with_radii([style::on_screen(6.0)]).with_labels(label))
 }
 
-/// Colours and widths of what moves, and the shapes that move with the robot; the stream then carries places only.
+/// Colours and widths of moving entities, and the shapes that move with the robot; the stream then carries positions
+/// only.
 fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
     let radius_m = run.mission.limits.radius_m;
     let (low, high) = run.world.boundary.bounds();
@@ -225,7 +226,7 @@ fn style_moving(stream: &Stream, run: &RunOpened) -> Done {
     stream.always(paths::TETHER_ANCHOR, &anchor.with_radii([style::on_screen(5.0)]))
 }
 
-/// Colour and width of lines that come later.
+/// Colour and width of lines that are added later.
 pub(crate) fn line_style(color: [u8; 4], width: f32) -> rr::LineStrips2D {
     rr::LineStrips2D::update_fields().with_colors([style::color(color)]).with_radii([style::on_screen(width)])
 }
@@ -241,7 +242,7 @@ pub(crate) fn lines(
         .with_radii([style::on_screen(width)])
 }
 
-/// The outline of a shape as a line; a polyline is its own centre line, drawn as thick as it is.
+/// The outline of a shape as a line; a polyline is represented by its centre line, at its true width.
 pub(crate) fn outline(shape: &Shape) -> Vec<Flat> {
     match shape {
         Shape::Disc { center, radius_m } if *radius_m < CROSS_M / 4.0 => cross(*center),
@@ -251,7 +252,7 @@ pub(crate) fn outline(shape: &Shape) -> Vec<Flat> {
     }
 }
 
-/// How thick the outline of a shape is drawn.
+/// The line width of the outline of a shape.
 pub(crate) fn thickness(shape: &Shape, width: f32) -> rr::Radius {
     match shape {
         Shape::Polyline { half_width_m, .. } if *half_width_m > 0.0 => style::on_floor(*half_width_m),

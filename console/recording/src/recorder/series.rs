@@ -1,4 +1,4 @@
-//! Rows that each tick adds to an entity.
+//! Rows that are added to an entity at each tick.
 
 use super::{
     lane::{Flat, Lane, Row, Strip, flat},
@@ -8,28 +8,28 @@ use super::{
 use crate::error::RecordingError;
 use world::Point;
 
-/// Points of a piece of the way that is sent as one line.
+/// Number of points of a piece of path that is sent as one line.
 const WAY_POINTS: usize = 12;
 
 /// One entity, filled tick by tick.
 pub(crate) trait Series: Send {
-    /// Takes in a tick that is over.
+    /// Adds a completed tick.
     fn push(&mut self, tick: &Tick);
 
-    /// Closes what is open at the end of the run.
+    /// Closes everything that is open at the end of the run.
     fn finish(&mut self) {}
 
     /// Sends the waiting rows.
     fn send(&mut self, stream: &Stream) -> Result<(), RecordingError>;
 }
 
-/// A row for each tick that has one.
+/// A row for each tick that has a value.
 struct Rows<T> {
     lane: Lane<T>,
     of: fn(&Tick) -> Option<T>,
 }
 
-/// A series of what each tick shows, if it shows it.
+/// A series with a row for each tick that has a value.
 pub(crate) fn rows<T: Row + Send + 'static>(path: &str, of: fn(&Tick) -> Option<T>) -> Box<dyn Series> {
     Box::new(Rows { lane: Lane::new(path), of })
 }
@@ -46,16 +46,16 @@ impl<T: Row + Send> Series for Rows<T> {
     }
 }
 
-/// The first and the last of equal rows that follow each other: the curve is the same.
+/// Of equal consecutive rows only the first and the last are kept: the curve is the same.
 struct Changes<T> {
     lane: Lane<T>,
     of: fn(&Tick) -> Option<T>,
     last: Option<T>,
-    /// When the last row was met again.
+    /// Time at which the last row occurred again.
     again: Option<At>,
 }
 
-/// A series of what each tick shows, if it shows it, without the ticks between equal ones.
+/// A series that omits the ticks between equal values.
 pub(crate) fn changes<T>(path: &str, of: fn(&Tick) -> Option<T>) -> Box<dyn Series>
 where
     T: Row + Clone + PartialEq + Send + 'static,
@@ -88,7 +88,7 @@ impl<T: Row + Clone + PartialEq + Send> Series for Changes<T> {
     }
 }
 
-/// A way that grows piece by piece, so that all of it can be drawn at every moment.
+/// A path that grows piece by piece, so that all of it can be drawn at every moment.
 pub(crate) struct Way {
     lane: Lane<Strip>,
     of: fn(&Tick) -> Option<Point>,
@@ -98,7 +98,7 @@ pub(crate) struct Way {
 }
 
 impl Way {
-    /// The way of a position, its points this far apart.
+    /// The path of a position, with points at this distance.
     pub(crate) fn new(path: &str, spacing_m: f64, of: fn(&Tick) -> Option<Point>) -> Self {
         Self { lane: Lane::new(path), of, spacing_m: spacing_m as f32, points: Vec::new(), last: None }
     }
@@ -120,7 +120,7 @@ impl Series for Way {
 
     fn finish(&mut self) {
         if let (Some(at), true) = (self.last, self.points.len() > 1) {
-            // The next piece begins where this one ends.
+            // The next piece starts where this one ends.
             let next = self.points[self.points.len() - 1..].to_vec();
             self.lane.push(at, Strip(std::mem::replace(&mut self.points, next)));
         }

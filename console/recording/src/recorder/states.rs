@@ -1,7 +1,7 @@
-//! Who drives, whether the robot moves, and whether its position is known: lanes of the timeline of states.
+//! The lanes of the state timeline: the driving planner, the motion of the robot, and the state of its position.
 //!
-//! The viewer fits a timeline of states only once, to what it has read when the first lane appears; linked to the time axis of
-//! all views ([`super::layout`]) it always shows the whole run.
+//! The viewer fits a state timeline only once, to the data that it has read when the first lane appears. Linked to
+//! the time axis of all views ([`super::layout`]), the timeline always shows the whole run.
 
 use super::{
     paths,
@@ -113,7 +113,7 @@ fn held(by: &HoldReason) -> &'static str {
     }
 }
 
-/// How states look: each with a short word, because the viewer cuts what does not fit on its band, and a colour.
+/// The styles of the states: each has a colour and a short word, because the viewer cuts words that do not fit.
 fn configuration(states: &[(&str, &str, [u8; 4])]) -> rr::StateConfiguration {
     rr::StateConfiguration::new()
         .with_values(states.iter().map(|state| state.0))

@@ -1,18 +1,18 @@
-//! The way into the recording: what stands still, what happens once, and columns of what happens every tick.
+//! The output stream of a recording: static data, single events, and columns of data of every tick.
 
 use crate::{error::RecordingError, identity::Identity, rr, sink::SafeSink};
 use std::time::Duration;
 
-/// Name of the application in the viewer; the viewer keeps layouts by it.
+/// Name of the application in the viewer, under which the viewer stores layouts.
 pub(crate) const APPLICATION: &str = "tankops";
 /// Timeline that counts ticks.
 pub(crate) const TICK: &str = "tick";
 /// Timeline of mission time.
 pub(crate) const SIM_TIME: &str = "sim_time";
-/// Timeline of the calendar: the beginning of the run by its name, and mission time.
+/// Calendar timeline: the start of the run from its name, plus mission time.
 pub(crate) const UTC: &str = "utc";
 
-/// A moment of the mission on both timelines.
+/// A moment of the mission on all timelines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct At {
     /// Number of the tick.
@@ -37,12 +37,12 @@ pub(crate) struct Stream {
 type Done = Result<(), RecordingError>;
 
 impl Stream {
-    /// Begins a recording.
+    /// Starts a recording.
     pub(crate) fn open(sink: SafeSink, identity: &Identity) -> Result<Self, RecordingError> {
         let builder =
             rr::RecordingStreamBuilder::new(APPLICATION).recording_id(identity.recording_id.clone());
         let (_, store, _, _, hooks, _) = builder.into_args();
-        // By the name, not by the clock: two recordings of one run shall not differ.
+        // The start comes from the name, not from the clock: two recordings of one run must not differ.
         let info = rr::RecordingInfo::update_fields().with_name(identity.name.clone());
         let info = match identity.began_ns {
             Some(began_ns) => info.with_start_time(began_ns),
@@ -57,7 +57,7 @@ impl Stream {
         Ok(Self { inner, began_ns: identity.began_ns })
     }
 
-    /// Logs what holds for the whole recording.
+    /// Logs data that holds for the whole recording.
     pub(crate) fn always(&self, path: &str, what: &dyn rr::AsComponents) -> Done {
         self.inner.log_static(path, what).map_err(|error| RecordingError::sdk(&error))
     }
@@ -67,7 +67,7 @@ impl Stream {
         self.inner.send_property(name, values).map_err(|error| RecordingError::sdk(&error))
     }
 
-    /// Logs what happened at a moment.
+    /// Logs data at a moment.
     pub(crate) fn once(&self, path: &str, at: At, what: &dyn rr::AsComponents) -> Done {
         self.inner.set_time_sequence(TICK, at.tick);
         self.inner.set_time(SIM_TIME, rr::TimeCell::from_duration_nanos(at.sim_ns));
@@ -95,9 +95,9 @@ impl Stream {
         self.inner.send_blueprint(messages, activation);
     }
 
-    /// Starts the way of everything logged so far to the file, without waiting for it.
+    /// Starts to send everything logged so far to the file, without waiting for it.
     pub(crate) fn flush(&self) {
-        // The sink keeps its error for itself; it is looked at there.
+        // The sink does not return its error here; it must be read from the sink.
         let _ = self.inner.flush_async();
     }
 }

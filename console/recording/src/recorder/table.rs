@@ -1,4 +1,4 @@
-//! Everything that is recorded of a tick in rows: one table, each series with its place and with what it shows of a tick.
+//! The table of everything that is recorded per tick: each series with its entity path and its value in a tick.
 
 use super::{
     lane::{Ellipse, Lane, Placed, Spots, Strip, flat},
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 type Done = Result<(), RecordingError>;
 
-/// A figure: its place, its name and colour in the plots, and its value in a tick.
+/// A figure: its entity path, its name and colour in the plots, and its value in a tick.
 type Figure = (&'static str, &'static str, [u8; 4], fn(&Tick) -> Option<f64>);
 
 const FIGURES: [Figure; 7] = [
@@ -36,7 +36,7 @@ const TETHER_FIGURES: [Figure; 5] = [
     (paths::TETHER_SUM, "total wrap", style::FIGURE, |tick| Some(tick.tether.as_ref()?.wrap_total_deg)),
 ];
 
-/// What moves on the map.
+/// The moving entities of the map.
 fn moving(run: &RunOpened) -> Vec<Box<dyn Series>> {
     let spacing_m = run.mission.cell_m;
     vec![
@@ -66,12 +66,12 @@ fn tether() -> Vec<Box<dyn Series>> {
 /// The rows of a run that wait to be sent.
 pub(crate) struct Table {
     series: Vec<Box<dyn Series>>,
-    /// Figures that planners report, by name.
+    /// Figures reported by planners, by name.
     reported: BTreeMap<String, Lane<f64>>,
 }
 
 impl Table {
-    /// The series of a run, and how the figures among them look in the plots.
+    /// Creates the series of a run, and the plot styles of their figures.
     pub(crate) fn open(stream: &Stream, run: &RunOpened) -> Result<Self, RecordingError> {
         let mut series = moving(run);
         let mut figures = FIGURES.to_vec();
@@ -86,7 +86,7 @@ impl Table {
         Ok(Self { series, reported: BTreeMap::new() })
     }
 
-    /// Takes in a tick that is over.
+    /// Adds a completed tick.
     pub(crate) fn push(&mut self, stream: &Stream, tick: &Tick) -> Done {
         self.series.iter_mut().for_each(|series| series.push(tick));
         tick.scalars
@@ -94,7 +94,7 @@ impl Table {
             .try_for_each(|(name, value, unit)| self.push_reported(stream, tick.at, name, *value, unit))
     }
 
-    /// Closes what is open at the end of the run.
+    /// Closes everything that is open at the end of the run.
     pub(crate) fn finish(&mut self) {
         self.series.iter_mut().for_each(|series| series.finish());
     }
@@ -113,17 +113,17 @@ impl Table {
             stream.always(lane.path(), &curve(&label, color))?;
             self.reported.insert(name.to_owned(), lane);
         }
-        self.reported.get_mut(name).expect("a lane was made above").push(at, value);
+        self.reported.get_mut(name).expect("a lane was created above").push(at, value);
         Ok(())
     }
 }
 
-/// How a figure looks in the plots.
+/// The plot style of a figure.
 pub(crate) fn curve(name: &str, color: [u8; 4]) -> rr::SeriesLines {
     rr::SeriesLines::new().with_names([name]).with_colors([style::color(color)]).with_widths([1.5])
 }
 
-/// A name as one part of an entity path.
+/// Turns a name into one part of an entity path.
 pub(crate) fn entity_name(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.') { c } else { '_' };
     name.chars().map(plain).collect()

@@ -1,13 +1,13 @@
-//! The account of the floor as tables of the text beside the map.
+//! The account of the floor as tables in the document beside the map.
 
 use super::figures::missed;
 use account::{Account, Shares};
 use std::fmt::Write;
 
-/// Missed areas that are listed; the report has all of them.
+/// Maximum number of missed areas listed; the report has all of them.
 const MOST_AREAS: usize = 60;
 
-/// The tables of a floor: all of it, plate by plate, and what was missed.
+/// The tables of a floor: all of it, plate by plate, and the missed areas.
 pub(crate) fn floor(account: &Account, is_over: bool) -> String {
     // Writing to a String cannot fail.
     let mut text = String::from("\n## Floor\n\n");

@@ -1,4 +1,4 @@
-//! Everything that one tick has reported so far.
+//! The data of one tick.
 
 use super::{
     lane::{Flat, flat},
@@ -12,14 +12,14 @@ use positioning::{
 };
 use world::{Point, Pose};
 
-/// Everything that one tick has reported so far.
+/// The data that one tick has reported so far.
 #[derive(Default)]
 pub(crate) struct Tick {
     pub at: At,
     pub drawings: Vec<Drawing>,
     pub truth: Option<Truth>,
     pub estimate: Option<Estimate>,
-    /// What the planner commands; a held robot is commanded to stand, which no event states.
+    /// The planner's command; a held robot is commanded to stand still, which no event states.
     commanded_m_per_s: Option<f64>,
     is_held: bool,
     /// Scanned share of the reachable floor.
@@ -31,24 +31,24 @@ pub(crate) struct Tick {
     pub fix: Option<Fix>,
     /// Figures of the planner: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// Where the robot was last believed to be.
+    /// The latest estimated position.
     pub believed: Point,
-    /// Where the robot was last sent to.
+    /// The latest target of the robot.
     pub target: Option<Point>,
-    /// Where the tether is made fast.
+    /// The anchor of the tether.
     anchor: Option<Point>,
-    /// Where it truly was in the last tick that has a truth.
+    /// The latest true position.
     before: Option<(At, Point)>,
 }
 
-/// Where the robot truly is.
+/// The true pose of the robot.
 #[derive(Clone, Copy)]
 pub(crate) struct Truth {
     pub pose: Pose,
     pub clearance_m: f64,
 }
 
-/// Where it believes it is.
+/// The estimated pose of the robot.
 #[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub position: Point,
@@ -56,7 +56,7 @@ pub(crate) struct Estimate {
     pub ellipse_95: (f64, f64, f64),
 }
 
-/// How the tether lies by the estimate.
+/// The tether by the estimate.
 pub(crate) struct Tether {
     pub line: Vec<Flat>,
     pub contacts: Vec<Flat>,
@@ -72,7 +72,7 @@ impl Tick {
         Self { at, believed: start, anchor, ..Self::default() }
     }
 
-    /// A tick after this one.
+    /// The tick that follows this one.
     pub(crate) fn next(&self, at: At) -> Self {
         let before = self.truth.map(|truth| (self.at, truth.pose.position)).or(self.before);
         Self {
@@ -83,7 +83,7 @@ impl Tick {
         }
     }
 
-    /// Takes in an event of the tick.
+    /// Adds an event of the tick.
     pub(crate) fn apply(&mut self, event: &EventKind) {
         match event {
             EventKind::Truth { pose, clearance_m, .. } => {
@@ -141,7 +141,7 @@ impl Tick {
         Some((self.estimate?.position - self.truth?.pose.position).norm())
     }
 
-    /// True speed since the tick before.
+    /// True speed since the previous tick.
     pub(crate) fn speed_m_per_s(&self) -> Option<f64> {
         let (then, from) = self.before.filter(|(then, _)| self.at.sim_ns > then.sim_ns)?;
         let seconds = (self.at.sim_ns - then.sim_ns) as f64 * 1e-9;

@@ -1,21 +1,21 @@
-//! What the writing thread and everyone else share.
+//! The data shared between the writing thread and all others.
 
 use std::{
     sync::{Mutex, MutexGuard, PoisonError, atomic::AtomicU64},
     time::Instant,
 };
 
-/// Figures that the thread and everyone else share.
+/// Counters shared between the thread and all others.
 #[derive(Default)]
 pub(super) struct Shared {
     pub sent: AtomicU64,
     pub done: AtomicU64,
     pub journal_bytes: AtomicU64,
-    /// Errors with which something is lost, each once.
+    /// Errors that lose data, each once.
     losses: Mutex<Vec<String>>,
-    /// What is wrong now and may be over later.
+    /// The present problem, which may pass.
     trouble: Mutex<Option<String>>,
-    /// Until when the chunks of the recording may be merged, once somebody waits for the end.
+    /// Deadline for merging the chunks of the recording, once a caller waits for the end.
     merge_until: Mutex<Option<Instant>>,
 }
 
@@ -42,13 +42,13 @@ impl Shared {
     pub(super) fn error(&self) -> Option<String> {
         let mut errors = locked(&self.losses).clone();
         let trouble = locked(&self.trouble).clone();
-        // A file that has ended is also in trouble.
+        // The error of a file that has ended is in both lists: state it only once.
         errors.extend(trouble.filter(|trouble| !errors.contains(trouble)));
         (!errors.is_empty()).then(|| errors.join("; "))
     }
 }
 
-/// What is shared holds no invariant that a panic could break.
+/// The shared data has no invariant that a panic could break.
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! The journal on disk, whatever happens to the power.
+//! Syncs the journal to disk, as protection against loss of power.
 
 use super::shared::Shared;
 use std::{
@@ -9,10 +9,10 @@ use std::{
     time::Duration,
 };
 
-/// How long what the system has got may be missing on the disk.
+/// Longest time for which written data may be missing on the disk.
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// Begins a thread that puts what was written to the journal on disk every [`PERIOD`], as long as somebody else shares `shared`.
+/// Starts a thread that syncs the written journal to disk every [`PERIOD`], as long as `shared` has another owner.
 pub(super) fn begin(file: File, shared: &Arc<Shared>) -> io::Result<()> {
     let shared = Arc::downgrade(shared);
     thread::Builder::new().name("journal on disk".into()).spawn(move || keep(&file, &shared)).map(drop)
@@ -22,10 +22,10 @@ fn keep(file: &File, shared: &Weak<Shared>) {
     let mut synced = 0;
     loop {
         thread::sleep(PERIOD);
-        // The last look comes after the end, so that nothing is left out.
+        // The last sync comes after the end, so that it includes all data.
         let bytes = shared.upgrade().map(|shared| shared.journal_bytes.load(Ordering::Relaxed));
         if bytes != Some(synced) {
-            // A disk that does not take it also fails the next write, which is reported.
+            // If the disk refuses the data, the next write also fails, and that is reported.
             let _ = file.sync_data();
         }
         match bytes {

@@ -1,4 +1,4 @@
-//! The thread's own part: writes both files, and looks at them.
+//! The writing thread: writes both files, and checks them.
 
 use super::shared::Shared;
 use crate::{
@@ -19,26 +19,26 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long the thread sleeps at most, so that what waits to be written is written when nothing happens.
+/// Longest sleep of the thread, so that waiting data is written even if there are no events.
 const IDLE: Duration = Duration::from_millis(100);
-/// How long the thread lets batches gather once one has come: whoever flies thousands of ticks a second does not wake it for
-/// each of them.
+/// Time for which the thread collects batches after the first one, so that a sender with thousands of ticks per
+/// second does not wake it for each of them.
 const GATHER: Duration = Duration::from_millis(2);
-/// How often the files on disk are compared with those that are being written; with [`IDLE`] and the 400 ms
-/// after which a screen asks, an operator knows within a second.
+/// Interval between comparisons of the files on disk with those that are being written. Together with [`IDLE`] and
+/// the 400 ms refresh of a screen, an operator sees a problem within a second.
 const WATCH_PERIOD: Duration = Duration::from_millis(300);
 
-/// What the thread leaves.
+/// The result of the thread.
 pub(super) struct Ended {
-    /// How the journal ended, if it is whole.
+    /// The final data of the journal, if it is complete.
     pub(super) journal: Option<JournalEnd>,
-    /// What the run came to.
+    /// Summary of the run.
     pub(super) summary: Summary,
-    /// SHA-256 of the recording, hexadecimal, if it is whole.
+    /// SHA-256 of the recording, hexadecimal, if it is complete.
     pub(super) recording_sha256: Option<String>,
 }
 
-/// What the thread owns.
+/// The data of the thread.
 pub(super) struct Writer {
     account: Fold,
     journal: Option<JournalWriter>,
@@ -50,7 +50,7 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// A writer of files that were begun.
+    /// A writer of files that were started.
     pub(super) fn new(
         journal: JournalWriter,
         recorder: Option<Recorder>,
@@ -61,7 +61,7 @@ impl Writer {
         Self { account, journal, recorder, marker, shared, watched: Instant::now(), changed: None }
     }
 
-    /// Writes until nobody sends any more.
+    /// Writes until all senders are dropped.
     pub(super) fn run(mut self, batches: &Receiver<Arc<[Event]>>) -> Ended {
         loop {
             match batches.recv_timeout(IDLE) {
@@ -79,7 +79,7 @@ impl Writer {
     fn write(&mut self, events: &[Event]) {
         let now = Instant::now();
         for event in events {
-            // What the journal reports is asked for below.
+            // Errors of the journal are read below.
             let _ = self.journal.as_mut().map(|journal| journal.append(event, now));
             let account = &self.account;
             if let Some(Err(error)) =
@@ -102,7 +102,7 @@ impl Writer {
         self.look(now);
     }
 
-    /// Looks at both files, and shares what it sees.
+    /// Checks both files, and shares the result.
     fn look(&mut self, now: Instant) {
         if now.saturating_duration_since(self.watched) >= WATCH_PERIOD {
             self.watched = now;
@@ -128,7 +128,7 @@ impl Writer {
         journal.or_else(recording).or_else(|| self.changed.clone())
     }
 
-    /// Leaves a sign of what is wrong in the folder of the run, or takes it away.
+    /// Reports the present problem in the folder of the run, or removes the report.
     fn mark(&mut self) {
         if let Some(marker) = &mut self.marker {
             marker.show(self.shared.error().as_deref());
@@ -151,7 +151,7 @@ impl Writer {
         if let Some(end) = &journal {
             self.shared.journal_bytes.store(end.bytes, Ordering::Relaxed);
         }
-        // How each file ended is clear now; what was wrong on the way and is over does not matter any more.
+        // How each file ended is known now; problems that have passed no longer matter.
         self.shared.set_trouble(None);
         self.mark();
         Ended { journal, summary, recording_sha256 }

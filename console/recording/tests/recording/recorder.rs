@@ -300,7 +300,7 @@ fn a_recording_that_somebody_writes_into_is_not_whole() {
     let file = std::fs::File::options().write(true).open(&path).expect("ours");
     std::os::unix::fs::FileExt::write_all_at(&file, b"other", 200).expect("within the file");
     let error = recorder.finish(&account.summary(), None).expect_err("changed");
-    assert!(error.to_string().contains("the file was changed by somebody else"), "{error}");
+    assert!(error.to_string().contains("the file was changed by another program"), "{error}");
 }
 
 #[test]

@@ -1,12 +1,12 @@
-//! Whether the inspector's certificate was valid on the day of the inspection.
+//! Checks whether the inspector's certificate was valid on the day of the inspection.
 
 use super::Document;
 use account::Date;
 
-/// Words of a certificate that is not valid any more.
+/// Words that mark a certificate as no longer valid.
 const ENDED: [&str; 7] = ["expired", "lapsed", "invalid", "revoked", "suspended", "withdrawn", "abgelaufen"];
 
-/// What speaks against the certificate: the day on which it expires is missing or past, or its text says that it has ended.
+/// Returns the objections to the certificate: its expiry date is missing or past, or its text states that it has ended.
 pub(super) fn doubts(document: &Document) -> Vec<String> {
     let facts = &document.inspection;
     let mut doubts = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
         let lack = if is_located {
             "inspection.inspected_on"
         } else {
-            "the day of the inspection, which the name of the run's folder does not tell"
+            "the day of the inspection, which the run's folder name does not contain"
         };
         doubts.push(lack.to_owned());
     }
@@ -34,7 +34,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     let lower = text.to_lowercase();
     let words = || lower.split(|letter: char| !letter.is_alphabetic());
     if let Some(word) = ENDED.into_iter().find(|ended| words().any(|word| word == *ended)) {
-        doubts.push(format!("inspection.inspector_certificate says that it is {word}: `{}`", text.trim()));
+        doubts.push(format!("inspection.inspector_certificate states that it is {word}: `{}`", text.trim()));
     } else if let Some(day) = Date::until(text).and_then(is_past) {
         doubts.push(format!(
             "inspection.inspector_certificate ends before the inspection on {day}: `{}`",
@@ -44,7 +44,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     doubts
 }
 
-/// The day of the inspection: that on which its last run began, or, of readings, the one that is stated.
+/// The day of the inspection: the start date of the last run or, for readings, the stated day.
 fn inspected(document: &Document) -> Option<Date> {
     if document.located.is_some() {
         return Date::read(document.inspection.inspected_on.as_ref()?);

@@ -1,4 +1,4 @@
-//! What happened over mission time, and the critical zone unrolled, as pictures.
+//! Charts of a run over mission time, and the unrolled critical zone.
 
 use super::maps::{Figure, chart};
 use crate::{
@@ -14,14 +14,14 @@ use world::{Boundary, Point, ShellStretch};
 const AXIS_MM: (f64, f64) = (20.0, 159.0);
 /// Width of a chart, millimetres.
 const WIDTH_MM: f64 = 180.0;
-/// Columns into which a curve is gathered: each shows the largest value in it.
+/// Number of columns of a curve; each column shows the largest value in it.
 const COLUMNS: usize = 440;
-/// Depth of the critical zone on paper, millimetres.
+/// Drawn depth of the critical zone, millimetres of paper.
 const ZONE_MM: f64 = 9.0;
-/// Left end and length of the unrolled shell on paper, millimetres.
+/// Left end and length of the unrolled shell, millimetres of paper.
 const SHELL_MM: (f64, f64) = (8.0, 164.0);
 
-/// A chart that is being drawn from the top downwards.
+/// A chart, drawn from the top down.
 struct Chart {
     end_s: f64,
     step_s: f64,
@@ -29,7 +29,7 @@ struct Chart {
     body: String,
 }
 
-/// A line that a value is held against.
+/// A limit line of a chart.
 struct Limit<'a> {
     value: f64,
     text: String,
@@ -70,7 +70,7 @@ impl Chart {
         self.draw(format_args!(r#"<text x="{x}" y="{y:.2}" text-anchor="end" {style}>{text}</text>"#));
     }
 
-    /// When something was going on.
+    /// A row of bars that show when something was active.
     fn lane(&mut self, name: &str, spans: &[Span], fill: &str) {
         let (y, hair, soft) = (self.y, colour::HAIR, colour::SOFT);
         self.label(y + 2.6, name, r#"font-weight="600""#);
@@ -96,7 +96,7 @@ impl Chart {
         self.y += 4.1;
     }
 
-    /// Curves against limits, from 0 to `top`.
+    /// Curves and their limits, on an axis from 0 to `top`.
     fn panel(
         &mut self,
         (title, unit): (&str, &str),
@@ -132,7 +132,7 @@ impl Chart {
                 pairs.join(" ")
             ));
         }
-        // Named in the margin, never on the curve.
+        // The name goes in the margin, never on the curve.
         for Limit { value, text, colour, dash } in limits {
             let line = at(*value);
             self.draw(format_args!(
@@ -156,13 +156,13 @@ fn gathered(points: &[(f64, f64)], end_s: f64) -> Vec<(f64, f64)> {
     columns.into_iter().enumerate().filter_map(|(k, value)| Some((middle(k), value?))).collect()
 }
 
-/// Spans of incidents of a kind; one that was not over lasts to the end.
+/// The time spans of incidents of a kind; an incident that did not end lasts to the end of the run.
 fn spans(incidents: &[Incident], kind: &str, end_s: f64) -> Vec<Span> {
     let of_kind = incidents.iter().filter(|incident| incident.kind == kind);
     of_kind.map(|incident| (incident.t_s, incident.until_s.unwrap_or(end_s))).collect()
 }
 
-/// Everything over mission time; `marks`: numbered incidents. None for a run without a tick.
+/// Draws the record over mission time; `marks` are the numbered incidents. `None` for a run without a tick.
 pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]) -> Option<Figure> {
     let end_s = record.track.last().map(|point| f64::from(point.t_s)).filter(|end_s| *end_s > 0.0)?;
     let steps = [10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0, 7200.0];
@@ -222,8 +222,9 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
     let (y, soft) = (chart.y, colour::SOFT);
     chart.draw(format_args!(r#"<text x="{:.2}" y="{y:.2}" fill="{soft}">h:m:s</text>"#, AXIS_MM.1 + 10.0));
     Some(Figure {
-        caption: "Record over mission time. Numbers refer to the incidents in the table below. Position: dark line, 95 % error; light \
-                  line, true error (simulation only). Wraps: dark line, largest wrap; light line, total."
+        caption: "Record over mission time. Numbers refer to the incidents in the table below. Position: \
+                  dark line, 95 % error; light line, true error (simulation only). Wraps: dark line, \
+                  largest wrap on one obstacle; light line, total wrap."
             .into(),
         svg: self::chart(WIDTH_MM, chart.y + 1.5, &chart.body, "Record over time"),
         legend: Vec::new(),
@@ -233,7 +234,7 @@ pub(super) fn over_time(run: &RunOpened, record: &Record, marks: &[(usize, f64)]
 fn draw_marks(chart: &mut Chart, marks: &[(usize, f64)]) {
     let (y, soft) = (chart.y, colour::SOFT);
     chart.label(y + 3.2, "Incident", r#"font-weight="600""#);
-    // Three rows; a number without room in any of them is only in the table.
+    // There are three rows; a number that fits in none of them appears only in the table.
     let mut ends = [f64::NEG_INFINITY; 3];
     for (number, t_s) in marks {
         let x = chart.x(*t_s);
@@ -264,7 +265,7 @@ fn position_panel(chart: &mut Chart, run: &RunOpened, record: &Record) {
     chart.panel(("Position", "95 % error, cm"), 16.0, 1.12 * limit_cm, &curves, &[limit]);
 }
 
-/// The critical zone unrolled: the shell is the upper edge.
+/// The critical zone unrolled, with the shell as the upper edge.
 pub(super) fn zone(run: &RunOpened, account: &Account, shell: &[ShellStretch]) -> Figure {
     let boundary = &run.world.boundary;
     let width_m = account.critical_zone.width_m;
@@ -330,20 +331,20 @@ pub(super) fn zone(run: &RunOpened, account: &Account, shell: &[ShellStretch]) -
     );
     let from = match boundary {
         Boundary::Circle { .. } => "counter-clockwise from east",
-        Boundary::Polygon { .. } => "from the first corner of the drawing on",
+        Boundary::Polygon { .. } => "from the first corner of the drawing",
     };
     let times = ZONE_MM / width_m / (length / total_m);
     Figure {
         caption: format!(
-            "The zone unrolled, {from}; the shell is the upper edge, 0 mm. Filled: not scanned. The depth is drawn {times:.0} times \
-             larger than the length."
+            "The zone unrolled, {from}; the upper edge, 0 mm, is the shell. Filled: not scanned. The depth \
+             scale is {times:.0} times the length scale."
         ),
         svg: chart(WIDTH_MM, foot + 8.4, &body, "Critical zone along the shell, unrolled"),
         legend: Vec::new(),
     }
 }
 
-/// Marks along the shell: share of its length, text, whether it stands in the lower row.
+/// Marks along the shell: position as a share of its length, text, and whether the text goes in the lower row.
 fn marks_along(boundary: &Boundary, total_m: f64) -> Vec<(f64, String, bool)> {
     match boundary {
         Boundary::Circle { .. } => {

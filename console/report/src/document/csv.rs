@@ -5,16 +5,17 @@ use crate::{geojson::rounded, joined::PastRun};
 use account::{Shares, ZoneArc};
 use csv::Writer;
 
-/// What the names of the files of the tables have behind that of the first.
+/// Suffixes that the file names of the tables add to the name of the first.
 pub const SUFFIXES: [&str; 6] = ["", "-missed", "-zone", "-obstacles", "-indications", "-track"];
 
-/// The tables in the order of [`SUFFIXES`]: plates with the whole and the reachable floor, missed areas, arcs of the critical zone
-/// that are not done, obstacles found, indications, and the track of every run with its 95 % error.
+/// Writes the tables in the order of [`SUFFIXES`]: plates with the whole and the reachable floor, missed areas, arcs
+/// of the critical zone that are not done, obstacles found, indications, and the track of every run with its 95 %
+/// error.
 pub fn tables(document: &Document, past: &[PastRun]) -> [String; SUFFIXES.len()] {
     [plates(document), missed(document), zone(document), obstacles(past), indications(document), track(past)]
 }
 
-/// Rows under a head; writing to memory cannot fail.
+/// Rows under a header; writing to memory cannot fail.
 fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = Writer::from_writer(Vec::new());
     let _ = writer.write_record(head);
@@ -24,7 +25,8 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A cell that no spreadsheet computes, in plain characters: a text that begins as a formula does has an apostrophe before it.
+/// A cell in plain characters that no spreadsheet evaluates: a text that begins like a formula gets a leading
+/// apostrophe.
 pub fn cell(text: &str) -> String {
     let cell = foreign::plain_lines(text);
     let is_formula =
@@ -46,7 +48,7 @@ fn plates(document: &Document) -> String {
         let guaranteed = p.guaranteed.unwrap_or(0.0);
         let of_mission = [p.missed, p.unreachable, p.margin].map(|value| (value, !is_located));
         let of_tool = [p.scanned, guaranteed].map(|value| (value, is_known));
-        // What is not known is empty, not zero.
+        // An unknown value is an empty cell, not zero.
         let cell =
             |(value, is_stated): (f64, bool)| if is_stated { format!("{value:.1}") } else { String::new() };
         row.extend(of_tool.into_iter().chain(of_mission).map(cell));
@@ -58,9 +60,10 @@ fn plates(document: &Document) -> String {
         .into_iter()
         .take(if is_located { 1 } else { 2 })
         .map(|(name, shares)| row(name, "base", shares, None));
-    let plates = floor.plates.iter().map(|plate| {
-        row(&plate.name, &format!("{:?}", plate.kind).to_lowercase(), &plate.shares, plate.error_p95_m)
-    });
+    let plates = floor
+        .plates
+        .iter()
+        .map(|plate| row(&plate.name, &plate.kind.to_string(), &plate.shares, plate.error_p95_m));
     let head = [
         "floor",
         "kind",
@@ -84,7 +87,7 @@ fn missed(document: &Document) -> String {
         row
     });
     let small = Some(&document.floor.slivers).filter(|slivers| slivers.count > 0).map(|slivers| {
-        let mut row = vec![format!("{} smaller", slivers.count)];
+        let mut row = vec![format!("{} smaller areas", slivers.count)];
         row.extend(std::iter::repeat_n(String::new(), 6));
         row.extend([format!("{:.4}", slivers.area_m2), String::new(), slivers.why()]);
         row

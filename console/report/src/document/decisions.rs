@@ -1,37 +1,40 @@
-//! What the inspector must decide before signing: each decision is a key of `[inspection]` with the reason.
+//! The decisions that the inspector must make before signing: each is a key of `[inspection]` with the reason as its
+//! value.
 
 use super::{Document, located};
 use crate::human::text::counted;
 use mission::Outcome;
 
-/// Item of the gate on the tank.
+/// The gate item about the tank.
 pub(super) const TANK: usize = 1;
-/// Item of the gate on the scope.
+/// The gate item about the scope.
 pub(super) const SCOPE: usize = 2;
-/// Item of the gate on missed areas.
+/// The gate item about missed areas.
 pub(super) const MISSED: usize = 6;
 
-/// Something to be decided.
+/// A decision that the inspector must make.
 pub(super) struct Decision {
-    /// What.
+    /// The question, for the reader.
     pub(super) what: String,
-    /// The section that shows it.
+    /// The section with the facts.
     pub(super) section: usize,
     /// Its key under `[inspection]`.
     pub(super) key: &'static str,
-    /// The item of the gate that stays open without it.
+    /// The gate item that stays open without the decision.
     pub(super) item: usize,
-    /// The reason given.
+    /// The reason that the inspector gave.
     pub(super) answer: Option<String>,
 }
 
-/// The decisions that a document asks for.
+/// Returns the decisions that a document requires.
 pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     let (floor, zone, facts) = (&document.floor, &document.floor.critical_zone, &document.inspection);
     let mut decisions = Vec::new();
     if let Some(contradiction) = &document.contradiction {
         decisions.push(Decision {
-            what: format!("The facts contradict the scenario that was flown: {contradiction}."),
+            what: format!(
+                "The facts under [inspection] contradict the scenario of the run: {contradiction}."
+            ),
             section: 1,
             key: "identity_corrected",
             item: TANK,
@@ -44,7 +47,9 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     }
     if !is_complete(document) {
         decisions.push(Decision {
-            what: "Mission incomplete: accept what was scanned, or let another run join this report (tankops rescan).".into(),
+            what: "Mission incomplete: accept what was scanned, or add a re-scan to this report (tankops \
+                rescan)."
+                .into(),
             section: 7,
             key: "partial_scope_accepted",
             item: SCOPE,
@@ -54,7 +59,10 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     if document.is_to_scan && !zone.done {
         let (left_m, of_m, width_mm) = (zone.length_m - zone.done_m, zone.length_m, 1000.0 * zone.width_m);
         decisions.push(Decision {
-            what: format!("Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the whole {width_mm:.0} mm."),
+            what: format!(
+                "Critical zone: {left_m:.1} of {of_m:.1} m of shell not scanned over the full \
+                width of {width_mm:.0} mm."
+            ),
             section: 4,
             key: "critical_zone_accepted",
             item: SCOPE,
@@ -65,7 +73,8 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
         let (count, area_m2) = (counted(floor.missed.len() as u64, "missed area"), largest.area_m2);
         decisions.push(Decision {
             what: format!(
-                "{count} of 0.01 m² and more, the largest {area_m2:.2} m²: accept, scan again, or inspect by hand."
+                "{count} of at least 0.01 m², the largest {area_m2:.2} m²: accept, re-scan, or inspect by \
+                 hand."
             ),
             section: 3,
             key: "missed_accepted",
@@ -76,7 +85,7 @@ pub(super) fn decisions(document: &Document) -> Vec<Decision> {
     decisions
 }
 
-/// Whether the last of the runs did all that it was to do.
+/// Whether the last run completed its task.
 pub(super) fn is_complete(document: &Document) -> bool {
     document.runs.last().is_some_and(|run| run.outcome == Some(Outcome::Complete))
 }

@@ -1,8 +1,8 @@
 //! The report as a drawing: DXF R12 in ASCII, metres, with the layers SHELL, PLATES, OBSTACLES, PIPES, MISSED, TRACK and INDICATIONS,
 //! and `NO_GO_ZONES`, ZONES and STATIONS.
 //!
-//! `tankops import` reads the floor back: seams end at each other and at the shell, each plate has its name on their layer, and
-//! pipes have their width.
+//! `tankops import` can read the floor back: seams end at each other or at the shell, the name of each plate is on
+//! the layer of the seams, and pipes keep their width.
 
 use super::{Document, shapes::zones};
 use crate::{
@@ -14,7 +14,7 @@ use account::plate_map;
 use mission::RunOpened;
 use world::{PlateLayout, Point, Shape, ZoneKind};
 
-/// The layers and their colours by the numbers of the format.
+/// The layers and their DXF colour numbers.
 const LAYERS: [(&str, u8); 10] = [
     ("SHELL", 7),
     ("PLATES", 8),
@@ -27,9 +27,9 @@ const LAYERS: [(&str, u8); 10] = [
     ("ZONES", 9),
     ("STATIONS", 3),
 ];
-/// Points of the track nearer to the rest of it than this are left out, metres.
+/// Simplification tolerance of the track, metres.
 const TRACK_M: f64 = 0.01;
-/// The drawing.
+/// Writes the report as a drawing.
 pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     let mut drawing = Drawing::new(&LAYERS);
     if let Some(run) = past.last().and_then(|past| past.fold.run()) {
@@ -73,7 +73,7 @@ pub fn dxf(document: &Document, past: &[PastRun]) -> String {
     drawing.finish()
 }
 
-/// What is special about parts of the floor, and where the stations are.
+/// Draws zones and stations.
 fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) {
     for zone in zones(past) {
         let layer = if zone.kind == ZoneKind::NoGo { "NO_GO_ZONES" } else { "ZONES" };
@@ -86,7 +86,7 @@ fn zones_and_stations(drawing: &mut Drawing, run: &RunOpened, past: &[PastRun]) 
     }
 }
 
-/// What stands on the floor, on the layer of its kind.
+/// Draws a solid object on the layer of its kind.
 fn solid(drawing: &mut Drawing, shape: &Shape) {
     match shape {
         Shape::Polyline { points, half_width_m } => drawing.wide("PIPES", points, 2.0 * half_width_m),
@@ -94,7 +94,7 @@ fn solid(drawing: &mut Drawing, shape: &Shape) {
     }
 }
 
-/// The plates with their names.
+/// Draws the plates with their names.
 fn plates(drawing: &mut Drawing, run: &RunOpened) {
     let Some((layout, map)) = run.plates.as_ref().zip(plate_map(run, &run.floor)) else { return };
     match layout {

@@ -1,4 +1,4 @@
-//! What must be answered before a report can be signed.
+//! The items that must be answered before a report can be signed.
 
 use super::{
     Document, RunPart, certificate,
@@ -17,24 +17,24 @@ use world::Boundary;
 pub struct GateItem {
     /// Its number, from 1.
     pub number: usize,
-    /// What it asks for.
+    /// What the item requires.
     pub what: &'static str,
-    /// Whether it is answered.
+    /// Whether the item is answered.
     pub is_answered: bool,
-    /// The answer as far as there is one.
+    /// The answer, as far as it is known.
     pub answer: String,
-    /// What is missing: keys of `[inspection]`, or what else must be done.
+    /// What is missing: keys of `[inspection]`, or an action that is still needed.
     pub missing: Vec<String>,
 }
 
-/// An answer and what it lacks.
+/// The answer to an item, and what it still lacks.
 type Answered = (String, Vec<String>);
 
-/// The thirteen items of a document.
+/// Returns the thirteen items of a document.
 pub(super) fn gate(document: &Document) -> Vec<GateItem> {
-    // Readings were located by no planner, and had no floor to miss.
+    // Located readings have no planner and no missed floor.
     let [of_equipment, of_missed] = if document.located.is_some() {
-        ["Equipment, version, readings", "Floor that the tool did not pass"]
+        ["Equipment, version, readings", "Floor not passed by the tool"]
     } else {
         ["Equipment, planner, versions, seed, parameters", "Missed areas, each with a reason"]
     };
@@ -49,7 +49,7 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
         ("Position accuracy", accuracy(document)),
         ("Indications", indications(document)),
         ("Tether record", tether(document)),
-        ("Alarms, faults, holds and early ends: who reviewed them", incidents(document)),
+        ("Review of alarms, faults, holds and early ends", incidents(document)),
         ("Inspector, certificate, remarks", remarks(document)),
         ("Journal, recording and report.json bound to this report", hashes(document)),
     ];
@@ -64,7 +64,7 @@ pub(super) fn gate(document: &Document) -> Vec<GateItem> {
     numbered.map(item).collect()
 }
 
-/// What is wrong with facts that are asked for: the keys that are missing, and those that say nothing.
+/// Returns the problems of required facts: missing keys, and facts without content.
 fn asked(facts: &[(&str, &Option<String>)]) -> Vec<String> {
     let lack = |(key, fact): &(&str, &Option<String>)| match fact {
         Some(text) => empty(key, text),
@@ -73,17 +73,17 @@ fn asked(facts: &[(&str, &Option<String>)]) -> Vec<String> {
     facts.iter().filter_map(lack).collect()
 }
 
-/// What is wrong with facts that nobody has to give: those that say nothing.
+/// Returns the problems of optional facts: those without content.
 fn given(facts: &[(&str, &Option<String>)]) -> Vec<String> {
     facts.iter().filter_map(|(key, fact)| empty(key, fact.as_ref()?)).collect()
 }
 
-/// A fact that says nothing.
+/// The message about a fact without content.
 fn empty(key: &str, text: &str) -> Option<String> {
     says_nothing(text).then(|| format!("inspection.{key} has no content: `{}`", text.trim()))
 }
 
-/// Adds the decisions of an item to its answer, and those not made to what it lacks.
+/// Adds the decisions of an item: those made to its answer, the others to what it lacks.
 fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> Answered {
     let mut answers = vec![answer];
     for decision in decisions(document).into_iter().filter(|decision| decision.item == item) {
@@ -96,7 +96,7 @@ fn decided(document: &Document, item: usize, (answer, mut lacks): Answered) -> A
     (answers.join("; "), lacks)
 }
 
-/// How large a tank is.
+/// The size of a tank.
 pub(super) fn size(run: &RunOpened) -> String {
     match &run.world.boundary {
         Boundary::Circle { radius_m } => format!("round, inner radius {radius_m} m"),
@@ -111,7 +111,7 @@ pub(super) fn size(run: &RunOpened) -> String {
 fn tank(document: &Document) -> Answered {
     let facts = &document.inspection;
     let plates = match document.floor.plates.len() {
-        0 => "layout of the plates not given".to_owned(),
+        0 => "plate layout not given".to_owned(),
         n => format!("{n} plates"),
     };
     let mut lacks = asked(&[("tank_id", &facts.tank_id), ("drawing", &facts.drawing)]);
@@ -171,12 +171,12 @@ fn calibration(document: &Document) -> Answered {
     (if lacks.is_empty() { format!("stated in section {section}") } else { String::new() }, lacks)
 }
 
-/// The answer of a report on a run that was not there to scan, to what is asked of scans.
+/// The answer to gate items about scanning, for a run whose task was not to scan.
 fn no_scan() -> Answered {
     ("scanning the floor was not part of the mission".to_owned(), Vec::new())
 }
 
-/// Whether a text gives a number, and says more than it and its unit.
+/// Whether a text contains a number and more than its unit.
 fn is_determined(text: &str) -> bool {
     let has_number = text.contains(|letter: char| letter.is_ascii_digit());
     let words = text.split(|letter: char| !letter.is_alphabetic());
@@ -192,21 +192,21 @@ fn plates(document: &Document) -> Answered {
         let waiver = document.inspection.plates_waiver.clone();
         let lacks = asked(&[("plates_waiver", &waiver)]);
         let waived = waiver.map(|why| format!(": {why}")).unwrap_or_default();
-        return (format!("layout of the plates not given{waived}"), lacks);
+        return (format!("plate layout not given{waived}"), lacks);
     }
     if document.located.as_ref().is_some_and(|located| located.tool_on_s.is_none()) {
         return located::plates(document);
     }
-    // A plate of which nothing could be scanned needs no accuracy. Readings were to scan none: what the tool did not pass is accepted
-    // as missed.
+    // Where nothing of a plate could be scanned, no accuracy is required. Readings have no scan task, so unscanned
+    // floor is accepted as missed.
     let has_figure = |plate: &&account::PlateAccount| {
         let could_be_scanned = plate.shares.missed > 0.0 && document.located.is_none();
         plate.error_p95_m.is_some() || plate.shares.scanned <= 0.0 && !could_be_scanned
     };
     let without: Vec<&str> =
         plates.iter().filter(|plate| !has_figure(plate)).map(|plate| &*plate.name).collect();
-    let lacks = without.iter().map(|name| format!("accuracy of plate {name}: nothing of it was scanned"));
-    (format!("{} of {} plates with figures", plates.len() - without.len(), plates.len()), lacks.collect())
+    let lacks = without.iter().map(|name| format!("accuracy of plate {name}: none of its floor was scanned"));
+    (format!("figures for {} of {} plates", plates.len() - without.len(), plates.len()), lacks.collect())
 }
 
 fn missed(document: &Document) -> Answered {
@@ -219,9 +219,9 @@ fn missed(document: &Document) -> Answered {
     }
     let without = floor.missed.iter().filter(|area| area.causes.iter().any(|cause| cause.text.is_empty()));
     let lacks =
-        without.map(|area| format!("reason of the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
+        without.map(|area| format!("reason for the gap at {:.2}, {:.2} m", area.at.x, area.at.y)).collect();
     let text = format!(
-        "{} with a reason, {} smaller ones in total {:.2} m²",
+        "{} with a reason, {} smaller ones, {:.2} m² in total",
         counted(floor.missed.len() as u64, "area"),
         floor.slivers.count,
         floor.slivers.area_m2
@@ -239,7 +239,7 @@ fn unreachable(document: &Document) -> Answered {
     let (floor, slivers) = (&document.floor, &document.floor.unreachable_slivers);
     let listed = floor.unreachable.len();
     let text = format!(
-        "{} with a reason, {} smaller ones in total {:.2} m²",
+        "{} with a reason, {} smaller ones, {:.2} m² in total",
         counted(listed as u64, "area"),
         slivers.count,
         slivers.area_m2
@@ -253,7 +253,7 @@ fn accuracy(document: &Document) -> Answered {
         format!("95 % error p95 {:.3} m, largest {:.3} m, limit {} m", a.p95_m, a.max_m, a.limit_m)
     };
     let lacks = if stated.len() < document.runs.len() {
-        vec!["a run without an estimated position".to_owned()]
+        vec!["an estimated position in every run".to_owned()]
     } else {
         vec![]
     };
@@ -264,11 +264,11 @@ fn indications(document: &Document) -> Answered {
     let stated = document.inspection.indications.clone();
     let placed = document.indications.len();
     if placed == 0 && stated.is_none() {
-        let lacks = vec!["inspection.indications, or a file with --indications".to_owned()];
+        let lacks = vec!["inspection.indications, or an indications file (--indications)".to_owned()];
         return (String::new(), lacks);
     }
     let lacks = given(&[("indications", &stated)]);
-    let placed = (placed > 0).then(|| format!("{placed} with their places"));
+    let placed = (placed > 0).then(|| format!("{placed} placed on the map"));
     (placed.into_iter().chain(stated).collect::<Vec<_>>().join("; "), lacks)
 }
 
@@ -320,7 +320,7 @@ fn hashes(document: &Document) -> Answered {
         let files = &run.files;
         lacks.extend(files.doubts.iter().map(|doubt| format!("{}: {doubt}", run.run)));
         if let Some(then) = files.closed_as.as_ref().filter(|then| **then != run.run) {
-            lacks.push(format!("{}: its folder was renamed; call it {then} again", run.run));
+            lacks.push(format!("{}: its folder was renamed; rename it back to {then}", run.run));
         }
         if files.are_as_reported.is_none() {
             let close = if run.outcome.is_none() {
@@ -329,7 +329,7 @@ fn hashes(document: &Document) -> Answered {
                 String::new()
             };
             lacks.push(format!(
-                "{}: without a report of the run's end there is nothing to check the files against{close}",
+                "{}: its report.json is missing, so the files cannot be checked{close}",
                 run.run
             ));
         }
@@ -342,9 +342,10 @@ fn hashes(document: &Document) -> Answered {
     }
     let recovered = |run: &RunPart| {
         let recovered = run.files.recovered.as_ref()?;
-        Some(format!("{} was killed, and closed {recovered}", run.run))
+        Some(format!("{} was killed, and later closed {recovered}", run.run))
     };
-    let bound = "SHA-256 of journal and recording unchanged since the run was closed; report.json agrees with the journal";
+    let bound = "SHA-256 of journal and recording unchanged since the run was closed; report.json agrees \
+        with the journal";
     let recovered = document.runs.iter().filter_map(recovered);
     (std::iter::once(bound.to_owned()).chain(recovered).collect::<Vec<_>>().join("; "), lacks)
 }

@@ -11,12 +11,12 @@ use mission::RunOpened;
 use serde_json::{Value, json};
 use world::{Point, ZoneKind};
 
-/// Points of the track nearer to the rest of it than this are left out, metres.
+/// Simplification tolerance of the track, metres.
 const TRACK_M: f64 = 0.01;
 
-/// One feature collection. With a datum in `[inspection]` its coordinates are those of that system, east and north in metres,
-/// and the collection names it; without one they are those of the tank frame, named as a local system that no program takes for
-/// degrees.
+/// The report as one feature collection. With a datum in `[inspection]`, coordinates are east and north in that
+/// system, metres, and the collection names the system. Without one they are in the tank frame, declared as a local
+/// system so that no program reads them as degrees.
 pub fn geojson(document: &Document, past: &[PastRun]) -> String {
     let datum = Datum::of(&document.inspection);
     let mut features = tracks(&datum, past);
@@ -35,7 +35,7 @@ pub fn geojson(document: &Document, past: &[PastRun]) -> String {
         "document": document.number, "revision": document.revision, "scenario": document.scenario,
         "coordinates": datum.words(),
     });
-    // Of readings nothing is reachable or missed, and unknown is not zero.
+    // Readings define no reachable or missed floor, and unknown is not zero.
     if let Some(located) = &document.located {
         let percent = document.floor.whole.percent;
         let passed = json!({ "scanned": percent.scanned, "guaranteed": percent.guaranteed });
@@ -94,7 +94,7 @@ fn tank(datum: &Datum<'_>, run: &RunOpened, past: &[PastRun]) -> Vec<Value> {
     features
 }
 
-/// Every plate with its shares in per cent.
+/// Every plate with its percentages.
 fn plates(datum: &Datum<'_>, document: &Document) -> Vec<Value> {
     let plate = |shape: &super::shapes::PlateShape| {
         let account = document.floor.plates.iter().find(|plate| plate.name == shape.name);

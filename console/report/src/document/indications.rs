@@ -15,33 +15,33 @@ use serde::Serialize;
 use table::{Fault, Table};
 use world::{Point, geometry::unit_vector};
 
-/// Faults that are listed; of more the number is said.
+/// Maximum number of faults listed; of the rest only the number is given.
 const LISTED: usize = 20;
-/// Rounding of what a file says in whole millimetres, metres.
+/// Rounding error of a value that is given in whole millimetres, metres.
 const ROUNDING_M: f64 = 1e-3;
 
-/// An indication with its place.
+/// An indication with its position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Indication {
     /// Its number, from 1.
     pub number: usize,
-    /// Name of the run in which it was found; absent if its file says only where, and there are several runs.
+    /// Name of the run in which it was found; absent if the file gives only coordinates and there are several runs.
     pub run: Option<String>,
-    /// Mission time, seconds; absent if its file says only where.
+    /// Mission time, seconds; absent if the file gives only coordinates.
     pub t_s: Option<f64>,
-    /// Where it lies, metres.
+    /// Its position, tank frame, metres.
     pub at: Point,
-    /// 95 % error of the place, metres; absent if its file says where it lies.
+    /// 95 % error of the position, metres; absent if the file gives coordinates.
     pub error_m: Option<f64>,
-    /// The plate on which it lies; absent if the layout of the plates is not known.
+    /// The plate at its position; absent if the plate layout is not known.
     pub plate: Option<String>,
-    /// What kind, as the instrument says.
+    /// Its kind, as given by the instrument.
     pub kind: String,
     /// Size, millimetres.
     pub size_mm: Option<f64>,
     /// Depth, millimetres.
     pub depth_mm: Option<f64>,
-    /// Anything else.
+    /// Remarks.
     pub note: String,
 }
 
@@ -50,27 +50,28 @@ pub(super) struct Flown<'a> {
     /// Name of its folder.
     pub(super) name: &'a str,
     pub(super) record: &'a Record,
-    /// When its mission time was 0, to the second; absent if the name of its folder does not say.
+    /// The time when mission time was 0, to the second; absent if the folder name does not contain it.
     pub(super) began: Option<Timestamp>,
-    /// Half the width that its tool scans, metres.
+    /// Half the swath, metres.
     pub(super) reach_m: f64,
 }
 
-/// What an indication can lie on.
+/// The floor on which indications are placed.
 pub(super) struct Ground<'a> {
-    /// Thickness of the plates, if it is known, millimetres.
+    /// Thickness of the plates, millimetres, if known.
     pub(super) thickness_mm: Option<f64>,
-    /// The nearest solid thing and the distance from it, metres; negative within it, or outside the tank.
+    /// The nearest solid object and the distance to it, metres; negative inside it or outside the tank.
     pub(super) nearest_solid: &'a dyn Fn(Point) -> (String, f64),
-    /// The plate of a place.
+    /// The plate at a position.
     pub(super) plate_at: &'a dyn Fn(Point) -> Option<String>,
 }
 
-/// Reads indications from text with a line of names first; the columns are those of [`row::COLUMNS`]. Each is placed where the
-/// robot believed its tool to be at its time, or where its coordinates say. `run` is needed with several runs.
+/// Reads indications from a text whose first line names the columns; these are [`row::COLUMNS`]. An indication is
+/// placed at its coordinates, or where the tool was at its time by the estimated position. With several runs the
+/// column `run` is required.
 ///
 /// # Errors
-/// Everything that is wrong in the file, a line each: file, line, column, and what would be right.
+/// All faults of the file, one line each: file, line, column, and how to correct it.
 pub(super) fn indications(
     (file, text): (&str, &str),
     runs: &[Flown<'_>],
@@ -112,7 +113,7 @@ fn names(runs: &[Flown<'_>]) -> String {
 }
 
 impl Row<'_> {
-    /// The indication of this row at its place.
+    /// Places the indication of a row.
     fn placed(self, number: usize, runs: &[Flown<'_>], ground: &Ground<'_>) -> Result<Indication, Fault> {
         let (run, t_s, at, error_m) = match self.at {
             Some(at) => (self.run_of(runs)?, None, at, None),
@@ -123,11 +124,11 @@ impl Row<'_> {
         if off_m < -error_m.unwrap_or(0.0) - ROUNDING_M {
             let place = format!("{:.3}, {:.3} m", at.x, at.y);
             let what = if name == "the shell" {
-                format!("{place} lies {:.3} m outside the tank", -off_m)
+                format!("{place} is {:.3} m outside the tank", -off_m)
             } else {
-                format!("{place} lies {:.3} m within {name}", -off_m)
+                format!("{place} is {:.3} m inside {name}", -off_m)
             };
-            return Err(self.fault(column, format!("{what}: not floor that could have been scanned")));
+            return Err(self.fault(column, format!("{what}, where no floor can be scanned")));
         }
         Ok(Indication {
             number,
@@ -143,18 +144,15 @@ impl Row<'_> {
         })
     }
 
-    /// Where the tool was at the time of this row.
+    /// The position of the tool at the time of a row.
     fn on_track<'r>(&self, runs: &'r [Flown<'r>]) -> Result<Placed<'r>, Fault> {
         let run =
             self.run_of(runs)?.ok_or_else(|| self.fault("run", format!("must be one of {}", names(runs))))?;
         let (column, t_s) = self.mission_time(run)?;
         let end_s = run.record.track.last().map_or(0.0, |point| f64::from(point.t_s));
         let point = run.record.at(t_s).filter(|_| (0.0..=end_s + 0.5).contains(&t_s)).ok_or_else(|| {
-            let clock = if column == "time" {
-                format!(" is {t_s:.1} s after its beginning, and")
-            } else {
-                String::new()
-            };
+            let clock =
+                if column == "time" { format!(" is {t_s:.1} s after its start, and") } else { String::new() };
             self.fault(
                 column,
                 format!("{}{clock}: the run lasts from 0 to {end_s:.1} s", self.text_of(column)),
@@ -163,7 +161,7 @@ impl Row<'_> {
         for (name, offset_m) in [("left_m", self.left_m), ("ahead_m", self.ahead_m)] {
             if offset_m.abs() > run.reach_m + ROUNDING_M {
                 let what = format!(
-                    "{offset_m} lies beyond the tool: at most {} m from its centre, half of the swath",
+                    "{offset_m} is beyond the tool: at most {} m from its centre, half the swath",
                     run.reach_m
                 );
                 return Err(self.fault(name, what));
@@ -175,7 +173,7 @@ impl Row<'_> {
         Ok((Some(run), Some(t_s), at, Some(f64::from(point.error_m))))
     }
 
-    /// The run that this row names, or the only one; none if it names none of several.
+    /// The run that a row names, or the only run; `None` if there are several and the row names none.
     fn run_of<'r>(&self, runs: &'r [Flown<'r>]) -> Result<Option<&'r Flown<'r>>, Fault> {
         let Some(name) = &self.run else { return Ok(runs.first().filter(|_| runs.len() == 1)) };
         let found = runs.iter().find(|run| run.name == name);
@@ -183,5 +181,5 @@ impl Row<'_> {
     }
 }
 
-/// The run, the mission time, the place, and its 95 % error.
+/// The run, the mission time, the position, and its 95 % error.
 type Placed<'a> = (Option<&'a Flown<'a>>, Option<f64>, Point, Option<f64>);

@@ -1,4 +1,4 @@
-//! What maps show, cell by cell.
+//! The cells that the maps show.
 
 use crate::drawing::{frame::Fixtures, plates::PlateLines};
 use account::{Evidence, Scanned, plate_map, together};
@@ -12,22 +12,22 @@ const LEAST_M2: f64 = 0.01;
 pub(crate) struct Layers<'a> {
     /// The last of the runs, as it was opened.
     pub(crate) run: &'a RunOpened,
-    /// What was scanned.
+    /// The cells that were scanned.
     pub(crate) scanned: &'a Scanned,
     evidence: &'a Evidence,
     /// The plates, if their layout is known.
     pub(crate) plates: Option<PlateLines>,
-    /// Missed areas that are listed, the largest first: a place in each, and its cells.
+    /// The listed missed areas, the largest first: a position in each, and its cells.
     pub(crate) gaps: Vec<(Point, Vec<usize>)>,
     plate_map: Option<PlateMap>,
-    /// Whether the runs were there to scan the floor.
+    /// Whether scanning was the task of the runs.
     pub(crate) is_to_scan: bool,
-    /// What each cell counts as.
+    /// The class of each cell.
     classes: Vec<FloorClass>,
 }
 
 impl<'a> Layers<'a> {
-    /// The layers of what some runs scanned; `places` of the missed areas that are listed, in their order.
+    /// Builds the layers of what the runs scanned; `places` are the positions of the listed missed areas, in order.
     pub(crate) fn new(
         run: &'a RunOpened,
         scanned: &'a Scanned,
@@ -49,7 +49,7 @@ impl<'a> Layers<'a> {
         layers
     }
 
-    /// The same; unless the runs were there to scan, nothing of the floor was missed or left out.
+    /// The same. Unless scanning was the task, no floor counts as missed or left out.
     pub(super) fn of_scan(mut self, is_to_scan: bool) -> Self {
         self.is_to_scan = is_to_scan;
         if !is_to_scan {
@@ -82,12 +82,12 @@ impl<'a> Layers<'a> {
         self.scanned.believed().floor()
     }
 
-    /// How the zone along the shell was scanned, stretch by stretch.
+    /// The scanned state of the critical zone, stretch by stretch along the shell.
     pub(crate) fn shell(&self) -> Vec<ShellStretch> {
         self.evidence.shell()
     }
 
-    /// What stands in the tank as it is known.
+    /// The obstacles in the tank, as known.
     pub(crate) fn fixtures(&self) -> Fixtures<'a> {
         let world = &self.run.world;
         let anchor = match (&self.run.mission.tether, &self.run.mission.task) {
@@ -110,7 +110,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// The plates that have floor, each with its cells in order of their index; none if the layout is not known.
+    /// The plates that have floor, each with its cells in ascending order; empty if the layout is not known.
     pub(crate) fn plate_cells(&self) -> Vec<(&Plate, Vec<usize>)> {
         let Some(map) = &self.plate_map else { return Vec::new() };
         let mut plates: Vec<(&Plate, Vec<usize>)> =
@@ -124,7 +124,7 @@ impl<'a> Layers<'a> {
         plates
     }
 
-    /// The plate of a place, if the layout is known.
+    /// The plate at a position, if the layout is known.
     pub(crate) fn plate_at(&self, place: Point) -> Option<String> {
         let map = self.plate_map.as_ref()?;
         Some(map.plates[map.plate_of(self.floor().cell_at(place)?)?].name.clone())
@@ -135,24 +135,24 @@ impl<'a> Layers<'a> {
         self.classes[cell].is_scanned()
     }
 
-    /// Whether a cell counts as one of a class.
+    /// Whether a cell is of a class.
     pub(crate) fn is(&self, cell: usize, class: FloorClass) -> bool {
         self.classes[cell] == class
     }
 
-    /// Whether a cell was scanned wherever the robot was within its 95 % error.
+    /// Whether a cell was scanned for every position of the robot within its 95 % error.
     pub(crate) fn is_guaranteed(&self, cell: usize) -> bool {
         self.is_scanned(cell) && self.scanned.passes().is_guaranteed(cell)
     }
 
-    /// Where most cells around were scanned more than once: for the eye only.
+    /// Areas where most surrounding cells were scanned more than once; for display only.
     pub(crate) fn smoothed_twice(&self) -> Vec<bool> {
         let width = self.floor().width;
         let at = |cell: Option<usize>| {
             cell.and_then(|cell| self.classes.get(cell))
                 .map_or(0, |class| u8::from(*class == FloorClass::Again))
         };
-        // Sums of three along the rows first; nothing is scanned along the edges of the grid.
+        // Sums of three along the rows first; no cell on the edge of the grid is scanned.
         let across = |cell: usize| at(cell.checked_sub(1)) + at(Some(cell)) + at(Some(cell + 1));
         let rows: Vec<u8> = (0..self.classes.len()).map(across).collect();
         let row = |cell: Option<usize>| cell.and_then(|cell| rows.get(cell)).copied().unwrap_or(0);
@@ -161,8 +161,8 @@ impl<'a> Layers<'a> {
         (0..rows.len()).map(|cell| self.is_scanned(cell) && most(cell)).collect()
     }
 
-    /// Four errors that divide the scanned floor into five classes, metres, and the class of each cell, smoothed for the eye;
-    /// `u8::MAX` where nothing was scanned.
+    /// Four error limits, metres, that divide the scanned floor into five classes, and the class of each cell,
+    /// smoothed for display; `u8::MAX` where the floor was not scanned.
     pub(crate) fn error_classes(&self) -> ([f64; 4], Vec<u8>) {
         let (floor, passes) = (self.floor(), self.scanned.passes());
         let error_mm = |cell: usize| passes.error_mm(cell).filter(|_| self.is_scanned(cell));
@@ -187,14 +187,14 @@ impl<'a> Layers<'a> {
             error_mm(cell).map_or(u8::MAX, above)
         };
         let rough: Vec<u8> = (0..floor.len()).map(class).collect();
-        // A median of three by three: single cells say nothing about accuracy.
+        // A median of three by three: a single cell tells little about accuracy.
         let median = |cell: usize| {
             if rough[cell] == u8::MAX {
                 return u8::MAX;
             }
             let mut near = [u8::MAX; 9];
             let mut count = 0;
-            // Nothing is scanned along the edges of the grid.
+            // No cell on the edge of the grid is scanned.
             for row in [cell.saturating_sub(floor.width), cell, cell + floor.width] {
                 for class in rough.get(row.saturating_sub(1)..row + 2).into_iter().flatten() {
                     near[count] = *class;

@@ -1,5 +1,5 @@
-//! A report on readings that were located: where something was, with its errors, and what its tool passed if the readings say
-//! when it was on. It was not a mission: no floor was to be scanned, and none was missed.
+//! A report on located readings: the track with its errors and, if the readings state when the tool was on, the floor
+//! that it passed. Located readings are not a mission: no floor had to be scanned, and none was missed.
 
 mod front;
 mod gate;
@@ -18,36 +18,36 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use world::Point;
 
-/// Positions in `GeoJSON` are this far apart at least, metres.
+/// Minimum distance between two positions in `GeoJSON`, metres.
 const POSITIONS_M: f64 = 0.25;
 
-/// Readings of a run.
+/// The readings file of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Readings {
     /// Name of the run's folder.
     pub run: String,
-    /// Their file.
+    /// Name of the readings file.
     pub file: String,
-    /// SHA-256 of its bytes, hexadecimal.
+    /// SHA-256 of that file, hexadecimal.
     pub sha256: String,
 }
 
-/// What was located in the place of a mission.
+/// The located readings that replace the mission in a report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Located {
     /// The readings of each run.
     pub readings: Vec<Readings>,
-    /// From the first reading to the last, seconds, of all runs together.
+    /// Time from the first reading to the last, seconds, summed over all runs.
     pub time_s: f64,
-    /// For how long the tool was on, seconds, of all runs together; absent if the readings of any of them do not say it, and then
-    /// no coverage is stated.
+    /// Time for which the tool was on, seconds, summed over all runs. Absent if the readings of any run do not
+    /// contain it; then no coverage is stated.
     pub tool_on_s: Option<f64>,
-    /// Moments at which the position was estimated.
+    /// Number of estimates of the position.
     pub positions: usize,
 }
 
 impl Located {
-    /// What was located in some runs; none if they were flown.
+    /// The located readings of some runs; `None` if the runs were missions.
     pub(super) fn of(past: &[PastRun]) -> Option<Self> {
         let measured = |past: &PastRun| past.fold.run()?.measured.clone();
         let all: Vec<_> = past.iter().map(measured).collect::<Option<_>>()?;
@@ -64,13 +64,13 @@ impl Located {
         })
     }
 
-    /// The files of the readings, for people.
+    /// The names of the readings files, for people.
     pub(super) fn files(&self) -> String {
         self.readings.iter().map(|readings| readings.file.as_str()).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// The account of a floor that nobody was to scan: without what was missed and what is out of reach.
+/// The account of the floor of located readings: without missed floor and without unreachable floor.
 pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
     let mut critical_zone = floor.critical_zone;
     let mut plates = floor.plates;
@@ -93,10 +93,11 @@ pub(super) fn without_task(floor: Account, tool_is_known: bool) -> Account {
     }
 }
 
-/// A report on readings as JSON: without what only a mission has. What the readings do not say is `null`, never zero.
+/// A report on located readings as JSON, without the fields that only a mission has. What the readings do not contain
+/// is `null`, never zero.
 ///
 /// # Errors
-/// A number that JSON cannot have.
+/// A number that JSON cannot represent.
 pub fn located_json(document: &Document) -> serde_json::Result<Value> {
     let mut all = serde_json::to_value(document)?;
     let is_known = document.located.as_ref().is_some_and(|located| located.tool_on_s.is_some());
@@ -140,7 +141,7 @@ pub fn located_json(document: &Document) -> serde_json::Result<Value> {
     Ok(all)
 }
 
-/// How much of some floor the tool passed.
+/// How much of a floor the tool passed.
 fn passed(shares: &account::Shares, is_known: bool) -> Value {
     json!({
         "area_m2": shares.area_m2,
@@ -151,7 +152,7 @@ fn passed(shares: &account::Shares, is_known: bool) -> Value {
     })
 }
 
-/// Where something was located, with the 95 % error: place, run, time, error; thinned to a distance.
+/// The located positions with their 95 % error: position, run, time, error; thinned to a minimum distance.
 pub(super) fn positions(past: &[PastRun]) -> impl Iterator<Item = (Point, Value)> {
     past.iter().flat_map(|past| {
         let mut last: Option<Point> = None;

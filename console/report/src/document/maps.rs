@@ -4,7 +4,7 @@ use super::{Indication, layers::Layers, marks, sections::number_of};
 use crate::{
     drawing::{
         badges::{self, Numbered},
-        sheet::{Sheet, colour, element, escaped},
+        sheet::{Sheet, colour, element},
         trace::thinned,
     },
     human::text::counted,
@@ -18,18 +18,18 @@ use world::{FloorClass, Point, coverage::percent_text};
 /// Widths of maps on paper, millimetres.
 pub(super) const FULL_MM: f64 = 180.0;
 const HALF_MM: f64 = 88.0;
-/// Badges at most.
+/// Maximum number of badges on a map.
 const MOST_BADGES: usize = 60;
 
 /// A picture with its legend.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Figure {
-    /// What it shows.
+    /// The caption.
     pub caption: String,
     /// The picture, SVG.
     #[serde(skip)]
     pub svg: String,
-    /// What its colours mean.
+    /// The meaning of its colours.
     #[serde(skip)]
     pub legend: Vec<Legend>,
 }
@@ -39,9 +39,9 @@ pub struct Figure {
 pub struct Legend {
     /// The colour, SVG.
     pub swatch: String,
-    /// What it means.
+    /// The meaning of the colour.
     pub text: String,
-    /// How much there is of it.
+    /// The amount, such as an area or a share.
     pub value: String,
 }
 
@@ -59,13 +59,13 @@ pub(super) fn legend(swatch: String, text: &str, value: String) -> Legend {
     Legend { swatch, text: text.to_owned(), value }
 }
 
-/// What was scanned, and what was not, with numbered areas; also the numbers that have a badge.
+/// Draws scanned and unscanned floor with numbered areas; also returns the numbers that have a badge.
 pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figure, Vec<usize>) {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "c", FULL_MM, 8.0);
     let (missed, margin, out) = (sheet.pattern("missed"), sheet.pattern("margin"), sheet.pattern("out"));
     sheet.define_patterns(floor.cell_m);
-    // Never painted as scanned where nothing is: an error would read as good.
+    // A cell that was not scanned must never be drawn as scanned.
     sheet.wall(fixtures.boundary, r##"fill="#fff""##);
     sheet.cells(floor, |cell| layers.is_scanned(cell), 0.75, &format!(r#"fill="{}""#, colour::ONCE));
     {
@@ -129,30 +129,29 @@ pub(super) fn coverage(layers: &Layers<'_>, indications: &[Indication]) -> (Figu
     let hidden = numbered.len() - shown.len();
     let mut note = String::new();
     if hidden > 0 {
-        let _ = write!(note, " {hidden} areas have no badge: their places are in section 3.");
+        let _ = write!(note, " {hidden} areas have no badge; section 3 lists their positions.");
     }
     if marks.unnumbered > 0 {
         let unnumbered = counted(marks.unnumbered, "indication");
         let section = number_of(layers.is_to_scan, 7);
-        let _ = write!(
-            note,
-            " {unnumbered} have no room for their numbers: their places are in section {section}."
-        );
+        let _ =
+            write!(note, " {unnumbered} have no number on the map; section {section} lists their positions.");
     }
     let (once, again) = (cells_of(FloorClass::Scanned), cells_of(FloorClass::Again));
     let overlap = percent_text(again as f64 / (once + again).max(1) as f64, 1);
     let missed = if layers.is_to_scan {
-        " Missed cells have an outline of 0.25 mm so that they stay visible."
+        " Missed cells are outlined with 0.25 mm so that they stay visible."
     } else {
         ""
     };
     let caption = format!(
-        "What was scanned, by the estimated position; {overlap} % of the scanned floor more than once.{missed}{note}"
+        "Floor scanned, by the estimated position; {overlap} % of the scanned floor more than \
+         once.{missed}{note}"
     );
     (Figure { caption, svg: sheet.svg("Coverage map", "full"), legend: entries }, shown)
 }
 
-/// What the mark of the anchor means; without a tether it is that of the start.
+/// The label of the anchor mark; without a tether the mark shows the start.
 fn anchor_words(mission: &MissionConfig) -> &'static str {
     match &mission.tether {
         None => "start",
@@ -161,7 +160,7 @@ fn anchor_words(mission: &MissionConfig) -> &'static str {
     }
 }
 
-/// How well the position was known where the floor was scanned.
+/// Draws the accuracy of the position on the scanned floor.
 pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let (edges_m, classes) = layers.error_classes();
@@ -192,15 +191,15 @@ pub(super) fn accuracy(layers: &Layers<'_>) -> Figure {
         legend(filled(colour), &text(class), format!("{:.1} %", percents[class]))
     };
     Figure {
-        caption:
-            "95 % error of the best pass, the largest within a ranging period; shares of the scanned floor"
-                .into(),
+        caption: "95 % error of the best pass: the largest within a ranging period. Percentages are of the \
+             scanned floor."
+            .into(),
         svg: sheet.svg("Position accuracy map", "half"),
         legend: colour::ERROR.into_iter().enumerate().map(entry).collect(),
     }
 }
 
-/// What is guaranteed, and what is scanned only if the position was as estimated.
+/// Draws guaranteed floor, and floor that is scanned only if the estimated position was correct.
 pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure {
     let (floor, fixtures) = (layers.floor(), layers.fixtures());
     let mut sheet = Sheet::new(fixtures.boundary, "g", HALF_MM, 5.5);
@@ -221,7 +220,7 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure
     let sure = percent.guaranteed.unwrap_or(0.0);
     let per_cent = |value: f64| format!("{value:.1} %");
     Figure {
-        caption: "Guaranteed floor; shares of the whole floor".into(),
+        caption: "Guaranteed floor; percentages are of the whole floor".into(),
         svg: sheet.svg("Guaranteed coverage map", "half"),
         legend: vec![
             legend(filled(colour::ONCE), "guaranteed", per_cent(sure)),
@@ -236,7 +235,7 @@ pub(super) fn guaranteed(layers: &Layers<'_>, whole: &account::Shares) -> Figure
     }
 }
 
-/// Where the robot believed to go.
+/// Draws the estimated track.
 pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     let fixtures = layers.fixtures();
     let mut sheet = Sheet::new(fixtures.boundary, "t", HALF_MM, 5.5);
@@ -259,17 +258,17 @@ pub(super) fn track(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
         end.y,
         colour::INK
     ));
-    let caption = "Track by the estimated position; dot: end".into();
+    let caption = "Track by the estimated position; the dot marks its end".into();
     Some(Figure { caption, svg: sheet.svg("Track of the robot", "half"), legend: Vec::new() })
 }
 
-/// The track on a sheet.
+/// Adds the track to a sheet.
 fn track_line(sheet: &Sheet, record: &Record) -> Vec<Point> {
     let places: Vec<Point> = record.track.iter().map(|point| sheet.at(point.position())).collect();
     thinned(&places, 0.06)
 }
 
-/// A line on the paper as a path.
+/// A line on the paper as SVG path data.
 fn path_of(line: &[Point]) -> String {
     let mut path = String::new();
     for (index, point) in line.iter().enumerate() {
@@ -279,12 +278,12 @@ fn path_of(line: &[Point]) -> String {
     path
 }
 
-/// The track on a sheet as a path.
+/// The track on a sheet as SVG path data.
 pub(super) fn drawn_track(sheet: &Sheet, record: &Record) -> String {
     path_of(&track_line(sheet, record))
 }
 
-/// Heads of arrows along a line on the paper, evenly.
+/// Evenly spaced arrowheads along a line on the paper.
 fn arrows(line: &[Point]) -> String {
     let stations = world::polyline::stations_m(line);
     let length_mm = stations.last().copied().unwrap_or(0.0);
@@ -303,7 +302,7 @@ fn arrows(line: &[Point]) -> String {
     (0..count).filter_map(head).collect()
 }
 
-/// Where the tether lay; none for a robot without one.
+/// Draws the course of the tether; `None` for a robot without one.
 pub(super) fn tether(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     let tether = record.tether.as_ref().filter(|tether| !tether.points.is_empty())?;
     let fixtures = layers.fixtures();
@@ -321,7 +320,7 @@ pub(super) fn tether(layers: &Layers<'_>, record: &Record) -> Option<Figure> {
     {
         mark_lay(&mut sheet, letter, lay, dash);
     }
-    let caption = "Where the tether lay; L: greatest length paid out, W: largest total wrap".into();
+    let caption = "Course of the tether; L: greatest length paid out, W: largest total wrap".into();
     Some(Figure { caption, svg: sheet.svg("Tether on the floor", "half"), legend: Vec::new() })
 }
 
@@ -338,7 +337,7 @@ fn mark_lay(sheet: &mut Sheet, letter: &str, lay: &Lay, dash: &str) {
     ));
 }
 
-/// A tiny bar of what is not guaranteed of a plate; `top` is the share at full width.
+/// A small bar that shows the share of a plate that is not guaranteed; `top` is the share at full width.
 pub(super) fn plate_bar(shares: &account::Shares, top: f64) -> String {
     let not_guaranteed = (1.0 - shares.guaranteed.unwrap_or(0.0)).max(0.0);
     let thin = (not_guaranteed - shares.missed - shares.unreachable - shares.margin).max(0.0);
@@ -372,14 +371,14 @@ pub(super) fn plate_legend() -> Vec<Legend> {
     classes.into_iter().map(entry).collect()
 }
 
-/// A picture made of text and lines, not of a tank.
+/// A picture made of text and lines only, without a tank.
 pub(super) fn chart(width_mm: f64, height_mm: f64, body: &str, label: &str) -> String {
     let ink = colour::INK;
     element(
         width_mm,
         height_mm,
         &format!(r#"<g font-size="2.3" fill="{ink}">{body}</g>"#),
-        &escaped(label),
+        &foreign::markup(label),
         "",
     )
 }

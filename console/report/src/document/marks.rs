@@ -4,27 +4,28 @@ use super::Indication;
 use crate::drawing::sheet::{Sheet, colour};
 use world::{Point, Vector};
 
-/// How a mark is filled and drawn.
+/// Fill and stroke of a mark.
 pub(super) const STYLE: &str = r##"fill="#fff" stroke-width=".5""##;
-/// Radius of marks on the paper, and of each of more than [`MANY`], which would hide the map, millimetres.
+/// Radius of a mark on the paper, and the smaller radius for more than [`MANY`] marks, which would otherwise hide the
+/// map, millimetres.
 const RADIUS_MM: f64 = 1.0;
 const SMALL_MM: f64 = 0.4;
 const MANY: usize = 200;
-/// Half the height of a number, and half the width of one of its letters, millimetres.
+/// Half the height of a number, and half the width of one of its characters, millimetres.
 const HALF_MM: (f64, f64) = (1.2, 0.75);
 
-/// What was drawn.
+/// The marks that were drawn.
 pub(super) struct Marks {
     /// South-west and north-east corners of marks and numbers, millimetres.
     pub(super) boxes: Vec<[Point; 2]>,
-    /// Indications without a number: there is no room for it.
+    /// Number of indications whose number did not fit.
     pub(super) unnumbered: u64,
 }
 
-/// Marks indications, each with its number where there is room beside it. `names`: boxes of names that numbers keep clear of.
+/// Marks indications, each with its number where space allows. `names`: boxes of names that numbers must not cover.
 pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Point; 2]]) -> Marks {
     let radius_mm = if indications.len() > MANY { SMALL_MM } else { RADIUS_MM };
-    // All marks first: a number keeps clear of those that come behind it, too.
+    // All marks first: a number must not cover a later mark either.
     let of_mark = |found: &Indication| {
         let (at, half) = (sheet.at(found.at), Vector::repeat(radius_mm + 0.2));
         [at - half, at + half]
@@ -51,7 +52,7 @@ pub(super) fn draw(sheet: &mut Sheet, indications: &[Indication], names: &[[Poin
     Marks { boxes, unnumbered }
 }
 
-/// The first free place beside a mark for a number of some half size: right, left, above, below.
+/// The first free position beside a mark for a number of the given half size: right, left, above, below.
 fn beside(at: Point, radius_mm: f64, half: Vector, boxes: &[[Point; 2]]) -> Option<Point> {
     let off = half + Vector::repeat(radius_mm + 0.4);
     let places = [(1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]

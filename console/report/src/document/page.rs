@@ -1,4 +1,4 @@
-//! A report as one page: what stands where, as texts; the template only sets it.
+//! The content of the report page as text; the template only sets the layout.
 
 use super::{Document, maps::Legend, sections::sections};
 use askama::Template;
@@ -14,7 +14,7 @@ struct Html<'a> {
     page: &'a Page,
 }
 
-/// A text, what is missing of it, or both.
+/// A text, the key that is missing, or both.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Value {
     pub(super) text: Option<String>,
@@ -22,13 +22,13 @@ pub(super) struct Value {
 }
 
 impl Value {
-    /// A fact, or the key under which it is missing.
+    /// A fact, or its key if it is missing.
     pub(super) fn fact(fact: Option<&String>, key: &str) -> Self {
         let missing = fact.is_none().then(|| format!("inspection.{key}"));
         Self { text: fact.cloned(), missing }
     }
 
-    /// A fact behind what is known anyway.
+    /// A fact after a text that is always known.
     pub(super) fn with_fact(known: impl Into<String>, fact: Option<&String>, key: &str) -> Self {
         let known = known.into();
         let text = fact.map_or_else(|| format!("{known};"), |fact| format!("{known}; {fact}"));
@@ -50,14 +50,14 @@ pub(super) struct Field {
     pub(super) note: String,
 }
 
-/// What the report says in one sentence.
+/// The verdict of the report.
 pub(super) struct Verdict {
     pub(super) class: &'static str,
     pub(super) lead: String,
     pub(super) cause: String,
 }
 
-/// A large figure.
+/// A large figure on the first sheet.
 pub(super) struct Share {
     pub(super) value: String,
     /// Unit of the figure.
@@ -66,10 +66,10 @@ pub(super) struct Share {
     pub(super) about: String,
 }
 
-/// Something to be decided.
+/// A decision of the inspector.
 pub(super) struct Todo {
     pub(super) text: String,
-    /// What was decided, or the key under which it is missing.
+    /// The decision, or its key if it is missing.
     pub(super) value: Value,
     pub(super) section: usize,
 }
@@ -102,7 +102,7 @@ pub(super) struct Row {
 pub(super) struct Cell {
     pub(super) value: Value,
     pub(super) class: &'static str,
-    /// What it is called on a card.
+    /// The label of the cell on a card.
     pub(super) key: &'static str,
     pub(super) span: usize,
     /// A picture before the text.
@@ -138,7 +138,7 @@ pub(super) struct Picture {
     pub(super) legend: Vec<Legend>,
 }
 
-/// Who signs.
+/// A signature block.
 pub(super) struct SignatureBlock {
     pub(super) who: &'static str,
     pub(super) what: &'static str,
@@ -179,7 +179,7 @@ pub(super) struct Page {
     pub(super) title: String,
     /// The title on the page.
     pub(super) heading: &'static str,
-    /// What must be known before anything else, if it is not a simulation.
+    /// The notice at the top of a report that is not a simulation.
     pub(super) banner: String,
     pub(super) css: &'static str,
     pub(super) head: String,
@@ -198,17 +198,17 @@ pub(super) struct Page {
     pub(super) sections: Vec<Section>,
 }
 
-/// The report as one self-contained HTML file: no network, no script; prints to A4.
+/// Renders the report as one self-contained HTML file without network access or scripts; it prints on A4.
 pub fn html(document: &Document) -> String {
     let mut page = sections(document);
     page.css = CSS;
     number(&mut page);
-    // Nothing in the template can fail.
+    // The template cannot fail.
     let html = Html { page: &page }.render().unwrap_or_default();
     foreign::plain_lines(&html).into_owned()
 }
 
-/// Numbers figures and tables in their order.
+/// Numbers figures and tables in order.
 fn number(page: &mut Page) {
     let (mut figures, mut tables) = (0, 0);
     let next = |count: &mut usize| {
@@ -229,7 +229,7 @@ fn number(page: &mut Page) {
     }
 }
 
-/// A share as it is printed everywhere.
+/// A percentage in the format used everywhere.
 pub(super) fn per_cent(share: f64) -> String {
     format!("{:.1}", percent(share))
 }

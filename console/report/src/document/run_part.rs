@@ -1,4 +1,4 @@
-//! What a report says of each of its runs.
+//! The part of a report on each of its runs.
 
 use crate::{
     human::pre_flight,
@@ -10,14 +10,14 @@ use mission::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How a run was closed whose writer was killed: what was there was fixed by digests.
+/// The recovery of a run whose recording process was killed: its files are fixed by digests.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recovered {
-    /// Who did it.
+    /// The person who recovered the run.
     pub by: String,
-    /// When, UTC, as `2026-11-22 04:01`.
+    /// Time of the recovery, UTC, as `2026-11-22 04:01`.
     pub at: String,
-    /// What is missing, each as a phrase.
+    /// The missing parts, each as a phrase.
     pub missing: Vec<String>,
 }
 
@@ -32,21 +32,22 @@ impl fmt::Display for Recovered {
 pub struct Files {
     /// SHA-256 of the journal, hexadecimal.
     pub journal_sha256: Option<String>,
-    /// Its length, bytes.
+    /// Length of the journal, bytes.
     pub journal_bytes: Option<u64>,
     /// SHA-256 of the recording, hexadecimal.
     pub recording_sha256: Option<String>,
-    /// Its length, bytes.
+    /// Length of the recording, bytes.
     pub recording_bytes: Option<u64>,
     /// SHA-256 of the scenario in the journal, hexadecimal.
     pub scenario_sha256: Option<String>,
-    /// Whether the digests are those in the report that was written when the run ended; absent if there is none.
+    /// Whether the digests match those in the report that was written when the run ended; absent if there is no such
+    /// report.
     pub are_as_reported: Option<bool>,
-    /// What speaks against them.
+    /// The objections to the files.
     pub doubts: Vec<String>,
-    /// Name of the run's folder when the run was closed; absent if nothing says it.
+    /// Name of the run's folder when the run was closed; absent if it is not recorded.
     pub closed_as: Option<String>,
-    /// How the run was closed if its writer was killed; absent for a run that was closed at its end.
+    /// The recovery of a killed run; absent for a run that was closed at its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recovered: Option<Recovered>,
 }
@@ -60,12 +61,12 @@ pub struct Driver {
     pub sha256: String,
 }
 
-/// How the tether lay by the estimated position.
+/// The tether by the estimated position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TetherPart {
-    /// Most of it out, metres, and when, seconds.
+    /// Greatest length out, metres.
     pub length_max_m: f64,
-    /// When most of it was out, seconds.
+    /// Time of the greatest length out, seconds.
     pub length_max_at_s: f64,
     /// Length of the reel, metres.
     pub reel_length_m: f64,
@@ -73,21 +74,22 @@ pub struct TetherPart {
     pub wrap_max_rad: f64,
     /// Largest wrap allowed, radians.
     pub wrap_limit_rad: f64,
-    /// Largest sum of all wraps, radians.
+    /// Largest total wrap, radians.
     pub wrap_total_max_rad: f64,
-    /// When the sum was largest, seconds.
+    /// Time of the largest total wrap, seconds.
     pub wrap_total_max_at_s: f64,
-    /// Largest sum allowed, radians.
+    /// Largest total wrap allowed, radians.
     pub wrap_total_limit_rad: f64,
-    /// Out at the end, metres.
+    /// Length out at the end, metres.
     pub end_length_m: f64,
     /// Largest factor by which wraps multiplied the pull.
     pub pull_factor_max: f64,
-    /// Friction of tether on steel that this assumes.
+    /// Assumed friction between tether and steel.
     pub friction: f64,
-    /// Largest difference between reel and map, metres; absent without an encoder.
+    /// Largest difference between the length at the reel and the length by the map, metres; absent without an
+    /// encoder.
     pub reel_off_max_m: Option<f64>,
-    /// The same by the true position; absent outside simulation.
+    /// The same record by the true position; absent outside simulation.
     pub truth: Option<Tether>,
 }
 
@@ -96,45 +98,45 @@ pub struct TetherPart {
 pub struct RunPart {
     /// Name of its folder.
     pub run: String,
-    /// When it began, UTC, as `2026-11-22 04:01`; absent if the name of its folder does not say.
+    /// Start time, UTC, as `2026-11-22 04:01`; absent if the folder name does not contain it.
     pub began: Option<String>,
-    /// Version of the program that flew it.
+    /// Version of the program that ran it.
     pub tankops_version: String,
     /// Version of its journal.
     pub journal_version: u32,
     /// Name of its scenario.
     pub scenario: String,
-    /// Seed of every random choice.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// How it ended; absent if it was cut off.
     pub outcome: Option<Outcome>,
-    /// Why, as a sentence.
+    /// The reason for that end, as a sentence.
     pub reason: Option<String>,
-    /// What was checked before the start: how much passed, and every warning; absent for a run without an operator.
+    /// The checks before the start: the number passed, and every warning; absent for a run without an operator.
     pub pre_flight: Option<String>,
     /// Mission time, seconds.
     pub mission_time_s: f64,
-    /// Way by the true position, metres.
+    /// Length of the true path, metres.
     pub path_length_m: Option<f64>,
-    /// Least distance of the hull to anything solid, metres; absent outside simulation.
+    /// Minimum distance of the hull from any solid object, metres; absent outside simulation.
     pub clearance_min_m: Option<f64>,
-    /// The clearance to be kept, metres.
+    /// The required clearance, metres.
     pub clearance_m: f64,
     /// Collisions; absent outside simulation.
     pub collisions: Option<u64>,
-    /// Parameters of the planner that drove first.
+    /// Parameters of the first planner that drove.
     pub parameters: Vec<String>,
     /// The planners that drove.
     pub drivers: Vec<Driver>,
-    /// How good the position was by its covariance.
+    /// Accuracy of the position by its covariance.
     pub accuracy: Option<Accuracy>,
-    /// How good it was by the truth.
+    /// Accuracy of the position by the truth.
     pub positioning: Option<Positioning>,
-    /// How the tether lay.
+    /// The tether record.
     pub tether: Option<TetherPart>,
-    /// What the fixes say of each station.
+    /// The fixes, station by station.
     pub stations: Vec<StationRecord>,
-    /// What happened.
+    /// The incidents of the run.
     pub incidents: Vec<Incident>,
     /// Its files.
     pub files: Files,
@@ -150,7 +152,7 @@ impl RunPart {
             sha256: info.sha256.clone(),
         };
         let parameters = summary.parameters.iter().flatten();
-        // Where something was located, and nothing of what moved it.
+        // A located run has a position only, and no data on the vehicle.
         let is_flown = run.measured.is_none();
         Some(Self {
             run: past.name.clone(),

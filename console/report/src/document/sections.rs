@@ -1,4 +1,4 @@
-//! What stands in which section of the page.
+//! The sections of the page and their order.
 
 pub(super) mod closing;
 pub(super) mod floor;
@@ -12,10 +12,9 @@ use super::{
     maps::Figure,
     page::{Block, Page, Picture, Section},
 };
-use crate::drawing::sheet::escaped;
 pub(super) use crate::human::text::counted;
 
-/// The page of a document.
+/// Builds the page of a document.
 pub(super) fn sections(document: &Document) -> Page {
     if let Some(located) = &document.located {
         let page = front::page(document, numbered(super::located::sections(document, located)));
@@ -41,10 +40,10 @@ pub(super) fn sections(document: &Document) -> Page {
     front::page(document, numbered(sections))
 }
 
-/// The sections of the report on a run that was not there to scan, by their numbers in that on one that was.
+/// The sections of a report on a task other than scanning, as section numbers of a scan report.
 const WITHOUT_SCAN: [usize; 9] = [1, 2, 5, 7, 8, 9, 10, 11, 12];
 
-/// The number of a section, from that which it has in the report on a run that was there to scan.
+/// Converts a section number of a scan report to the number in this report.
 pub(super) fn number_of(is_to_scan: bool, section: usize) -> usize {
     let place = WITHOUT_SCAN.iter().position(|known| *known == section).map_or(section, |index| index + 1);
     if is_to_scan { section } else { place }
@@ -58,20 +57,20 @@ pub(super) fn section(title: &'static str, blocks: Vec<Block>) -> Section {
     Section { number: 0, title, is_new_sheet: false, blocks }
 }
 
-/// A figure, to be numbered.
+/// A figure that gets a number.
 pub(super) fn picture(figure: &Figure) -> Picture {
     let Figure { caption, svg, legend } = figure;
     Picture { number: 0, caption: caption.clone(), svg: svg.clone(), legend: legend.clone() }
 }
 
-/// A number with some decimals and its sign, zero without one.
+/// Formats a number with a sign and a fixed number of decimals; zero has no sign.
 pub(super) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let is_zero = text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.');
     if is_zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Centimetres of metres.
+/// Converts metres to centimetres.
 pub(super) fn cm(value_m: f64) -> String {
     number(100.0 * value_m, 1)
 }

@@ -1,4 +1,4 @@
-//! Outlines of what is listed in a report, for maps of other programs.
+//! Outlines of the areas and plates in a report, for other map programs.
 
 use super::layers::Layers;
 use crate::{
@@ -8,12 +8,12 @@ use crate::{
 use account::{Area, MissReason};
 use world::{PlateKind, Zone};
 
-/// The outlines of the missed areas and of the plates, as their cells make them.
+/// The outlines of missed areas and plates, along the edges of their cells.
 #[derive(Debug, Default)]
 pub(crate) struct Shapes {
-    /// Of each missed area, in the order of the account.
+    /// Outlines of the missed areas, in the order of the account.
     pub(crate) missed: Vec<Vec<Polygon>>,
-    /// Of each plate, in the order of the account.
+    /// Outlines of the plates, in the order of the account.
     pub(crate) plates: Vec<PlateShape>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Shapes {
 pub(crate) struct PlateShape {
     /// Its name.
     pub(crate) name: String,
-    /// What kind of plate.
+    /// Its kind.
     pub(crate) kind: PlateKind,
     /// Its outline.
     pub(crate) polygons: Vec<Polygon>,
@@ -44,7 +44,7 @@ impl Shapes {
     }
 }
 
-/// The zones of some runs, each once: those of their scenarios, and those drawn under way.
+/// The zones of some runs, without duplicates: those of the scenarios, and those drawn during the runs.
 pub(super) fn zones(past: &[PastRun]) -> Vec<&Zone> {
     let mut zones: Vec<&Zone> = Vec::new();
     for zone in past.iter().filter_map(|past| past.fold.run()).flat_map(|run| &run.world.zones) {

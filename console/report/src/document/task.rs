@@ -1,4 +1,4 @@
-//! What a run did that was not there to scan the floor.
+//! The task of a run that was not to scan the floor.
 
 use super::Document;
 use crate::joined::PastRun;
@@ -7,36 +7,36 @@ use mission::TaskConfig;
 use serde::Serialize;
 use world::{Point, coverage::percent, polyline};
 
-/// The task of a run that was not there to scan the floor, and the figures of it.
+/// The task of a run that was not to scan the floor, with its figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum TaskPart {
     /// Reach a point.
     Goto {
-        /// The point, metres.
+        /// The goal, metres.
         goal: Point,
-        /// Distance at which it counts as reached, metres.
+        /// Distance from the goal at which it counts as reached, metres.
         tolerance_m: f64,
-        /// Straight from the start to it, metres.
+        /// Straight-line distance from the start to the goal, metres.
         straight_m: f64,
-        /// Distance to it at the end by the estimated position, metres; absent if nothing is known of the end.
+        /// Distance to the goal at the end by the estimated position, metres; absent if the end is not known.
         left_m: Option<f64>,
-        /// The same by the true position; absent outside simulation.
+        /// Distance to the goal at the end by the true position, metres; absent outside simulation.
         left_true_m: Option<f64>,
     },
     /// Follow preset points.
     Follow {
         /// Length of the preset path, metres.
         preset_m: f64,
-        /// Number of its points.
+        /// Number of preset points.
         points: usize,
-        /// How closely the true path kept to it; absent outside simulation.
+        /// How closely the true path followed the preset path; absent outside simulation.
         tracking: Option<Tracking>,
     },
 }
 
 impl TaskPart {
-    /// The task of a run; `None` if it was there to scan.
+    /// Returns the task of a run; `None` if the task was to scan the floor.
     pub(super) fn of(past: &PastRun) -> Option<Self> {
         let run = past.fold.run().filter(|_| !past.fold.has_floor_to_scan())?;
         match &run.mission.task {
@@ -59,7 +59,7 @@ impl TaskPart {
         }
     }
 
-    /// Its figures by name, with those of the run; what is not known is left out.
+    /// The figures of the task and of the run by name; unknown ones are omitted.
     pub(super) fn figures(&self, document: &Document) -> Vec<(&'static str, f64)> {
         let own = match self {
             Self::Goto { goal, straight_m, left_m, left_true_m, .. } => vec![

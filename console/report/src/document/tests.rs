@@ -89,7 +89,7 @@ fn a_gap_without_a_reason_and_a_plate_without_a_figure_are_open_items() {
     document.gate = gate::gate(&document);
     assert!(!open(&document).contains(&5) && open(&document).contains(&6), "{:?}", document.gate);
     let lacks = &document.gate[5].missing;
-    assert!(lacks.len() == 1 && lacks[0].starts_with("reason of the gap at 1."), "{lacks:?}");
+    assert!(lacks.len() == 1 && lacks[0].starts_with("reason for the gap at 1."), "{lacks:?}");
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn indications_have_numbered_marks_on_the_map_that_do_not_cover_one_another() {
     let numbers = map.svg.matches(">I").count();
     assert!(
         (1..300).contains(&numbers)
-            && map.caption.contains(&format!("{} indications have no room", 300 - numbers))
+            && map.caption.contains(&format!("{} indications have no number on the map", 300 - numbers))
     );
 }
 
@@ -260,7 +260,7 @@ fn of_many_missed_areas_the_small_ones_are_said_in_few_words_each_with_its_reaso
     let many = Document::new(&[past_without(&places)], Context::default()).unwrap();
     assert_eq!(many.floor.missed.len(), 60);
     let page = html(&many);
-    let key = page.split_once("behind each reason. ").unwrap().1.split(" CSV and JSON").next().unwrap();
+    let key = page.split_once("for each reason. ").unwrap().1.split(" CSV and JSON").next().unwrap();
     for number in 1..=60 {
         let entry =
             page.split_once(&format!("<li id=\"m{number}\">")).unwrap().1.split("</li>").next().unwrap();
@@ -321,7 +321,7 @@ fn a_renamed_folder_keeps_number_and_blocks_the_signature() {
     assert!(document.number.starts_with("20261122T040132Z-"), "{}", document.number);
     assert_eq!(
         document.gate[12].missing,
-        ["20300101T000000Z-tiny: its folder was renamed; call it 20261122T040132Z-tiny again"]
+        ["20300101T000000Z-tiny: its folder was renamed; rename it back to 20261122T040132Z-tiny"]
     );
 }
 
@@ -347,12 +347,12 @@ fn a_run_that_is_not_the_signed_one_any_more_is_named() {
     let other = revision.doubt(&run("other"));
     assert_eq!(
         other.as_deref(),
-        Some("signed revision B is about another journal: expected SHA-256 one, found other")
+        Some("signed revision B covers a different journal: expected SHA-256 one, found other")
     );
     let lost = revision.doubt(&SignedRun { recording_sha256: None, ..run("one") });
     assert_eq!(
         lost.as_deref(),
-        Some("signed revision B is about another recording: expected SHA-256 rec, found none")
+        Some("signed revision B covers a different recording: expected SHA-256 rec, found none")
     );
 }
 
@@ -458,7 +458,7 @@ fn a_run_that_was_not_there_to_scan_is_reported_alone() {
     let mut goto = past_of(run, &[]);
     goto.name = "other".into();
     let refused = Document::new(&[past(), goto], Context::default()).unwrap_err();
-    assert_eq!(refused, "run other was not a scan; it needs a report of its own");
+    assert_eq!(refused, "run other was not a scan; make a separate report for it");
 }
 
 #[test]

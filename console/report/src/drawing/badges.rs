@@ -1,5 +1,5 @@
-//! Numbered badges on a map: inside an area that is deep enough, otherwise beside it on a leader that crosses as little as
-//! possible.
+//! Numbered badges on a map: inside an area that is wide enough, otherwise beside it at the end of a leader that
+//! crosses as little as possible.
 
 use super::{
     frame::Fixtures,
@@ -13,21 +13,21 @@ use world::{
     polyline::{nearest_on_segment, segments_cross},
 };
 
-/// Radius of a badge, and its letters, millimetres.
+/// Radius of a badge, and height of its digits, millimetres.
 const RADIUS_MM: f64 = 2.05;
 const LETTERS_MM: f64 = 2.35;
-/// Distances from the area that are tried, millimetres beyond the badge's radius.
+/// Distances from the area at which a badge is tried, millimetres in addition to its radius.
 const DISTANCES_MM: [f64; 7] = [1.6, 2.8, 4.5, 7.0, 10.0, 14.0, 19.0];
-/// Directions that are tried.
+/// The number of directions in which a badge is tried.
 const DIRECTIONS: usize = 24;
-/// A place that costs more is not used.
+/// A position with a higher cost is not used.
 const MOST_COST: f64 = 400.0;
 
-/// An area that is to have a number.
+/// An area that gets a number.
 pub(crate) struct Numbered<'a> {
     /// Its number.
     pub(crate) number: usize,
-    /// A place in it, metres.
+    /// A position in the area, metres.
     pub(crate) at: Point,
     /// Its cells.
     pub(crate) cells: &'a [usize],
@@ -36,7 +36,7 @@ pub(crate) struct Numbered<'a> {
 /// A circle on the paper, millimetres.
 type Spot = (Point, f64);
 
-/// What badges keep clear of.
+/// The marks and names that badges must not cover.
 struct Crowd {
     badges: Vec<Spot>,
     leaders: Vec<[Point; 2]>,
@@ -47,7 +47,8 @@ struct Crowd {
     names: Vec<[Point; 2]>,
 }
 
-/// Draws badges for areas; returns the numbers that found a place. `names`: boxes of names to keep clear of.
+/// Draws badges for areas and returns the numbers of those that fit. `names`: boxes of names that badges must not
+/// cover.
 pub(crate) fn draw(
     sheet: &mut Sheet,
     (floor, fixtures): (&Floor, &Fixtures<'_>),
@@ -97,7 +98,7 @@ pub(crate) fn draw(
     placed.into_iter().map(|(number, _)| number).collect()
 }
 
-/// The cheapest place beside a point of the paper.
+/// The cheapest position for a badge around a point on the paper.
 fn beside(sheet: &Sheet, crowd: &Crowd, at: Point, radius_mm: f64) -> Option<Point> {
     let mut best: Option<(f64, Point)> = None;
     for distance in DISTANCES_MM.map(|beyond| radius_mm + beyond) {
@@ -121,7 +122,7 @@ fn beside(sheet: &Sheet, crowd: &Crowd, at: Point, radius_mm: f64) -> Option<Poi
 }
 
 impl Crowd {
-    /// What a badge at a place costs whose leader comes from a point: what it covers and crosses.
+    /// The cost of a badge position: everything that the badge covers and that its leader crosses.
     fn cost(&self, from: Point, place: Point, radius_mm: f64) -> f64 {
         let off = |spot: Point| (place - spot).norm();
         let leader_off = |spot: Point| (spot - nearest_on_segment(from, place, spot)).norm();
@@ -154,7 +155,7 @@ impl Crowd {
     }
 }
 
-/// A shape as circles on the paper.
+/// A shape approximated by circles on the paper.
 fn spots(sheet: &Sheet, shape: &Shape) -> Vec<Spot> {
     let along = |points: &[Point]| -> Vec<Spot> {
         let thirds = |edge: &[Point]| [0.0, 0.33, 0.66].map(|share| edge[0] + (edge[1] - edge[0]) * share);

@@ -1,6 +1,6 @@
-//! Curves over one axis as a picture for people.
+//! A chart of curves over one axis.
 
-use super::sheet::{colour, element, escaped};
+use super::sheet::{colour, element};
 use std::fmt::Write;
 
 /// Width and height of the picture, millimetres.
@@ -9,14 +9,15 @@ const SIZE_MM: (f64, f64) = (180.0, 90.0);
 const PLOT_MM: [f64; 4] = [16.0, 174.0, 14.0, 78.0];
 /// Columns of the legend, and their width, millimetres.
 const LEGEND: (usize, f64) = (6, 26.5);
-/// Most points that draw a curve; each shows the largest value of its stretch.
+/// Maximum number of points of a drawn curve; each shows the largest value of its stretch.
 const MOST_POINTS: usize = 600;
-/// Values beyond this share of all are peaks if the largest is more than `PEAK` times as large: they are cut off.
+/// This share of all values lies below the peaks. Peaks are cut off if the largest is more than `PEAK` times this
+/// value.
 const SHOWN: f64 = 0.98;
 const PEAK: f64 = 2.0;
-/// Fewest marks on an axis.
+/// The minimum number of ticks on an axis.
 const MARKS: f64 = 4.0;
-/// Colours of curves, in their order; more curves begin again, with dashes.
+/// Colours of the curves in order; further curves reuse them with dashes.
 const COLOURS: [&str; 6] = [colour::TRACK, colour::MISSED, "#C77700", "#2A9D4A", colour::TETHER, colour::OUT];
 
 /// A curve.
@@ -24,24 +25,24 @@ const COLOURS: [&str; 6] = [colour::TRACK, colour::MISSED, "#C77700", "#2A9D4A",
 pub struct Curve<'a> {
     /// Its name in the legend.
     pub name: &'a str,
-    /// Places along the axis and values, in order.
+    /// Positions along the axis and values, in order.
     pub points: &'a [(f64, f64)],
 }
 
 /// Curves over one axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Curves<'a> {
-    /// What they show.
+    /// The title.
     pub title: &'a str,
-    /// What is along the axis, with its unit.
+    /// The label of the horizontal axis, with its unit.
     pub along: &'a str,
-    /// What the values are, with their unit.
+    /// The label of the vertical axis, with its unit.
     pub values: &'a str,
     /// The curves.
     pub curves: &'a [Curve<'a>],
 }
 
-/// The picture as an SVG document; values above most others are cut off at the top.
+/// The chart as an SVG document; peaks far above the other values are cut off at the top.
 pub fn svg(curves: &Curves<'_>) -> String {
     let [left, right, top, bottom] = PLOT_MM;
     let end = largest(curves.curves.iter().filter_map(|curve| curve.points.last()).map(|point| point.0));
@@ -69,11 +70,15 @@ pub fn svg(curves: &Curves<'_>) -> String {
             row - 0.7,
             place + 6.0,
             colour::SOFT,
-            escaped(curve.name)
+            foreign::markup(curve.name)
         );
     }
     let text = |x: f64, y: f64, size: f64, text: &str| {
-        format!(r#"<text x="{x}" y="{y}" font-size="{size}" fill="{}">{}</text>"#, colour::INK, escaped(text))
+        format!(
+            r#"<text x="{x}" y="{y}" font-size="{size}" fill="{}">{}</text>"#,
+            colour::INK,
+            foreign::markup(text)
+        )
     };
     body += &text(left, 6.0, 3.4, curves.title);
     body += &text(left, 11.0, 2.6, curves.values);
@@ -81,7 +86,7 @@ pub fn svg(curves: &Curves<'_>) -> String {
     format!("{}\n", element(SIZE_MM.0, SIZE_MM.1, &body, curves.title, "curves"))
 }
 
-/// The axes with their marks, up to these ends.
+/// The axes with their ticks, up to the given ends.
 fn axes(end: f64, high: f64) -> String {
     let [left, right, top, bottom] = PLOT_MM;
     let (soft, hair) = (colour::SOFT, colour::HAIR);
@@ -107,13 +112,13 @@ fn axes(end: f64, high: f64) -> String {
     body
 }
 
-/// Round numbers from 0 up to the end of an axis: 1, 2 or 5 times a power of ten apart.
+/// Round tick values from 0 to the end of an axis, spaced by 1, 2 or 5 times a power of ten.
 fn marks(end: f64) -> impl Iterator<Item = f64> {
     let most = (end / MARKS).max(f64::MIN_POSITIVE);
     let power = most.log10().floor() as i32;
     let scale = 10.0_f64.powi(power);
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * scale <= most * (1.0 + 1e-9)).unwrap_or(1.0);
-    // Divided, not multiplied, where the step is less than one: 3 / 10 is 0.3, and 3 * 0.1 is not.
+    // For steps below one we divide instead of multiplying: 3 / 10 is 0.3, but 3 * 0.1 is not.
     let mark = move |k: u32| match power {
         ..0 => f64::from(k) * step / 10.0_f64.powi(-power),
         _ => f64::from(k) * step * scale,
@@ -121,7 +126,7 @@ fn marks(end: f64) -> impl Iterator<Item = f64> {
     (0..).map(mark).take_while(move |mark| *mark <= end * (1.0 + 1e-9))
 }
 
-/// The largest value of every stretch of a long curve.
+/// The largest value in every stretch of a long curve.
 fn peaks(points: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + '_ {
     let stretch = points.len().div_ceil(MOST_POINTS).max(1);
     points.chunks(stretch).filter_map(|points| points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1)))
@@ -131,7 +136,8 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// The upper end of the axis of values: a little above the largest, or above most if the largest are peaks.
+/// The upper end of the value axis: a little above the largest value or, if the largest are peaks, a little above
+/// most values.
 fn highest(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

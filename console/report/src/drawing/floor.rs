@@ -1,4 +1,4 @@
-//! A floor without a mission, as a picture for people: wall, plates, obstacles, zones and stations.
+//! A picture of a floor without a mission: wall, plates, obstacles, zones and stations.
 
 use super::{frame::Fixtures, plates::PlateLines, sheet::Sheet};
 use world::{DrawnPlate, World};

@@ -1,4 +1,4 @@
-//! The forecast as a picture: light where a fix is good, dark towards the limit, hatched where there is none.
+//! A picture of the forecast: light where a fix is accurate, dark near the limit, hatched where there is no fix.
 
 use super::{
     frame::Fixtures,
@@ -9,7 +9,7 @@ use world::{Point, World};
 
 /// Width of the picture, millimetres.
 const WIDTH_MM: f64 = 180.0;
-/// Shares of the limit up to the whole, above it, and no fix: colour and word.
+/// Classes of the error as shares of the limit, above the limit, and without a fix: colour and label.
 const CLASSES: [(&str, &str); 6] = [
     (colour::ERROR[0], "up to 1/4 of the limit"),
     (colour::ERROR[1], "up to 1/2"),
@@ -19,7 +19,7 @@ const CLASSES: [(&str, &str); 6] = [
     (colour::OUT, "no fix"),
 ];
 
-/// The picture as an SVG document; advised places are rings.
+/// The picture as an SVG document; rings mark the advised stations.
 pub(crate) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Point]) -> String {
     let mut sheet = Sheet::new(&world.boundary, "f", WIDTH_MM, 8.0);
     sheet.wall(&world.boundary, r##"fill="#fff""##);
@@ -47,7 +47,7 @@ pub(crate) fn svg(world: &World, map: &AccuracyMap, limit_m: f64, advised: &[Poi
     sheet.frame(&fixtures, 2.4);
     let mut key = CLASSES.to_vec();
     if !advised.is_empty() {
-        key.push((colour::TETHER, "advised place"));
+        key.push((colour::TETHER, "advised station"));
     }
     sheet.key(&key);
     sheet.into_document("Forecast of the accuracy")

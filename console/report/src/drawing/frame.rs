@@ -1,9 +1,9 @@
-//! What stands on every map: obstacles, shell, stations, anchor, north, scale bar.
+//! The elements of every map: obstacles, shell, stations, anchor, north arrow, scale bar.
 
-use super::sheet::{Sheet, colour, escaped};
+use super::sheet::{Sheet, colour};
 use world::{Boundary, Point, Shape, Station, World, Zone};
 
-/// What is solid or named in a tank.
+/// The solid objects and labels of a tank.
 pub(crate) struct Fixtures<'a> {
     /// The wall.
     pub(crate) boundary: &'a Boundary,
@@ -15,12 +15,12 @@ pub(crate) struct Fixtures<'a> {
     pub(crate) stations: &'a [Station],
     /// Zones.
     pub(crate) zones: &'a [Zone],
-    /// Where the tether comes in, or where the robot starts.
+    /// The anchor of the tether, or the start of the robot.
     pub(crate) anchor: Option<Point>,
 }
 
 impl<'a> Fixtures<'a> {
-    /// What stands in a world, with nothing found.
+    /// The objects of a world, without found obstacles.
     pub(crate) fn of(world: &'a World, anchor: Option<Point>) -> Self {
         Self {
             boundary: &world.boundary,
@@ -49,10 +49,10 @@ impl Sheet {
         }
     }
 
-    /// Shell, stations, anchor, north arrow, scale bar; letters of so many millimetres.
+    /// Draws shell, stations, anchor, north arrow and scale bar, with letters of the given height in millimetres.
     pub(crate) fn frame(&mut self, fixtures: &Fixtures<'_>, letters_mm: f64) {
         let ink = colour::INK;
-        // A thinner line on a small map, so that what lies along the shell can be seen.
+        // A small map has a thinner line, so that marks along the shell stay visible.
         let stroke = if self.width_mm > 120.0 { 0.5 } else { 0.25 };
         self.wall(fixtures.boundary, &format!(r#"fill="none" stroke="{ink}" stroke-width="{stroke}""#));
         for station in fixtures.stations {
@@ -89,7 +89,7 @@ impl Sheet {
             label.y,
             ink = ink,
             letters = letters_mm,
-            name = escaped(&station.name)
+            name = foreign::markup(&station.name)
         ));
     }
 

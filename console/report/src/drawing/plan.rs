@@ -1,6 +1,5 @@
-//! A plan as a picture for people: tank, obstacles with the margin that the robot's centre keeps, preset and planned
-//! path, lanes in the colour of what they are for, the lines that a tethered robot never crosses, and the cable when it
-//! is longest.
+//! A picture of a plan: tank; obstacles with the clearance of the robot's centre; preset and planned path; lanes
+//! coloured by purpose; the cuts, which a tethered robot never crosses; and the cable at its greatest length.
 
 use super::{
     frame::Fixtures,
@@ -12,30 +11,30 @@ use world::{Point, Shape, World};
 /// Width of the picture, millimetres.
 const WIDTH_MM: f64 = 180.0;
 
-/// What there is to draw.
+/// The contents of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Drawn<'a> {
     /// Tank, obstacles and stations.
     pub world: &'a World,
-    /// Room that the middle of the hull needs, metres.
+    /// Distance that the centre of the hull keeps from solid objects, metres.
     pub room_m: f64,
     /// Width of the floor scanned in one pass, metres.
     pub swath_m: f64,
-    /// The path that was given to follow, if one was.
+    /// The preset path, if the task is to follow one.
     pub preset: Option<&'a [Point]>,
-    /// Where the tether comes in, if there is one.
+    /// The anchor of the tether, if there is a tether.
     pub anchor: Option<Point>,
     /// The planned path.
     pub path: &'a [Point],
-    /// What its stretches are for.
+    /// The purposes of its stretches.
     pub legs: &'a [Leg],
     /// Lines that the robot never crosses.
     pub cuts: &'a [Vec<Point>],
-    /// The cable when it is longest.
+    /// The cable at its greatest length.
     pub cable: &'a [Point],
 }
 
-/// What stretches of a plan are called, their colour, and what the legend says.
+/// The tags of plan stretches, with colour and legend text.
 const STRETCHES: [(&str, &str, &str); 5] = [
     ("swath", colour::TRACK, "lane"),
     ("path", colour::TRACK, "path"),
@@ -49,7 +48,7 @@ pub fn svg(drawn: &Drawn<'_>) -> String {
     let Drawn { world, path, legs, swath_m, .. } = drawn;
     let mut sheet = Sheet::new(&world.boundary, "p", WIDTH_MM, 8.0);
     sheet.wall(&world.boundary, r##"fill="#fff""##);
-    // The tool also scans on the way from lane to lane.
+    // The tool also scans between two lanes.
     let band_mm = swath_m * sheet.scale;
     for leg in legs.iter().filter(|leg| leg.tag != "path") {
         let style = format!(
@@ -98,7 +97,7 @@ pub fn svg(drawn: &Drawn<'_>) -> String {
     sheet.into_document("Plan")
 }
 
-/// What the colours mean that are on the picture.
+/// The legend of the colours that occur in the picture.
 fn key(drawn: &Drawn<'_>) -> Vec<(&'static str, &'static str)> {
     let is_there = |tag: &str| drawn.legs.iter().any(|leg| leg.tag == tag);
     let stretches =
@@ -106,7 +105,7 @@ fn key(drawn: &Drawn<'_>) -> Vec<(&'static str, &'static str)> {
     let others = [
         (drawn.preset.is_some(), colour::OUT, "preset path"),
         (!drawn.cuts.is_empty(), colour::MISSED, "line not to be crossed"),
-        (drawn.cable.len() > 1, colour::INK, "tether at its longest"),
+        (drawn.cable.len() > 1, colour::INK, "tether at its greatest length"),
         (!drawn.world.obstacles.is_empty(), colour::SOLID, "obstacle"),
     ];
     stretches

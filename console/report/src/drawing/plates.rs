@@ -1,12 +1,12 @@
-//! Plates on a map: their seams and names.
+//! Seams and names of plates on a map.
 
-use super::sheet::{Sheet, escaped};
+use super::sheet::Sheet;
 use world::{
     Boundary, DrawnPlate, Floor, PlateKind, PlateLayout, PlateMap, Point,
     shape::{bounds_of, mean_of},
 };
 
-/// The seams of the plates of a floor, and where their names stand.
+/// The seams of the plates of a floor, and the positions of their names.
 pub(crate) struct PlateLines {
     seams: Vec<Vec<Point>>,
     names: Vec<PlateName>,
@@ -15,17 +15,17 @@ pub(crate) struct PlateLines {
 struct PlateName {
     name: String,
     at: Point,
-    /// Turned by so much, degrees clockwise on the paper.
+    /// Rotation, degrees clockwise on the paper.
     turn_deg: f64,
     /// Extent of the plate, metres.
     room_m: [f64; 2],
 }
 
-/// How many cells a plate has, the sum of their centres, and the corners of the box about them; metres.
+/// Number of cells of a plate, sum of their centres, and corners of their bounding box; metres.
 type Sum = (usize, Point, Option<(Point, Point)>);
 
 impl PlateLines {
-    /// The outlines and names of drawn plates.
+    /// Builds the outlines and names of drawn plates.
     pub(crate) fn of_outlines(plates: &[DrawnPlate]) -> Self {
         let name = |plate: &DrawnPlate| {
             let (low, high) = bounds_of(&plate.vertices_m);
@@ -42,12 +42,12 @@ impl PlateLines {
         }
     }
 
-    /// The names with the places where they stand, tank frame: each on its plate.
+    /// The names with their positions in the tank frame: each on its plate.
     pub(crate) fn names(&self) -> impl Iterator<Item = (&str, Point)> {
         self.names.iter().map(|plate| (plate.name.as_str(), plate.at))
     }
 
-    /// The seams and names of a layout on a floor.
+    /// Builds the seams and names of a plate layout on a floor.
     pub(crate) fn new(layout: &PlateLayout, boundary: &Boundary, floor: &Floor, map: &PlateMap) -> Self {
         let mut sums: Vec<Sum> = vec![(0, Point::origin(), None); map.plates.len()];
         for cell in 0..floor.len() {
@@ -62,7 +62,7 @@ impl PlateLines {
             let mean = on_plate(floor, map, number, Point::from(sum.coords / (*count).max(1) as f64));
             let extent = bounds.map_or([0.0, 0.0], |(low, high)| [high.x - low.x, high.y - low.y]);
             match (boundary, layout) {
-                // Along the ring.
+                // The name runs along the ring.
                 (Boundary::Circle { radius_m }, PlateLayout::Regular(sizes))
                     if plate.kind == PlateKind::Annular =>
                 {
@@ -88,7 +88,7 @@ impl PlateLines {
     }
 }
 
-/// The place of a plate that is nearest to another: that of an angle lies beside it.
+/// The point of the plate that is nearest to a given point: the centroid of an L-shaped plate lies outside it.
 fn on_plate(floor: &Floor, map: &PlateMap, plate: usize, at: Point) -> Point {
     let is_on = |cell: &usize| map.plate_of(*cell) == Some(plate);
     if floor.cell_at(at).as_ref().is_some_and(is_on) {
@@ -107,7 +107,8 @@ impl Sheet {
         }
     }
 
-    /// The names of the plates that have room for them, in letters of so many millimetres; returns their boxes.
+    /// Draws the names that fit on their plates, with letters of the given height in millimetres; returns their
+    /// boxes.
     pub(crate) fn plate_names(&mut self, plates: Option<&PlateLines>, letters_mm: f64) -> Vec<[Point; 2]> {
         let mut boxes = Vec::new();
         self.draw(format_args!(r#"<g class="pn" text-anchor="middle" font-size="{letters_mm}">"#));
@@ -121,7 +122,7 @@ impl Sheet {
             self.draw(format_args!(
                 r#"<text x="{x:.2}" y="{y:.2}" transform="rotate({:.1} {x:.2} {y:.2})" dy=".35em" font-size="{letters:.2}">{}</text>"#,
                 plate.turn_deg,
-                escaped(&plate.name),
+                foreign::markup(&plate.name),
                 x = at.x,
                 y = at.y
             ));

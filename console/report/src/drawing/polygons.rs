@@ -1,11 +1,11 @@
-//! Cells as polygons with holes, in metres, as maps of other programs take them.
+//! Cells as polygons with holes, in metres, in the form that other map programs read.
 
 use super::trace::{Corner, rings, simplified};
 use std::collections::HashMap;
 use world::{Floor, Point, shape::ring_contains};
 
-/// A polygon: its outer ring counter-clockwise, its holes clockwise, tank frame, metres. No ring touches itself; the last point is
-/// not the first one again.
+/// A polygon in the tank frame, metres: its outer ring runs counter-clockwise, its holes clockwise. No ring touches
+/// itself, and the last point of a ring does not repeat the first.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Polygon {
     pub(crate) outer: Vec<Point>,
@@ -13,13 +13,13 @@ pub(crate) struct Polygon {
 }
 
 impl Polygon {
-    /// Its rings, the outer one first.
+    /// The rings, the outer one first.
     pub(crate) fn rings(&self) -> impl Iterator<Item = &Vec<Point>> {
         std::iter::once(&self.outer).chain(&self.holes)
     }
 }
 
-/// The polygons around some cells of a floor; several, if some of the cells touch only at a corner.
+/// The polygons around some cells of a floor; there are several if some of the cells touch only at a corner.
 pub(crate) fn polygons(floor: &Floor, cells: &[usize]) -> Vec<Polygon> {
     let places = || cells.iter().map(|cell| (cell % floor.width, cell / floor.width));
     let (Some(west), Some(east)) = (places().map(|p| p.0).min(), places().map(|p| p.0).max()) else {
@@ -42,7 +42,7 @@ pub(crate) fn polygons(floor: &Floor, cells: &[usize]) -> Vec<Polygon> {
     let mut polygons: Vec<Polygon> =
         outer.iter().map(|ring| Polygon { outer: placed(ring), holes: vec![] }).collect();
     for hole in &holes {
-        // The middle of an edge of a hole lies within the ring around it, and on no other edge.
+        // The midpoint of an edge of a hole is inside the surrounding ring, and on no other edge.
         let middle = nalgebra::center(&at(&hole[0]), &at(&hole[1]));
         let around = (0..outer.len()).filter(|k| ring_contains(&polygons[*k].outer, middle));
         if let Some(k) = around.min_by_key(|k| double_area(&outer[*k])) {
@@ -52,7 +52,7 @@ pub(crate) fn polygons(floor: &Floor, cells: &[usize]) -> Vec<Polygon> {
     polygons
 }
 
-/// A ring as rings that pass every corner once.
+/// Splits a ring into rings that pass every corner only once.
 fn simple(ring: &[Corner]) -> Vec<Vec<Corner>> {
     let mut simple = Vec::new();
     let mut way: Vec<Corner> = Vec::new();
@@ -72,7 +72,7 @@ fn simple(ring: &[Corner]) -> Vec<Vec<Corner>> {
     simple
 }
 
-/// Twice the area within a ring, in cells; negative for one that runs clockwise.
+/// Twice the area inside a ring, in cells; negative for a clockwise ring.
 fn double_area(ring: &[Corner]) -> i64 {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
     edges.map(|(a, b)| i64::from(a.0) * i64::from(b.1) - i64::from(a.1) * i64::from(b.0)).sum()

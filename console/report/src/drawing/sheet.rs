@@ -1,10 +1,10 @@
-//! A map in millimetres of paper: north up, one scale, the patterns of its classes.
+//! A map in millimetres of paper: north up, one scale, and a pattern for each class of floor.
 
 use super::trace::outlines;
 use std::fmt::{Display, Write};
 use world::{Boundary, Floor, Point, Shape};
 
-/// Colours of everything that reports draw; what is good is quiet, what needs a decision is loud.
+/// The colours of all report drawings: muted for good results, strong for what needs a decision.
 pub(crate) mod colour {
     pub(crate) const INK: &str = "#1C2731";
     pub(crate) const SOFT: &str = "#53616C";
@@ -35,28 +35,28 @@ pub(crate) struct Sheet {
     pub(crate) height_mm: f64,
     /// Millimetres of paper per metre of tank.
     pub(crate) scale: f64,
-    /// Room below the tank, millimetres.
+    /// Height of the space below the tank, millimetres.
     pub(crate) foot_mm: f64,
     rim_mm: f64,
     low: Point,
     high: Point,
-    /// What distinguishes its patterns from those of other pictures on a page.
+    /// Prefix that keeps its pattern ids apart from those of other pictures on the page.
     id: &'static str,
     body: String,
 }
 
 impl Sheet {
-    /// An empty picture of a tank, so many millimetres wide with a rim on all sides.
+    /// An empty picture of a tank with the given width in millimetres and a margin on all sides.
     pub(crate) fn new(boundary: &Boundary, id: &'static str, width_mm: f64, rim_mm: f64) -> Self {
         let (low, high) = boundary.bounds();
-        // A round tank leaves its corners free for the scale bar and the arrow.
+        // A round tank leaves the corners free for the scale bar and the north arrow.
         let foot_mm = if matches!(boundary, Boundary::Circle { .. }) { 1.0 } else { 9.0 };
         let scale = (width_mm - 2.0 * rim_mm) / (high.x - low.x);
         let height_mm = (high.y - low.y) * scale + 2.0 * rim_mm + foot_mm;
         Self { width_mm, height_mm, scale, foot_mm, rim_mm, low, high, id, body: String::new() }
     }
 
-    /// A place of the tank on the paper, millimetres from the top left corner.
+    /// Converts a position in the tank to paper coordinates, millimetres from the top left corner.
     pub(crate) fn at(&self, place: Point) -> Point {
         Point::new(
             (place.x - self.low.x) * self.scale + self.rim_mm,
@@ -64,18 +64,18 @@ impl Sheet {
         )
     }
 
-    /// Middle of the box around the tank, metres.
+    /// Centre of the bounding box of the tank, metres.
     pub(crate) fn middle(&self) -> Point {
         nalgebra::center(&self.low, &self.high)
     }
 
-    /// Adds what is SVG already.
+    /// Adds finished SVG.
     pub(crate) fn draw(&mut self, svg: impl Display) {
         // Writing to a String cannot fail.
         let _ = write!(self.body, "{svg}");
     }
 
-    /// Cells of a floor, with these attributes.
+    /// Adds cells of a floor with these attributes.
     pub(crate) fn cells(
         &mut self,
         floor: &Floor,
@@ -94,7 +94,7 @@ impl Sheet {
         ));
     }
 
-    /// The wall, with these attributes.
+    /// Adds the wall with these attributes.
     pub(crate) fn wall(&mut self, boundary: &Boundary, style: &str) {
         match boundary {
             Boundary::Circle { radius_m } => self.circle(Point::origin(), radius_m * self.scale, style),
@@ -102,19 +102,19 @@ impl Sheet {
         }
     }
 
-    /// A circle about a place; its radius in millimetres.
+    /// Adds a circle around a position; its radius is in millimetres.
     pub(crate) fn circle(&mut self, center: Point, radius_mm: f64, style: &str) {
         let at = self.at(center);
         self.draw(format_args!(r#"<circle cx="{:.2}" cy="{:.2}" r="{radius_mm:.2}" {style}/>"#, at.x, at.y));
     }
 
-    /// A closed outline.
+    /// Adds a closed outline.
     pub(crate) fn polygon(&mut self, vertices: &[Point], style: &str) {
         let points = self.points(vertices);
         self.draw(format_args!(r#"<polygon points="{points}" {style}/>"#));
     }
 
-    /// An open line.
+    /// Adds an open line.
     pub(crate) fn line(&mut self, points: &[Point], style: &str) {
         let points = self.points(points);
         self.draw(format_args!(r#"<polyline points="{points}" fill="none" {style}/>"#));
@@ -125,7 +125,7 @@ impl Sheet {
         pairs.collect::<Vec<_>>().join(" ")
     }
 
-    /// A shape, with these attributes; a line keeps its width.
+    /// Adds a shape with these attributes; a line keeps its width.
     pub(crate) fn shape(&mut self, shape: &Shape, style: &str) {
         match shape {
             Shape::Disc { center, radius_m } => {
@@ -143,12 +143,12 @@ impl Sheet {
         }
     }
 
-    /// The fill of a class with a pattern, on cells of an edge of the floor (`""`) or on the paper (`"L"`).
+    /// The pattern fill of a class, scaled for cells of the floor (`""`) or for the legend (`"L"`).
     pub(crate) fn pattern(&self, name: &str) -> String {
         format!("url(#{}{name})", self.id)
     }
 
-    /// The patterns: for cells of this edge, metres, and, for legends, in millimetres of paper.
+    /// The pattern definitions: for cells of this edge length in metres and, for legends, in millimetres of paper.
     pub(crate) fn define_patterns(&mut self, cell_m: f64) {
         let (id, mut defs) = (self.id, String::new());
         for (suffix, scale) in [("", cell_m * self.scale), ("L", 1.0)] {
@@ -192,7 +192,7 @@ impl Sheet {
         ));
     }
 
-    /// The picture, described by a label, with a class for the page's style sheet.
+    /// The picture with a label for screen readers and a CSS class.
     pub(crate) fn svg(&self, label: &str, class: &str) -> String {
         element(self.width_mm, self.height_mm, &self.body, label, class)
     }
@@ -211,12 +211,12 @@ impl Sheet {
             height,
             width,
             height,
-            escaped(label),
+            foreign::markup(label),
             self.body
         )
     }
 
-    /// A legend below the tank: colours and what they mean, three in a row.
+    /// Adds a legend below the tank: colours and their meanings, three in a row.
     pub(crate) fn key(&mut self, entries: &[(&str, &str)]) {
         let top = self.height_mm + 1.0;
         for (index, (colour, text)) in entries.iter().enumerate() {
@@ -232,26 +232,10 @@ impl Sheet {
     }
 }
 
-/// An SVG element of a page.
+/// An SVG element for an HTML page.
 pub(crate) fn element(width_mm: f64, height_mm: f64, body: &str, label: &str, class: &str) -> String {
     format!(
         r#"<svg class="{class}" viewBox="0 0 {width_mm:.1} {height_mm:.1}" role="img" aria-label="{}" xmlns="http://www.w3.org/2000/svg">{body}</svg>"#,
-        escaped(label)
+        foreign::markup(label)
     )
-}
-
-/// A text that may hold anything, for markup.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in foreign::plain_lines(text).chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            c => escaped.push(c),
-        }
-    }
-    escaped
 }

@@ -1,14 +1,15 @@
-//! Cells as outlines: rings on the lattice of their corners, simplified, as SVG path data.
+//! Cells as outlines: rings on the grid of cell corners, simplified, as SVG path data.
 
 use account::together;
 use std::fmt::Write;
 use world::{Floor, Point};
 
-/// A corner of cells: column and row from the south-west corner of the grid.
+/// A corner of a cell: column and row, counted from the south-west corner of the grid.
 pub(super) type Corner = (i32, i32);
 
-/// The outlines of the cells that are asked for, as path data in units of cells: x to the right, y up from the south-west
-/// corner of the grid. Points nearer than `tolerance` cells to the simplified outline are left out; 0 keeps every corner.
+/// Returns the outlines of the selected cells as path data in units of cells: x to the right, y up from the
+/// south-west corner of the grid. Points closer than `tolerance` cells to the simplified outline are dropped; 0 keeps
+/// every corner.
 pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: f64) -> String {
     let mut path = String::new();
     for ring in rings((floor.width, floor.height), is_in) {
@@ -17,10 +18,11 @@ pub(crate) fn outlines(floor: &Floor, is_in: impl Fn(usize) -> bool, tolerance: 
     path
 }
 
-/// The ways on from a corner; of two, the first of this order belongs to the cell further south.
+/// The directions from a corner. Of two directions in use, the first in this order belongs to the cell further south.
 const WAYS: [Corner; 4] = [(0, -1), (-1, 0), (1, 0), (0, 1)];
 
-/// Where the outline goes on from each corner, column by column: a bit for each of [`WAYS`], two where cells only touch.
+/// The directions of the outline from each corner, column by column: one bit for each of [`WAYS`], two where cells
+/// touch only at the corner.
 struct Edges {
     rows: usize,
     ways: Vec<u8>,
@@ -30,7 +32,7 @@ impl Edges {
     fn of((width, height): (usize, usize), is_in: impl Fn(usize) -> bool) -> Self {
         let rows = height + 1;
         let mut ways = vec![0; (width + 1) * rows];
-        // Cell by cell, with what lies west and south of it; beyond the grid is outside.
+        // Compares each cell with its neighbours to the west and south; a cell beyond the grid is outside.
         let mut south = vec![false; width];
         for y in 0..=height {
             let mut west = false;
@@ -61,8 +63,8 @@ impl Edges {
         &mut self.ways[x as usize * self.rows + y as usize]
     }
 
-    /// Takes the way on from a corner to which one came by another; where cells only touch it turns left, so that they stay
-    /// apart.
+    /// Removes and returns the next direction from a corner. Where cells touch only at the corner, it turns left so
+    /// that their outlines stay separate.
     fn take(&mut self, here: Corner, came: Option<Corner>) -> Option<Corner> {
         let open = self.at(here);
         let left = |way: Corner| came.map_or(0, |came| came.0 * way.1 - came.1 * way.0);
@@ -73,8 +75,8 @@ impl Edges {
     }
 }
 
-/// Closed rings around cells of a grid of some width and height, counter-clockwise about cells and clockwise about holes; every
-/// corner on their way.
+/// The closed rings around cells of a grid of the given width and height, counter-clockwise around cells and
+/// clockwise around holes, with every corner along them.
 pub(super) fn rings(size: (usize, usize), is_in: impl Fn(usize) -> bool) -> Vec<Vec<Corner>> {
     let mut edges = Edges::of(size, is_in);
     let mut rings = Vec::new();
@@ -87,7 +89,7 @@ pub(super) fn rings(size: (usize, usize), is_in: impl Fn(usize) -> bool) -> Vec<
     rings
 }
 
-/// Takes a ring out of the edges.
+/// Removes one ring from the edges.
 fn take_ring(edges: &mut Edges, first: Corner) -> Vec<Corner> {
     let mut ring = vec![first];
     let (mut here, mut came) = (first, None);
@@ -128,7 +130,7 @@ pub(super) fn simplified(ring: &[Corner], tolerance: f64) -> Vec<Corner> {
     if kept.len() < 3 { simplified(ring, 0.0) } else { kept }
 }
 
-/// A line without the points that lie nearer to the rest of it than a tolerance (Douglas and Peucker).
+/// Simplifies a line: drops the points that are closer to the rest of it than a tolerance (Douglas-Peucker).
 pub(crate) fn thinned(points: &[Point], tolerance: f64) -> Vec<Point> {
     if points.len() < 3 {
         return points.to_vec();
@@ -165,7 +167,7 @@ fn write_ring(path: &mut String, ring: &[Corner]) {
     path.push('z');
 }
 
-/// The cell of a group that lies deepest in it, and how deep, in cells.
+/// The cell of a group that is deepest inside it, and its depth in cells.
 pub(crate) fn deepest(floor: &Floor, cells: &[usize]) -> (usize, usize) {
     let mut left: std::collections::BTreeSet<usize> = cells.iter().copied().collect();
     let mut depth = 0;

@@ -1,40 +1,40 @@
-//! Floor that stations on a line leave with a mirror image, and what decides between the two.
+//! Floor for which stations on a line leave a mirror image, and what decides between the two positions.
 
 use mission::MissionConfig;
 use positioning::{Accuracy, AccuracyMap};
 use serde::Serialize;
 use world::{Point, Station, Vector, World};
 
-/// Standard deviations by which the start has to be nearer to one place than to the other.
+/// The start must be closer to one position than to the other by this many standard deviations.
 const DECIDES_SIGMAS: f64 = 3.72;
-/// The 95 % error of a plane normal distribution in its standard deviations.
+/// The 95 % error of a two-dimensional normal distribution, in standard deviations.
 const SIGMAS_95: f64 = 2.448;
-/// Less floor than this share with a mirror image is not worth a word.
+/// A smaller share of floor with a mirror image is not reported.
 const WORTH_A_WORD: f64 = 0.005;
-/// Names of stations that people are shown.
+/// Maximum number of station names in a message.
 const MOST_NAMES: usize = 6;
 
-/// Which floor has a mirror image that the ranges do not tell from it.
+/// The floor with a mirror image that the ranges cannot distinguish from it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mirrored {
     /// Share of the floor.
     pub share: f64,
-    /// Share of the floor whose image lies behind the wall, so that the wall decides.
+    /// Share of the floor whose image is behind the wall, so that the wall decides.
     pub by_walls_share: f64,
-    /// Distance of the start from the line on which the stations nearly are, metres.
+    /// Distance of the start from the line that the stations are nearly on, metres.
     pub start_to_line_m: f64,
-    /// Whether the start decides on which side the robot begins.
+    /// Whether the start decides on which side of the line the robot is.
     pub start_decides: bool,
     #[serde(skip)]
     line: String,
 }
 
 impl Mirrored {
-    /// What a map says; `None` if no floor worth a word has an image.
+    /// Evaluates a map; `None` if too little floor has an image.
     pub(super) fn of(mission: &MissionConfig, drawing: &World, map: &AccuracyMap) -> Option<Self> {
         let floor = map.floor().count().max(1) as f64;
         let (through, across) = line(&drawing.stations)?;
-        // Two stations have no fix of their own, but always an image.
+        // Two stations give no fix on their own, but always an image.
         let is_pair = drawing.stations.len() == 2;
         let image = |at: Point, cell: Accuracy| {
             let reflected = at - across * (2.0 * across.dot(&(at - through)));
@@ -51,7 +51,7 @@ impl Mirrored {
         let fix_sigma_m = cell.and_then(|cell| cell.error_95_m).unwrap_or_default() / SIGMAS_95;
         let apart_m = match cell.map(|cell| image(start.position, cell)) {
             Some(Some(image)) => (image - start.position).norm(),
-            // The ranges themselves decide.
+            // The ranges decide without help.
             Some(None) if start_to_line_m > 0.0 => f64::INFINITY,
             _ => 2.0 * start_to_line_m,
         };
@@ -65,17 +65,18 @@ impl Mirrored {
         })
     }
 
-    /// For people: what there is, and what decides.
+    /// The floor with an image and what decides, as text.
     pub(super) fn sentences(&self) -> [String; 2] {
         let (percent, by_walls) = (self.share * 100.0, self.by_walls_share * 100.0);
         let open = percent - by_walls;
         let walls = if by_walls > 0.0 {
-            format!("; for {by_walls:.1} % the wall decides, because the image lies behind it")
+            format!("; for {by_walls:.1} % the wall decides, because the image is behind it")
         } else {
             String::new()
         };
         let first = format!(
-            "{percent:.1} % of the floor has a mirror image on the other side of {}, which the ranges do not tell from it{walls}",
+            "{percent:.1} % of the floor has a mirror image on the other side of {}, and the ranges cannot \
+             tell the two apart{walls}",
             self.line
         );
         let start_m = self.start_to_line_m;
@@ -83,21 +84,21 @@ impl Mirrored {
             "there the side is always known".to_owned()
         } else if self.start_decides {
             format!(
-                "for {open:.1} % robot.start_m decides, {start_m:.2} m from that line, and the track keeps the side while its error is \
-                 smaller than its distance from the line; after an outage or with a wrong start it cannot be decided: add a station \
-                 off the line"
+                "for {open:.1} % the side follows from robot.start_m, {start_m:.2} m from that line, as \
+                 long as the position error is smaller than the robot's distance from the line; after an \
+                 outage or with a wrong start the side is ambiguous: add a station off the line"
             )
         } else {
             format!(
-                "for {open:.1} % it cannot be decided: robot.start_m lies {start_m:.2} m from that line, no further than its own error; \
-                 add a station off the line, or start further from it"
+                "for {open:.1} % the side is ambiguous: robot.start_m is {start_m:.2} m from that line, \
+                 within its own error; add a station off the line, or start further from it"
             )
         };
         [first, second]
     }
 }
 
-/// The line that stations are nearest to: a point of it, and the direction across.
+/// The line nearest to the stations: a point on it, and the direction across it.
 fn line(stations: &[Station]) -> Option<(Point, Vector)> {
     let n = stations.len() as f64;
     (n > 0.0).then(|| {
@@ -111,7 +112,7 @@ fn line(stations: &[Station]) -> Option<(Point, Vector)> {
     })
 }
 
-/// The line of some stations, by their names.
+/// A text that names the line through some stations.
 pub fn line_of_stations(stations: &[Station]) -> String {
     let names: Vec<&str> = stations.iter().map(|station| station.name.as_str()).collect();
     match names.as_slice() {

@@ -1,17 +1,17 @@
-//! The account of the floor as lines for people.
+//! The account of the floor as text.
 
 use super::text::counted;
 use account::{Account, Area, Percent, PlateAccount, Shares, Slivers};
 use world::{Point, coverage::percent_text};
 
-/// Areas out of reach that are listed; the report as JSON has all of them.
+/// Maximum number of unreachable areas listed; the JSON report has all of them.
 const MOST_AREAS: usize = 10;
-/// Arcs of the critical zone that are listed.
+/// Maximum number of arcs of the critical zone listed.
 const MOST_ARCS: usize = 3;
-/// Plates that are listed one by one.
+/// Maximum number of plates listed.
 const MOST_PLATES: usize = 30;
 
-/// Lines with their labels; every percentage names its floor, and those of one floor sum to 100.0 %.
+/// Labelled lines; every percentage states its floor, and the percentages of one floor add up to 100.0 %.
 pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     let mut lines = vec![
         ("floor", format!("whole floor {}", shares(&account.whole))),
@@ -23,13 +23,13 @@ pub(crate) fn lines(account: &Account) -> Vec<(&'static str, String)> {
     lines.push(("floor", basis(account)));
     lines.extend(account.missed.iter().map(|area| ("missed", area.to_string())));
     lines.extend(slivers(&account.slivers).into_iter().map(|line| ("missed", line)));
-    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("out of reach", line)));
-    lines.extend(slivers(&account.unreachable_slivers).into_iter().map(|line| ("out of reach", line)));
+    lines.extend(areas(&account.unreachable).into_iter().map(|line| ("unreachable", line)));
+    lines.extend(slivers(&account.unreachable_slivers).into_iter().map(|line| ("unreachable", line)));
     lines.extend(plates(&account.plates).into_iter().map(|line| ("plates", line)));
     lines
 }
 
-/// Every plate in its order; of many only those with most floor missed.
+/// The plates in order; if there are many, only those with the most missed floor.
 fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let line = |plate: &PlateAccount| {
         let error = plate.error_p95_m.map(|m| format!(", 95 % error {m:.3} m p95")).unwrap_or_default();
@@ -46,7 +46,7 @@ fn plates(plates: &[PlateAccount]) -> Vec<String> {
     let left = worst.split_off(worst.len().min(MOST_PLATES));
     worst.sort_unstable();
     let mut lines =
-        vec![format!("{whole} of {} with nothing missed; all are in the JSON report", plates.len())];
+        vec![format!("{whole} of {} with nothing missed; the JSON report lists all", plates.len())];
     lines.extend(worst.into_iter().map(|index| line(&plates[index])));
     if !left.is_empty() {
         let area_m2: f64 = left.iter().map(missed_m2).sum();
@@ -76,9 +76,9 @@ fn critical_zone(account: &Account) -> String {
     format!("critical zone, {:.0} mm along the shell: {state}", 1000.0 * zone.width_m)
 }
 
-/// A place to the decimetre, metres.
+/// A position to the decimetre, metres.
 fn place(at: Point) -> String {
-    // What is added makes a zero of either sign a positive one.
+    // Adding zero turns a negative zero into a positive one.
     let [x, y] = [at.x, at.y].map(|c| (10.0 * c).round() / 10.0 + 0.0);
     format!("{x:.1}, {y:.1}")
 }

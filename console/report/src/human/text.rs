@@ -5,7 +5,7 @@ use std::fmt::{Display, Write};
 /// Width of the column of labels.
 const LABEL: usize = 15;
 
-/// Lines with a label each.
+/// Labelled lines.
 pub(crate) struct Text(pub(crate) String);
 
 impl Text {
@@ -24,7 +24,7 @@ impl Text {
         }
     }
 
-    /// Lines of one label; it is not repeated.
+    /// Lines under one label, which is not repeated.
     pub(crate) fn lines(&mut self, lines: impl IntoIterator<Item = (&'static str, String)>) {
         for (label, what) in lines {
             let begun = self.0.lines().any(|line| line.starts_with(&format!("{label:<LABEL$}")));
@@ -38,12 +38,12 @@ pub(crate) fn overlap(share: f64) -> String {
     format!("{} of scanned floor (scanned more than once)", percent(share))
 }
 
-/// So many of something.
+/// A count with its noun in singular or plural.
 pub(crate) fn counted(n: u64, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
-/// A share in per cent, as it is printed everywhere.
+/// A percentage in the format used everywhere.
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.1} %", world::coverage::percent(share))
 }

@@ -141,7 +141,7 @@ proptest! {
         let key = change(&mut other, which, by, &word);
         for runs in [[one.clone(), other.clone()], [other, one]] {
             let refused = together(runs).unwrap_err();
-            let says_where = refused.starts_with("runs a and b are not of one floor: ") && refused.contains(key);
+            let says_where = refused.starts_with("runs a and b are not of the same floor: ") && refused.contains(key);
             prop_assert!(says_where && refused.contains(" in a and ") && refused.ends_with(" in b"), "{}", refused);
         }
     }
@@ -190,5 +190,5 @@ fn facts_that_contradict_the_scenario_that_was_flown_are_named_and_those_that_ad
     assert_eq!(contradiction(&facts("T-09 "), &flown), None);
     assert_eq!(contradiction(&Inspection::default(), &flown), None);
     let said = contradiction(&facts("T-10"), &flown).unwrap();
-    assert_eq!(said, r#"tank_id is "T-10", in the scenario of the run "T-09""#);
+    assert_eq!(said, r#"tank_id is "T-10", but "T-09" in the scenario of the run"#);
 }

@@ -1,57 +1,58 @@
-//! What happened during a run, for people: alarms and holds with when they began and ended.
+//! The incidents of a run for people; alarms and holds with their start and end.
 
 use mission::{Event, EventKind, LogLine, Order, Severity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use world::Station;
 
-/// So many are kept; how many more there were is one of its own.
+/// Maximum number of incidents stored; a final one states how many more there were.
 const MOST: usize = 50_000;
 
-/// Something that happened.
+/// An incident.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Incident {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// When it was over, seconds; absent for what has no length, and for what lasted to the end.
+    /// End, seconds; absent for an incident without duration, and for one that lasted to the end.
     pub until_s: Option<f64>,
-    /// What kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `zone` (a no-go zone that was drawn), `plan`, `order`, `station` or `end`.
+    /// Kind: `alarm`, `hold`, `fault`, `shadow` (a fault of a planner in shadow), `obstacle`, `zone` (a no-go zone
+    /// that was drawn), `plan`, `order`, `station` or `end`.
     pub kind: &'static str,
-    /// How much it asked of the operator.
+    /// Severity for the operator.
     pub severity: Severity,
-    /// What, as a sentence.
+    /// Description, as a sentence.
     pub text: String,
 }
 
 impl Incident {
-    /// Whether somebody must have looked at it.
+    /// Whether a person must review it.
     pub fn needs_review(&self) -> bool {
         matches!(self.kind, "alarm" | "hold" | "fault")
             || self.kind == "end" && self.severity > Severity::Watch
     }
 }
 
-/// What happened so far.
+/// The incidents so far.
 #[derive(Debug, Default)]
 pub(super) struct Incidents {
     stations: Vec<Station>,
     all: Vec<Incident>,
-    /// When the last event was, seconds.
+    /// Time of the last event, seconds.
     last_s: f64,
-    /// What is still open: what ends it, and the indices of those that it ends.
+    /// Open incidents: the key of the event that ends them, and their indices.
     open: BTreeMap<String, Vec<usize>>,
-    /// How many were not kept.
+    /// Number of incidents that were not stored.
     n_dropped: u64,
 }
 
 impl Incidents {
-    /// All of it; that the end is missing is the last of it.
+    /// All incidents; if the end of the run is missing, that is the last incident.
     pub(super) fn all(&self) -> Vec<Incident> {
         let mut all = self.all.clone();
         let has_end = all.last().is_some_and(|last| last.kind == "end");
         if self.n_dropped > 0 {
             let text =
-                format!("{} more happened, which are not listed: the journal has them", self.n_dropped);
+                format!("{} more incidents are not listed here; the journal contains them", self.n_dropped);
             let (t_s, severity) = (self.last_s, Severity::Crit);
             let at = all.len() - usize::from(has_end);
             all.insert(at, Incident { t_s, until_s: None, kind: "alarm", severity, text });
@@ -81,7 +82,7 @@ impl Incidents {
         }
         let Some(line) = event.log_line(&self.stations).filter(|_| !kind.is_empty()) else { return };
         let LogLine { severity, text, .. } = line;
-        // The end of the run is kept whatever happened before.
+        // The end of the run is always stored.
         if self.all.len() >= MOST && kind != "end" {
             self.n_dropped += 1;
             return;
@@ -99,7 +100,8 @@ impl Incidents {
     }
 }
 
-/// The kind of an event that is reported (none for one that only ends another), what it begins, and what it ends.
+/// Classifies an event: its kind in the report (`None` if it only ends an earlier incident), what it starts, and what
+/// it ends.
 fn sort(kind: &EventKind) -> Option<(&'static str, Option<String>, Option<String>)> {
     let key = |text: &str| Some(text.to_owned());
     Some(match kind {
@@ -146,7 +148,7 @@ mod tests {
         at(60_000, EventKind::Ended { outcome: Outcome::Aborted, reason: "ended".into() });
         let all = incidents.all();
         assert_eq!((all.len(), all[0].until_s, all[MOST - 1].until_s), (MOST + 2, Some(1.0), Some(50_000.0)));
-        assert!(all[MOST].text.starts_with("3 more happened") && all[MOST].needs_review());
+        assert!(all[MOST].text.starts_with("3 more incidents") && all[MOST].needs_review());
         assert_eq!(all[MOST + 1].kind, "end");
     }
 }

@@ -1,20 +1,20 @@
-//! What the fixes of a run say of each station.
+//! The fixes of a run, station by station.
 
 use positioning::Fix;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use world::{Point, Station, StationId};
 
-/// A station and what the fixes say of it.
+/// A station and its part in the fixes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StationRecord {
     /// Its name.
     pub name: String,
     /// Surveyed position, metres.
     pub at: Point,
-    /// Fixes in which it was used.
+    /// Number of fixes that used it.
     pub used: u64,
-    /// Fixes from which it was left out.
+    /// Number of fixes that left it out.
     pub rejected: u64,
     /// Mean of its residuals, metres; absent if it was never used.
     pub residual_mean_m: Option<f64>,
@@ -44,7 +44,7 @@ impl Stations {
 
     pub(super) fn fix(&mut self, fix: &Fix) {
         for residual in &fix.residuals {
-            // A damaged journal may name stations that there are not.
+            // A damaged journal may name stations that do not exist.
             let Some(sums) = self.sums.get_mut(&residual.station) else { continue };
             sums.used += 1;
             sums.sum_m += residual.residual_m;

@@ -1,21 +1,21 @@
-//! How the tether lay over a run, by the estimated position.
+//! The tether over a run, by the estimated position.
 
 use mission::{TetherConfig, event::taut_line};
 use world::{Point, tether::Limits};
 
-/// At most so many lines of the tether are kept for its picture; every second is dropped when there are more.
+/// Maximum number of lines of the tether stored for its picture; beyond that, every second line is dropped.
 const MOST_LINES: usize = 400;
 
-/// How the tether lay in a tick.
+/// The tether in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TetherPoint {
     /// Mission time, seconds.
     pub t_s: f32,
-    /// Tether out as the map explains it, metres.
+    /// Length out by the map, metres.
     pub length_m: f32,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f32,
-    /// Sum of all wraps, radians.
+    /// Total wrap, radians.
     pub wrap_total_rad: f32,
 }
 
@@ -24,11 +24,11 @@ pub struct TetherPoint {
 pub struct Lay {
     /// The figures.
     pub point: TetherPoint,
-    /// From the anchor to the robot.
+    /// The line from the anchor to the robot.
     pub line: Vec<Point>,
 }
 
-/// How the tether lay over a run.
+/// The tether over a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetherRecord {
     /// Its limits.
@@ -37,17 +37,17 @@ pub struct TetherRecord {
     pub friction: f64,
     /// Every tick.
     pub points: Vec<TetherPoint>,
-    /// Some of its lines, evenly over time.
+    /// Some of its lines, evenly spaced in time.
     pub lines: Vec<Vec<Point>>,
-    /// When most of it was out.
+    /// The moment with the greatest length out.
     pub longest: Lay,
-    /// When its wraps were largest all together.
+    /// The moment with the largest total wrap.
     pub most_wrapped: Lay,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
     /// Largest factor by which the wraps multiplied the pull.
     pub pull_factor_max: f64,
-    /// Largest difference between what the reel paid out and what the map explains, metres; absent without an encoder.
+    /// Largest difference between the length paid out and the length by the map, metres; absent without an encoder.
     pub reel_off_max_m: Option<f64>,
     anchor: Point,
     every: usize,

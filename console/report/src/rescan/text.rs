@@ -1,41 +1,42 @@
-//! What is scanned again and what is left, for people.
+//! The floor to re-scan and the floor that is left, as text.
 
 use super::Rescan;
 use account::Area;
 use std::fmt::Write;
 
-/// Areas that are listed one by one.
+/// Maximum number of areas listed one by one.
 const MOST_LISTED: usize = 10;
 
 impl Rescan {
-    /// What is scanned again, and what is left, `min_area_m2` being the smallest area that was wanted.
+    /// The floor to re-scan, and the floor that is left; `min_area_m2` is the smallest area that was wanted.
     pub fn human(&self, min_area_m2: f64) -> String {
         let boxes_m2: f64 = self.boxes.iter().map(|[low, high]| (high.x - low.x) * (high.y - low.y)).sum();
         let mut text = format!(
-            "{:.2} m² missed in {}, to be scanned again as {} ({boxes_m2:.2} m² with the surrounding floor)\n",
+            "{:.2} m² missed in {}, to be re-scanned as {} ({boxes_m2:.2} m² with the surrounding floor)\n",
             total_m2(&self.areas),
             counted(self.areas.len(), "area", "areas"),
             counted(self.boxes.len(), "box", "boxes"),
         );
         text += &listed("again", &self.areas);
-        text += &listed(&format!("left, smaller than {min_area_m2} m²"), &self.left);
-        text += &listed("left, out of reach of every lane", &self.out_of_reach);
+        text += &listed(&format!("not re-scanned, smaller than {min_area_m2} m²"), &self.left);
+        text += &listed("not re-scanned, not reached by any lane", &self.out_of_reach);
         if self.not_asked_m2 > 0.0 {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "left: {:.2} m² that no mission was to scan", self.not_asked_m2);
+            let _ = writeln!(text, "not re-scanned: {:.2} m² that no mission was to scan", self.not_asked_m2);
         }
         text
     }
 
-    /// What no lane leads to.
+    /// The areas that no lane reaches.
     pub fn human_out_of_reach(&self) -> String {
-        listed("out of reach of every lane", &self.out_of_reach)
+        listed("not reached by any lane", &self.out_of_reach)
     }
 
-    /// Why nothing is scanned again, as a sentence.
+    /// The reason why nothing is re-scanned, as a sentence.
     pub fn why_nothing(&self, min_area_m2: f64) -> String {
         format!(
-            "nothing was missed that is worth another scan: {} smaller than {min_area_m2} m² left, {:.2} m² together, and {} out of reach of every lane",
+            "no missed area is worth a re-scan: {} smaller than {min_area_m2} m², {:.2} m² together, and {} \
+             that no lane reaches",
             counted(self.left.len(), "place", "places"),
             total_m2(&self.left),
             counted(self.out_of_reach.len(), "place", "places"),
@@ -60,7 +61,7 @@ fn total_m2<R>(areas: &[Area<R>]) -> f64 {
     areas.iter().map(|area| area.area_m2).sum()
 }
 
-/// A number of things.
+/// A count with its noun.
 fn counted(number: usize, one: &str, more: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { more })
 }

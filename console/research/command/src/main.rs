@@ -1,4 +1,5 @@
-//! tankops-research: the papers' tables, and the search for parameters. `tankops reproduce` and `tankops tune` start it.
+//! The program `tankops-research`: the papers' tables, and the search for parameters. `tankops reproduce` and
+//! `tankops tune` start it.
 
 mod reproduce;
 mod study_folder;
@@ -25,11 +26,11 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Reproduce a table or figure of a paper, with the printed values beside ours.
+    /// Reproduce a table or figure of a paper, and compare our values with the printed ones.
     Reproduce(ReproduceArgs),
     /// Optimize planner parameters on one set of layouts, and evaluate them on another.
     Tune(TuneArgs),
-    /// Run as the process of a planner.
+    /// Run as the worker process of a planner.
     #[command(hide = true)]
     Worker,
 }

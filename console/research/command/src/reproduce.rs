@@ -1,4 +1,4 @@
-//! `tankops reproduce`: the papers' tables, ours beside the printed values.
+//! `tankops reproduce`: the papers' tables, with our values beside the printed ones.
 
 use crate::study_folder::StudyFolder;
 use ::reproduce::{
@@ -13,7 +13,7 @@ use planner_host::PluginDirs;
 use report::print::say;
 use std::process::ExitCode;
 
-/// A list of cases has so many parts at most: few files, and work for many machines.
+/// The maximum number of parts of a list of cases: few files, but work for many machines.
 const MOST_PARTS: usize = 256;
 
 /// `tankops reproduce`.

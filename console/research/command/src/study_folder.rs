@@ -1,5 +1,5 @@
-//! The folder of a study or a search: what was asked for, and the answers so far. The same command with the same folder
-//! resumes, and shares the work with those that run at the same time.
+//! The folder of a study or a search: the request, and the results so far. The same command with the same folder
+//! resumes the work, and shares it with other processes that run at the same time.
 
 use command::{here::Here, shared_folder::SharedFolder};
 use flight::failure::bad_input;
@@ -13,26 +13,27 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// What was asked for, and with which program.
+/// The request, and the program that computes it.
 const FROZEN: &str = "study.json";
 const PARTS: &str = "parts";
-/// Results, when everything is there.
+/// The results, once every part is complete.
 const RESULT: &str = "result.json";
 
-/// A part is its answers, and behind them this many bytes: SHA-256 of what was asked for, the part's name and its answers.
+/// Length of the trailer of a part, bytes. A part consists of its results and this trailer: the SHA-256 of the
+/// request, the part's name and its results.
 const DIGEST: usize = 32;
 
-/// A folder of answers.
+/// A folder of results.
 pub(crate) struct StudyFolder {
     folder: SharedFolder,
-    /// What was asked for.
+    /// The request.
     asked: String,
-    /// Whether it was said that others are waited for.
+    /// Whether the wait for other processes has been reported.
     has_waited: AtomicBool,
 }
 
 impl StudyFolder {
-    /// The folder for what is asked for with the planners and the program that are here, which is made if there is none.
+    /// Opens the folder for a request with the installed planners and this program; creates it if it does not exist.
     pub(crate) fn open(path: &Path, asked: &Value, plugins: &PluginDirs) -> anyhow::Result<Self> {
         let folder = SharedFolder::new(path);
         folder.make(&[PARTS]).map_err(|error| bad_input(format!("--out {error:#}")))?;
@@ -41,9 +42,9 @@ impl StudyFolder {
         match folder.read(Path::new(FROZEN)).map_err(|error| refused(&error.to_string()))? {
             None => folder.publish(Path::new(FROZEN), &serde_json::to_vec_pretty(&asked)?)?,
             Some(there) => match serde_json::from_slice(&there) {
-                Err(error) => return Err(refused(&format!("{error}; choose another folder"))),
+                Err(error) => return Err(refused(&format!("{error}; choose a different folder"))),
                 Ok(there) => difference(&there, &asked).map_or(Ok(()), |what| {
-                    Err(refused(&format!("the folder holds answers {what}; choose another one")))
+                    Err(refused(&format!("the folder contains results {what}; choose a different folder")))
                 })?,
             },
         }
@@ -60,13 +61,13 @@ impl StudyFolder {
         hash.finalize().into()
     }
 
-    /// The answers of a part that is as it was written.
+    /// The results of a part, if the part is undamaged.
     fn whole<'b>(&self, name: &str, bytes: &'b [u8]) -> Option<&'b [u8]> {
         let (answers, digest) = bytes.split_last_chunk::<DIGEST>()?;
         (*digest == self.digest(name, answers)).then_some(answers)
     }
 
-    /// Keeps the results, and removes what killed processes have left.
+    /// Stores the results, and removes the remains of killed processes.
     pub(crate) fn finish(&self, result: &Value) -> anyhow::Result<()> {
         self.folder.publish(Path::new(RESULT), &serde_json::to_vec_pretty(result)?)?;
         self.folder.tidy(&[PARTS, "."]);
@@ -78,12 +79,12 @@ impl StudyFolder {
     }
 }
 
-/// How what is there differs from what is asked for now.
+/// Describes the difference between the stored request and the current one.
 fn difference(there: &Value, now: &Value) -> Option<&'static str> {
     if there["asked"] != now["asked"] {
-        Some("to other arguments")
+        Some("of different arguments")
     } else if there["program"] != now["program"] {
-        Some("of another tankops or other plugins")
+        Some("of a different tankops or different plugins")
     } else {
         None
     }
@@ -99,7 +100,7 @@ impl Parts for StudyFolder {
         let Some(bytes) = bytes else { return Ok(None) };
         let answers = self.whole(name, &bytes).map(<[u8]>::to_vec);
         if answers.is_none() {
-            let why = "is damaged: its bytes are not those that were written; it is computed again";
+            let why = "is damaged: its checksum does not match; recomputing it";
             warn_line(&format!("{} {why}", self.place(name)));
         }
         Ok(answers)
@@ -112,8 +113,11 @@ impl Parts for StudyFolder {
     fn wait_for(&self, name: &str) {
         if !self.has_waited.swap(true, Ordering::Relaxed) {
             let (place, claim) = (self.place(name), self.folder.claim_file(name));
-            let until = "until it has done so, has ended, or has been silent for 10 min";
-            warn_line(&format!("waiting for {place}: {} says who computes it, {until}", claim.display()));
+            let until = "until that process has finished or ended, or has been silent for 10 min";
+            warn_line(&format!(
+                "waiting for {place}: {} names the process that computes it, {until}",
+                claim.display()
+            ));
         }
     }
 

@@ -1,4 +1,4 @@
-//! `tankops tune`: better parameters, evaluated on layouts that they were not tuned on.
+//! `tankops tune`: better parameters, evaluated on layouts that were not used for tuning.
 
 use crate::study_folder::StudyFolder;
 use ::reproduce::{
@@ -17,7 +17,7 @@ use report::print::say;
 use std::process::ExitCode;
 use toml_edit::Value;
 
-/// Every set of values that is tried makes so many parts at most.
+/// The maximum number of parts for each set of values that is tried.
 const MOST_PARTS: usize = 16;
 
 /// `tankops tune`.
@@ -78,7 +78,7 @@ fn answer(args: &TuneArgs, tuned: &Tuned) -> serde_json::Value {
     })
 }
 
-/// The values to start from.
+/// The initial values.
 fn start(set: &[String]) -> Result<Parameters, String> {
     let pair = |setting: &String| {
         let (key, written) = setting
@@ -89,7 +89,7 @@ fn start(set: &[String]) -> Result<Parameters, String> {
     set.iter().map(pair).collect()
 }
 
-/// What is not a TOML value is a word.
+/// A value that is not valid TOML is a word.
 fn value(written: &str) -> ParamValue {
     match written.parse() {
         Ok(Value::Boolean(flag)) => ParamValue::Flag(flag.into_value()),

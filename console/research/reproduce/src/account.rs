@@ -1,4 +1,5 @@
-//! The account of the papers: every equation, table, figure and claim, what became of it here, and what shows it.
+//! The account of the papers: every equation, table, figure and claim, its state in tankops, and the command that
+//! demonstrates it.
 
 mod pan;
 mod wang;
@@ -7,33 +8,33 @@ mod yang;
 
 use std::fmt::Write;
 
-/// What became of an item of a paper.
+/// The state of an item of a paper in tankops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
-    /// Here, and it agrees.
+    /// Implemented, and it agrees.
     Reproduced,
-    /// It agrees by a number or a layout that was fitted to the printed values.
+    /// It agrees, but a number or a layout was fitted to the printed values.
     Fitted,
-    /// Here by a reading of what the text leaves open or prints wrong.
+    /// Implemented with our interpretation, because the text leaves details open or prints them wrong.
     Read,
-    /// Something of ours stands in its place or goes beyond it.
+    /// Replaced or extended by something of ours.
     Ours,
-    /// It was computed and does not come out.
+    /// Computed, but our result differs from the paper.
     Missed,
-    /// Not here.
+    /// Not implemented.
     Absent,
 }
 
 impl State {
-    /// For people.
+    /// The state in words for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
             Self::Fitted => "fitted",
             Self::Read => "read",
             Self::Ours => "ours",
-            Self::Missed => "does not come out",
-            Self::Absent => "not there",
+            Self::Missed => "not reproduced",
+            Self::Absent => "missing",
         }
     }
 }
@@ -41,15 +42,15 @@ impl State {
 /// An equation, table, figure or claim of a paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item {
-    /// Where in the paper: `Eq. 4`, `Table 1`, `Claim`.
+    /// Place in the paper: `Eq. 4`, `Table 1`, `Claim`.
     pub place: &'static str,
-    /// What it is.
+    /// Description of the item.
     pub what: &'static str,
-    /// What became of it.
+    /// State of the item.
     pub state: State,
-    /// The command that shows it; empty if nothing does.
+    /// The command that demonstrates the item; empty if there is none.
     pub command: &'static str,
-    /// What a reader must know: how it was read, what does not agree, why it is not there.
+    /// A note for the reader: how we interpreted the item, what disagrees, or why it is missing.
     pub why: &'static str,
 }
 
@@ -58,7 +59,7 @@ pub struct Item {
 pub struct Paper {
     /// Author and year, as in `references.md`.
     pub name: &'static str,
-    /// Its items, in the paper's order.
+    /// The items of the paper, in its order.
     pub items: &'static [Item],
 }
 
@@ -75,7 +76,7 @@ const fn item(
     Item { place, what, state, command, why }
 }
 
-/// The account for people.
+/// Formats the account for people.
 pub(crate) fn text() -> String {
     let mut text = String::new();
     for paper in PAPERS {

@@ -1,7 +1,7 @@
-//! Coverage planners and the tether: tanks like those of the study behind them, and random ones.
+//! Coverage planners and the tether, in tanks like those of the original study and in random tanks.
 //!
-//! Pan 2025 prints no figures of its own; nothing is beside ours. Figures are those of `trials::tanks`: a flat bar
-//! across the heading, cells of 0.05 m, swath 0.6 m, hull and clearance 0.3 m together, the return included.
+//! Pan 2025 prints no figures to compare with. Figures are those of `trials::tanks`: a flat bar across the heading,
+//! cells of 0.05 m, swath 0.6 m, hull and clearance 0.3 m together, the return included.
 
 mod measured;
 mod rows;

@@ -1,8 +1,9 @@
 //! Potential fields toward a goal: Xu et al. 2022 (virtual obstacles) and Yang et al. 2021 (virtual goals, dynamic
 //! window).
 //!
-//! Of all layouts the papers print only one obstacle; the others are reconstructed so that the printed stops and
-//! lengths come out, so agreement there shows consistency and no more. The notes say where a paper's formula is wrong.
+//! The papers print only one obstacle of all layouts. The others are reconstructed so that they give the printed
+//! stopping points and lengths, so agreement there shows only consistency. The notes state where a paper's formula is
+//! wrong.
 
 mod amphibious;
 mod curves;
@@ -59,7 +60,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "yang-distances",
-        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles under way, as flown",
+        about: "Yang et al. 2021, Figs 12 to 15 (b): distances to the ten obstacles along the path, as flown",
         layouts: 10,
         run: curves::distances,
     },

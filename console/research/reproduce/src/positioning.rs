@@ -1,4 +1,4 @@
-//! Wang et al. 2023: acoustic-emission positioning, and how far it is from what is possible.
+//! Wang et al. 2023: acoustic-emission positioning, compared with the theoretical limit.
 
 mod bound;
 mod estimator;

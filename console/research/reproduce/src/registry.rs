@@ -1,4 +1,4 @@
-//! Every study. Studies do not know the registry.
+//! The list of all studies. Studies do not depend on the registry.
 
 use crate::{
     account, coverage, fields, positioning, spiral,
@@ -8,7 +8,7 @@ use crate::{
 use mission::spelling::nearest;
 use std::path::Path;
 
-/// Every study, by what it is about.
+/// Every study, by subject.
 const STUDIES: [&[Study]; 5] =
     [spiral::STUDIES, traps::STUDIES, fields::STUDIES, positioning::STUDIES, coverage::STUDIES];
 
@@ -17,10 +17,10 @@ pub fn studies() -> impl Iterator<Item = &'static Study> {
     STUDIES.into_iter().flatten()
 }
 
-/// The study of this name.
+/// The study with this name.
 ///
 /// # Errors
-/// There is none; the message has the name that is most like it.
+/// No study has this name; the message suggests the most similar name.
 pub fn study(name: &str) -> Result<&'static Study> {
     studies().find(|study| study.name == name).ok_or_else(|| StudyError::Refused(unknown(name)))
 }
@@ -28,7 +28,7 @@ pub fn study(name: &str) -> Result<&'static Study> {
 fn unknown(name: &str) -> String {
     let nearest = nearest(name, studies().map(|study| study.name));
     let hint = nearest.map(|known| format!("; did you mean `{known}`?")).unwrap_or_default();
-    format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists them all")
+    format!("there is no study `{name}`{hint}; `tankops reproduce --list` lists all studies")
 }
 
 /// The list of all studies, and the account of the papers, for people.
@@ -37,7 +37,7 @@ pub fn list() -> String {
     let line = |study: &Study| format!("{:width$}  {} ({})\n", study.name, study.about, study.layouts);
     let lines: String = studies().map(line).collect();
     format!(
-        "{lines}\nIn brackets: layouts or draws of each case unless --layouts says otherwise.\n\nThe papers, item by item:\n{}",
+        "{lines}\nIn brackets: layouts or draws of each case, unless changed by --layouts.\n\nThe papers, item by item:\n{}",
         account::text()
     )
 }
@@ -51,7 +51,7 @@ pub fn gallery(study: &Study, folder: &Path) -> Result<Gallery> {
     if !draws(study) {
         let drawn: Vec<String> =
             studies().filter(|study| draws(study)).map(|drawn| format!("`{}`", drawn.name)).collect();
-        let why = format!("--svg draws plans and curves; only {} have them", drawn.join(", "));
+        let why = format!("--svg draws plans and curves; only {} have any", drawn.join(", "));
         return Err(StudyError::Refused(format!("{}: {why}", study.name)));
     }
     Gallery::new(folder)

@@ -1,7 +1,7 @@
 //! Wang et al. 2023: planners on the preset spiral.
 //!
-//! Layouts: the paper's three distributions, uniform in the disk or, as printed, in the square. The paper states
-//! the size of neither obstacles nor robot; collisions are counted at a clearance of 0.3 m from an obstacle point.
+//! Layouts: the paper's three distributions, uniform in the disk or, as printed, in the square. The paper does not
+//! state the sizes of obstacles and robot; collisions are counted at a clearance of 0.3 m from an obstacle point.
 
 mod figures;
 mod fit;
@@ -28,7 +28,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "wang-search",
-        about: "readings of what Wang et al. 2023 leave open, drawn one by one and held against Table 1, VT included",
+        about: "readings of details that Wang et al. 2023 leave open, drawn at random and compared with Table 1, including VT",
         layouts: 8,
         run: tables::search,
     },
@@ -46,7 +46,7 @@ pub(crate) const STUDIES: &[Study] = &[
     },
     Study {
         name: "spiral-followers",
-        about: "our own planners on the layouts of Wang et al. 2023, against the geometric lower bound",
+        about: "our own planners on the layouts of Wang et al. 2023, compared with the geometric lower bound",
         layouts: 1000,
         run: tables::followers,
     },

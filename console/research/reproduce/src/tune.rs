@@ -8,7 +8,7 @@ use crate::{
     study::{Method, Result, Row, Runner, StudyError},
     table::table,
 };
-use cmaes::{CMAESOptions, DVector};
+use cmaes::{CMAESOptions, DVector, options::InvalidOptionsError};
 use mission::{ParamKind, ParamValue, Parameters, PlannerInfo};
 use scale::Scale;
 use std::cell::RefCell;
@@ -149,8 +149,8 @@ impl Search<'_> {
         let before = cost(&DVector::from_vec(shares.clone()));
         let options = CMAESOptions::new(shares, FIRST_STEP).seed(self.tuning.seed);
         let search = options.max_generations(self.tuning.generations).build(&cost);
-        let mut search =
-            search.map_err(|error| StudyError::Refused(format!("the search cannot start: {error:?}")))?;
+        let mut search = search
+            .map_err(|error| StudyError::Refused(format!("the search cannot start: {}", invalid(&error))))?;
         while failure.borrow().is_none() && search.next().is_none() {}
         let evaluations = search.function_evals() + 1;
         drop(search);
@@ -179,6 +179,15 @@ impl Search<'_> {
         let seeds: Vec<u64> = (0..n as u64).map(|k| first.wrapping_add(k)).collect();
         let method = Method { parameters, ..Method::new(id, &self.tuning.planner.id, "") };
         Trained::new(runner, &seeds, method, self.group)
+    }
+}
+
+fn invalid(error: &InvalidOptionsError) -> &'static str {
+    match error {
+        InvalidOptionsError::Dimensions => "no parameter is to be tuned",
+        InvalidOptionsError::PopulationSize => "a generation needs at least 2 parameter sets",
+        InvalidOptionsError::InitialStepSize => "the first step must be a positive number",
+        InvalidOptionsError::Cm => "the learning rate must be from 0 to 1",
     }
 }
 

@@ -1,6 +1,7 @@
-//! Recorded answers, and the planners asked the same again.
+//! Replays recorded answers, and repeats the asks to the planners.
 //!
-//! The mission lives on the recorded answers alone, so planners are asked in a thread of their own and may be some ticks behind.
+//! The mission uses the recorded answers alone, so planners are asked in a separate thread and may be some ticks
+//! behind.
 
 use flight::answers::Answers;
 use mission::{
@@ -13,18 +14,18 @@ use std::{
     sync::mpsc::{Receiver, SyncSender},
 };
 
-/// How many asks and answers the planners may be behind.
+/// Maximum number of asks and answers by which the planners may be behind.
 pub(super) const BEHIND: usize = 512;
 
-/// Answers asks from the journal, and sends both to the thread in which planners answer them, too.
+/// Answers asks from the journal, and sends both to the thread in which planners answer the asks, too.
 pub(crate) struct Replayed {
     recorded: RecordedAnswers,
-    /// `None` when planners are not asked.
+    /// `None` if the planners are not asked.
     again: Option<SyncSender<Update>>,
     tick: u64,
 }
 
-/// What happened in the journal.
+/// An event of the journal.
 pub(super) enum Update {
     /// A planner was asked.
     Ask(Ask),
@@ -35,26 +36,26 @@ pub(super) enum Update {
 /// A recorded answer.
 pub(super) struct Recorded {
     answer: Answer,
-    /// In which tick it came.
+    /// The tick in which it arrived.
     tick: u64,
-    /// Whether the mission made use of it.
+    /// Whether the mission used it.
     is_used: bool,
-    /// What a command became on its way to the robot then.
+    /// The command that was sent to the robot as a result.
     sending: Sending,
 }
 
 impl Replayed {
-    /// Only the journal answers.
+    /// Answers from the journal only.
     pub(crate) fn from_journal() -> Self {
         Self { recorded: RecordedAnswers::default(), again: None, tick: 0 }
     }
 
-    /// Sends everything to [`Asking`].
+    /// Sends all asks and answers to [`Asking`].
     pub(super) fn sending_to(again: Option<SyncSender<Update>>) -> Self {
         Self { again, ..Self::from_journal() }
     }
 
-    /// Takes the recorded events of the tick that begins.
+    /// Reads in the recorded events of the tick that is about to begin.
     pub(crate) fn begin_tick(&mut self, recorded: &RecordedTick) {
         self.tick = recorded.tick;
         self.recorded.begin_tick(recorded.events());
@@ -62,7 +63,7 @@ impl Replayed {
 
     fn send(&self, update: impl FnOnce() -> Update) {
         if let Some(again) = &self.again {
-            // A receiver that is gone has panicked, and whoever waits for its findings sees that.
+            // A receiver that is gone has panicked; the caller that waits for its findings sees that.
             let _ = again.send(update());
         }
     }
@@ -84,26 +85,26 @@ impl Answers for Replayed {
     }
 }
 
-/// What came of asking the planners again.
+/// The result of asking the planners again.
 #[derive(Debug, Default)]
 pub(crate) struct Asked {
-    /// Answers that were compared and are the same.
+    /// Number of answers that were compared and are equal.
     pub same: usize,
-    /// Answers that cannot be compared: the mission refused them, or made no use of them.
+    /// Number of answers that cannot be compared: the mission refused them, or did not use them.
     pub not_comparable: usize,
-    /// Faults from outside or by the clock, by planner.
+    /// Number of external or timing faults, by planner.
     pub external: BTreeMap<String, usize>,
-    /// Answers of workers that failed so earlier than in the journal, which therefore could not be compared.
+    /// Number of answers that cannot be compared because their worker failed earlier than in the journal.
     pub too_early: usize,
-    /// A worker failed so that did not fail in the journal; the sentence says which and how.
+    /// A worker had an external or timing fault that is not in the journal; the sentence states which and how.
     pub unproven: Option<String>,
-    /// The first answer that is another one.
+    /// The first answer that differs.
     pub difference: Option<String>,
 }
 
 impl Asked {
-    /// Asks the planners of a host everything that arrives, until the sender is gone or a planner answers otherwise: from then
-    /// on it would know other things than it did in the run.
+    /// Asks the planners of a host everything that arrives, until the sender is gone or a planner answers
+    /// differently: from then on its state would differ from that in the run.
     pub(super) fn of(mut host: Host, updates: &Receiver<Update>) -> Self {
         host.share_processor();
         let mut asking = Asking { host, early: Vec::new(), failed: BTreeMap::new(), asked: Self::default() };
@@ -125,9 +126,9 @@ impl Asked {
 /// Asks planners.
 struct Asking {
     host: Host,
-    /// Answers that came before they were looked for.
+    /// Answers that arrived before they were needed.
     early: Vec<Answer>,
-    /// Workers that failed from outside or by the clock, and not yet in the journal; where and how.
+    /// Workers with external or timing faults that are not in the journal yet, with place and fault.
     failed: BTreeMap<WorkerId, String>,
     asked: Asked,
 }
@@ -156,7 +157,7 @@ impl Asking {
         if let Err(fault) = &answer.result
             && fault.cause.is_external()
         {
-            // The mission closes the worker; nobody waits for it to fail in the same way.
+            // The mission closes the worker; it is not expected to fail in the same way.
             *self.asked.external.entry(fault.planner.clone()).or_default() += 1;
             self.failed.remove(&answer.ask.worker);
             return;
@@ -165,7 +166,7 @@ impl Asking {
         if let Some(Answer { result: Err(fault), .. }) = &own
             && fault.cause.is_external()
         {
-            // The machine decides when it comes: if the journal has it later, it is the same one.
+            // The machine determines the time of the fault: if the journal has it later, it is the same fault.
             let ask = answer.ask;
             self.failed
                 .entry(ask.worker)
@@ -184,7 +185,7 @@ impl Asking {
             Comparison::Different(why) => {
                 let ask = answer.ask;
                 self.asked.difference =
-                    Some(format!("a planner answers ask {ask} in tick {tick} otherwise: it {why}"));
+                    Some(format!("a planner answers ask {ask} in tick {tick} differently: it {why}"));
             }
         }
     }

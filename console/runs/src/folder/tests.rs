@@ -122,7 +122,11 @@ fn a_changed_journal_is_noticed_whatever_its_length() {
         fs::write(&plain, zstd::decode_all(&packed[..]).unwrap()).unwrap();
         fs::remove_file(folder.join(JOURNAL_FILE)).unwrap();
         change(&plain, "all scanned", new);
-        assert!(doubt(&folder).contains("not the one that the report was made from"), "{}", doubt(&folder));
+        assert!(
+            doubt(&folder).contains("the report was made from a different journal"),
+            "{}",
+            doubt(&folder)
+        );
         assert_eq!(journal_doubt(&folder, events_sha256(&plain).ok().as_deref()), Some(doubt(&folder)));
     }
 }
@@ -175,7 +179,7 @@ fn a_changed_figure_is_noticed_with_the_journal_and_without() {
     assert!(doubt(&folder).starts_with("report.json was changed after the run ended"), "{}", doubt(&folder));
     assert_eq!(
         figures(&summary).as_deref(),
-        Some("report.json was changed: holds is 1, the journal gives 0")
+        Some("report.json was changed: holds is 1; the journal gives 0")
     );
     let text = fs::read_to_string(folder.join(REPORT_FILE)).unwrap();
     let mut unsealed: Vec<&str> = text.lines().filter(|line| !line.contains("report_sha256")).collect();

@@ -1,9 +1,10 @@
-//! The figures of a report beside those that its journal gives.
+//! Compares the figures of a report with those derived from its journal.
 
 use account::Summary;
 use report::first_difference;
 
-/// The first figure of a report that the journal gives otherwise, with both values; what is not an event is not compared.
+/// The first figure that differs between report and journal, with both values. Data that is not in the events is not
+/// compared.
 pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String> {
     let computed = Summary {
         wall_time_s: reported.wall_time_s,
@@ -15,9 +16,9 @@ pub(super) fn difference(reported: Summary, computed: &Summary) -> Option<String
         logs: reported.logs.clone(),
         ..computed.clone()
     };
-    // Through text, as the report went.
+    // Converted to text and back, like the report.
     let text = serde_json::to_string(&computed).ok()?;
     let computed = serde_json::to_value(serde_json::from_str::<Summary>(&text).ok()?).ok()?;
     let found = first_difference(&serde_json::to_value(reported).ok()?, &computed)?;
-    Some(format!("{} is {}, the journal gives {}", found.key, found.one, found.other))
+    Some(format!("{} is {}; the journal gives {}", found.key, found.one, found.other))
 }

@@ -5,9 +5,9 @@ use geometry::{polyline::edges, unit_vector};
 use std::f64::consts::TAU;
 use world::{Boundary, Obstacle, ObstacleMap, Point, Vector, World};
 
-/// Distance from a station within which a ray has reached it, metres: stations may be mounted on a column.
+/// Distance from a station at which a ray counts as having reached it, metres: stations may be mounted on a column.
 const REACHED_M: f64 = 1e-3;
-/// Points of a round wall that are tested for an echo.
+/// Number of points of a round wall that are tested for an echo.
 const WALL_POINTS: u32 = 720;
 /// Distance from a station within which an echo counts as the direct sound, metres.
 const OWN_WALL_M: f64 = 0.1;
@@ -17,16 +17,16 @@ const OWN_WALL_M: f64 = 0.1;
 pub(crate) struct SoundPath {
     /// Its length, metres.
     pub length_m: f64,
-    /// Whether the sound is delayed besides.
+    /// Whether an extra delay is added.
     pub is_late: bool,
 }
 
-/// Wall and obstacles as sound meets them.
+/// Wall and obstacles for the propagation of sound.
 #[derive(Clone)]
 pub(crate) struct Propagation {
     boundary: Boundary,
     all: ObstacleMap,
-    /// Each obstacle alone, with points of its outline.
+    /// Each obstacle alone, with points on its outline.
     single: Vec<(ObstacleMap, Vec<Point>)>,
 }
 
@@ -56,7 +56,7 @@ impl Propagation {
         Some(SoundPath { length_m, is_late })
     }
 
-    /// Length of a taut line around all obstacles between them, on the shorter side.
+    /// Length of a taut line round all obstacles between the two points, on the shorter side.
     fn creeping_m(&self, from: Point, to: Point) -> f64 {
         let direct = to - from;
         let outline: Vec<Point> = self
@@ -72,7 +72,7 @@ impl Propagation {
         side(1.0).min(side(-1.0))
     }
 
-    /// Length of the shortest echo from the wall that is not blocked itself.
+    /// Length of the shortest echo from the wall that is not itself blocked.
     fn echo_m(&self, from: Point, to: Point) -> Option<f64> {
         let mut echoes: Vec<(f64, Point)> = match &self.boundary {
             Boundary::Circle { radius_m } => round_echoes(*radius_m, from, to),
@@ -92,7 +92,8 @@ fn is_blocked(map: &ObstacleMap, from: Point, to: Point) -> bool {
         && map.ray_m(from, way / distance_m, distance_m).is_some_and(|hit_m| hit_m < distance_m - REACHED_M)
 }
 
-/// Length of a string from `from` to `to` around points that lie on one side of it: a chain of the convex hull.
+/// Length of a string from `from` to `to` round points that are all on one side of the straight line: a chain of the
+/// convex hull.
 fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
     let direct = to - from;
     around.push(to);
@@ -109,7 +110,8 @@ fn taut_m(from: Point, to: Point, mut around: Vec<Point>, sign: f64) -> f64 {
     chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// Echoes of a round wall: sound is reflected where the path by way of the wall has an extreme length (Fermat's principle).
+/// Echoes from a round wall: sound is reflected where the length of the path via the wall has an extremum (Fermat's
+/// principle).
 fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
     let at = |k: u32| Point::from(unit_vector(TAU * f64::from(k) / f64::from(WALL_POINTS)) * radius_m);
     let length_m = |p: Point| (p - from).norm() + (to - p).norm();
@@ -123,7 +125,7 @@ fn round_echoes(radius_m: f64, from: Point, to: Point) -> Vec<(f64, Point)> {
         .collect()
 }
 
-/// Echoes of straight walls by their mirror images.
+/// Echoes from straight walls, computed with mirror images.
 fn straight_echoes(vertices: &[Point], from: Point, to: Point) -> Vec<(f64, Point)> {
     edges(vertices)
         .filter_map(|(a, b)| {

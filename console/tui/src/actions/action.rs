@@ -1,4 +1,4 @@
-//! What an action is: a row of the table.
+//! An action: a row of the table.
 
 use super::ActionId;
 use super::argument::Arg;
@@ -10,16 +10,16 @@ use crate::update::Effect;
 /// What an action can do to the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Risk {
-    /// It cannot make the robot move and loses nothing.
+    /// Cannot make the robot move and loses nothing.
     Safe,
-    /// It can make the robot move: it asks first.
+    /// Can make the robot move; asks for confirmation first.
     Moves,
-    /// It ends the mission: it asks first.
+    /// Ends the mission; asks for confirmation first.
     Destroys,
 }
 
 impl Risk {
-    /// How lists show it.
+    /// The word that marks the risk in lists.
     pub fn word(self) -> &'static str {
         match self {
             Self::Safe => "safe",
@@ -29,63 +29,63 @@ impl Risk {
     }
 }
 
-/// What an action reaches beyond the screen, and so which consoles have it.
+/// What an action affects beyond the screen, which determines the consoles that offer the action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reach {
-    /// Nothing but this screen: every console has it.
+    /// Only this screen: every console offers the action.
     Screen,
-    /// Another run, or the folder of one: not a console that looks on.
+    /// Another run or its folder: not offered on a view-only console.
     Runs,
-    /// How fast time goes and whether it does, in a mission or a replay: not a console that looks on.
+    /// Time: whether it passes and how fast, in a mission or a replay. Not offered on a view-only console.
     Pace,
-    /// The mission: only the console that runs it.
+    /// The mission: offered only on the console that runs it.
     Mission,
 }
 
-/// What an action does; one whose id carries a value does the same with each.
+/// The effect of an action. An action whose id carries a value has the same effect for every value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Deed {
-    /// It opens the command line for its value.
+    /// Opens the command line for the action's value.
     Begin,
-    /// It changes what the operator looks at, and nothing else.
+    /// Changes only what the operator looks at.
     Look(fn(&mut Model)),
-    /// It changes the model, and there may be something to do outside.
+    /// Changes the model and may return effects for the caller to carry out.
     Act(fn(&mut Model) -> Vec<Effect>),
 }
 
 /// One thing the operator can do.
 #[derive(Debug, Clone, Copy)]
 pub struct Action {
-    /// Its id.
+    /// The action's id.
     pub id: ActionId,
-    /// Its name in the command list, lower case, words joined by hyphens.
+    /// The action's name in the command list: lower case, words joined by hyphens.
     pub name: &'static str,
-    /// What it does.
+    /// The description in the help.
     pub about: &'static str,
-    /// The word beside its key in the footer; empty for what the footer leaves out.
+    /// The word beside the key in the footer; empty if the footer omits the action.
     pub label: &'static str,
-    /// Its keys, the one to show first.
+    /// The action's keys; the first one is shown.
     pub keys: &'static [Key],
-    /// What it can do to the robot.
+    /// What the action can do to the robot.
     pub risk: Risk,
-    /// Where its keys work.
+    /// The contexts in which the keys work.
     pub contexts: &'static [Context],
-    /// Whether it follows a key that repeats.
+    /// Whether the action repeats while its key is held down.
     pub repeats: bool,
-    /// Other words for its name.
+    /// Other names for the action.
     pub synonyms: &'static [&'static str],
-    /// What its command takes.
+    /// The arguments of the command.
     pub args: &'static [Arg],
-    /// What it reaches.
+    /// What the action affects beyond the screen.
     pub(crate) reach: Reach,
-    /// Whether it can be done now, and why not otherwise; keys are named as `<end>`.
+    /// Checks whether the action is possible now; the error is the reason, with keys written as `<end>`.
     pub(crate) can: fn(&Model) -> Result<(), String>,
-    /// What it does.
+    /// The effect of the action.
     pub(crate) deed: Deed,
 }
 
 impl PartialEq for Action {
-    /// Whether it is the same row: an action has one for each set of keys.
+    /// Compares rows, not actions: an action has one row for each set of keys.
     fn eq(&self, other: &Self) -> bool {
         (self.id, self.name, self.contexts) == (other.id, other.name, other.contexts)
     }
@@ -93,8 +93,8 @@ impl PartialEq for Action {
 
 impl Eq for Action {}
 
-/// A row of the table. Unless it says otherwise, its action is safe, reaches nothing, can be done at any time, and opens the command
-/// line for its value.
+/// Makes a row of the table. By default the action is safe, affects only the screen, is always possible, and opens
+/// the command line for its value.
 pub(crate) const fn action(
     id: ActionId,
     name: &'static str,
@@ -156,22 +156,22 @@ impl Action {
         Self { deed: Deed::Look(look), ..self }
     }
 
-    /// Whether its keys work in one of some contexts.
+    /// Whether the action's keys work in any of the given contexts.
     pub fn works_in(&self, contexts: &[Context]) -> bool {
         self.contexts.iter().any(|context| contexts.contains(context))
     }
 
-    /// Whether it can be run by its name.
+    /// Whether the action can be run by name.
     pub fn is_command(&self) -> bool {
         self.contexts.iter().any(|context| context.has_commands())
     }
 
-    /// Whether its command can be run without a value.
+    /// Whether the command can be run without a value.
     pub fn runs_alone(&self) -> bool {
         self.args.iter().all(|arg| !arg.is_required)
     }
 
-    /// How its command is written, such as `open SCENARIO [PLANNER]`.
+    /// The usage of the command, such as `open SCENARIO [PLANNER]`.
     pub fn usage(&self) -> String {
         let args = self.args.iter().map(|arg| format!(" {}", arg.usage()));
         std::iter::once(self.name.to_owned()).chain(args).collect()

@@ -1,39 +1,42 @@
-//! What commands take.
+//! The arguments of commands.
 
-/// What a value of a command is.
+use std::fmt;
+
+/// The kind of value that an argument takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 pub enum Kind {
     /// A speed of the simulation.
     Speed,
-    /// Id of a planner.
+    /// The id of a planner.
     Planner,
-    /// A parameter of the planner and its value.
+    /// A parameter of the planner, with its value.
     Parameter,
-    /// Name of a scenario.
+    /// The name of a scenario.
     Scenario,
-    /// Name of a past run, the unique beginning of one, or `latest`.
+    /// The name of a past run, a unique prefix of it, or `latest`.
     Run,
     /// A layer of the map.
     Layer,
-    /// Name of a station or an obstacle.
+    /// The name of a station or an obstacle.
     Place,
-    /// A severity of events.
+    /// An event severity.
     Severity,
     /// A theme.
     Theme,
     /// A screen.
     Screen,
-    /// Name of a preset.
+    /// The name of a preset.
     Preset,
-    /// A span of time.
+    /// A duration.
     Duration,
     /// A moment of a run.
     Moment,
     /// An alarm.
     Alarm,
-    /// Name of an AE station.
+    /// The name of an AE station.
     Station,
-    /// What is wrong with a station.
+    /// A range fault of a station.
     Fault,
     /// A corner of a box: x and y, metres.
     Corner,
@@ -41,8 +44,33 @@ pub enum Kind {
     Text,
 }
 
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Speed => "speed",
+            Self::Planner => "planner",
+            Self::Parameter => "parameter",
+            Self::Scenario => "scenario",
+            Self::Run => "run",
+            Self::Layer => "layer",
+            Self::Place => "place",
+            Self::Severity => "severity",
+            Self::Theme => "theme",
+            Self::Screen => "screen",
+            Self::Preset => "preset",
+            Self::Duration => "duration",
+            Self::Moment => "moment",
+            Self::Alarm => "alarm",
+            Self::Station => "station",
+            Self::Fault => "fault",
+            Self::Corner => "corner",
+            Self::Text => "text",
+        })
+    }
+}
+
 impl Kind {
-    /// Whether a run that is open, or what was found on the disk, decides which values there are.
+    /// Whether the valid values depend on the open run or on files found on the disk.
     pub(crate) fn depends_on_run(self) -> bool {
         matches!(
             self,
@@ -58,14 +86,14 @@ impl Kind {
     }
 }
 
-/// What a command takes: in the order of the table, or by its name: `planner=navfn`.
+/// An argument of a command, given by position or by name: `planner=navfn`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Arg {
-    /// Its name.
+    /// The argument's name.
     pub name: &'static str,
-    /// What its value is.
+    /// The kind of its value.
     pub kind: Kind,
-    /// Whether the command does not run without it.
+    /// Whether the command requires the argument.
     pub is_required: bool,
 }
 
@@ -78,7 +106,7 @@ pub(super) const fn may(name: &'static str, kind: Kind) -> Arg {
 }
 
 impl Arg {
-    /// How it is written.
+    /// The argument as it appears in the usage line.
     pub(super) fn usage(&self) -> String {
         let value = match self.kind {
             Kind::Parameter => "KEY=VALUE".to_owned(),
@@ -88,12 +116,12 @@ impl Arg {
     }
 }
 
-/// Reads a span of time such as `20s`, `15m`, `1h30m`; seconds.
+/// Parses a duration such as `20s`, `15m` or `1h30m`; returns seconds.
 ///
 /// # Errors
-/// How it is written.
+/// Returns a message with the expected format.
 pub fn duration_s(text: &str) -> Result<f64, String> {
-    let wrong = || format!("no duration `{text}`; write 20s, 15m or 1h30m");
+    let wrong = || format!("invalid duration `{text}`; write 20s, 15m or 1h30m");
     let mut total_s = 0.0;
     let mut rest = text;
     while !rest.is_empty() {
@@ -111,12 +139,12 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
     if total_s > 0.0 { Ok(total_s) } else { Err(wrong()) }
 }
 
-/// Reads a moment of a run such as `01:12:30`, `12:30`, `T+00:12:30` or `12m30s`; seconds of mission time.
+/// Parses a moment of a run such as `01:12:30`, `12:30`, `T+00:12:30` or `12m30s`; returns seconds of mission time.
 ///
 /// # Errors
-/// How it is written.
+/// Returns a message with the expected format.
 pub fn moment_s(text: &str) -> Result<f64, String> {
-    let wrong = || format!("no moment `{text}`; write 01:12:30, 12:30 or 12m30s");
+    let wrong = || format!("invalid time `{text}`; write 01:12:30, 12:30 or 12m30s");
     let text = text.strip_prefix("T+").unwrap_or(text);
     if !text.contains(':') {
         return duration_s(text).map_err(|_| wrong());
@@ -134,6 +162,8 @@ pub fn moment_s(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
 
     #[test]
     fn moments_are_clock_times_or_spans() {
@@ -154,5 +184,32 @@ mod tests {
         for wrong in ["", "20", "s", "1d", "-5s", "0s", "1.2.3s", "5\u{e9}"] {
             assert!(duration_s(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn every_kind_has_a_word_of_its_own() {
+        let all: [Kind; Kind::COUNT] = [
+            Kind::Speed,
+            Kind::Planner,
+            Kind::Parameter,
+            Kind::Scenario,
+            Kind::Run,
+            Kind::Layer,
+            Kind::Place,
+            Kind::Severity,
+            Kind::Theme,
+            Kind::Screen,
+            Kind::Preset,
+            Kind::Duration,
+            Kind::Moment,
+            Kind::Alarm,
+            Kind::Station,
+            Kind::Fault,
+            Kind::Corner,
+            Kind::Text,
+        ];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
     }
 }

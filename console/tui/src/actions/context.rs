@@ -1,51 +1,51 @@
-//! Where keys mean something, and which of these places are active.
+//! The contexts in which keys work, and which of them are active.
 
 use crate::model::{Model, Overlay, Screen};
 use crate::screens;
 
-/// Where keys mean something.
+/// A context in which keys work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Context {
-    /// On every screen, in every list and line.
+    /// On every screen, and in every list and input line.
     Anywhere,
-    /// On every screen with nothing over it.
+    /// On every screen with no overlay.
     Screen,
-    /// On one screen with nothing over it.
+    /// On one screen with no overlay.
     On(Screen),
-    /// On the mission screen while a past run is played back.
+    /// On the mission screen during a replay.
     Replay,
     /// On a screen with a map.
     Map,
-    /// While the map takes the arrow keys.
+    /// While the arrow keys pan the map.
     Pan,
-    /// While a cursor on the map takes the arrow keys.
+    /// While the arrow keys move the cursor on the map.
     Cursor,
-    /// While a list takes the arrow keys.
+    /// While the arrow keys move through a list.
     Rows,
-    /// In a list over the screen.
+    /// In an overlay list.
     List,
     /// In the comparison of forecasts.
     WhatIf,
-    /// In the list of checks before the start.
+    /// In the list of pre-flight checks.
     Preflight,
-    /// In the list of parameters.
+    /// In the parameter list.
     Parameters,
-    /// In the list of parameters that are changed for a forecast.
+    /// In the parameter list of a forecast draft.
     Draft,
-    /// In the actions of an alarm.
+    /// In the action list of an alarm.
     Remedies,
-    /// In a line where text is typed.
+    /// In an input line.
     Text,
     /// In a list that is filtered by typing.
     Commands,
-    /// In the line that asks before something moves or ends.
+    /// In the line that asks for confirmation before the robot moves or the mission ends.
     Confirm,
     /// In the line for single steps.
     Stepping,
 }
 
 impl Context {
-    /// What people call it, as far as it is a screen.
+    /// The name of the screen, if the context is one.
     pub fn screen(self) -> Option<&'static str> {
         match self {
             Self::On(screen) => Some(screen.name()),
@@ -54,13 +54,13 @@ impl Context {
         }
     }
 
-    /// Whether its actions are commands of their own, and no mere steps within a list or a line.
+    /// Whether the context's actions are commands in their own right, rather than steps within a list or input line.
     pub fn has_commands(self) -> bool {
         matches!(self, Self::On(_) | Self::Replay | Self::Anywhere | Self::Screen | Self::Map | Self::Pan)
     }
 }
 
-/// The sets of contexts that can be active together while something lies over the screen.
+/// The sets of contexts that can be active together while an overlay is open.
 const OVER: &[&[Context]] = &[
     &[Context::Anywhere, Context::List, Context::Rows],
     &[Context::Anywhere, Context::List, Context::Rows, Context::Parameters],

@@ -1,26 +1,26 @@
-//! Looking actions up: by key, by name, and by what people type for them.
+//! Finds actions by key, by name, and by what the operator types.
 
 use super::context::Context;
 use super::keymap::Keymap;
 use super::{ACTIONS, Action, ActionId, Risk};
 use crate::keys::Key;
 
-/// The action of a key in some contexts.
+/// The action that a key runs in the given contexts.
 pub fn action_for(keys: &Keymap, key: Key, contexts: &[Context]) -> Option<&'static Action> {
     ACTIONS.iter().find(|action| action.works_in(contexts) && keys.of(action).contains(&key))
 }
 
-/// The row of an action; the first one if it has several.
+/// The row of an action; the first if the action has several.
 pub fn row(id: ActionId) -> Option<&'static Action> {
     ACTIONS.iter().find(|action| action.id == id)
 }
 
-/// Every command.
+/// Every action that is a command.
 pub fn commands() -> impl Iterator<Item = &'static Action> {
     ACTIONS.iter().filter(|action| action.is_command())
 }
 
-/// The command of exactly this name or synonym.
+/// The command with exactly this name or synonym.
 pub fn named(word: &str) -> Option<&'static Action> {
     let word = squashed(word);
     let by = |names: fn(&Action) -> Vec<&str>| {
@@ -29,26 +29,26 @@ pub fn named(word: &str) -> Option<&'static Action> {
     by(|action| vec![action.name]).or_else(|| by(|action| action.synonyms.to_vec()))
 }
 
-/// How well a command answers what was typed, the best way first.
+/// How well a command matches the typed text, best match first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Match {
-    /// It is its name or a synonym.
+    /// The text equals the name or a synonym.
     Exact,
-    /// Its name begins so.
+    /// The name begins with the text.
     Name,
-    /// A synonym begins so.
+    /// A synonym begins with the text.
     Synonym,
-    /// The words of its name begin with these letters.
+    /// The text consists of the initials of the name's words.
     Initials,
-    /// Its name contains it.
+    /// The name contains the text.
     Within,
-    /// Each word begins a word of its description.
+    /// Each typed word begins a word of the description.
     Description,
 }
 
 impl Match {
-    /// How a command answers what was typed. One that moves the robot or ends the mission answers to the beginning of its
-    /// names only: nobody shall find it by chance.
+    /// Matches a command against the typed text. A command that moves the robot or ends the mission matches only the
+    /// beginning of its names, so that nobody finds it by accident.
     pub fn of(action: &Action, typed: &str) -> Option<Self> {
         let found = Self::of_words(action, typed)?;
         (action.risk == Risk::Safe || found <= Self::Synonym).then_some(found)
@@ -81,7 +81,7 @@ fn is_described(action: &Action, typed: &str) -> bool {
     typed.split_whitespace().all(|part| words.iter().any(|word| word.starts_with(part)))
 }
 
-/// Small letters without the hyphens and spaces between words: `zoom in` is `zoom-in`.
+/// Converts to lower case and removes hyphens and spaces, so that `zoom in` matches `zoom-in`.
 fn squashed(words: &str) -> String {
     words.to_lowercase().chars().filter(|letter| *letter != '-' && !letter.is_whitespace()).collect()
 }

@@ -1,4 +1,4 @@
-//! Which keys run which actions: the table's, a preset's, the operator's.
+//! The key assignments: those of the table, a preset and the operator.
 
 mod presets;
 
@@ -11,34 +11,34 @@ use presets::Changes;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Which keys run which actions, and short names for command lines.
+/// Key assignments, and aliases for command lines.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Keymap {
-    /// Keys by action, where they are not the table's.
+    /// Keys by action, where they differ from the table.
     changed: BTreeMap<String, Vec<Key>>,
-    /// Command lines by their short names.
+    /// Command lines by alias.
     pub aliases: BTreeMap<String, String>,
 }
 
-/// An action and the keys that the operator wants for it.
+/// An action with the keys that the operator assigns to it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Binding {
-    /// Name of the action.
+    /// The name of the action.
     pub action: String,
-    /// Its keys; none at all unbinds it.
+    /// The action's keys; an empty list unbinds the action.
     pub keys: Vec<Key>,
 }
 
-/// Why a binding is not taken, or what to know about it.
+/// Why a binding is rejected, or a warning about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Objection {
-    /// Which binding, by its place in the list.
+    /// The index of the binding in the list.
     pub binding: usize,
-    /// Which of its keys, by its place in the binding; `None` for the binding as a whole.
+    /// The index of the key in the binding; `None` for the binding as a whole.
     pub key: Option<usize>,
     /// What is wrong, as a clause.
     pub what: String,
-    /// The binding that took the key before, by its place in the list.
+    /// The index of the earlier binding that uses the same key.
     pub other: Option<usize>,
     /// What happens instead, as a clause.
     pub instead: String,
@@ -55,7 +55,8 @@ impl Keymap {
         self.of(action).iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
     }
 
-    /// A sentence with the key of each action that it names as `<end>`; one without a key is called by its command.
+    /// Replaces each `<end>`-style placeholder in a sentence by the key of the named action; an action without a key
+    /// is shown as its command.
     pub fn spelled(&self, sentence: &str) -> String {
         let mut parts = sentence.split('<');
         let mut text = parts.next().unwrap_or_default().to_owned();
@@ -68,7 +69,7 @@ impl Keymap {
         text
     }
 
-    /// How an action is called by the keyboard: its first key, else its command.
+    /// How to run an action from the keyboard: its first key, or its command if it has no key.
     fn spelling(&self, name: &str) -> Option<String> {
         let action = ACTIONS.iter().find(|action| action.name == name)?;
         Some(match self.of(action).first() {
@@ -78,7 +79,8 @@ impl Keymap {
         })
     }
 
-    /// A preset with the operator's own keys. What cannot be taken is left out, and its action keeps the preset's keys.
+    /// Combines a preset with the operator's own keys. An invalid binding is left out, and its action keeps the
+    /// preset's keys.
     pub fn new(preset: Changes, bindings: &[Binding]) -> (Self, Vec<Objection>) {
         let base = Self::of_bindings(preset, &[]);
         let mut objections: Vec<Objection> = Vec::new();
@@ -87,7 +89,7 @@ impl Keymap {
             let taken: Vec<(usize, &Binding)> =
                 bindings.iter().enumerate().filter(|(index, _)| !is_out(*index)).collect();
             let map = Self::of_bindings(preset, &taken);
-            // One at a time: an action that keeps its keys may be in the way of another binding.
+            // One at a time: an action that keeps its keys may block another binding.
             match taken.iter().find_map(|(index, binding)| map.objection(&base, *index, binding, &taken)) {
                 Some(objection) => objections.push(objection),
                 None => return (map, objections),
@@ -121,7 +123,7 @@ impl Keymap {
             let instead = remedy.unwrap_or_else(|| "see keys.md".into());
             return Some(Objection {
                 instead,
-                ..objection(None, format!("no action {:?}", binding.action), None)
+                ..objection(None, format!("unknown action {:?}", binding.action), None)
             });
         };
         binding.keys.iter().enumerate().find_map(|(at, key)| {
@@ -136,7 +138,7 @@ impl Keymap {
             let (other, screens) = self.holder(action, *key)?;
             let by = taken.iter().find(|(_, other_binding)| other_binding.action == other.name);
             let by = by.map(|(place, _)| *place);
-            // Of two bindings the later one gives way.
+            // If two bindings conflict, the later one is dropped.
             if by.is_some_and(|by| by > index) {
                 return None;
             }
@@ -153,7 +155,7 @@ impl Keymap {
         if names.is_empty() { "no key".into() } else { names.join(", ") }
     }
 
-    /// Another action that a key runs where this one works too, and the screens on which both do.
+    /// A different action that uses the key in a context of this action, and the screens where the two conflict.
     fn holder(&self, action: &Action, key: Key) -> Option<(&'static Action, Vec<&'static str>)> {
         let rows = || ACTIONS.iter().filter(|row| row.id == action.id);
         let mut found: Option<(&Action, Vec<&str>)> = None;
@@ -174,19 +176,19 @@ impl Keymap {
 }
 
 fn in_brackets(screens: &[&str]) -> String {
-    // On most screens is everywhere.
+    // A list of most screens would only mean "everywhere".
     if screens.is_empty() || screens.len() > 4 { String::new() } else { format!(" ({})", screens.join(", ")) }
 }
 
 fn deed(risk: Risk) -> &'static str {
     match risk {
-        Risk::Safe => "does no harm",
-        Risk::Moves => "moves the robot; take a capital letter, F key or Ctrl",
-        Risk::Destroys => "ends the mission; take a capital letter, F key or Ctrl",
+        Risk::Safe => "is harmless",
+        Risk::Moves => "moves the robot; use a capital letter, F key or Ctrl",
+        Risk::Destroys => "ends the mission; use a capital letter, F key or Ctrl",
     }
 }
 
-/// Whether a key is hardly pressed by mistake.
+/// Whether a key is unlikely to be pressed by mistake.
 fn is_deliberate(key: Key) -> bool {
     match key {
         Key::Char(letter) => !letter.is_lowercase() && letter != ' ',
@@ -195,7 +197,7 @@ fn is_deliberate(key: Key) -> bool {
     }
 }
 
-/// The keys of a binding, after those that nobody can take from its action.
+/// The keys of a binding, preceded by the keys that cannot be removed from the action.
 fn with_fixed(binding: &Binding) -> Vec<Key> {
     let is_fixed = |action: &&Action| {
         use ActionId::{Accept, Cancel, Commands, Hold, Interrupt};
@@ -206,7 +208,7 @@ fn with_fixed(binding: &Binding) -> Vec<Key> {
     fixed.into_iter().chain(own).copied().collect()
 }
 
-/// What terminal multiplexers take for themselves: a key that may never arrive.
+/// The terminal multiplexer that intercepts a key, so that it may never reach the console.
 pub fn taken_by(key: Key) -> Option<&'static str> {
     match key {
         Key::Ctrl('a') => Some("screen"),
@@ -258,10 +260,10 @@ mod tests {
                 &[("zoom-in", &[Key::F(5)]), ("zoom-out", &[Key::F(5)])],
                 "1: \"F5\" is already zoom-in (Plan, Mission, Replay, Result); zoom-out keeps \"Z\"",
             ),
-            (&[("zoomin", &[f])], "0: no action \"zoomin\"; did you mean zoom-in?"),
+            (&[("zoomin", &[f])], "0: unknown action \"zoomin\"; did you mean zoom-in?"),
             (
                 &[("start", &[Key::Char('y')])],
-                "0: \"y\" is too easy to press by accident for an action that moves the robot; take a capital letter, F key or Ctrl; \
+                "0: \"y\" is too easy to press by accident for an action that moves the robot; use a capital letter, F key or Ctrl; \
                  start keeps \"S\"",
             ),
             (

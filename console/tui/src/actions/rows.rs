@@ -1,4 +1,4 @@
-//! The rows of the table, one an action, in the order of the footer and of help.
+//! The rows of the table, one per action, in the order of the footer and the help.
 
 mod alarms;
 mod console;
@@ -10,7 +10,7 @@ mod runs;
 use super::Action;
 use crate::screens;
 
-/// All of them.
+/// Every row.
 pub(super) fn all() -> Vec<Action> {
     let before = [mission::ROWS, alarms::ROWS, runs::ROWS, console::ROWS].concat();
     let after = [console::LEAVING, map::ROWS, lists::ROWS].concat();

@@ -1,24 +1,24 @@
-//! What an alarm means, and what can be done about several of them.
+//! The explanation of an alarm, and the remedies that several alarms share.
 
 use crate::actions::ActionId;
 
-/// What an alarm means.
+/// The explanation of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guide {
-    /// Why it comes.
+    /// Why the alarm is raised.
     pub cause: &'static str,
-    /// What follows from it.
+    /// The consequence.
     pub effect: &'static str,
-    /// What can be done, four at most.
+    /// What the operator can do; at most four remedies.
     pub remedies: &'static [Remedy],
 }
 
-/// Something that can be done about an alarm.
+/// A remedy for an alarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Remedy {
-    /// What, as a sentence.
+    /// The remedy as a sentence.
     pub text: &'static str,
-    /// The action that does it; `None`: it is for the operator to do, or to wait for.
+    /// The action that carries out the remedy; `None` if the operator must do something himself, or wait.
     pub action: Option<ActionId>,
 }
 
@@ -30,7 +30,7 @@ pub(super) const fn run(text: &'static str, action: ActionId) -> Remedy {
     Remedy { text, action: Some(action) }
 }
 
-pub(super) const STAY: Remedy = run("Keep held (HOLD): then only the operator resumes.", ActionId::Hold);
+pub(super) const STAY: Remedy = run("Keep held (HOLD): then only the operator can resume.", ActionId::Hold);
 pub(super) const HOLD: Remedy = run("HOLD the robot until this is clear.", ActionId::Hold);
 pub(super) const END: Remedy = run("End the mission (<end>): holds, then asks.", ActionId::Abort);
 pub(super) const SHOW: Remedy = run("Show it on the map.", ActionId::ShowPlace);
@@ -38,5 +38,5 @@ pub(super) const SLOWER: Remedy = run("Slow the simulation down (<slower>).", Ac
 pub(super) const OTHER_PLANNER: Remedy =
     run("Change the planner (<planner>): asks first.", ActionId::ChoosePlanner);
 pub(super) const PARAMETERS: Remedy =
-    run("Change parameters of the planner (<parameters>).", ActionId::Parameters);
+    run("Change the planner's parameters (<parameters>).", ActionId::Parameters);
 pub(super) const RESUME: Remedy = run("Resume: the planner tries again; asks first.", ActionId::Resume);

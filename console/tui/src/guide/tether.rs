@@ -1,9 +1,9 @@
-//! What the alarms of the tether mean.
+//! The meaning of tether alarms.
 
 use super::remedy::{END, Guide, OTHER_PLANNER, RESUME, SHOW, STAY, run, wait};
 use crate::actions::ActionId;
 
-/// What an alarm of the tether is called; `word` is that of its event.
+/// The name of a tether alarm; `word` is the word of its event.
 pub(super) fn name(word: &str) -> String {
     match word {
         "reel" => "tether: reel nearly out".into(),
@@ -16,7 +16,7 @@ pub(super) fn name(word: &str) -> String {
     }
 }
 
-/// What an alarm of the tether means, and what can be done about it.
+/// The meaning of a tether alarm, and what the operator can do about it.
 pub(super) fn guide(word: &str) -> Guide {
     match word {
         "reel" => Guide {
@@ -34,7 +34,7 @@ pub(super) fn guide(word: &str) -> Guide {
             },
         },
         "wrap" | "total wrap" => Guide {
-            cause: "The tether bends round obstacles by more than 80 % of what is allowed.",
+            cause: "The tether bends round obstacles by more than 80 % of the limit.",
             effect: "Each wrap multiplies the pull. At the limit the robot is held.",
             remedies: const {
                 &[
@@ -61,7 +61,7 @@ pub(super) fn guide(word: &str) -> Guide {
             },
         },
         "return path" => Guide {
-            cause: "The hull does not fit back along the tether.",
+            cause: "The hull does not fit along the way back beside the tether.",
             effect: "Robot is held.",
             remedies: const {
                 &[
@@ -73,7 +73,8 @@ pub(super) fn guide(word: &str) -> Guide {
             },
         },
         _ => Guide {
-            cause: "The robot left its plan across a line that keeps the tether free.",
+            cause: "The robot left its plan and crossed a cut, a line that keeps the tether from winding \
+            round obstacles.",
             effect: "The mission is replanned automatically.",
             remedies: const { &[wait("Wait for the new plan."), STAY, RESUME, END] },
         },

@@ -1,8 +1,9 @@
-//! What is wrong, and whether the operator has seen it: a life cycle after ISA-18.2.
+//! The alarms and whether the operator has acknowledged them: a life cycle modelled on ISA-18.2.
 //!
-//! One alarm per cause. It is unacknowledged while its cause persists and nobody has seen it, acknowledged once somebody
-//! has, returned if it cleared before that, shelved while the operator has put it aside, and cleared when nothing is left
-//! to do. CRIT and WARN are latched until they are acknowledged; what is only to be watched clears with its cause.
+//! Each cause has one alarm. The alarm is unacknowledged while its cause persists and the operator has not
+//! acknowledged it, acknowledged afterwards, returned if the cause cleared first, shelved while the operator has put
+//! it aside, and cleared when nothing is left to do. CRIT and WARN alarms are latched until they are acknowledged; a
+//! watch alarm clears with its cause.
 
 mod alarm;
 mod cause;

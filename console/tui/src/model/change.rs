@@ -1,27 +1,27 @@
-//! What an event means for the screen beyond the run that it belongs to.
+//! The effect of an event on the screen, beyond the run that the event belongs to.
 
 use mission::{Order, Severity};
 
-/// Which questions an event withdraws: those that were asked under circumstances that no longer hold.
+/// The open questions that an event withdraws because the conditions have changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Withdrawn {
-    /// None.
+    /// No question.
     #[default]
     Nothing,
-    /// Whether to resume.
+    /// The question whether to resume.
     Resume,
     /// Every question.
     All,
 }
 
-/// What an event means for the screen beyond the run that it belongs to. A replay has no use for it.
+/// The effect of an event on the screen, beyond the run that the event belongs to. A replay ignores it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Change {
-    /// Which questions it withdraws.
+    /// The questions to withdraw.
     pub withdrawn: Withdrawn,
     /// The notice for the operator.
     pub notice: Option<(Severity, String)>,
-    /// The order that it answers.
+    /// The order that the event answers.
     pub answered: Option<Order>,
 }
 

@@ -1,4 +1,4 @@
-//! The console itself: time, speeds, plugins, and its notices to the operator.
+//! The console itself: time, speed, plugins, and notices to the operator.
 
 use super::{Overlay, Preset, Watches};
 use crate::actions::keymap::Keymap;
@@ -6,32 +6,32 @@ use crate::keys::Key;
 use mission::{PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
 
-/// The time, by the caller.
+/// The current time, set by the caller.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Times {
-    /// Seconds on a clock that never jumps.
+    /// Monotonic time, seconds.
     pub mono_s: f64,
     /// Seconds since 1970, UTC.
     pub wall_unix_s: f64,
 }
 
-/// How fast a simulated mission goes.
+/// The speed of a simulated mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speed {
-    /// So many times as fast as the clock on the wall.
+    /// A multiple of wall-clock time.
     Times(f64),
-    /// As fast as it goes.
+    /// As fast as possible.
     Max,
 }
 
 impl Speed {
-    /// Least multiple of the clock that the operator can choose.
+    /// The lowest multiple that the operator can choose.
     pub const SLOWEST: f64 = 0.25;
-    /// Greatest one.
+    /// The highest multiple that the operator can choose.
     pub const FASTEST: f64 = 64.0;
 
-    /// Whether the mission goes faster than the clock on the wall.
+    /// Whether the mission runs faster than the wall clock.
     pub fn is_fast(self) -> bool {
         match self {
             Self::Times(factor) => factor > 1.0,
@@ -39,10 +39,10 @@ impl Speed {
         }
     }
 
-    /// Reads a speed, such as `8`, `x0.5` or `max`.
+    /// Parses a speed, such as `8`, `x0.5` or `max`.
     ///
     /// # Errors
-    /// What it may be.
+    /// Returns a message with the permitted values.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || format!("must be {} to {}, or max", Self::SLOWEST, Self::FASTEST);
         match text.trim_start_matches(['x', '×']) {
@@ -54,7 +54,7 @@ impl Speed {
         }
     }
 
-    /// Twice or half as fast, if there is such a speed.
+    /// Twice or half the speed; `None` if that is out of range.
     pub fn stepped(self, faster: bool) -> Option<Self> {
         match (self, faster) {
             (Self::Times(factor), true) if factor < Self::FASTEST => {
@@ -76,29 +76,29 @@ impl Default for Speed {
     }
 }
 
-/// A message for the operator that disappears by itself.
+/// A message to the operator that disappears automatically.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Notice {
-    /// How much it asks of the operator.
+    /// The severity of the message.
     pub severity: Severity,
-    /// What, as a sentence.
+    /// The message, as a sentence.
     pub text: String,
-    /// When it goes, on the console's own clock, seconds.
+    /// When the message disappears, on the console's own clock, seconds.
     pub until_mono_s: f64,
 }
 
-/// A key that is held down, or was pressed again; if no other press follows, it was pressed.
+/// A key that is either held down or pressed a second time. If no other press follows, it was a second press.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settling {
-    /// Which key.
+    /// The key.
     pub key: Key,
-    /// What was over the screen: the press is meant for that and for nothing else.
+    /// The overlay that was open at the time; the press applies only to that overlay.
     pub over: Overlay,
-    /// When it is known, on the console's own clock, seconds.
+    /// When the question is settled, on the console's own clock, seconds.
     pub until_mono_s: f64,
 }
 
-/// Which new alarms ring the terminal's bell: from this severity on, or none.
+/// The lowest severity at which a new alarm rings the terminal's bell; `None` for no bell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bell(pub Option<Severity>);
 
@@ -108,16 +108,16 @@ impl Default for Bell {
     }
 }
 
-/// What the operator has set up.
+/// The operator's preferences.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Preferences {
-    /// Who operates.
+    /// The operator's name.
     pub operator: Option<String>,
-    /// Whether the mouse is used.
+    /// Whether the console uses the mouse.
     pub mouse: bool,
-    /// Which new alarms ring the bell.
+    /// The new alarms that ring the bell.
     pub bell: Bell,
-    /// Longest time for which an alarm may be shelved, minutes.
+    /// The longest time for which an alarm may be shelved, minutes.
     pub shelve_max_min: u32,
 }
 
@@ -127,33 +127,33 @@ impl Default for Preferences {
     }
 }
 
-/// The console itself.
+/// The state of the console itself.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Console {
-    /// The time, by the last message.
+    /// The time of the latest message.
     pub now: Times,
-    /// Planners to choose from.
+    /// The planners to choose from.
     pub planners: Vec<PlannerInfo>,
-    /// Plugins that cannot be chosen.
+    /// The refused plugins.
     pub refused: Vec<RefusedPlugin>,
-    /// What the last look at the plugins changed, as sentences; `None` before the second look.
+    /// The changes found by the last rescan of the plugins, as sentences; `None` before the first rescan.
     #[serde(default)]
     pub reloaded: Option<Vec<String>>,
-    /// What was last said to the operator.
+    /// The latest notice.
     pub notice: Option<Notice>,
-    /// Which keys run which actions.
+    /// The key assignments.
     pub keys: Keymap,
-    /// Parameters under names.
+    /// The saved parameter presets.
     #[serde(default)]
     pub presets: Vec<Preset>,
-    /// The last command lines, the newest last.
+    /// The latest command lines, newest last.
     pub history: Vec<String>,
-    /// What the operator has set up.
+    /// The operator's preferences.
     pub preferences: Preferences,
-    /// Figures of the console and their limits.
+    /// The console's own figures that are compared with limits.
     #[serde(default)]
     pub watches: Watches,
-    /// A key that may be held down: what it does waits until that is known.
+    /// A key that may be held down; its action waits until that is known.
     #[serde(default)]
     pub settling: Option<Settling>,
     /// When Ctrl-C was last pressed, on the console's own clock, seconds.

@@ -1,4 +1,4 @@
-//! What has been scanned, kept ready for drawing at any zoom.
+//! The scanned floor, kept ready for drawing at any zoom.
 
 mod class;
 
@@ -7,29 +7,28 @@ use class::Tally;
 use serde::{Deserialize, Serialize};
 use world::{CellRun, CoverageGrid, Floor, KindRun, Pose, Tiles, Tool, coverage::Counts};
 
-/// Blocks of cells at one zoom.
+/// The blocks of cells at one zoom level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Level {
     width: usize,
     tallies: Tiles<Tally>,
 }
 
-/// The scanned floor with its own reductions by 2, 4, 8 and so on.
+/// The scanned floor, with copies reduced by 2, 4, 8 and so on.
 ///
-/// Only cells that change are folded in, and drawing looks up one block per dot: neither costs more as the mission
-/// grows.
+/// Only changed cells are folded in, and drawing looks up one block per dot, so neither cost grows with the mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Raster {
     grid: CoverageGrid,
-    /// The first one halves the grid.
+    /// The first level halves the grid.
     levels: Vec<Level>,
     overlap: Overlap,
-    /// Differs after every change, and between floors.
+    /// Changes with every edit, and differs between floors.
     stamp: u64,
 }
 
 impl Raster {
-    /// A floor of which nothing has been scanned.
+    /// Makes the raster of a floor of which nothing has been scanned.
     pub fn new(floor: Floor) -> Self {
         let overlap = Overlap::new(floor.width, floor.len());
         let mut raster = Self { grid: CoverageGrid::new(floor), levels: Vec::new(), overlap, stamp: 0 };
@@ -44,12 +43,12 @@ impl Raster {
         raster
     }
 
-    /// Takes a change into the stamp (FNV-1a).
+    /// Mixes a change into the stamp (FNV-1a).
     fn note(&mut self, change: u64) {
         self.stamp = (self.stamp ^ change).wrapping_mul(0x0100_0000_01b3);
     }
 
-    /// Differs after every change: what was drawn from it can be kept as long as it stays the same.
+    /// A stamp that changes with every edit: a drawing stays valid for as long as the stamp is the same.
     pub fn stamp(&self) -> u64 {
         self.stamp
     }
@@ -59,7 +58,7 @@ impl Raster {
         self.grid.floor()
     }
 
-    /// Makes some cells another kind of floor; happens when an obstacle is found.
+    /// Changes the kind of some cells, as when an obstacle is found.
     pub fn change(&mut self, changes: &[KindRun]) {
         let len = self.grid.floor().len();
         let cells = changes.iter().flat_map(|KindRun(_, first, count)| {
@@ -92,7 +91,7 @@ impl Raster {
         }
     }
 
-    /// The robot believes to have moved from `a` to `b` with its tool on the floor.
+    /// Records that, by the estimate, the robot moved from `a` to `b` with its tool on the floor.
     pub fn pass(&mut self, tool: Tool, a: Pose, b: Pose) {
         let way_m = (b.position - a.position).norm();
         if !way_m.is_finite() {
@@ -109,10 +108,10 @@ impl Raster {
         }
     }
 
-    /// Share of the scanned floor that was scanned more than once, by the estimated track, as the report counts it; `None`
-    /// before anything is scanned.
+    /// The share of the scanned floor that was scanned more than once, by the estimated track, computed as in the
+    /// report; `None` before anything is scanned.
     pub fn overlap(&self) -> Option<f64> {
-        // The last level is one block.
+        // The last level is a single block.
         let Tally { scanned, again, .. } = self.levels.last()?.tallies.at(0);
         (scanned > 0).then(|| f64::from(again) / f64::from(scanned))
     }
@@ -122,22 +121,22 @@ impl Raster {
         self.grid.is_covered(index)
     }
 
-    /// How many cells of each kind.
+    /// The number of cells of each kind.
     pub fn counts(&self) -> Counts {
         self.grid.counts()
     }
 
-    /// Scanned area, square metres.
+    /// The scanned area, square metres.
     pub fn scanned_m2(&self) -> f64 {
         self.counts().covered as f64 * self.grid.floor().cell_m.powi(2)
     }
 
-    /// How the whole floor divides, as the report counts it.
+    /// The shares of the whole floor, computed as in the report.
     pub fn whole(&self) -> Shares {
         Shares::of(self.counts(), self.floor().cell_m2())
     }
 
-    /// How the reachable floor divides, as the report counts it.
+    /// The shares of the reachable floor, computed as in the report.
     pub fn reachable(&self) -> Shares {
         Shares::of(self.counts().of_reachable(), self.floor().cell_m2())
     }
@@ -146,7 +145,7 @@ impl Raster {
         let floor = self.grid.floor();
         let half = |count: usize| count.div_ceil(1 << shift);
         let (width, height) = (half(floor.width), half(floor.height));
-        // The level before this one already was a single block.
+        // The previous level was already a single block.
         let useful = shift < 20 && floor.width.max(floor.height) > 1 << (shift - 1);
         useful.then(|| Level { width, tallies: Tiles::new(width, width * height, Tally::default()) })
     }

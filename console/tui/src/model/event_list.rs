@@ -1,4 +1,4 @@
-//! The list of events: which lines pass the filter, which is selected, and whether it is open.
+//! The list of events: the lines that pass the filter, the selected line, and whether its detail is open.
 
 use super::log::matches::Matches;
 use serde::{Deserialize, Serialize};
@@ -8,25 +8,25 @@ use serde::{Deserialize, Serialize};
 pub struct EventList {
     /// The lines that pass the filter.
     pub matches: Matches,
-    /// Number of the selected line; `None`: the newest one, whichever that is.
+    /// The number of the selected line; `None` to follow the newest one.
     pub at: Option<u64>,
-    /// Whether the whole event is shown.
+    /// Whether the detail of the event is open.
     pub is_open: bool,
 }
 
 impl EventList {
-    /// How many lines that pass are newer than the selected one.
+    /// The number of lines in the list that are newer than the selected one.
     pub fn newer(&self) -> usize {
         let newer = self.at.map_or(0, |at| self.matches.newer_than(at));
         newer.min(self.matches.len().saturating_sub(1))
     }
 
-    /// Number of the selected line.
+    /// The number of the selected line.
     pub fn selected(&self) -> Option<u64> {
         self.matches.number(self.newer())
     }
 
-    /// Selects another line, so many further down, that is older.
+    /// Moves the selection down by `by` lines, towards older events.
     pub fn select(&mut self, by: isize) {
         let newer = self.newer().saturating_add_signed(by);
         self.at = if newer == 0 { None } else { self.matches.number(newer) };

@@ -1,4 +1,4 @@
-//! Events into a run.
+//! Folds events into a run.
 
 mod figures;
 mod line;
@@ -18,7 +18,7 @@ use world::{Obstacle, ObstacleId};
 const FORECAST_CELLS: f64 = 100.0;
 
 impl Run {
-    /// Takes in one event. What only the simulator can know is left out.
+    /// Folds in one event. Information that only the simulator can have is ignored.
     #[allow(clippy::too_many_lines, reason = "one arm for each kind of event")]
     pub fn fold(&mut self, event: &Event) -> Change {
         let mut change = Change::default();
@@ -62,7 +62,7 @@ impl Run {
             | EventKind::RangesConsistent => self.locate(event, &mut change),
             EventKind::ObstacleFound { obstacle } => self.found(event, obstacle),
             EventKind::ZoneDrawn { zone } => {
-                // The plan before does not know it: another one is made.
+                // The previous plan does not take the change into account: a new one is made.
                 self.forget_certificate();
                 if self.is_waiting() {
                     self.forget_plan();
@@ -131,7 +131,8 @@ impl Run {
         change
     }
 
-    /// Before the start, a plan that is being made anew is not the one that would be run: nothing is shown of the one before.
+    /// Forgets the plan before the start when a new one is being made, because the old plan is no longer the one that
+    /// would run.
     fn forget_plan(&mut self) {
         self.planning.plan = None;
         self.forget_certificate();
@@ -205,7 +206,7 @@ impl Run {
         self.alarms.clear(cause, self.clock.t_s);
     }
 
-    /// Raises an alarm in the words of the log.
+    /// Raises an alarm with the text of the log line.
     fn raise_as_logged(&mut self, event: &Event, cause: Cause) {
         if let Some(line) = event.log_line(self.stations()) {
             self.raise(event, cause, line.severity, line.text);
@@ -228,7 +229,7 @@ impl Run {
     }
 
     fn hold(&mut self, event: &Event, hold: &Hold, change: &mut Change) {
-        // No planner failed, so a plan was made that is not flown.
+        // The planner has not failed: it made a plan, but the plan was refused.
         if matches!(hold.by, HoldReason::PlannerFault { .. }) && self.planning.fault.is_none() {
             self.forget_certificate();
         }
@@ -253,7 +254,7 @@ impl Run {
     }
 }
 
-/// Whether an order that comes before the start makes the plan that there is a plan of the past.
+/// Whether an order given before the start makes the current plan obsolete.
 fn changes_plan(order: &Order) -> bool {
     matches!(order, Order::Plan | Order::ChoosePlanner(_) | Order::SetParameter { .. })
 }

@@ -1,14 +1,16 @@
-//! Values over the last minutes, for curves.
+//! The values of the last minutes, for curves.
 
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Seconds of mission time that a history covers.
+/// The mission time that a history covers, seconds.
 pub const HISTORY_S: usize = 480;
-/// Seconds of mission time of which the largest value is kept: a curve moves no more often.
+/// The length of a slot, seconds of mission time. Only the largest value of a slot is kept, so a curve moves no more
+/// often than this.
 pub const SLOT_S: usize = 4;
 
-/// The largest value of every [`SLOT_S`] seconds of mission time, newest last, of the last [`HISTORY_S`] seconds.
+/// The largest value of each slot of [`SLOT_S`] seconds of mission time over the last [`HISTORY_S`] seconds, newest
+/// last.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct History {
     values: VecDeque<f32>,
@@ -16,7 +18,7 @@ pub struct History {
 }
 
 impl History {
-    /// Takes in a value.
+    /// Adds a value.
     pub fn add(&mut self, t_s: f64, value: f64) {
         let slot = t_s.max(0.0) as u64 / SLOT_S as u64;
         let value = value as f32;
@@ -35,7 +37,7 @@ impl History {
         self.slot as f64 * SLOT_S as f64
     }
 
-    /// The values of the last seconds, newest last.
+    /// The values of the last `seconds`, newest last.
     pub fn last(&self, seconds: usize) -> impl ExactSizeIterator<Item = f64> + '_ {
         let skipped = self.values.len().saturating_sub(seconds / SLOT_S);
         self.values.iter().skip(skipped).map(|value| f64::from(*value))

@@ -1,78 +1,78 @@
-//! What there is to open: scenarios, past runs, and what is wrong with any of it.
+//! The scenarios and past runs that can be opened, and any problems with them.
 
 use super::live::Source;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
 
-/// A scenario that can be opened, or why it cannot.
+/// A scenario, with the reason if it cannot be opened.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioEntry {
-    /// Where it comes from.
+    /// The source of the scenario.
     pub source: Source,
-    /// Its name.
+    /// The name of the scenario.
     pub name: String,
-    /// What it shows, for people; may be empty.
+    /// A description for people; may be empty.
     pub about: String,
     /// `goto`, `follow` or `cover`.
     pub task: String,
-    /// Form and size of the tank, such as `Ø12 m`.
+    /// Shape and size of the tank, such as `Ø12 m`.
     pub tank: String,
-    /// Id of its planner.
+    /// The id of the planner.
     pub planner: String,
-    /// How it is expected to end, by its own bounds; empty if it has none.
+    /// The outcome that the scenario's own bounds expect; empty if it has none.
     pub expected: String,
-    /// Why it cannot be opened, with file, line and key.
+    /// Why the scenario cannot be opened, with file, line and key.
     pub problem: Option<String>,
 }
 
 /// A past run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PastRun {
-    /// Name of its folder.
+    /// The name of the run's folder.
     pub name: String,
-    /// When it began, UTC, as its name says; empty if it does not.
+    /// When the run began, UTC, taken from its name; empty if the name has no time.
     pub began: String,
-    /// Name of its scenario; empty if it is not known.
+    /// The name of the scenario; empty if unknown.
     pub scenario: String,
-    /// Id of the planner that drove first; empty if it is not known.
+    /// The id of the first planner; empty if unknown.
     pub planner: String,
     /// `complete`, `stuck`, …, `RUNNING`, `CRASHED`, `RECOVERED`, `RECORDING FAILED` or `UNREADABLE`.
     pub end: String,
-    /// Mission time that passed, seconds.
+    /// The mission time of the run, seconds.
     pub mission_time_s: Option<f64>,
-    /// Scanned share of the reachable floor; `None` for missions that are not to scan.
+    /// Scanned share of the reachable floor; `None` for missions without scanning.
     pub reachable: Option<f64>,
-    /// What is wrong with it.
+    /// What is wrong with the run.
     pub note: Option<String>,
-    /// What people remark about it.
+    /// The remark that people have made about the run.
     pub remark: Option<String>,
-    /// How many bookmarks people have set in it.
+    /// The number of bookmarks set in the run.
     pub bookmarks: usize,
 }
 
-/// Something that the operator should know before a mission is opened.
+/// Information that the operator should have before opening a mission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Attention {
-    /// How much it asks of the operator; INFO is all right.
+    /// The severity; INFO means that all is well.
     pub severity: Severity,
     /// A word for its kind, such as `REFUSED`.
     pub kind: String,
-    /// What, as a sentence.
+    /// The information, as a sentence.
     pub text: String,
 }
 
-/// What was found on the disk.
+/// The contents of the disk.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Found {
-    /// Scenarios, by name.
+    /// The scenarios, by name.
     pub scenarios: Vec<ScenarioEntry>,
-    /// Past runs, the newest first.
+    /// The past runs, newest first.
     pub runs: Vec<PastRun>,
-    /// The folder of runs.
+    /// The folder that holds the runs.
     pub logs: String,
-    /// Space left there, bytes; `None` if the system does not say.
+    /// The space left in that folder, bytes; `None` if the system does not report it.
     pub free_bytes: Option<u64>,
-    /// What is wrong, and what was checked and is all right.
+    /// Problems, and checks that passed.
     pub attention: Vec<Attention>,
 }
 
@@ -89,15 +89,15 @@ pub enum HomeList {
 /// The home screen.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Home {
-    /// What was found on the disk; `None` as long as it is being looked at for the first time.
+    /// The contents of the disk; `None` until the first scan is complete.
     pub found: Option<Found>,
     /// The list that takes the arrow keys.
     pub list: HomeList,
-    /// The selected scenario, among those that pass the filter.
+    /// The index of the selected scenario among those that pass the filter.
     pub scenario: usize,
-    /// The selected run, among those that pass the filter.
+    /// The index of the selected run among those that pass the filter.
     pub run: usize,
-    /// Text that the names in the lists contain.
+    /// The filter: text that the names in the lists must contain.
     pub filter: String,
 }
 
@@ -119,12 +119,12 @@ impl Home {
         filter.is_empty() || texts.iter().any(|text| text.to_lowercase().contains(&filter))
     }
 
-    /// How the newest run of a scenario ended.
+    /// The newest run of a scenario, which shows how it ended.
     pub fn last_end(&self, scenario: &str) -> Option<&PastRun> {
         self.found.as_ref()?.runs.iter().find(|run| run.scenario == scenario)
     }
 
-    /// Selects another line of the list that takes the arrow keys, so many further down.
+    /// Moves the selection in the list that takes the arrow keys down by `by` lines.
     pub(crate) fn select(&mut self, by: isize) {
         let (lines, selected) = match self.list {
             HomeList::Scenarios => (self.scenarios().len(), &mut self.scenario),

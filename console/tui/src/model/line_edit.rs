@@ -1,33 +1,33 @@
-//! A line in which text is typed.
+//! An input line.
 
 use crate::keys::Key;
 use serde::{Deserialize, Serialize};
 
-/// Longest text that can be typed, characters.
+/// The longest text that can be typed, characters.
 const MAX_TYPED: usize = 128;
 
-/// A line in which text is typed, with its cursor.
+/// An input line with its cursor.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LineEdit {
     text: String,
-    /// Bytes before the cursor.
+    /// The cursor position, as the number of bytes before it.
     cursor: usize,
 }
 
 impl From<&str> for LineEdit {
-    /// The cursor is at the end.
+    /// Makes a line with the given text and the cursor at the end.
     fn from(text: &str) -> Self {
         Self { text: text.to_owned(), cursor: text.len() }
     }
 }
 
 impl LineEdit {
-    /// What was typed.
+    /// The typed text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What is before the cursor.
+    /// The text before the cursor.
     pub fn before(&self) -> &str {
         &self.text[..self.cursor]
     }
@@ -36,7 +36,7 @@ impl LineEdit {
         &self.text[self.cursor..]
     }
 
-    /// Edits the line or moves the cursor; whether the key is one that does.
+    /// Edits the line or moves the cursor; returns whether the key does either.
     pub fn press(&mut self, key: Key) -> bool {
         match key {
             Key::Char(letter) => self.insert(letter.encode_utf8(&mut [0; 4])),
@@ -55,7 +55,7 @@ impl LineEdit {
         true
     }
 
-    /// Inserts text at the cursor, as much as there is room for; control characters are left out.
+    /// Inserts as much text at the cursor as fits; control characters are left out.
     pub fn insert(&mut self, text: &str) {
         let room = MAX_TYPED.saturating_sub(self.text.chars().count());
         let text: String = text.chars().filter(|letter| !letter.is_control()).take(room).collect();
@@ -63,7 +63,7 @@ impl LineEdit {
         self.cursor += text.len();
     }
 
-    /// Replaces the word before the cursor that begins at a byte, and what follows it up to the next space.
+    /// Replaces the word that begins at byte `begin` and contains the cursor, up to the next space.
     pub fn replace_word(&mut self, begin: usize, with: &str) {
         let rest = self.after().find(' ').map_or("", |at| &self.after()[at..]);
         let front = format!("{}{with}", &self.text[..begin]);
@@ -87,7 +87,7 @@ impl LineEdit {
         self.cursor + self.after().chars().next().map_or(0, char::len_utf8)
     }
 
-    /// Where the word begins that the cursor is in or behind.
+    /// The beginning of the word at or before the cursor.
     fn word_left(&self) -> usize {
         let words = self.before().trim_end();
         words
@@ -96,7 +96,7 @@ impl LineEdit {
             .map_or(0, |(at, l)| at + l.len_utf8())
     }
 
-    /// Where the word ends that the cursor is in or before.
+    /// The end of the word at or after the cursor.
     fn word_right(&self) -> usize {
         let blank = self.after().len() - self.after().trim_start().len();
         let word = &self.after()[blank..];

@@ -1,165 +1,167 @@
-//! The run that is open, and what is between the operator and its mission.
+//! The open run, and the exchange between the operator and its mission.
 
 use super::{Health, Plans, Preflight, Replay, Run, Speed, WhatIf};
 use account::{Account, Area, Estimate, MissReason, Summary};
 use mission::{Order, Phase};
 use serde::{Deserialize, Serialize};
 
-/// Names a run that was opened since the console was started; 0 is none.
+/// The id of a run opened since the console was started; 0 means none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 pub struct RunId(pub u32);
 
-/// What the console may do with the run that is open.
+/// What the console can do with the open run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Access {
-    /// Give orders.
+    /// Give orders to the mission.
     #[default]
     Control,
-    /// Read the journal that another console writes, or has written.
+    /// Watch the run through the journal that another console writes or has written.
     LookOnly,
-    /// Play back a past run.
+    /// Replay a past run.
     Replay,
 }
 
-/// Where a scenario comes from.
+/// The source of a scenario.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
-    /// The demo that is built in, with what the command line changes in it.
+    /// The built-in demo, with the changes made on the command line.
     Demo,
-    /// A file.
+    /// A scenario file.
     File(String),
-    /// What past runs missed: names of their folders.
+    /// A re-scan of what past runs missed; the names of their folders.
     Rescan(Vec<String>),
 }
 
-/// A planner's work that takes time; ticks and HOLD continue meanwhile.
+/// Long work by a planner; ticks and HOLD continue meanwhile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Busy {
-    /// What it is, such as `Planning (rpf)`.
+    /// The kind of work, such as `Planning (rpf)`.
     pub work: String,
-    /// How long it may take, seconds; not known for what is short.
+    /// The time limit, seconds; `None` for short work.
     pub limit_s: Option<f64>,
-    /// When it began, on the console's own clock, seconds.
+    /// When the work began, on the console's own clock, seconds.
     pub since_mono_s: f64,
-    /// How far it is: the share done, 0 to 1, and what is being done; `None` if it is not reported.
+    /// Progress: the share done, 0 to 1, and the current activity; `None` if it is not reported.
     #[serde(default)]
     pub at: Option<(f64, String)>,
 }
 
 impl Busy {
-    /// What it is and how far: `Planning (rpf) 23 %`.
+    /// The work and its progress: `Planning (rpf) 23 %`.
     pub fn how_far(&self) -> String {
-        // Only the end makes it whole.
+        // 100 % is shown only at the very end.
         let percent = |share: f64| format!(" {} %", (100.0 * share).floor().clamp(0.0, 99.0));
         let share = self.at.as_ref().map_or_else(String::new, |(share, _)| percent(*share));
         format!("{}{share}", self.work)
     }
 }
 
-/// What a run that was flown leaves.
+/// What a run leaves behind when it has ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
-    /// Its report.
+    /// The report of the run.
     pub summary: Box<Summary>,
-    /// Name of its folder; `None` if it was not written down.
+    /// The name of the run's folder; `None` if the run was not recorded.
     pub name: Option<String>,
-    /// The line about where it is kept, or why it is not.
+    /// The message that states where the run is stored, or why it is not.
     pub kept: String,
-    /// Whether it is kept.
+    /// Whether the run is stored.
     pub is_kept: bool,
 }
 
-/// The run that is open.
+/// The open run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Live {
-    /// Which.
+    /// The id of the run.
     pub id: RunId,
     /// Whether orders can be given.
     #[serde(default)]
     pub access: Access,
-    /// Where its scenario comes from; `None` as long as none was opened.
+    /// The source of the scenario; `None` until one is opened.
     pub source: Option<Source>,
-    /// Whether the scenario is being read and its floor being laid out.
+    /// Whether the scenario is being read and its floor laid out.
     pub is_opening: bool,
-    /// Why it could not be opened, with file, line and key.
+    /// Why the scenario could not be opened, with file, line and key.
     pub failure: Option<String>,
-    /// The run that was open before, while this one is being opened: it stays open if this one cannot be.
+    /// The previously open run, while this one is being opened; it stays open if opening fails.
     #[serde(default)]
     pub before: Option<Box<Live>>,
-    /// What its events say.
+    /// The run, folded from its events.
     pub run: Run,
-    /// What is known of it before it moves.
+    /// The plans before the start.
     pub plans: Plans,
-    /// What was checked before its start.
+    /// The pre-flight check.
     pub preflight: Preflight,
-    /// How it would go on from where it is held; `None` as long as nobody asked.
+    /// Forecasts of how the held mission would continue; `None` if nobody has asked for any.
     pub what_if: Option<WhatIf>,
-    /// Whether the console that flies the run is gone: nothing more is known of it.
+    /// Whether the console that runs the mission has exited, so that no more events will come.
     #[serde(default)]
     pub is_cut_off: bool,
-    /// How fast the mission shall go.
+    /// The requested speed of the mission.
     pub speed: Speed,
-    /// How its engine does.
+    /// The health of the engine.
     pub health: Health,
-    /// What a planner is working on.
+    /// The work that a planner is doing.
     pub busy: Option<Busy>,
-    /// An order that makes the robot move and was not answered yet.
+    /// An order that makes the robot move and has not been answered yet.
     pub asked: Option<Order>,
-    /// Whether HOLD was sent and not answered yet.
+    /// Whether HOLD was sent and has not been answered yet.
     pub hold_asked: bool,
     /// When the last events arrived, on the console's own clock, seconds.
     pub heard_mono_s: f64,
-    /// What the run leaves, when it has ended and its files are closed.
+    /// The result of the run, once it has ended and its files are closed.
     pub result: Option<RunResult>,
-    /// What it and the runs before it have scanned together, if it is a re-scan and that is known; or why it is not.
+    /// For a re-scan: the floor that this run and the runs before it have scanned together, or why that cannot be
+    /// computed.
     #[serde(default)]
     pub combined: Option<Result<Box<Account>, String>>,
-    /// How the run is played back, if it is.
+    /// The replay, if the run is a replay.
     #[serde(default)]
     pub replay: Option<Box<Replay>>,
 }
 
 impl Live {
-    /// Whether there is no mission here to give orders to: this console only looks on, or plays a past run back.
+    /// Whether this console cannot give orders, because it is view-only or replays a past run.
     pub fn is_look_only(&self) -> bool {
         self.access != Access::Control
     }
 
-    /// Whether a past run is played back.
+    /// Whether a past run is being replayed.
     pub fn is_replay(&self) -> bool {
         self.access == Access::Replay
     }
 
-    /// Whether the robot of this console moves, or may begin to move without an order, or because of one that was agreed to
-    /// or sent and not answered yet.
+    /// Whether the robot moves or may start to move: automatically, or because of an order that was confirmed or sent
+    /// but not yet answered.
     pub fn may_move(&self) -> bool {
         let may_move = self.run.phase().may_move() || self.asked.is_some() || self.preflight.is_starting;
         may_move && !self.is_look_only()
     }
 
-    /// What the plan that would be flown now promises; `None` while that is not known.
+    /// The estimate for the plan that would be flown now; `None` while it is not known.
     pub fn estimate(&self) -> Option<&Estimate> {
         let (ask, estimate) = self.plans.estimate.as_ref()?;
         (self.run.planning.plan.as_ref()?.ask == *ask).then_some(estimate)
     }
 
-    /// Reachable floor that the run was to scan and missed, the largest area first.
+    /// The requested reachable floor that the run missed, largest area first.
     pub fn missed(&self) -> Vec<&Area<MissReason>> {
         self.areas().filter(|area| area.reason != MissReason::NotAsked).collect()
     }
 
-    /// Reachable floor that the run was not to scan and did not, square metres.
+    /// Reachable floor that was neither requested nor scanned, square metres.
     pub fn not_requested_m2(&self) -> f64 {
         self.areas().filter(|area| area.reason == MissReason::NotAsked).map(|area| area.area_m2).sum()
     }
 
-    /// The account of the floor: over all runs if this one is a re-scan, as soon as that is known.
+    /// The account of the floor; for a re-scan, the account over all runs as soon as it is known.
     pub fn floor(&self) -> Option<&Account> {
         let combined = self.combined.iter().flatten().map(|floor| &**floor).next();
         combined.or_else(|| self.result.as_ref()?.summary.floor.as_ref())
     }
 
-    /// This run, after those of which it re-scans what they missed; `None` if another run is named or it is not a re-scan.
+    /// The names of the runs that this run re-scans, followed by its own; `None` if a different run is named or this
+    /// is not a re-scan.
     pub fn with_earlier(&self, run: &str) -> Option<Vec<String>> {
         let is_open = self.result.as_ref().is_none_or(|result| result.name.as_deref() == Some(run));
         let Some(Source::Rescan(earlier)) = self.source.as_ref().filter(|_| is_open) else { return None };
@@ -170,19 +172,19 @@ impl Live {
         self.floor().into_iter().flat_map(|floor| &floor.missed)
     }
 
-    /// Whether the mission waits for its start.
+    /// Whether the mission is waiting for its start.
     pub fn waits(&self) -> bool {
         self.run.about.is_some() && *self.run.phase() == Phase::Waiting && !self.is_look_only()
     }
 
-    /// Whether leaving would abort a mission: one that was started and has not ended, or whose start was requested.
+    /// Whether leaving would abort a mission: one that has started and not ended, or whose start was requested.
     pub fn is_under_way(&self) -> bool {
         let is_open = *self.run.phase() != Phase::Waiting || self.may_move();
         is_open && !self.run.has_ended() && !self.is_look_only()
     }
 
-    /// Notes that the mission accepted or refused an order. Nothing else ends the wait for it: an event of the tick before
-    /// says nothing about an order that comes after it.
+    /// Records that the mission accepted or refused an order. Nothing else ends the wait for the answer: events of an
+    /// earlier tick may arrive after the order was sent.
     pub(crate) fn answered(&mut self, order: &Order) {
         if self.asked.as_ref() == Some(order) {
             self.asked = None;

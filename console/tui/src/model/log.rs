@@ -1,4 +1,4 @@
-//! What happened, newest last, in a bounded number of lines and bytes.
+//! The log: what happened, newest last, limited in lines and bytes.
 
 mod chunk;
 mod entry;

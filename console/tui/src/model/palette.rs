@@ -7,29 +7,29 @@ use std::ops::Range;
 /// The command line and its list.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Palette {
-    /// Whether it was opened as help, with every key shown.
+    /// Whether the list was opened as help, with every key shown.
     pub help: bool,
-    /// What was typed.
+    /// The typed line.
     pub line: LineEdit,
-    /// Which line of the list is selected.
+    /// The index of the selected line of the list.
     pub selected: usize,
-    /// How many lines back in the history the line is; 0 is a new one.
+    /// How many lines back in the history the line comes from; 0 for a new line.
     pub recalled: usize,
-    /// What is wrong with the line.
+    /// The error in the line.
     pub fault: Option<LineFault>,
 }
 
-/// What is wrong with a part of a command line.
+/// An error in part of a command line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LineFault {
-    /// Bytes of the line.
+    /// The byte range in the line.
     pub at: Range<usize>,
-    /// What is wrong with them and what would be right, as a clause.
+    /// What is wrong and how to correct it, as a clause.
     pub what: String,
 }
 
 impl Palette {
-    /// A command line with a beginning.
+    /// A command line that already contains some text.
     pub fn begun(text: &str) -> Self {
         Self { line: text.into(), ..Self::default() }
     }

@@ -1,14 +1,14 @@
-//! A planner's parameters as the operator reads and types them.
+//! Planner parameters as the operator reads and types them.
 
 use mission::{ParamInfo, ParamKind, ParamValue, PlannerChoice};
 
-/// The value that a parameter of a planner has: set by hand, or its default.
+/// The value of a planner parameter: set by hand, or the default.
 pub fn value(choice: Option<&PlannerChoice>, info: &ParamInfo) -> ParamValue {
     let by_hand = choice.and_then(|choice| choice.parameters.get(&info.key));
     by_hand.cloned().unwrap_or_else(|| default(&info.kind))
 }
 
-/// The value when nothing is set.
+/// The default value.
 pub fn default(kind: &ParamKind) -> ParamValue {
     match kind {
         ParamKind::Float { default, .. } => ParamValue::Float(*default),
@@ -18,7 +18,7 @@ pub fn default(kind: &ParamKind) -> ParamValue {
     }
 }
 
-/// Which values a parameter takes, in words.
+/// The permitted values, in words.
 pub fn range(info: &ParamInfo) -> String {
     let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
     match &info.kind {
@@ -29,15 +29,15 @@ pub fn range(info: &ParamInfo) -> String {
     }
 }
 
-/// The unit as a column of a table has it.
+/// The unit, as a table column shows it.
 pub fn unit(info: &ParamInfo) -> &str {
     if info.unit.is_empty() { "-" } else { &info.unit }
 }
 
-/// Reads a typed value.
+/// Parses a typed value.
 ///
 /// # Errors
-/// What is wrong with it and what would be right, as a sentence.
+/// Returns what is wrong and how to correct it, as a sentence.
 pub fn parse(info: &ParamInfo, text: &str) -> Result<ParamValue, String> {
     let text = text.trim();
     let wrong = |what: &str| Err(format!("{what}; allowed: {}", range(info)));

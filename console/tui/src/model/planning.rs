@@ -1,65 +1,66 @@
-//! The planner as the screen knows it.
+//! The planner as the screen shows it.
 
 use mission::{AskId, PlannerChoice, PlannerInfo, WorkerId, event::Effort, planner::Fault};
 use planner_api::{Command, Drawing};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A plan, thinned out for drawing.
+/// A plan, thinned for drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanShown {
-    /// The ask that it answers.
+    /// The ask that the plan answers.
     #[serde(default)]
     pub ask: Option<AskId>,
-    /// Points of the path.
+    /// The points of the path.
     pub path: Vec<Point>,
-    /// Length of the whole path, metres.
+    /// The length of the whole path, metres.
     pub length_m: f64,
-    /// Whether it achieves the whole task.
+    /// Whether the plan achieves the whole task.
     pub complete: bool,
-    /// Mission time at which it was made, seconds.
+    /// Mission time at which the plan was made, seconds.
     pub t_s: f64,
 }
 
-/// A plan that is better than the rest of the one that is flown.
+/// A plan that is better than the rest of the current one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Offer {
-    /// What the rest takes.
+    /// The effort for the rest of the current plan.
     pub flown: Effort,
-    /// What the better plan takes.
+    /// The effort for the better plan.
     pub better: Effort,
-    /// Where it begins.
+    /// The point where the better plan begins.
     pub begins: Option<Point>,
-    /// Whether it is taken where it begins: the operator has ordered it, or the scenario says so.
+    /// Whether the mission will switch to the better plan where it begins, on the operator's order or the scenario's
+    /// setting.
     pub is_taken: bool,
 }
 
-/// The planner and what it last did.
+/// The planner and its latest output.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Planning {
     /// The active planner, with the parameters set by hand.
     pub choice: Option<PlannerChoice>,
-    /// Who it is.
+    /// The description of the planner.
     pub info: Option<PlannerInfo>,
-    /// Its plan.
+    /// The current plan.
     pub plan: Option<PlanShown>,
-    /// Its last command, with the mission time of it, seconds.
+    /// The last command, with its mission time, seconds.
     pub command: Option<(f64, Command)>,
-    /// Its last drawings.
+    /// The last drawings.
     pub drawings: Vec<Drawing>,
-    /// The tick of these.
+    /// The tick of the last drawings.
     pub drawings_tick: u64,
-    /// Its last figures: name, value, unit.
+    /// The last figures: name, value, unit.
     pub scalars: Vec<(String, f64, String)>,
-    /// Its last failure, until it is active again.
+    /// The last fault, until the planner is active again.
     pub fault: Option<Fault>,
-    /// The worker of a planner that is being prepared; its plans are not flown yet.
+    /// The worker of a candidate; its plans are not flown yet.
     #[serde(default)]
     pub candidate: Option<WorkerId>,
-    /// Whether the last plan was of that planner: the certificate that follows says nothing of the plan that is flown.
+    /// Whether the candidate made the last plan: the certificate that follows is then not about the plan being flown.
     #[serde(default)]
     pub proposed: bool,
-    /// A better plan that is offered, or was taken and is flown from where it begins.
+    /// A better plan that is on offer, or that was taken and will be flown from the point where it begins.
     #[serde(default)]
     pub offer: Option<Offer>,
 }

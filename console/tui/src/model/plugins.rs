@@ -1,24 +1,24 @@
-//! Plugin files with their planners, as the console found them, and what another look at them changed.
+//! The plugin files with their planners, and the changes that a rescan found.
 
 use super::{Console, Run};
 use mission::PlannerInfo;
 use std::collections::BTreeSet;
 
-/// How a plugin file stands.
+/// The state of a plugin file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PluginState {
-    /// Its planners can be chosen.
+    /// The plugin's planners can be chosen.
     Ready,
-    /// One of its planners drives.
+    /// One of the plugin's planners is driving.
     Active,
-    /// One of its planners drives, from another build than the one on the disk.
+    /// One of the plugin's planners is driving, but from a different build than the one on the disk.
     Changed,
-    /// It cannot be used.
+    /// The plugin cannot be used.
     Refused,
 }
 
 impl PluginState {
-    /// The word for it.
+    /// The word for the state.
     pub fn word(self) -> &'static str {
         match self {
             Self::Ready => "ok",
@@ -32,17 +32,17 @@ impl PluginState {
 /// A plugin file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plugin<'a> {
-    /// File name, without the folder.
+    /// The file name, without the folder.
     pub file: &'a str,
-    /// How it stands.
+    /// The state of the file.
     pub state: PluginState,
-    /// Its planners; none if it is refused.
+    /// The plugin's planners; empty if it is refused.
     pub planners: Vec<&'a PlannerInfo>,
-    /// Why it is refused, as a sentence; empty if it is not.
+    /// Why the plugin is refused, as a sentence; empty if it is not.
     pub reason: &'a str,
 }
 
-/// The plugin files, those that are refused last.
+/// The plugin files, refused ones last.
 pub fn plugins<'a>(console: &'a Console, run: &Run) -> Vec<Plugin<'a>> {
     let files: BTreeSet<&str> = console.planners.iter().map(|info| info.plugin.as_str()).collect();
     let found = files.into_iter().map(|file| {
@@ -70,7 +70,7 @@ fn state(planners: &[&PlannerInfo], run: &Run) -> PluginState {
     }
 }
 
-/// What another look at the plugins changed, as sentences.
+/// The changes that a rescan of the plugins found, as sentences.
 pub fn differences(before: &[PlannerInfo], now: &[PlannerInfo]) -> Vec<String> {
     let find = |list: &[PlannerInfo], id: &str| list.iter().find(|info| info.id == id).cloned();
     let gone =

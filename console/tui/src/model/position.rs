@@ -1,4 +1,4 @@
-//! Where the robot believes it is, and how well it knows.
+//! The robot's estimated position and its error.
 
 use super::History;
 use planner_api::PoseEstimate;
@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use world::{Point, StationId};
 
-/// Seconds over which the speed is taken.
+/// The time span over which the speed is measured, seconds.
 const SPEED_SPAN_S: f64 = 2.0;
-/// Time between two ranging cycles as long as only one was heard, seconds.
+/// The assumed time between ranging cycles until a second one is received, seconds.
 const FIRST_PERIOD_S: f64 = 1.0;
 
-/// Where the robot believes it is, and how well it knows.
+/// The robot's estimated position and its error.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Position {
-    /// The pose as estimated last.
+    /// The latest estimated pose.
     pub pose: Option<PoseEstimate>,
-    /// Mission time of it, seconds.
+    /// Mission time of the pose, seconds.
     pub pose_t_s: f64,
     /// The last fix.
     pub fix: Option<Fix>,
-    /// Mission time of it, seconds.
+    /// Mission time of the fix, seconds.
     pub fix_t_s: f64,
     /// Stations heard in the last ranging cycle.
     pub heard: usize,
-    /// The ranges of that cycle.
+    /// The ranges of the last ranging cycle.
     #[serde(default)]
     pub ranges: Vec<Ranging>,
     /// Mission time of the last ranging cycle, seconds.
@@ -37,15 +37,15 @@ pub struct Position {
     /// How often each station was rejected.
     #[serde(default)]
     pub rejections: BTreeMap<StationId, u32>,
-    /// Whether the position counts as lost.
+    /// Whether the position is lost.
     pub lost: bool,
-    /// The 95 % error, metres.
+    /// The history of the 95 % error, metres.
     pub history_m: History,
     recent: VecDeque<(f64, Point)>,
 }
 
 impl Position {
-    /// Takes in a new pose.
+    /// Records a new pose.
     pub fn estimated(&mut self, t_s: f64, pose: PoseEstimate) {
         (self.pose, self.pose_t_s) = (Some(pose), t_s);
         self.recent.push_back((t_s, pose.position));
@@ -55,7 +55,7 @@ impl Position {
         self.history_m.add(t_s, error_95_m(&pose));
     }
 
-    /// Takes in that a ranging cycle ended.
+    /// Records the end of a ranging cycle.
     pub fn ranged(&mut self, t_s: f64, ranges: &[Ranging]) {
         if let Some(before) = self.ranged_t_s.filter(|before| *before < t_s) {
             self.period_s = Some(t_s - before);
@@ -64,7 +64,7 @@ impl Position {
         ranges.clone_into(&mut self.ranges);
     }
 
-    /// Half width of the 95 % error of the pose, metres.
+    /// The 95 % error of the pose, metres.
     pub fn error_m(&self) -> Option<f64> {
         self.pose.as_ref().map(error_95_m)
     }
@@ -77,14 +77,14 @@ impl Position {
         Some(mean.sqrt())
     }
 
-    /// Speed over ground as the estimate has it, metres per second.
+    /// The estimated speed over ground, metres per second.
     pub fn speed_m_per_s(&self) -> Option<f64> {
         let (from, to) = (self.recent.front()?, self.recent.back()?);
         let span_s = to.0 - from.0;
         (span_s > 0.0).then(|| (to.1 - from.1).norm() / span_s)
     }
 
-    /// Age of the last fix, seconds.
+    /// The age of the last fix, seconds.
     pub fn fix_age_s(&self, t_s: f64) -> Option<f64> {
         self.fix.as_ref().map(|_| (t_s - self.fix_t_s).max(0.0))
     }
@@ -104,12 +104,12 @@ impl Position {
     }
 }
 
-/// Half width of the 95 % error of a pose, metres.
+/// The 95 % error of a pose: the longer half axis of the ellipse, metres.
 fn error_95_m(pose: &PoseEstimate) -> f64 {
     ellipse_95(pose).0
 }
 
-/// Half axes of the 95 % ellipse of a pose, metres, and the direction of the longer one, radians.
+/// The half axes of a pose's 95 % ellipse, metres, and the direction of the longer one, radians.
 pub fn ellipse_95(pose: &PoseEstimate) -> (f64, f64, f64) {
     fix::ellipse_95(&fix::position_covariance(&pose.covariance))
 }

@@ -1,30 +1,30 @@
-//! The check before the start: what the console finds by itself, and what the operator ticks by hand.
+//! The pre-flight check: automatic checks, and those that the operator ticks by hand.
 
 use super::{Model, ui::Arrangement};
 use mission::{Check, CheckOutcome, PlanId, Readiness};
 use serde::{Deserialize, Serialize};
 
-/// Fewer stations than this cannot find a position.
+/// The minimum number of stations for a position fix.
 const LEAST_STATIONS: usize = 2;
 
-/// The check before the start.
+/// The pre-flight check.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Preflight {
-    /// What was found outside the screen: disk, recorder, engine, clock; `None` before it was looked at.
+    /// The checks made outside the screen: disk, recorder, engine, clock; `None` before they are run.
     pub found: Option<Vec<Check>>,
-    /// Whether it is being looked at now.
+    /// Whether the checks are running.
     pub is_checking: bool,
-    /// Whether the mission is to be started as soon as everything has passed.
+    /// Whether the mission will start as soon as all checks have passed.
     pub is_starting: bool,
-    /// The plan that was shown when that was agreed to.
+    /// The plan that was shown when the operator agreed to the start.
     #[serde(default)]
     pub seen: Option<PlanId>,
-    /// Which points of the scenario's checklist are ticked.
+    /// Whether each item of the scenario's checklist is ticked.
     pub ticked: Vec<bool>,
 }
 
 impl Model {
-    /// Everything that is checked before the start: what blocks it first, then what was found, then what is ticked by hand.
+    /// All checks: the automatic ones, failed ones first, then the checklist items.
     pub fn checks(&self) -> Vec<Check> {
         let preflight = &self.live.preflight;
         let found = preflight.found.iter().flatten().cloned();
@@ -34,7 +34,7 @@ impl Model {
         checks
     }
 
-    /// The points of the scenario's checklist.
+    /// The items of the scenario's checklist.
     fn hand_checks(&self) -> Vec<Check> {
         let items = self.live.run.about.iter().flat_map(|about| &about.checklist).enumerate();
         let by =
@@ -49,18 +49,18 @@ impl Model {
             .collect()
     }
 
-    /// How many points are ticked by hand.
+    /// The number of items to tick by hand.
     pub fn n_by_hand(&self) -> usize {
         self.live.run.about.as_ref().map_or(0, |about| about.checklist.len())
     }
 
-    /// What blocks the start, as a sentence; `None` if nothing does.
+    /// The reason why the start is blocked, as a sentence; `None` if it is not.
     pub fn start_is_blocked(&self) -> Option<String> {
         self.blocking_check().map(|failed| format!("start blocked: {}: {}", failed.what, failed.found))
     }
 
-    /// What the screen knows that blocks the start, and points that are not ticked, as a sentence. What else is checked is
-    /// looked at again when the start is ordered.
+    /// The reason why the start is blocked, judged from the model and the unticked items alone, as a sentence. The
+    /// other checks are repeated when the start is ordered.
     pub(crate) fn start_is_blocked_here(&self) -> Option<String> {
         let mut checks = self.own_checks().into_iter().chain(self.hand_checks());
         let failed = checks.find(|check| check.outcome == CheckOutcome::Failed)?;
@@ -72,7 +72,7 @@ impl Model {
         self.checks().into_iter().find(|check| check.outcome == CheckOutcome::Failed)
     }
 
-    /// What the screen knows by itself.
+    /// The checks that can be made from the model alone.
     fn own_checks(&self) -> Vec<Check> {
         let mut checks = vec![self.planner_check(), self.plan_check()];
         checks.extend(self.tether_check());
@@ -144,9 +144,9 @@ impl Model {
         let limit_m = self.live.run.about.as_ref().map_or(f64::NAN, |about| about.mission.position_limit_m);
         let (outcome, found) = match self.live.estimate() {
             _ if stations < LEAST_STATIONS => {
-                (CheckOutcome::Warning, format!("{stations}: the position rests on odometry alone"))
+                (CheckOutcome::Warning, format!("{stations}: position from odometry alone"))
             }
-            None => (CheckOutcome::Warning, format!("{stations}; accuracy on the path is not known yet")),
+            None => (CheckOutcome::Warning, format!("{stations}; accuracy along the path not known yet")),
             Some(estimate) if estimate.without_fix_m > 0.0 => (
                 CheckOutcome::Warning,
                 format!("{stations}; no fix on {:.1} m of the path", estimate.without_fix_m),

@@ -1,33 +1,33 @@
-//! Parameters of a planner under a name.
+//! Parameter presets.
 
 use super::parameter;
 use mission::{ParamInfo, ParamValue, Parameters, PlannerChoice, PlannerInfo};
 use serde::{Deserialize, Serialize};
 
-/// Longest name of a preset, characters.
+/// The longest name of a preset, characters.
 const LONGEST: usize = 40;
 
-/// Parameters of a planner under a name, as a file holds them.
+/// Named parameters of a planner, as stored in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Preset {
-    /// Its name.
+    /// The name of the preset.
     pub name: String,
-    /// The planner with its parameters, or what is wrong with the file, with file, line and key.
+    /// The planner with its parameters, or an error with file, line and key.
     pub choice: Result<PlannerChoice, String>,
 }
 
 /// A parameter that a preset changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference<'a> {
-    /// Which.
+    /// The parameter.
     pub info: &'a ParamInfo,
-    /// Its value now; for another planner than the active one its default.
+    /// The current value; the default if the planner is not the active one.
     pub now: ParamValue,
-    /// Its value by the preset.
+    /// The value in the preset.
     pub then: ParamValue,
 }
 
-/// The parameters that differ between what a planner has now and what it is to have.
+/// The parameters whose values would change.
 pub fn differences<'a>(
     now: Option<&PlannerChoice>,
     then: &PlannerChoice,
@@ -42,15 +42,15 @@ pub fn differences<'a>(
     all.filter(|difference| difference.now != difference.then).collect()
 }
 
-/// A planner with the value of every parameter, also of those that have their default: a preset does not change when a
-/// default does.
+/// A planner with the value of every parameter, defaults included, so that a later change of a default does not
+/// change the preset.
 pub fn whole(choice: Option<&PlannerChoice>, info: &PlannerInfo) -> PlannerChoice {
     let value = |info: &ParamInfo| (info.key.clone(), parameter::value(choice, info));
     let parameters: Parameters = info.parameters.iter().map(value).collect();
     PlannerChoice { id: info.id.clone(), parameters }
 }
 
-/// A planner with the parameters that differ from their defaults.
+/// A planner with only the parameters that differ from their defaults.
 pub fn by_hand(choice: &PlannerChoice, info: &PlannerInfo) -> PlannerChoice {
     let mut choice = choice.clone();
     for info in &info.parameters {
@@ -61,14 +61,14 @@ pub fn by_hand(choice: &PlannerChoice, info: &PlannerInfo) -> PlannerChoice {
     choice
 }
 
-/// Whether a preset may have a name: it is the name of its file, too.
+/// Checks that a name is permitted for a preset; the name is also the file name.
 ///
 /// # Errors
-/// What it may be.
+/// Returns a message with the permitted names.
 pub fn check_name(name: &str) -> Result<(), String> {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     if name.is_empty() || name.len() > LONGEST || !name.chars().all(is_plain) {
-        return Err(format!("no name for a preset: `{name}`; write 1 to {LONGEST} letters, digits, - or _"));
+        return Err(format!("invalid preset name `{name}`; use 1 to {LONGEST} letters, digits, - or _"));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! A past run that is played back: what of it is loaded, where it is, what people noted, and the run beside it.
+//! A replay of a past run: the loaded part, the cursor, people's notes, and a second run for comparison.
 
 mod align;
 mod difference;
@@ -12,35 +12,35 @@ use super::Run;
 use account::{Notes, Summary};
 use serde::{Deserialize, Serialize};
 
-/// Times this close together are one, seconds.
+/// Times closer together than this are equal, seconds.
 const SAME_S: f64 = 1e-6;
 
-/// Which of two runs.
+/// One of two compared runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
-    /// The run that is played.
+    /// The run being replayed.
     A,
     /// The run that it is compared with.
     B,
 }
 
-/// What of a run is loaded.
+/// The loaded part of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Reel {
-    /// Mission time up to which it can be seen, seconds.
+    /// Mission time up to which the run is loaded, seconds.
     pub until_s: f64,
-    /// Share of the journal that was read.
+    /// The share of the journal that has been read.
     pub share: f64,
-    /// Whether all of it was.
+    /// Whether the whole journal has been read.
     pub is_whole: bool,
-    /// Why it stops early, as a sentence.
+    /// Why the run stops early, as a sentence.
     pub problem: Option<String>,
-    /// What can be gone to, ascending by time.
+    /// The marks to jump to, ascending by time.
     pub marks: Vec<Mark>,
 }
 
 impl Reel {
-    /// Takes in what was loaded since.
+    /// Adds what has been loaded since.
     pub fn grow(&mut self, news: Self) {
         let marks = std::mem::take(&mut self.marks);
         *self = news;
@@ -48,62 +48,62 @@ impl Reel {
     }
 }
 
-/// The run beside the one that is played.
+/// The run that the replay is compared with.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Other {
-    /// Name of its folder.
+    /// The name of the run's folder.
     pub name: String,
-    /// What of it is loaded.
+    /// The loaded part of the run.
     pub reel: Reel,
-    /// What its events say, up to the moment that corresponds to the cursor.
+    /// The run, folded up to the moment that corresponds to the cursor.
     pub run: Run,
-    /// Its report, once that is known.
+    /// The run's report, once it has been read.
     pub summary: Option<Box<Summary>>,
 }
 
-/// A past run that is played back. It has no engine: nothing can be ordered.
+/// A replay of a past run. It has no engine, so it takes no orders.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Replay {
-    /// Name of its folder.
+    /// The name of the run's folder.
     pub name: String,
-    /// What of it is loaded.
+    /// The loaded part of the run.
     pub reel: Reel,
-    /// Whether its time goes on.
+    /// Whether the replay is playing.
     pub is_playing: bool,
-    /// What people noted.
+    /// Bookmarks and remarks.
     pub notes: Notes,
-    /// Why their notes cannot be read, as a sentence.
+    /// Why the notes cannot be read, as a sentence.
     pub unreadable: Option<String>,
-    /// The run beside it.
+    /// The run for comparison.
     pub other: Option<Other>,
-    /// Which moments of the two runs correspond.
+    /// How moments of the two runs are matched.
     pub align: Align,
-    /// Whether the map shows which floor only one of them scanned.
+    /// Whether the map shows the floor that only one of the runs scanned.
     pub shows_difference: bool,
 }
 
-/// Where to go in a run.
+/// Where a jump goes in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Jump {
-    /// To the tick before.
+    /// To the previous tick.
     TickBack,
     /// To the next tick.
     Tick,
-    /// To the event before.
+    /// To the previous event.
     EventBack,
     /// To the next event.
     Event,
-    /// To the alarm before.
+    /// To the previous alarm.
     AlarmBack,
     /// To the next alarm.
     Alarm,
-    /// To the bookmark before.
+    /// To the previous bookmark.
     BookmarkBack,
     /// To the next bookmark.
     Bookmark,
-    /// A minute back.
+    /// One minute back.
     MinuteBack,
-    /// A minute on.
+    /// One minute forward.
     Minute,
     /// To the beginning.
     Start,
@@ -112,17 +112,17 @@ pub enum Jump {
 }
 
 impl Replay {
-    /// A run of which nothing is loaded yet.
+    /// Makes a replay of a run of which nothing is loaded yet.
     pub fn of(name: String) -> Self {
         Self { name, ..Self::default() }
     }
 
-    /// The bookmarks that can be read.
+    /// The times of the bookmarks whose time can be read.
     pub fn bookmarks(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
         self.notes.bookmarks.iter().map(|bookmark| bookmark.t_s)
     }
 
-    /// Mission time that a jump leads to from another, seconds; `None` if there is nothing there.
+    /// Mission time that a jump from `from_s` leads to, seconds; `None` if there is nothing to jump to.
     pub fn target_s(&self, jump: Jump, from_s: f64, tick_s: f64) -> Option<f64> {
         let marks = || self.reel.marks.iter();
         let times = |kinds: fn(&Mark) -> bool| marks().filter(move |mark| kinds(mark)).map(|mark| mark.t_s);

@@ -4,28 +4,28 @@ use super::{Home, PastRun};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// What the list of runs is sorted by.
+/// The sort order of the list of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum SortBy {
-    /// When they began, the newest first.
+    /// By start, newest first.
     #[default]
     Date,
-    /// The scenario.
+    /// By scenario.
     Scenario,
-    /// The planner.
+    /// By planner.
     Planner,
-    /// How they ended.
+    /// By outcome.
     End,
-    /// What was scanned of the reachable floor, most first.
+    /// By scanned share of the reachable floor, largest first.
     Coverage,
-    /// Mission time, the longest first.
+    /// By mission time, longest first.
     Time,
 }
 
 impl SortBy {
     const ALL: [Self; 6] = [Self::Date, Self::Scenario, Self::Planner, Self::End, Self::Coverage, Self::Time];
 
-    /// What it is called.
+    /// The name of the sort order.
     pub fn word(self) -> &'static str {
         match self {
             Self::Date => "date",
@@ -37,7 +37,7 @@ impl SortBy {
         }
     }
 
-    /// The next one.
+    /// The next sort order.
     #[must_use]
     pub fn next(self) -> Self {
         Self::ALL[(self as usize + 1) % Self::ALL.len()]
@@ -59,16 +59,16 @@ impl SortBy {
 /// The review screen.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Review {
-    /// The selected run, among those that pass the filter.
+    /// The index of the selected run among those that pass the filter.
     pub selected: usize,
-    /// Words of which every run that is listed contains all.
+    /// The filter: words that a listed run must all contain.
     pub filter: String,
-    /// What the list is sorted by.
+    /// The sort order.
     pub sort: SortBy,
 }
 
 impl Review {
-    /// The past runs that pass the filter, sorted; runs that are equal in that stay in order of date.
+    /// The past runs that pass the filter, sorted; equal runs stay in order of date.
     pub fn runs<'a>(&self, home: &'a Home) -> Vec<&'a PastRun> {
         let filter = self.filter.to_lowercase();
         let all = home.found.iter().flat_map(|found| &found.runs);
@@ -84,7 +84,7 @@ impl Review {
         listed.get(self.selected.min(listed.len().saturating_sub(1))).copied()
     }
 
-    /// Selects another run, so many further down.
+    /// Moves the selection down by `by` runs.
     pub(crate) fn select(&mut self, home: &Home, by: isize) {
         let last = self.runs(home).len().saturating_sub(1);
         self.selected = self.selected.min(last).saturating_add_signed(by).min(last);

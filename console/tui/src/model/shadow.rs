@@ -1,4 +1,4 @@
-//! The planner in shadow as the screen knows it: its plan, and where its command would lead the robot.
+//! The planner in shadow as the screen shows it: its plan, and the ghost of the robot under its command.
 
 use super::{Run, Trail};
 use mission::{PlannerChoice, PlannerInfo, event::ShadowTally};
@@ -13,28 +13,28 @@ use world::{
     },
 };
 
-/// How far the ghost goes ahead, seconds.
+/// How far ahead the ghost is drawn, seconds.
 pub const GHOST_S: f64 = 3.0;
 
-/// A planner in shadow and what it last did.
+/// A planner in shadow and its latest output.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Shadow {
-    /// Which, with the parameters set by hand.
+    /// The planner, with the parameters set by hand.
     pub choice: PlannerChoice,
-    /// Who it is; `None` until it is open.
+    /// The description of the planner; `None` until it is open.
     pub info: Option<PlannerInfo>,
-    /// How it does.
+    /// The count of its answered and missed steps.
     pub tally: ShadowTally,
-    /// Points of the path of its plan, thinned out for drawing.
+    /// The points of its plan's path, thinned for drawing.
     pub path: Vec<Point>,
-    /// Its last command, with the mission time of it, seconds.
+    /// Its last command, with the mission time, seconds.
     pub command: Option<(f64, Command)>,
-    /// Whether it was ordered to take over.
+    /// Whether the planner was ordered to take over.
     pub is_promoted: bool,
 }
 
 impl Shadow {
-    /// A planner that is to fly in shadow.
+    /// Makes the entry of a planner that is about to fly in shadow.
     pub(super) fn new(choice: PlannerChoice) -> Self {
         Self { choice, ..Self::default() }
     }
@@ -44,21 +44,21 @@ impl Shadow {
     }
 }
 
-/// How the command of the planner in shadow differs from the one that the robot is sent.
+/// The differences between the command of the planner in shadow and the command that drives the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Differences {
-    /// How much faster it would drive, metres per second.
+    /// How much faster the planner in shadow would drive, metres per second.
     pub speed_m_per_s: f64,
-    /// How much more to the left it would turn, radians per second.
+    /// How much further to the left it would turn, radians per second.
     pub turn_rad_per_s: f64,
-    /// Least distance from the hull to what is known along the ghost, metres.
+    /// The minimum distance along the ghost from the hull to any known obstacle, metres.
     pub clearance_m: f64,
-    /// The same from where the robot is, metres.
+    /// The distance from the hull to any known obstacle at the robot's position, metres.
     pub here_m: f64,
 }
 
 impl Run {
-    /// Where the command of the planner in shadow would lead the robot, if that is recent.
+    /// Where the command of the planner in shadow would lead the robot; `None` if the command is not recent.
     pub fn ghost(&self) -> Option<Vec<Point>> {
         let (pose, command) = self.shadow_command()?;
         let mission = &self.about.as_ref()?.mission;
@@ -66,7 +66,7 @@ impl Run {
         Some(way.into_iter().map(|pose| pose.position).collect())
     }
 
-    /// How that command differs from the one that the robot is sent.
+    /// The differences between that command and the command that drives the robot.
     pub fn shadow_differences(&self) -> Option<Differences> {
         let (pose, command) = self.shadow_command()?;
         let (_, driving) = self.planning.command.as_ref()?;
@@ -95,7 +95,7 @@ impl Run {
     }
 }
 
-/// Speed and turn rate of a drive as it is sent.
+/// The speed and turn rate of a drive command.
 fn motion(drive: Drive) -> (f64, f64) {
     match drive {
         Drive::Twist { v_m_per_s, w_rad_per_s } => (v_m_per_s, w_rad_per_s),

@@ -1,4 +1,4 @@
-//! The tether as the screen knows it.
+//! The tether as the screen shows it.
 
 use super::History;
 use mission::{
@@ -8,42 +8,43 @@ use mission::{
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// How the cable lies, and the last certificate of a plan.
+/// The lie of the cable, and the last certificate of a plan.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tether {
-    /// Cable that is out, metres: what the reel has paid out, without an encoder what the map explains.
+    /// The length of cable that is out, metres: as paid out by the reel or, without an encoder, as computed from the
+    /// map.
     pub length_m: f64,
-    /// What is left on the reel, metres.
+    /// The length left on the reel, metres.
     pub free_m: f64,
-    /// Where it bears.
+    /// The contacts.
     pub contacts: Vec<TetherContact>,
-    /// Sum of all wraps, radians.
+    /// The total wrap, radians.
     pub wrap_total_rad: f64,
-    /// How many times harder the wraps make it to pull.
+    /// The pull: the factor by which the wraps multiply the pulling force.
     pub pull_factor: f64,
-    /// Length of the way back along the cable, metres; `None` if there is none.
+    /// Length of the return path along the cable, metres; `None` if there is none.
     pub return_length_m: Option<f64>,
-    /// Whether the reel has paid out more than the map explains: how the cable lies is not known then.
+    /// Whether more is paid out than the map explains; the lie of the cable is then unknown.
     pub is_snagged: bool,
     /// The cable from the anchor to the robot.
     pub line: Vec<Point>,
-    /// Whether the plan that is flown, or was refused last, is certified; `None` without such a plan.
+    /// Whether the current plan, or the one last refused, is certified; `None` without such a plan.
     pub certified: Option<bool>,
-    /// Mission time of what is known of how it lies, seconds; `None` before the first.
+    /// Mission time of the last known lie of the cable, seconds; `None` before the first.
     pub t_s: Option<f64>,
-    /// What was out, metres.
+    /// The history of the length out, metres.
     pub length_history_m: History,
-    /// The largest wrap, degrees.
+    /// The history of the largest wrap, degrees.
     pub wrap_history_deg: History,
 }
 
 impl Tether {
-    /// The largest wrap, by its size.
+    /// The contact with the largest wrap.
     pub fn largest(&self) -> Option<&TetherContact> {
         self.contacts.iter().max_by(|a, b| a.wrap_rad.abs().total_cmp(&b.wrap_rad.abs()))
     }
 
-    /// Takes in how the cable lies now between its anchor and the robot.
+    /// Records the lie of the cable between the anchor and the robot.
     pub(crate) fn lie(&mut self, t_s: f64, event: &EventKind, ends: Option<(Point, Point)>) {
         if let EventKind::Tethered {
             length_m,

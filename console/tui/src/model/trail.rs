@@ -1,14 +1,14 @@
-//! Where the robot has been, in a bounded number of points.
+//! The robot's trail, in a bounded number of points.
 
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// Most points kept.
+/// The maximum number of points kept.
 const MAX_POINTS: usize = 2048;
-/// Distance between points at first, metres.
+/// The initial distance between points, metres.
 const FIRST_SPACING_M: f64 = 0.02;
 
-/// Where the robot has been: evenly spaced points, ever further apart as the way grows.
+/// The robot's trail: evenly spaced points whose spacing grows with the distance driven.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trail {
     points: Vec<Point>,
@@ -22,7 +22,7 @@ impl Default for Trail {
 }
 
 impl Trail {
-    /// Adds a place if it is far enough from the last one.
+    /// Adds a point if it is far enough from the last one.
     pub fn add(&mut self, point: Point) {
         let finite = point.x.is_finite() && point.y.is_finite();
         let near = self.points.last().is_some_and(|last| (point - last).norm() < self.spacing_m);
@@ -36,12 +36,12 @@ impl Trail {
         self.points.push(point);
     }
 
-    /// The places, oldest first.
+    /// The points, oldest first.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// Every point of a path, or evenly picked ones if it has more than a trail may keep; both ends stay.
+    /// All points of a path, or evenly picked ones if it has more than a trail may keep; both ends are kept.
     pub fn thinned(path: &[Point]) -> Vec<Point> {
         let step = path.len().div_ceil(MAX_POINTS).max(1);
         let mut points: Vec<Point> =

@@ -1,4 +1,4 @@
-//! What the operator looks at: zoom, filter, selection, and what lies over the screen.
+//! The view state of the operator: screen, zoom, filter, selection and overlay.
 
 use super::line_edit::LineEdit;
 use super::palette::Palette;
@@ -9,42 +9,42 @@ use mission::{Order, PlanId, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// What the operator looks at.
+/// The view state of the operator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ui {
-    /// Columns of the terminal.
+    /// The width of the terminal, columns.
     pub width: u16,
-    /// Rows of the terminal.
+    /// The height of the terminal, rows.
     pub height: u16,
-    /// The screen that is shown.
+    /// The current screen.
     pub screen: Screen,
-    /// The screens to go back to, the last one first to be taken.
+    /// The screens to go back to, most recent last.
     pub back: Vec<Screen>,
-    /// The pane that takes the arrow keys; on a narrow screen the one that is shown.
+    /// The pane that takes the arrow keys; on a small terminal, the pane shown.
     pub pane: Pane,
     /// The part of the tank on the map.
     pub map: MapView,
-    /// What the map shows.
+    /// The map layers that are shown.
     pub layers: Layers,
-    /// The missed area that is selected on the result screen, among those that are listed.
+    /// The index of the selected missed area in the list on the result screen.
     pub missed: usize,
-    /// The plugin that is selected on the plugins screen.
+    /// The index of the selected plugin on the plugins screen.
     pub plugin: usize,
-    /// The place on the map that is read, metres, tank frame; `None` without a cursor.
+    /// The map cursor, metres, tank frame; `None` without a cursor.
     pub cursor: Option<Point>,
-    /// Whether the mouse is taken from the terminal.
+    /// Whether the console captures the mouse.
     pub mouse: bool,
-    /// The filter of the events.
+    /// The text of the event filter.
     pub needle: String,
-    /// The events that pass it.
+    /// The events that pass the filter.
     #[serde(default)]
     pub events: EventList,
-    /// The selected alarm; `None`: the first one of the table.
+    /// The selected alarm; `None` for the first one of the table.
     #[serde(default)]
     pub alarm: Option<Cause>,
-    /// The colours.
+    /// The colour theme.
     pub theme: ThemeName,
-    /// What lies over the screen.
+    /// The open overlay.
     pub overlay: Overlay,
 }
 
@@ -76,37 +76,37 @@ impl Default for Ui {
 pub enum Pane {
     /// The map.
     Map,
-    /// What has been scanned.
+    /// Coverage.
     Coverage,
-    /// Where the robot is, and how well that is known.
+    /// The robot's position and its error.
     Position,
-    /// What the planner does.
+    /// The planner and its commands.
     Planner,
-    /// What happened.
+    /// The log.
     Events,
-    /// How the tether lies.
+    /// The tether.
     Tether,
-    /// What is wrong.
+    /// The alarms.
     Alarms,
-    /// What each AE station measured.
+    /// The measurements of each AE station.
     Stations,
-    /// What was missed, when the mission has ended.
+    /// The missed areas, once the mission has ended.
     Missed,
-    /// A quantity over the last minutes.
+    /// A chart of a quantity over the last minutes.
     Chart(Chart),
 }
 
 impl Pane {
-    /// The panes that are pages of a screen too small for all of them, in the order of the Tab key.
+    /// The panes that are shown one at a time on a small terminal, in Tab order.
     pub const PAGES: [Self; 5] = [Self::Map, Self::Coverage, Self::Position, Self::Planner, Self::Events];
 }
 
-/// What a chart shows over time.
+/// The quantity of a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Chart {
     /// The 95 % error of the position.
     Error,
-    /// The length of tether that is out.
+    /// The length of the tether paid out.
     TetherOut,
     /// The largest wrap.
     Wrap,
@@ -117,40 +117,40 @@ pub enum Chart {
 /// The part of the tank on the map.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MapView {
-    /// How often the scale was doubled; 0 shows the whole tank.
+    /// How many times the scale has been doubled; 0 shows the whole tank.
     pub zoom: u8,
-    /// Whether the robot stays in the middle.
+    /// Whether the map stays centred on the robot.
     pub follow: bool,
-    /// The middle of the map from the middle of the tank, metres, when it does not follow.
+    /// The offset of the map's centre from the tank's centre, metres, when the map does not follow the robot.
     pub offset: world::Vector,
 }
 
-/// Most doublings of the map's scale.
+/// The maximum number of doublings of the map's scale.
 pub const MAX_ZOOM: u8 = 6;
 
-/// A part of the map that can be hidden.
+/// A map layer that can be hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MapLayer {
     /// Scanned floor.
     Scanned,
-    /// Where the robot has been.
+    /// The robot's trail.
     Trail,
-    /// Where the plan leads.
+    /// The path of the plan.
     Plan,
-    /// What the planner draws.
+    /// The planner's drawings.
     Drawings,
     /// Acoustic-emission stations.
     Stations,
-    /// Where the stations are forecast to locate badly.
+    /// Floor where the stations are forecast to locate the robot poorly.
     Accuracy,
 }
 
 impl MapLayer {
-    /// Every layer, in the order of the list.
+    /// All layers, in the order of the list.
     pub const ALL: [Self; 6] =
         [Self::Scanned, Self::Trail, Self::Plan, Self::Drawings, Self::Stations, Self::Accuracy];
 
-    /// How the list calls it.
+    /// The layer's name in the list.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scanned => "scanned floor",
@@ -163,14 +163,14 @@ impl MapLayer {
     }
 }
 
-/// Which parts of the map are hidden.
+/// Which map layers are hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Layers {
     hidden: [bool; MapLayer::ALL.len()],
 }
 
 impl Default for Layers {
-    /// Everything but the forecast, which is for planning rather than for watching.
+    /// Shows every layer except the forecast, which is for planning rather than for watching.
     fn default() -> Self {
         Self { hidden: MapLayer::ALL.map(|layer| layer == MapLayer::Accuracy) }
     }
@@ -182,121 +182,121 @@ impl Layers {
         !self.hidden[layer as usize]
     }
 
-    /// Shows a layer or hides it.
+    /// Shows or hides a layer.
     pub fn toggle(&mut self, layer: MapLayer) {
         self.hidden[layer as usize] = self.shows(layer);
     }
 }
 
-/// What lies over the screen and takes the keys.
+/// The overlay above the screen, which takes the keys.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Overlay {
-    /// Nothing.
+    /// No overlay.
     #[default]
     None,
-    /// A line that asks before something moves or ends.
+    /// The question before the robot moves or the mission ends.
     Confirm(Ask),
     /// The line for single steps.
     Stepping,
-    /// The question before leaving.
+    /// The question before the console quits.
     Quit,
-    /// The list of commands.
+    /// The command line with its list.
     Commands(Palette),
     /// The list of planners.
     Planners {
-        /// What the planner is chosen for.
+        /// The purpose of the choice.
         purpose: Purpose,
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
     },
     /// The parameters of the active planner.
     Parameters {
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
         /// The value being typed.
         edit: Option<Edit>,
     },
-    /// What a preset would change.
+    /// The changes that a preset would make.
     Preset {
-        /// Its name.
+        /// The name of the preset.
         name: String,
         /// The planner with its parameters.
         choice: PlannerChoice,
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
     },
     /// The layers of the map.
     Layers {
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
     },
-    /// How the mission would go on with one planner or another.
+    /// Forecasts of how the mission would continue with different planners.
     WhatIf,
-    /// The check before the start.
+    /// The pre-flight check.
     Preflight {
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
     },
-    /// The filter of a list is being typed.
+    /// The filter of a list, being typed.
     Filter(LineEdit),
-    /// The actions of an alarm.
+    /// The action list of an alarm.
     Remedies {
-        /// Which alarm.
+        /// The cause of the alarm.
         cause: Cause,
-        /// Which line is selected.
+        /// The index of the selected line.
         selected: usize,
     },
-    /// The line in which is typed for how long and why an alarm is put aside.
+    /// The input line for shelving an alarm: how long and why.
     Shelve(Shelving),
-    /// The line in which the text of a bookmark at the cursor of a replay is typed.
+    /// The input line for the text of a bookmark at the replay cursor.
     Bookmark(LineEdit),
 }
 
-/// For how long and why an alarm is put aside, being typed.
+/// The input for shelving an alarm: how long and why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shelving {
-    /// Which alarm.
+    /// The cause of the alarm.
     pub cause: Cause,
-    /// What was typed: minutes, then a reason.
+    /// The typed line: minutes, then a reason.
     pub line: LineEdit,
-    /// Why it cannot be taken.
+    /// Why the input was refused.
     pub refusal: Option<String>,
 }
 
-/// What a planner is chosen for.
+/// The purpose of choosing a planner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Purpose {
-    /// To drive.
+    /// The planner will drive.
     Drive,
-    /// To plan for comparison.
+    /// The planner will make a plan for comparison.
     Compare,
-    /// To forecast how the mission would go on.
+    /// The planner will forecast how the mission would continue.
     WhatIf,
-    /// To fly in shadow.
+    /// The planner will fly in shadow.
     Shadow,
 }
 
-/// What a confirm line asks for.
+/// The question in the confirmation line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Ask {
-    /// Start the mission with the plan that is shown; `None` where a start names none.
+    /// Start the mission with the plan shown; `None` if the start does not name a plan.
     Start(Option<PlanId>),
-    /// Resume.
+    /// Resume the mission.
     Resume,
-    /// Fly a plan that was refused because of the tether.
+    /// Run a plan that was refused because of the tether.
     FlyUncertified,
     /// End the mission.
     Abort,
-    /// Let another planner drive.
+    /// Change the active planner.
     Swap(PlannerChoice),
-    /// Let the planner in shadow take over.
+    /// Promote the planner in shadow.
     Promote,
-    /// Fly the better plan.
+    /// Take the better plan.
     TakePlan,
 }
 
 impl Ask {
-    /// The order that follows when the operator agrees.
+    /// The order to send when the operator agrees.
     pub fn order(&self) -> Order {
         match self {
             Self::Start(plan) => plan.map_or(Order::Start, Order::StartPlan),
@@ -310,30 +310,30 @@ impl Ask {
     }
 }
 
-/// A parameter's value being typed.
+/// A parameter value being typed.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Edit {
-    /// What was typed.
+    /// The typed line.
     pub line: LineEdit,
-    /// Why it cannot be taken.
+    /// Why the value was refused.
     pub refusal: Option<String>,
 }
 
-/// How the screen is laid out.
+/// The arrangement of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrangement {
-    /// From 120 columns and 30 rows: everything, in full words.
+    /// From 120 columns and 30 rows: everything, with full words.
     Wide,
-    /// From 80 columns and 24 rows: everything, in short words.
+    /// From 80 columns and 24 rows: everything, with short words.
     Narrow,
     /// From 60 columns and 16 rows: one pane at a time.
     Paged,
-    /// Below: control of the robot, without a map.
+    /// Smaller: control of the robot, without a map.
     Strip,
 }
 
 impl Arrangement {
-    /// How a screen of some size is laid out.
+    /// The arrangement for a terminal of the given size.
     pub fn of(width: u16, height: u16) -> Self {
         match (width, height) {
             (120.., 30..) => Self::Wide,
@@ -345,12 +345,12 @@ impl Arrangement {
 }
 
 impl Ui {
-    /// How the screen is laid out.
+    /// The arrangement of the screen.
     pub fn arrangement(&self) -> Arrangement {
         Arrangement::of(self.width, self.height)
     }
 
-    /// Goes to a screen; `q` leads back to the one before.
+    /// Goes to a screen; `q` leads back to the previous one.
     pub fn go(&mut self, screen: Screen) {
         if screen == self.screen {
             return;
@@ -363,12 +363,12 @@ impl Ui {
         }
         self.screen = screen;
         if screen == Screen::Mission {
-            // Beside the map the newest events are shown, whatever was read elsewhere.
+            // The pane beside the map shows the newest events, whatever was selected on the events screen.
             self.events.at = None;
         }
     }
 
-    /// Whether a pane can be seen.
+    /// Whether a pane is visible.
     pub fn shows(&self, pane: Pane) -> bool {
         if self.screen != Screen::Mission {
             return pane == Pane::Map && self.has_map();
@@ -385,7 +385,7 @@ impl Ui {
         self.screen.has_map() && self.arrangement() != Arrangement::Strip
     }
 
-    /// The panes that the Tab key visits.
+    /// The panes that Tab cycles through.
     pub fn panes(&self) -> &'static [Pane] {
         if self.screen != Screen::Mission {
             return &[];
@@ -397,7 +397,7 @@ impl Ui {
         }
     }
 
-    /// The middle of the map, metres, tank frame.
+    /// The centre of the map, metres, tank frame.
     pub fn map_center(&self, tank: Point, robot: Option<Point>) -> Point {
         match robot {
             Some(robot) if self.map.follow => robot,

@@ -1,59 +1,60 @@
-//! How a held mission would go on with one planner or another.
+//! Forecasts of how a held mission would continue with different planners.
 
 use mission::{Outlook, PlannerChoice};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// Most planners that are compared.
+/// The maximum number of planners compared.
 pub const MOST: usize = 4;
 
-/// How a held mission would go on with one planner or another. The first candidate goes on as it is.
+/// Forecasts of how a held mission would continue with different planners. The first candidate is the active planner,
+/// unchanged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WhatIf {
-    /// Mission time from which they go on, seconds.
+    /// Mission time at which the forecasts begin, seconds.
     pub t_s: f64,
     /// The candidates.
     pub candidates: Vec<Candidate>,
-    /// The one that is looked at.
+    /// The index of the selected candidate.
     pub selected: usize,
-    /// A planner whose parameters are being changed for a further forecast.
+    /// A planner whose parameters are being changed for another forecast.
     #[serde(default)]
     pub draft: Option<PlannerChoice>,
 }
 
-/// A planner that could go on.
+/// A planner with its forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// The planner, with its parameters.
     pub choice: PlannerChoice,
     /// Share of the task done in the forecast so far, 0 to 1; `None` before it begins.
     pub at: Option<f64>,
-    /// The forecast, or why there is none, as a sentence; `None` while it is being made.
+    /// The forecast, or why there is none, as a sentence; `None` while it is being computed.
     pub made: Option<Result<Forecast, String>>,
 }
 
-/// How a mission would go on.
+/// A forecast of how the mission would continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
-    /// Its figures.
+    /// The figures of the forecast.
     pub outlook: Outlook,
-    /// The way driven.
+    /// The path driven.
     pub path: Vec<Point>,
 }
 
 impl WhatIf {
-    /// The candidate that is looked at.
+    /// The selected candidate.
     pub fn candidate(&self) -> Option<&Candidate> {
         self.candidates.get(self.selected)
     }
 
-    /// The figures that are there.
+    /// The figures of the finished forecasts.
     pub fn outlooks(&self) -> Vec<Outlook> {
         let made = self.candidates.iter().filter_map(|candidate| candidate.made.as_ref()?.as_ref().ok());
         made.map(|forecast| forecast.outlook.clone()).collect()
     }
 
-    /// How many forecasts are done.
+    /// The number of finished forecasts.
     pub fn n_done(&self) -> usize {
         self.candidates.iter().filter(|candidate| candidate.made.is_some()).count()
     }

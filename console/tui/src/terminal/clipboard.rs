@@ -1,8 +1,8 @@
-//! Lines into the clipboard of the terminal, over any connection: OSC 52.
+//! Copies lines to the terminal's clipboard over any connection: OSC 52.
 
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// The bytes that ask the terminal to take a text into its clipboard. What the text says cannot break out of them.
+/// The bytes that make the terminal copy a text to its clipboard. No text can break out of the escape sequence.
 pub(super) fn sequence(text: &str) -> String {
     format!("\x1b]52;c;{}\x07", base64(text.as_bytes()))
 }

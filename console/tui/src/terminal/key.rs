@@ -1,18 +1,18 @@
-//! Keys from the terminal library into the console's own.
+//! Converts keys of the terminal library into the console's own.
 
 use crate::keys::{Key, KeyPress};
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Instant;
 
-/// The keyboard: which key went down last, and when.
+/// The keyboard state: the key that last went down, and when.
 #[derive(Debug, Default)]
 pub struct Keyboard {
     last: Option<(Key, Instant)>,
 }
 
 impl Keyboard {
-    /// The key of a terminal event that came at some time, and how long after the same key; `None` for a release and for a
-    /// key that the console does not know: what comes after it is pressed anew.
+    /// Converts a terminal event to a key press, with the time since the same key last went down. `None` for releases
+    /// and unknown keys; the press after an unknown key counts as new.
     pub fn take(&mut self, event: &KeyEvent, now: Instant) -> Option<KeyPress> {
         let press = key_from_crossterm(event);
         let last = self.last.take();
@@ -23,7 +23,7 @@ impl Keyboard {
     }
 }
 
-/// The key of a terminal event; `None` for releases and for keys that the console does not know.
+/// The key of a terminal event; `None` for releases and unknown keys.
 ///
 /// Alt is not used: over a slow connection it cannot be distinguished from Esc followed by a letter.
 fn key_from_crossterm(event: &KeyEvent) -> Option<KeyPress> {

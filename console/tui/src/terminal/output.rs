@@ -1,4 +1,4 @@
-//! Bytes to the terminal, a frame at a time.
+//! Output to the terminal, one frame at a time.
 
 use super::restore::is_taken;
 use std::io::{self, Stdout, Write};
@@ -10,20 +10,20 @@ const BEGIN: &[u8] = b"\x1b[?2026h";
 /// Ends the synchronized update: the terminal shows the frame.
 const END: &[u8] = b"\x1b[?2026l";
 
-/// Gathers what is written until the flush, and sends that as one synchronized update.
+/// Buffers everything until the flush and sends it as one synchronized update.
 ///
-/// Once the terminal was given back, whatever is still flushed is dropped: after a panic or at the end, half a frame
-/// must not reach the shell's screen.
+/// After the terminal has been restored, further output is dropped: after a panic or at exit, half a frame must not
+/// reach the shell's screen.
 pub(super) struct FrameOutput<W: Write = Stdout> {
     bytes: Vec<u8>,
     to: W,
     is_ours: fn() -> bool,
-    /// Bytes sent so far, until somebody takes the count.
+    /// The number of bytes sent since the counter was last read.
     sent: Arc<AtomicUsize>,
 }
 
 impl FrameOutput {
-    /// Counts what is sent.
+    /// Makes an output that counts the bytes sent.
     pub(super) fn counted(sent: Arc<AtomicUsize>) -> Self {
         Self { bytes: BEGIN.to_vec(), to: io::stdout(), is_ours: is_taken, sent }
     }

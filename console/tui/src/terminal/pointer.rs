@@ -1,10 +1,10 @@
-//! The mouse of the terminal into what it did on the screen.
+//! Converts the terminal's mouse events into actions on the screen.
 
 use crate::update::{Mouse, Target};
 use crate::view::Places;
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
-/// The mouse: which place it was dragged from, and whether it was moved since the button went down.
+/// The mouse state: where the drag began, and whether the mouse moved since the button went down.
 #[derive(Debug, Default)]
 pub struct Pointer {
     at: Option<(u16, u16)>,
@@ -12,7 +12,8 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// What the mouse did, by where the last frame put things. A button counts when it comes up at its place.
+    /// Converts a mouse event, using the places of the last frame. A click counts when the button is released where it
+    /// was pressed.
     pub fn take(&mut self, event: &MouseEvent, places: &Places) -> Option<Mouse> {
         let at = (event.column, event.row);
         let on = places.target(at.0, at.1);

@@ -1,4 +1,4 @@
-//! Giving the terminal back: at the end, in a panic, and from a signal handler.
+//! Restores the terminal: at exit, in a panic, and from a signal handler.
 
 use crossterm::terminal::disable_raw_mode;
 use std::io::{self, Write};
@@ -7,17 +7,17 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, ThreadId};
 
-/// What undoes everything that taking the terminal over does: end of a synchronized update, mouse and focus reports
-/// off, bracketed paste off, plain text, alternate screen left, cursor shown.
+/// Undoes everything that taking over the terminal does: ends the synchronized update, turns off mouse reports, focus
+/// reports and bracketed paste, resets the text style, leaves the alternate screen and shows the cursor.
 pub const RESTORE: &str =
     "\x1b[?2026l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?1004l\x1b[?2004l\x1b[0m\x1b[?1049l\x1b[?25h";
 
-/// Whether the console has the terminal.
+/// Whether the console owns the terminal.
 static TAKEN: AtomicBool = AtomicBool::new(false);
-/// The thread that took it.
+/// The thread that took over the terminal.
 static OWNER: Mutex<Option<ThreadId>> = Mutex::new(None);
 
-/// Notes that this thread takes the terminal.
+/// Records that this thread takes over the terminal.
 pub(super) fn own() {
     modes::save();
     if let Ok(mut owner) = OWNER.lock() {
@@ -26,35 +26,35 @@ pub(super) fn own() {
     TAKEN.store(true, Ordering::SeqCst);
 }
 
-/// Whether the console has the terminal.
+/// Whether the console owns the terminal.
 pub(super) fn is_taken() -> bool {
     TAKEN.load(Ordering::SeqCst)
 }
 
-/// Gives the terminal back. Does nothing if the console does not have it, so it may be called again and again.
+/// Restores the terminal. Does nothing if the console does not own it, so repeated calls are safe.
 pub fn restore() {
     if TAKEN.swap(false, Ordering::SeqCst) {
-        // If the terminal is closed, the error cannot be reported anywhere.
+        // If the terminal is closed, there is nowhere to report the error.
         let mut output = io::stdout();
         let _ = output.write_all(RESTORE.as_bytes()).and_then(|()| output.flush());
         let _ = disable_raw_mode();
     }
 }
 
-/// Gives the terminal back from a signal handler: no lock, no allocation, two or three system calls.
+/// Restores the terminal from a signal handler: no lock, no allocation, two or three system calls.
 ///
-/// Does nothing if the console does not have the terminal.
+/// Does nothing if the console does not own the terminal.
 pub fn restore_from_signal() {
     if TAKEN.swap(false, Ordering::SeqCst) {
         modes::write_back();
     }
 }
 
-/// Puts a panic hook in front of the one that is installed.
+/// Installs a panic hook in front of the current one.
 ///
-/// A panic of the thread that owns the terminal first restores the terminal, then calls the previous hook. A panic of any
-/// other thread while the console has the terminal must not write to the screen: it is passed to `on_panic`, with the
-/// name of the thread and the message with its source location.
+/// If the thread that owns the terminal panics, the hook restores the terminal and then calls the previous hook. If
+/// any other thread panics while the console owns the terminal, nothing may be written to the screen: the hook passes
+/// the thread's name, and the message with its source location, to `on_panic`.
 pub fn install_panic_hook(on_panic: impl Fn(&str, &str) + Send + Sync + 'static) {
     let before = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
@@ -81,7 +81,7 @@ mod modes {
     use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
     use std::sync::OnceLock;
 
-    /// The terminal's modes before the console first took it.
+    /// The terminal modes before the console first took over.
     static SAVED: OnceLock<Termios> = OnceLock::new();
 
     pub(super) fn save() {

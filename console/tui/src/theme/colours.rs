@@ -12,7 +12,7 @@ const fn rgb_of(hex: u32) -> Rgb {
 
 /// The colour of a role.
 pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
-    // Of the dark, the light and the high-contrast theme.
+    // The dark, light and high-contrast themes.
     let [dark, light, contrast] = match role {
         Role::Text | Role::Title | Role::Selected | Role::Wall | Role::Robot => {
             [0xd8_dee4, 0x1f_2328, 0xff_ffff]
@@ -40,10 +40,10 @@ pub(super) fn rgb(role: Role, name: ThemeName) -> Rgb {
     })
 }
 
-/// Levels of the cube of 6 by 6 by 6 colours in the palette of 256.
+/// The levels of the 6x6x6 cube in the 256-colour palette.
 const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
 
-/// The nearest colour of the palette of 256, of its cube and its greys.
+/// The nearest colour in the cube and greys of the 256-colour palette.
 pub(super) fn nearest_indexed(colour: Rgb) -> u8 {
     let cube = (0..216_u8).map(|at| {
         let level = |digit: u8| LEVELS[usize::from(digit % 6)];

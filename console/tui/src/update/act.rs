@@ -1,4 +1,4 @@
-//! Actions into changes and effects.
+//! Carries out actions.
 
 use super::go;
 use super::message::Effect;
@@ -13,14 +13,14 @@ use crate::model::ui::{Ask, Purpose};
 use crate::model::{Model, Overlay, Pane, Screen, Speed};
 use mission::{Order, Severity};
 
-/// Seconds within which a second Ctrl-C asks to leave.
+/// Seconds within which a second Ctrl-C asks whether to quit.
 const INTERRUPT_TWICE_S: f64 = 2.0;
-/// Lines of a page.
+/// Lines per page.
 pub(crate) const PAGE: isize = 10;
 
 /// Carries out an action, or shows the operator why it is not available.
 pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
-    // Who stops the robot has not agreed to move it: a later Enter must not do so.
+    // An operator who stops the robot has not agreed to move it: a later Enter must not do so.
     let stops = matches!(id, ActionId::Hold | ActionId::Interrupt | ActionId::Suspend);
     if stops && overlay::withdraw_motion(model) && id == ActionId::Hold && !model.live.may_move() {
         return Vec::new();
@@ -42,10 +42,10 @@ pub fn act(model: &mut Model, id: ActionId) -> Vec<Effect> {
     }
 }
 
-/// Opens the list of planners, on the one that drives.
+/// Opens the list of planners, with a planner suitable for the purpose selected.
 pub(crate) fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
     let driving = driving(model);
-    // Beside the planner that drives another one is wanted.
+    // For any other purpose the operator wants a planner other than the active one.
     let others = (1..model.console.planners.len()).map(|by| (driving + by) % model.console.planners.len());
     let other = others
         .filter(|_| purpose != Purpose::Drive)
@@ -53,7 +53,7 @@ pub(crate) fn choose(model: &mut Model, purpose: Purpose) -> Vec<Effect> {
     open(model, Overlay::Planners { purpose, selected: other.unwrap_or(driving) })
 }
 
-/// Stops the robot; when it stands, asks whether to resume. In a replay it stops time or lets it go on.
+/// Stops the robot, or asks whether to resume if it is held. In a replay, plays or pauses.
 pub(crate) fn hold(model: &mut Model) -> Vec<Effect> {
     if model.live.is_replay() {
         return replay::toggle(model);
@@ -68,7 +68,7 @@ pub(crate) fn hold(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Stops the robot; a second time within two seconds it asks whether to leave.
+/// Stops the robot; a second press within two seconds asks whether to quit.
 pub(crate) fn interrupt(model: &mut Model) -> Vec<Effect> {
     let now_s = model.console.now.mono_s;
     let twice =
@@ -84,7 +84,7 @@ pub(crate) fn interrupt(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-/// Takes back what is open: the steps, the list, or the cursor on the map.
+/// Closes whatever is open: the step line, the list, or the map cursor.
 pub(crate) fn cancel(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay {
         Overlay::Stepping => return end_steps(model),
@@ -94,7 +94,7 @@ pub(crate) fn cancel(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Holds, then asks; with nothing under way it leaves at once.
+/// Holds, then asks; quits immediately if no mission is under way.
 pub(crate) fn leave(model: &mut Model) -> Vec<Effect> {
     let mut effects = hold_now(model);
     if model.live.is_under_way() {
@@ -105,7 +105,7 @@ pub(crate) fn leave(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-/// HOLD for who cannot see whether the robot moves: it never asks to resume.
+/// HOLD for callers that cannot see whether the robot moves: it never asks to resume.
 pub(super) fn hold_only(model: &mut Model) -> Vec<Effect> {
     if model.live.is_replay() {
         return replay::pause(model);
@@ -119,13 +119,13 @@ pub(super) fn hold_only(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Closes the line for steps; a step that is under way ends.
+/// Closes the step line and ends a step in progress.
 pub(super) fn end_steps(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     if model.live.may_move() { hold_now(model) } else { Vec::new() }
 }
 
-/// The first step opens the line for steps; in it each key is a step.
+/// The first step opens the step line, where each key press is one step.
 pub(crate) fn step(model: &mut Model, order: Order) -> Vec<Effect> {
     if model.ui.overlay != Overlay::Stepping {
         return open(model, Overlay::Stepping);
@@ -136,31 +136,31 @@ pub(crate) fn step(model: &mut Model, order: Order) -> Vec<Effect> {
     send(model, order)
 }
 
-/// The next speed, up or down.
+/// Changes to the next higher or lower speed.
 pub(crate) fn change_speed(model: &mut Model, faster: bool) -> Vec<Effect> {
     let Some(speed) = model.live.speed.stepped(faster) else { return Vec::new() };
     set_speed(model, speed)
 }
 
-/// Sets the pace of the simulation.
+/// Sets the simulation speed.
 pub(super) fn set_speed(model: &mut Model, speed: Speed) -> Vec<Effect> {
     model.live.speed = speed;
     vec![Effect::Speed(speed)]
 }
 
-/// Takes the mouse from the terminal, or gives it back.
+/// Turns mouse capture on or off.
 pub(crate) fn toggle_mouse(model: &mut Model) -> Vec<Effect> {
     model.ui.mouse = !model.ui.mouse;
     let news = if model.ui.mouse {
         "mouse on: click, wheel, drag; hold Shift to select text"
     } else {
-        "mouse off: the terminal has it"
+        "mouse off: the terminal handles it"
     };
     model.say(Severity::Info, news);
     vec![Effect::Mouse(model.ui.mouse)]
 }
 
-/// Runs an action of the alarm whose actions are open.
+/// Runs an action from the open action list of an alarm.
 fn run_remedy(model: &mut Model, number: u8) -> Vec<Effect> {
     match alarms::chosen_remedy(model, number.into()) {
         Ok(ActionId::Hold) => hold_only(model),
@@ -174,7 +174,7 @@ fn driving(model: &Model) -> usize {
     model.console.planners.iter().position(|planner| Some(planner.id.as_str()) == id).unwrap_or(0)
 }
 
-/// Gives another pane the arrow keys, so many further on; on the home screen the other list.
+/// Moves the focus by `by` panes; on the home screen, switches between the lists.
 pub(crate) fn turn_to(model: &mut Model, by: isize) {
     if model.ui.screen == Screen::Home {
         model.home.list = match model.home.list {
@@ -189,7 +189,7 @@ pub(crate) fn turn_to(model: &mut Model, by: isize) {
     model.ui.pane = panes.get(next).copied().unwrap_or(Pane::Map);
 }
 
-/// Selects another line of whatever takes the arrow keys, so many further down.
+/// Moves the selection in the list that takes the arrow keys down by `by` lines.
 pub(crate) fn select(model: &mut Model, by: isize) {
     if palette::recalls(model, by) {
         return;
@@ -200,7 +200,7 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     }
 }
 
-/// Selects another plugin, so many further down.
+/// Moves the selection down by `by` plugins.
 pub(crate) fn select_plugin(model: &mut Model, by: isize) {
     let last = plugins(&model.console, &model.live.run).len().saturating_sub(1);
     model.ui.plugin = model.ui.plugin.saturating_add_signed(by).min(last);

@@ -1,4 +1,4 @@
-//! What the operator does about alarms.
+//! The operator's actions on alarms.
 
 use super::message::Effect;
 use super::offer::{accepted, demand, on_screen, refuse};
@@ -14,7 +14,7 @@ fn selected_cause(model: &Model) -> Option<Cause> {
     model.selected_alarm().map(|alarm| alarm.cause.clone())
 }
 
-/// Selects another alarm, so many further down.
+/// Moves the selection down by `by` alarms.
 pub(crate) fn select(model: &mut Model, by: isize) {
     let table = model.live.run.alarms.table();
     let at = model.selected_alarm().and_then(|here| table.iter().position(|alarm| alarm.cause == here.cause));
@@ -22,28 +22,28 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     model.ui.alarm = table.get(next).map(|alarm| alarm.cause.clone());
 }
 
-/// Why the alarm that a command is about cannot be acknowledged, if it cannot.
+/// Checks that the alarm that a command is about can be acknowledged.
 ///
 /// # Errors
-/// Why not, as a sentence.
+/// Returns the reason why not, as a sentence.
 pub(crate) fn can_acknowledge(model: &Model) -> Result<(), String> {
     can_acknowledge_all(model)?;
     demand(to_acknowledge(model).is_some(), "the selected alarm needs no acknowledgement; select another")
 }
 
-/// Whether an alarm waits for the operator.
+/// Checks that an alarm awaits acknowledgement.
 pub(crate) fn can_acknowledge_all(model: &Model) -> Result<(), String> {
     demand(model.live.run.alarms.open().any(Alarm::is_unacknowledged), "no unacknowledged alarms")
 }
 
-/// Whether the selected alarm can be put aside, or taken back.
+/// Checks that the selected alarm can be shelved or unshelved.
 pub(crate) fn can_shelve(model: &Model) -> Result<(), String> {
     on_screen(model, Screen::Alarms)?;
     let alarm = model.selected_alarm().ok_or("no alarm is selected")?;
     alarm.cannot_be_shelved().map_or(Ok(()), |why| Err(why.to_owned()))
 }
 
-/// On the table of alarms the selected one, and no other; elsewhere the most severe one.
+/// The alarm to acknowledge: on the alarm screen only the selected one, elsewhere the most severe one.
 fn to_acknowledge(model: &Model) -> Option<&Alarm> {
     if model.ui.screen == Screen::Alarms {
         return model.selected_alarm().filter(|alarm| alarm.is_unacknowledged());
@@ -71,8 +71,8 @@ fn acknowledged(alarm: &Alarm) -> Noted {
     Noted::Acknowledged { alarm: alarm.cause.key(), text: alarm.text.clone() }
 }
 
-/// Has the mission write down what the operator did; from there it takes effect. After the mission nothing is written any
-/// more, and it takes effect here.
+/// Has the mission record what the operator did, which then takes effect from the journal. After the mission nothing
+/// is recorded, and the action takes effect directly.
 pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
     let order = Order::Note(Note { what, by: model.console.preferences.operator.clone() });
     if model.live.run.about.is_some() && accepted(model, &order).is_ok() {
@@ -85,7 +85,7 @@ pub(super) fn note(model: &mut Model, what: Noted) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Asks for how long and why the selected alarm shall be put aside; takes a shelved one back.
+/// Asks how long and why to shelve the selected alarm; unshelves a shelved one.
 pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
     let Some(alarm) = model.selected_alarm() else { return Vec::new() };
     let (cause, text) = (alarm.cause.clone(), alarm.text.clone());
@@ -93,11 +93,11 @@ pub(crate) fn shelve(model: &mut Model) -> Vec<Effect> {
         model.ui.overlay = Overlay::Shelve(Shelving { cause, line: LineEdit::default(), refusal: None });
         return Vec::new();
     }
-    model.say(Severity::Info, format!("taken back: {}", name(&cause, &model.live.run)));
+    model.say(Severity::Info, format!("unshelved: {}", name(&cause, &model.live.run)));
     note(model, Noted::Unshelved { alarm: cause.key(), text })
 }
 
-/// Puts an alarm aside as typed, or says what is wrong with it.
+/// Shelves an alarm as typed, or shows why the input is refused.
 pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect> {
     let typed = parse_shelving(shelving.line.text());
     match typed.and_then(|(minutes, reason)| put_aside(model, &shelving.cause, minutes, &reason)) {
@@ -112,10 +112,10 @@ pub(super) fn take_shelving(model: &mut Model, shelving: Shelving) -> Vec<Effect
     }
 }
 
-/// Puts the named alarm aside, or the one that is selected, for so many seconds.
+/// Shelves the named or selected alarm for the given number of seconds.
 ///
 /// # Errors
-/// Why not, and what would be right.
+/// Returns the reason why not, and how to correct the command.
 pub(super) fn shelve_for(
     model: &mut Model,
     named: Option<Cause>,
@@ -130,19 +130,19 @@ pub(super) fn shelve_for(
 }
 
 fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Result<Vec<Effect>, String> {
-    let alarm = model.live.run.alarms.get(cause).ok_or("there is no such alarm")?;
+    let alarm = model.live.run.alarms.get(cause).ok_or("no such alarm")?;
     if matches!(alarm.state, State::Shelved(_)) {
-        return Err("it is shelved already".into());
+        return Err("the alarm is already shelved".into());
     }
     if let Some(why) = alarm.cannot_be_shelved() {
         return Err(why.to_owned());
     }
     let longest_min = model.console.preferences.shelve_max_min;
     if !(minutes > 0.0 && minutes <= f64::from(longest_min)) {
-        return Err(format!("1 to {longest_min} minutes"));
+        return Err(format!("must be 1 to {longest_min} minutes"));
     }
     if reason.is_empty() {
-        return Err("a reason is needed, such as: 15 pump noise".into());
+        return Err("reason missing; for example: 15 pump noise".into());
     }
     let (text, reason) = (alarm.text.clone(), reason.to_owned());
     let said = format!("shelved for {minutes} min: {}", name(cause, &model.live.run));
@@ -150,40 +150,41 @@ fn put_aside(model: &mut Model, cause: &Cause, minutes: f64, reason: &str) -> Re
     Ok(note(model, Noted::Shelved { alarm: cause.key(), text, for_s: 60.0 * minutes, reason }))
 }
 
-/// Minutes of mission time and a reason: `15 pump noise`.
+/// Parses minutes of mission time and a reason: `15 pump noise`.
 fn parse_shelving(text: &str) -> Result<(f64, String), String> {
     let text = text.trim();
     let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
-    let minutes: f64 = text[..end].parse().map_err(|_| "minutes first, such as: 15 pump noise".to_owned())?;
+    let minutes: f64 =
+        text[..end].parse().map_err(|_| "minutes missing; for example: 15 pump noise".to_owned())?;
     let reason = text[end..].trim_start_matches(|letter: char| !letter.is_alphanumeric()).trim();
     let unit = ["min ", "m "].iter().find_map(|unit| reason.strip_prefix(unit));
     Ok((minutes, unit.unwrap_or(reason).trim().to_owned()))
 }
 
-/// Opens the actions of the selected alarm.
+/// Opens the action list of the selected alarm.
 pub(crate) fn open_actions(model: &mut Model) -> Vec<Effect> {
     let Some(cause) = selected_cause(model) else { return refuse(model, "no alarms".into()) };
     model.ui.overlay = Overlay::Remedies { cause, selected: 0 };
     Vec::new()
 }
 
-/// The action that a number stands for in the actions that are open, from 1 on; they close for it. Those that move the
-/// robot ask.
+/// The action with the given number, from 1, in the open action list, which it closes. Actions that move the robot
+/// still ask first.
 ///
 /// # Errors
-/// Why there is none to run.
+/// Returns the reason why no action can be run.
 pub(super) fn chosen_remedy(model: &mut Model, number: usize) -> Result<ActionId, String> {
     let Overlay::Remedies { cause, .. } = &model.ui.overlay else { return Err("no actions are open".into()) };
     let cause = cause.clone();
     let remedy = number.checked_sub(1).and_then(|index| guide(&cause).remedies.get(index));
-    let remedy = remedy.ok_or_else(|| format!("there is no action {number}"))?;
+    let remedy = remedy.ok_or_else(|| format!("no action {number}"))?;
     let action = remedy.action.ok_or_else(|| format!("nothing to run: {}", remedy.text))?;
     model.ui.alarm = Some(cause);
     model.ui.overlay = Overlay::None;
     Ok(action)
 }
 
-/// Shows the place of the selected alarm on the map.
+/// Shows the position of the selected alarm on the map.
 pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let shown =
         model.selected_alarm().and_then(|alarm| Some((alarm.place?, name(&alarm.cause, &model.live.run))));

@@ -1,4 +1,4 @@
-//! Command lines: a command and its values, read and run.
+//! Parses and runs command lines: a command and its values.
 
 pub(super) mod line;
 mod value;
@@ -28,14 +28,14 @@ use crate::model::{
 use line::Word;
 use mission::{Order, Parameters, PlannerChoice};
 
-/// A command with its values, checked.
+/// A parsed command with its values.
 pub(super) struct Command {
     action: &'static Action,
     values: Vec<Value>,
 }
 
 impl Command {
-    /// Whether it stops the robot: that is done whatever is open.
+    /// Whether the command stops the robot; such a command runs whatever overlay is open.
     pub(super) fn stops(&self) -> bool {
         matches!(
             self.action.id,
@@ -44,21 +44,21 @@ impl Command {
     }
 }
 
-/// Reads a command line; a short name of the operator's stands for its line.
+/// Parses a command line; an alias is replaced by its command line.
 ///
 /// # Errors
-/// Which part of the line is wrong, and what would be right.
+/// Returns the invalid part of the line, and how to correct it.
 pub(super) fn read(model: &Model, text: &str) -> Result<Command, LineFault> {
     let value = |kind, text: &str| value::read(model, kind, text);
     let (action, values) = read_with(&model.console.keys, text, &value)?;
     Ok(Command { action, values })
 }
 
-/// Whether a line is a command, whatever mission is open: its name, how many values it has, and those values of which no run
-/// and nothing that was found decides.
+/// Checks a line independently of any mission: the name of the command, the number of values, and those values that
+/// do not depend on a run or on files.
 ///
 /// # Errors
-/// What is wrong, and what would be right, as a clause.
+/// Returns what is wrong and how to correct it, as a clause.
 pub fn check_line(keys: &Keymap, text: &str) -> Result<(), String> {
     let nothing = Model::default();
     let value = |kind: Kind, text: &str| match kind {
@@ -69,7 +69,7 @@ pub fn check_line(keys: &Keymap, text: &str) -> Result<(), String> {
     read_with(keys, text, &value).map(drop).map_err(|fault| fault.what)
 }
 
-/// A command, and its values as they are read by `value`.
+/// A command, with its values as parsed by `value`.
 type Read<V> = (&'static Action, Vec<V>);
 
 fn read_with<V>(
@@ -79,7 +79,7 @@ fn read_with<V>(
 ) -> Result<Read<V>, LineFault> {
     let first = text.split(' ').next().unwrap_or_default();
     if let Some(line) = keys.aliases.get(first) {
-        // Aliases stand for commands, not for aliases; what follows one belongs to its command.
+        // An alias stands for a command, not for another alias; any words after it are arguments of its command.
         let line = format!("{line}{}", &text[first.len()..]);
         return read_line(&line, value).map_err(|fault| LineFault { at: 0..text.len(), ..fault });
     }
@@ -88,8 +88,8 @@ fn read_with<V>(
 
 fn read_line<V>(text: &str, value: &impl Fn(Kind, &str) -> Result<V, String>) -> Result<Read<V>, LineFault> {
     let words = line::words(text)?;
-    let (name, rest) = words.split_first().ok_or(LineFault { at: 0..0, what: "no command".into() })?;
-    let unknown = || LineFault { at: name.at.clone(), what: format!("no command `{}`", name.text) };
+    let (name, rest) = words.split_first().ok_or(LineFault { at: 0..0, what: "no command given".into() })?;
+    let unknown = || LineFault { at: name.at.clone(), what: format!("unknown command `{}`", name.text) };
     let action = find::named(&name.text).ok_or_else(unknown)?;
     let (mut values, mut given) = (Vec::new(), Vec::new());
     for (index, word) in rest.iter().enumerate() {
@@ -103,7 +103,8 @@ fn read_line<V>(text: &str, value: &impl Fn(Kind, &str) -> Result<V, String>) ->
     Ok((action, values))
 }
 
-/// Which argument a word is, and its value: by its name, which the first one does without, or by its place.
+/// The argument that a word belongs to, and its value. The first word is always the first argument; any other word
+/// belongs to an argument by name or by position.
 fn arg_of<'a>(
     action: &'static Action,
     index: usize,
@@ -124,7 +125,7 @@ fn arg_of<'a>(
     }
 }
 
-/// The values that complete the word at the end of a line; `None` as long as the command itself is being typed.
+/// The completions of the last word of a line; `None` while the command itself is being typed.
 pub(super) fn candidates(model: &Model, before: &str) -> Option<Vec<String>> {
     let begin = line::word_begin(before);
     let mut words = before[..begin].split_whitespace();
@@ -151,7 +152,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     let Some(first) = values.next() else {
         return if action.id == ActionId::Hold { hold_only(model) } else { act(model, action.id) };
     };
-    // What is named needs no screen on which it is selected.
+    // A command that names its object does not need a screen with a selection.
     let is_named = matches!(first, Value::Run(_) | Value::Duration(_)) && action.id != ActionId::CompareRun;
     let can = if is_named { allowed(model, action) } else { offered(model, action.id) };
     if let Err(why) = can {
@@ -196,7 +197,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
             let order = stations::order(model, action.id, station, values);
             return order.map_or_else(Vec::new, |order| give(model, order));
         }
-        // These come second.
+        // These are second arguments.
         Value::Alarm(_) | Value::Fault(_) => {}
         Value::Preset(name) => return preset::load(model, &name),
         Value::Text(name) if action.id == ActionId::PresetSave => return preset::save(model, name),
@@ -211,7 +212,7 @@ pub(super) fn run(model: &mut Model, Command { action, values }: Command) -> Vec
     Vec::new()
 }
 
-/// Gives an order that asks nothing, if the mission accepts it.
+/// Gives an order that needs no confirmation, if the mission accepts it.
 fn give(model: &mut Model, order: Order) -> Vec<Effect> {
     match accepted(model, &order) {
         Ok(()) => send(model, order),
@@ -219,7 +220,7 @@ fn give(model: &mut Model, order: Order) -> Vec<Effect> {
     }
 }
 
-/// Puts the named alarm aside, or the selected one.
+/// Shelves the named or selected alarm.
 fn shelve(model: &mut Model, for_s: f64, values: impl Iterator<Item = Value>) -> Vec<Effect> {
     let (mut reason, mut named) = (String::new(), None);
     for value in values {

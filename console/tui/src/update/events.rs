@@ -1,4 +1,4 @@
-//! What the operator does with events.
+//! The operator's actions on events.
 
 use super::message::Effect;
 use super::offer::{demand, on_screen, refuse};
@@ -7,36 +7,36 @@ use crate::model::log::filter::with_least;
 use crate::model::{Model, Overlay, Screen};
 use mission::Severity;
 
-/// Brings the lists of events up to date with log and filter.
+/// Updates the list of events for the current log and filter.
 pub(super) fn refresh(model: &mut Model) {
     model.ui.events.matches.refresh(&model.ui.needle, &model.live.run.log);
 }
 
-/// Whether an event is selected on the screen of events.
+/// Checks that an event is selected on the events screen.
 pub(crate) fn is_selected(model: &Model) -> Result<(), String> {
     on_screen(model, Screen::Events)?;
     demand(!model.ui.events.matches.is_empty(), "no event is selected")
 }
 
-/// Opens the whole event, or closes it; from another screen it opens it.
+/// Opens or closes the detail of an event; from a different screen, opens it.
 pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let Some(selected) = model.ui.events.selected() else {
         return refuse(model, "no event is selected".into());
     };
     let is_shown = model.ui.screen == Screen::Events && model.ui.events.is_open;
-    // What is read stays selected while others come.
+    // The open event stays selected while new ones arrive.
     (model.ui.events.at, model.ui.events.is_open) = (Some(selected), !is_shown);
     model.ui.go(Screen::Events);
     Vec::new()
 }
 
-/// Closes the whole event; whether one was open.
+/// Closes the detail of an event; returns whether one was open.
 pub(super) fn close(model: &mut Model) -> bool {
     let is_shown = model.ui.overlay == Overlay::None && model.ui.screen == Screen::Events;
     is_shown && std::mem::take(&mut model.ui.events.is_open)
 }
 
-/// Selects the next event of the same kind, or the one before.
+/// Selects the next or previous event of the same kind.
 pub(crate) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
     let events = &mut model.ui.events;
     let next = events
@@ -52,7 +52,7 @@ pub(crate) fn next_like(model: &mut Model, back: bool) -> Vec<Effect> {
     }
 }
 
-/// Shows the place of the selected event on the map.
+/// Shows the position of the selected event on the map.
 pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     let run = &model.live.run;
     let entry = model.ui.events.selected().and_then(|number| run.log.get(number));
@@ -63,17 +63,17 @@ pub(crate) fn show_place(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Copies the line of the selected event.
+/// Copies the line of the selected event to the clipboard.
 pub(crate) fn copy(model: &mut Model) -> Vec<Effect> {
     let entry = model.ui.events.selected().and_then(|number| model.live.run.log.get(number));
     let Some(line) = entry.map(crate::model::Entry::line) else {
         return refuse(model, "no event is selected".into());
     };
-    model.say(Severity::Info, "line sent to the clipboard of the terminal");
+    model.say(Severity::Info, "line sent to the terminal's clipboard");
     vec![Effect::Copy(line)]
 }
 
-/// Another least severity, as a term of the filter.
+/// Changes the minimum severity to the next one, as a term of the filter.
 pub(crate) fn next_severity(model: &mut Model) {
     let next = match model.ui.events.matches.filter().least() {
         Severity::Info => Severity::Watch,
@@ -84,14 +84,14 @@ pub(crate) fn next_severity(model: &mut Model) {
     set_least(model, next);
 }
 
-/// Lists the events of a severity and above.
+/// Lists only events of at least the given severity.
 pub(super) fn set_least(model: &mut Model, least: Severity) {
     model.ui.needle = with_least(&model.ui.needle, least);
     model.ui.events.at = None;
     refresh(model);
 }
 
-/// Opens the line in which the filter is typed; what is typed next is a term of its own.
+/// Opens the filter line; what is typed next is a separate term.
 pub(crate) fn open_filter(model: &mut Model) -> Vec<Effect> {
     let mut text = typing::filtered(model).to_owned();
     if !text.is_empty() && model.ui.screen.row().filter.is_none() && !text.ends_with(' ') {

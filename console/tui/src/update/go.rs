@@ -1,4 +1,4 @@
-//! From screen to screen, and what they open: scenarios, past runs, work beside the screen.
+//! Moves between screens and opens what they list: scenarios, past runs, background work.
 
 use super::message::{Effect, Job};
 use super::offer::{nothing_under_way, refuse};
@@ -16,19 +16,19 @@ pub(crate) fn go(model: &mut Model, screen: Screen) -> Vec<Effect> {
     looked(screen)
 }
 
-/// Goes back to the screen before, if there is one.
+/// Returns to the previous screen, if there is one.
 pub(crate) fn back(model: &mut Model) -> Option<Vec<Effect>> {
     let before = model.ui.back.pop().or((model.ui.screen != Screen::Home).then_some(Screen::Home))?;
     model.ui.screen = before;
     Some(looked(before))
 }
 
-/// What is on the disk is looked at whenever a screen shows it.
+/// Rescans the disk whenever a screen shows its contents.
 fn looked(screen: Screen) -> Vec<Effect> {
     if screen.row().lists_runs { vec![Effect::Look] } else { Vec::new() }
 }
 
-/// Opens what is selected on the home screen.
+/// Opens the selected item of the home screen.
 pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
     let home = &model.home;
     if home.list == HomeList::Runs {
@@ -46,22 +46,22 @@ pub(crate) fn open_selected(model: &mut Model) -> Vec<Effect> {
     open(model, source, None)
 }
 
-/// The result of the selected run, if it is the run that is open; any other is played back.
+/// Shows the result of the selected run if it is the open one; replays any other run.
 fn go_to_run(model: &mut Model) -> Vec<Effect> {
     let is_open = selected_run(model).is_some() && selected_run(model) == result_name(model);
     if is_open { go(model, Screen::Result) } else { begin(model, ActionId::Replay) }
 }
 
-/// Opens a scenario: its mission is laid out and waits; nothing moves.
+/// Opens a scenario: its mission is laid out and waits for the start; nothing moves.
 pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerChoice>) -> Vec<Effect> {
     if let Err(why) = nothing_under_way(model) {
         return refuse(model, why);
     }
     let id = RunId(model.live.id.0 + 1);
-    // A speed that was set for one mission is not meant for the next: that could be over before anybody looks.
+    // A speed set for one mission must not carry over: the next mission could be over before anybody looks.
     let speed = model.first_speed;
     let before = std::mem::take(&mut model.live);
-    // Of runs that are opened in haste, the last that was open is kept.
+    // If several runs are opened in quick succession, the last one that was fully open is kept.
     let before =
         if before.is_opening { before.before } else { before.source.is_some().then(|| Box::new(before)) };
     model.live =
@@ -72,7 +72,7 @@ pub(super) fn open(model: &mut Model, source: Source, planner: Option<PlannerCho
     vec![Effect::Open { id, source, planner, speed }]
 }
 
-/// A scenario cannot be opened: the run that was open before stays open, if there is one.
+/// Reports that a scenario cannot be opened; the previously open run, if any, stays open.
 pub(super) fn not_opened(model: &mut Model, why: String) {
     let Some(before) = model.live.before.take() else {
         model.live.is_opening = false;
@@ -82,18 +82,18 @@ pub(super) fn not_opened(model: &mut Model, why: String) {
     model.live = *before;
     model.ui.screen = model.ui.back.pop().unwrap_or(Screen::Home);
     news(model, &Cause::Console, Severity::Warn, format!("not opened: {why}"));
-    // The rest is in the events.
+    // The rest of the message is in the events.
     model.say(Severity::Warn, format!("not opened: {}", why.lines().next().unwrap_or_default()));
 }
 
-/// Opens the scenario of the run that is open once more, with the planner that it had.
+/// Reopens the scenario of the current run with the same planner.
 pub(crate) fn again(model: &mut Model) -> Vec<Effect> {
     let Some(source) = model.live.source.clone() else { return Vec::new() };
     let planner = model.live.run.planning.choice.clone();
     open(model, source, planner)
 }
 
-/// Selects another missed area, so many further down, and shows it in the middle of the map.
+/// Moves the selection down by `by` missed areas and centres the map on the area.
 pub(crate) fn select_missed(model: &mut Model, by: isize) {
     let places: Vec<Point> = model.live.missed().iter().map(|area| area.at).collect();
     model.ui.missed = model.ui.missed.saturating_add_signed(by).min(places.len().saturating_sub(1));
@@ -106,17 +106,17 @@ pub(crate) fn select_missed(model: &mut Model, by: isize) {
     }
 }
 
-/// The run that a command is about, if there is one.
+/// The run that a command applies to, if there is one.
 pub(super) fn named_run(model: &Model) -> Option<String> {
     (model.ui.screen.row().run)(model)
 }
 
-/// The run that is selected on the home screen, in its list of runs.
+/// The run selected in the list of runs on the home screen.
 pub(crate) fn run_at_home(model: &Model) -> Option<String> {
     if model.home.list == HomeList::Runs { selected_run(model) } else { None }
 }
 
-/// The run that is open: played back, or ended.
+/// The open run, if it is a replay or has ended.
 pub(crate) fn open_run(model: &Model) -> Option<String> {
     model.live.replay.as_ref().map(|replay| replay.name.clone()).or_else(|| result_name(model))
 }
@@ -129,7 +129,7 @@ fn result_name(model: &Model) -> Option<String> {
     model.live.result.as_ref()?.name.clone()
 }
 
-/// Begins work on the past run that the screen is about.
+/// Starts work on the past run that the screen is about.
 pub(crate) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     match named_run(model) {
         Some(run) => begin_on(model, id, run),
@@ -137,7 +137,7 @@ pub(crate) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     }
 }
 
-/// Begins work on a past run.
+/// Starts work on a past run.
 pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effect> {
     let (job, news) = match id {
         ActionId::Rescan => {
@@ -155,7 +155,7 @@ pub(super) fn begin_on(model: &mut Model, id: ActionId, run: String) -> Vec<Effe
     vec![Effect::Do(job)]
 }
 
-/// The recording of a run; of the one that is played back at the moment that is shown.
+/// The job that opens the recording of a run; if the run is being replayed, at the current moment.
 fn view(model: &Model, run: String) -> Job {
     match &model.live.replay {
         Some(replay) if replay.name == run => {
@@ -165,7 +165,7 @@ fn view(model: &Model, run: String) -> Job {
     }
 }
 
-/// Work on a past run is done.
+/// Reports that work on a past run has finished.
 pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>) -> Vec<Effect> {
     let (severity, text) = match result {
         Ok(text) => (Severity::Info, format!("{}: {text}", job.run())),
@@ -177,7 +177,7 @@ pub(super) fn done(model: &mut Model, job: &Job, result: Result<String, String>)
 }
 
 impl Job {
-    /// Name of the run that it is about.
+    /// The name of the run that the job is about.
     pub fn run(&self) -> &str {
         match self {
             Self::Verify(run) | Self::Report(run) | Self::View(run) | Self::ViewAt(run, _) => run,

@@ -1,4 +1,4 @@
-//! What the console measures of itself, against its limits.
+//! Compares what the console measures of itself with the limits.
 
 use crate::model::alarms::{
     Reading,
@@ -7,11 +7,11 @@ use crate::model::alarms::{
 use crate::model::{Cause, Measured, Model, Watches, health};
 use mission::Severity;
 
-/// Takes in what the console measured of itself.
+/// Takes a measurement of the console itself.
 pub(super) fn take(model: &mut Model, measured: Measured) {
     match measured {
         Measured::Screen { response_ms, skipped } => {
-            // Without keys nobody waits.
+            // Without key presses, nobody is waiting.
             let response_ms = response_ms.unwrap_or(0.0);
             compare(model, &RESPONSE, response_ms);
             compare(model, &FRAMES, f64::from(skipped));
@@ -20,12 +20,12 @@ pub(super) fn take(model: &mut Model, measured: Measured) {
     }
 }
 
-/// Takes in how far the recorder is behind.
+/// Takes the number of ticks by which the recorder is behind.
 pub(super) fn take_lag(model: &mut Model, ticks: u64) {
     compare(model, &RECORDER_LAG, ticks as f64);
 }
 
-/// A figure that the console watches.
+/// A watched figure of the console.
 struct Figure {
     cause: Cause,
     severity: Severity,
@@ -41,7 +41,7 @@ const RESPONSE: Figure = Figure {
     limit: health::RESPONSE_MS,
     unit: "ms",
     watch: |watches| &mut watches.response,
-    text: "console answers slowly: key to frame",
+    text: "console responds slowly: key to frame",
 };
 const FRAMES: Figure = Figure {
     cause: Cause::Frames,
@@ -75,7 +75,7 @@ fn compare(model: &mut Model, figure: &Figure, value: f64) {
     let watch = watch(&mut model.console.watches);
     let edge = watch.take(limit, value, now_s);
     let run = &mut model.live.run;
-    // A run that was opened since has no alarms yet.
+    // A run opened since then has no alarms yet.
     let is_lost = watch.is_on() && run.alarms.get(cause).is_none();
     let edge = edge.or(is_lost.then_some(Edge::Raised));
     match edge {

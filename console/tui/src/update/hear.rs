@@ -1,4 +1,4 @@
-//! News of the run that is open.
+//! Handles messages about the open run.
 
 use super::{Effect, RunMsg, go, health, news, preflight, replay, what_if};
 use crate::model::{
@@ -7,8 +7,9 @@ use crate::model::{
 };
 use mission::{Event, EventKind, Order, PlanId, Severity};
 
-/// Takes in news of a run. News of one that is not open any more is late and dropped; of one that may stay open, because
-/// the next cannot be opened, it is taken in, but nothing follows from it.
+/// Handles a message about a run. A message about a run that is no longer open is late and is dropped. A message
+/// about the previous run, which may stay open if the next one cannot be opened, is folded in but has no other
+/// effect.
 pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
     if let Some(before) = model.live.before.take_if(|before| before.id == id) {
         let next = std::mem::replace(&mut model.live, *before);
@@ -36,7 +37,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
                 return what_if::forget(model);
             }
             let has_opened = events.iter().any(|event| matches!(event.kind, EventKind::RunOpened(_)));
-            // The operator shall see the plan before anything moves.
+            // The operator must see the plan before anything moves.
             return if has_opened && model.live.waits() {
                 vec![Effect::Order(Order::Plan)]
             } else {
@@ -57,7 +58,8 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
         }
         RunMsg::WriterGone => {
             model.live.is_cut_off = true;
-            let text = "the run was not closed: its console is gone; values are the last ones of its journal";
+            let text = "the run was not closed: its console has exited; the values are the last in its \
+            journal";
             news(model, &Cause::Writer, Severity::Crit, text.into());
         }
         RunMsg::Health(health) => take_health(model, health),
@@ -70,7 +72,7 @@ pub(super) fn hear(model: &mut Model, id: RunId, msg: RunMsg) -> Vec<Effect> {
             model.live.busy = work.map(|(work, limit_s)| Busy { work, limit_s, since_mono_s, at: None });
         }
         RunMsg::BusyAt { share, what } => {
-            // Progress that is reported after the work is done is ignored.
+            // Progress reported after the end of the work is ignored.
             if let Some(busy) = &mut model.live.busy {
                 busy.at = Some((share, what));
             }
@@ -104,21 +106,21 @@ fn take(model: &mut Model, event: &Event) {
     withdraw_start(model);
 }
 
-/// Takes back a start that was asked for with a plan that is not the one to be run any more.
+/// Withdraws a start that was requested with a plan that has since been replaced.
 fn withdraw_start(model: &mut Model) {
     let ready = model.live.run.standing.ready_plan();
     let is_other = |seen: Option<PlanId>| seen.is_some() && seen != ready;
     if matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(seen)) if is_other(seen)) {
         model.ui.overlay = Overlay::None;
-        model.say(Severity::Warn, "question cancelled: the plan is being made again");
+        model.say(Severity::Warn, "question cancelled: a new plan is being made");
     }
     if model.live.preflight.is_starting && is_other(model.live.preflight.seen) {
         model.live.preflight.is_starting = false;
-        model.say(Severity::Warn, "start cancelled: the plan is being made again");
+        model.say(Severity::Warn, "start cancelled: a new plan is being made");
     }
 }
 
-/// Takes back a question that was asked under circumstances that no longer hold.
+/// Withdraws a question that was asked under conditions that have changed.
 fn withdraw(model: &mut Model, withdrawn: Withdrawn) {
     let is_withdrawn = match (withdrawn, &model.ui.overlay) {
         (Withdrawn::Nothing, _) => false,
@@ -147,7 +149,7 @@ fn take_health(model: &mut Model, health: Health) {
     model.live.health = health;
 }
 
-/// The run is over: who watched it sees what it has achieved.
+/// The run is over: anybody watching it is shown the result.
 fn closed(model: &mut Model, result: RunResult) -> Vec<Effect> {
     let combine =
         result.name.as_ref().filter(|_| result.is_kept).and_then(|name| model.live.with_earlier(name));

@@ -1,8 +1,8 @@
-//! Keys that are held down: they agree to nothing and step nothing.
+//! Held keys: a key that is held down neither confirms a question nor makes a step.
 //!
-//! Few terminals say that a key repeats, so time has to tell. A key that is held down repeats for the first time after half a
-//! second or so, and then many times a second. A press within [`KeyPress::REPEATS_WITHIN`] of the same key is a repeat; one
-//! that comes later may be the first repeat, and counts only when no other press follows it as soon.
+//! Few terminals report that a key repeats, so the console judges by time. A held key first repeats after half a
+//! second or so, and then many times a second. A press within [`KeyPress::REPEATS_WITHIN`] of the same key is a
+//! repeat. A later press may be the first repeat, so it counts only if no other press follows within that time.
 
 use super::message::Effect;
 use super::press_key;
@@ -10,7 +10,7 @@ use crate::actions::ActionId;
 use crate::keys::{Freshness, KeyPress};
 use crate::model::{Model, Overlay, Settling};
 
-/// Whether an action agrees to what is open over the screen, or moves the robot.
+/// Whether an action confirms the open question or moves the robot.
 pub(super) fn is_agreement(model: &Model, id: ActionId) -> bool {
     let agrees = matches!(
         id,
@@ -19,7 +19,7 @@ pub(super) fn is_agreement(model: &Model, id: ActionId) -> bool {
     agrees && model.ui.overlay != Overlay::None
 }
 
-/// Whether a key was pressed, as far as that is known; if it is not, the press waits until it is.
+/// Whether a key was really pressed; if that is not yet clear, the press is kept until it is.
 pub(super) fn is_pressed(model: &mut Model, press: KeyPress) -> bool {
     match press.freshness() {
         Freshness::Fresh => true,
@@ -35,7 +35,7 @@ pub(super) fn is_pressed(model: &mut Model, press: KeyPress) -> bool {
     }
 }
 
-/// No other press has followed: the key was pressed, and does what it does if the same is still open.
+/// No further press has followed, so the key was pressed: carries out its action if the overlay is still the same.
 pub(super) fn settled(model: &mut Model) -> Vec<Effect> {
     let Some(settling) = model.console.settling.take() else { return Vec::new() };
     if settling.over != model.ui.overlay {

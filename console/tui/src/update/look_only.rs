@@ -1,10 +1,10 @@
-//! What a console that looks on does not do.
+//! The actions that a view-only console refuses.
 
 use super::offer::demand;
 use crate::actions::{Action, Reach};
 use crate::model::{Access, Model};
 
-/// Whether this console may do such things at all.
+/// Checks that this console may carry out an action at all.
 pub(super) fn allowed(model: &Model, action: &Action) -> Result<(), String> {
     match model.live.access {
         Access::Control => Ok(()),
@@ -13,7 +13,7 @@ pub(super) fn allowed(model: &Model, action: &Action) -> Result<(), String> {
     }
 }
 
-/// Why no mission here takes an order, if none does.
+/// Checks that this console can give orders; the error is the reason why not.
 pub(super) fn no_orders(model: &Model) -> Result<(), String> {
     match model.live.access {
         Access::Control => Ok(()),
@@ -22,8 +22,8 @@ pub(super) fn no_orders(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Why a console that looks on does not do something.
-const LOOK_ONLY: &str = "VIEW: this console only looks on; use the console that runs the mission";
+/// The refusal of a view-only console.
+const LOOK_ONLY: &str = "VIEW: this console is view-only; use the console that runs the mission";
 
-/// Why a replay does not do something.
+/// The refusal of a replay.
 const REPLAY: &str = "REPLAY: a past run takes no orders; <home>: open a scenario";

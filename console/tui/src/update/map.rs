@@ -1,28 +1,28 @@
-//! What the operator sees of the map: zoom, part of the floor, cursor.
+//! The operator's view of the map: zoom, position, cursor.
 
 use super::offer::demand;
 use crate::model::ui::{MAX_ZOOM, MapView};
 use crate::model::{Model, Pane};
 use world::{Point, Vector};
 
-/// Steps of the cursor across what the map shows.
+/// The number of cursor steps across the visible part of the map.
 const CURSOR_STEPS: f64 = 64.0;
-/// Steps of the map's window across what it shows.
+/// The number of pan steps across the visible part of the map.
 const PAN_STEPS: f64 = 4.0;
 
-/// Whether the map is shown.
+/// Checks that the map is shown.
 pub(crate) fn is_shown(model: &Model) -> Result<(), String> {
     demand(model.ui.shows(Pane::Map), "the map is not shown; <next-pane>: next pane (needs 60x16)")
 }
 
-/// Whether the map can be moved, or a cursor on it.
+/// Checks that the map or its cursor can be moved.
 pub(crate) fn can_pan(model: &Model) -> Result<(), String> {
     is_shown(model)?;
     let moves = model.ui.map.zoom > 0 || model.ui.cursor.is_some();
     demand(moves, "the whole tank is shown; <zoom-in>: zoom in first")
 }
 
-/// Enlarges or reduces the map about its middle.
+/// Zooms the map about its centre.
 pub(crate) fn zoom(model: &mut Model, by: i8) {
     let map = &mut model.ui.map;
     map.zoom = map.zoom.saturating_add_signed(by).min(MAX_ZOOM);
@@ -31,7 +31,7 @@ pub(crate) fn zoom(model: &mut Model, by: i8) {
     }
 }
 
-/// Enlarges or reduces the map so that a place stays where it is.
+/// Zooms the map, keeping a point in place.
 pub(super) fn zoom_at(model: &mut Model, by: i8, place: Point) {
     let (before, Some(center)) = (model.ui.map.zoom, center(model)) else { return };
     zoom(model, by);
@@ -41,7 +41,7 @@ pub(super) fn zoom_at(model: &mut Model, by: i8, place: Point) {
     }
 }
 
-/// Moves the map by a quarter of what it shows, or its cursor by a small step.
+/// Pans the map by a quarter of its visible part, or moves its cursor by a small step.
 pub(crate) fn pan(model: &mut Model, direction: Vector) {
     let Some((low, high)) = bounds(model) else { return };
     let seen_m = (high - low).max() / f64::from(1_u32 << model.ui.map.zoom);
@@ -50,7 +50,7 @@ pub(crate) fn pan(model: &mut Model, direction: Vector) {
             let moved = cursor + direction * (seen_m / CURSOR_STEPS);
             let moved = within(moved, (low, high));
             model.ui.cursor = Some(moved);
-            // The cursor takes the window along.
+            // The visible part follows the cursor.
             let is_seen = center(model).is_none_or(|center| (moved - center).amax() <= seen_m / 2.0);
             if model.ui.map.zoom > 0 && !is_seen {
                 show(model, moved);
@@ -60,14 +60,14 @@ pub(crate) fn pan(model: &mut Model, direction: Vector) {
     }
 }
 
-/// Moves the map by some way; the robot need not stay in the middle then.
+/// Pans the map by some distance; it then no longer follows the robot.
 pub(super) fn shift(model: &mut Model, way: Vector) {
     if let Some(center) = center(model) {
         show(model, center + way);
     }
 }
 
-/// Begins to read the map, at the robot's place if the whole tank is seen, or ends it.
+/// Opens the map cursor, at the robot's position if the whole tank is visible, or closes it.
 pub(crate) fn inspect(model: &mut Model) {
     let robot = model.live.run.position.pose.map(|pose| pose.position);
     let begin = robot.filter(|_| model.ui.map.zoom == 0).or_else(|| center(model));
@@ -75,7 +75,7 @@ pub(crate) fn inspect(model: &mut Model) {
     turn_to_map(model);
 }
 
-/// Reads the map at a place.
+/// Puts the map cursor at a point.
 pub(super) fn read(model: &mut Model, place: Point) {
     model.ui.cursor = bounds(model).map(|bounds| within(place, bounds));
     turn_to_map(model);
@@ -95,14 +95,14 @@ fn within(place: Point, (low, high): (Point, Point)) -> Point {
     Point::new(place.x.clamp(low.x, high.x), place.y.clamp(low.y, high.y))
 }
 
-/// The middle of the map.
+/// The centre of the map.
 fn center(model: &Model) -> Option<Point> {
     let (low, high) = bounds(model)?;
     let robot = model.live.run.position.pose.as_ref().map(|pose| pose.position);
     Some(model.ui.map_center(nalgebra::center(&low, &high), robot))
 }
 
-/// Puts a place into the middle of the map.
+/// Centres the map on a point.
 fn show(model: &mut Model, place: Point) {
     let Some((low, high)) = bounds(model) else { return };
     model.ui.map.follow = false;

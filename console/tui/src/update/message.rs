@@ -1,4 +1,4 @@
-//! What goes into the model, and what has to be done outside in answer.
+//! The messages that go into the model, and the effects that come out.
 
 use crate::actions::ActionId;
 use crate::keys::KeyPress;
@@ -10,96 +10,97 @@ use crate::model::{
 use account::{Account, Estimate, Notes, Summary};
 use mission::{AskId, Check, Event, Order, PlannerChoice, PlannerInfo, RefusedPlugin, Severity};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use world::Point;
 
-/// What reaches the model.
+/// A message to the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Msg {
     /// A key went down.
     Key(KeyPress),
-    /// A key that might have been held down was pressed: no other press has followed.
+    /// A key that might have been held down was really pressed: no other press has followed.
     Settled,
     /// Text was pasted.
     Paste(String),
-    /// A command line that was not typed into the screen: from a script or from stdin.
+    /// A command line from a script or from stdin, not typed on the screen.
     Line(String),
-    /// The mouse did something.
+    /// Mouse input.
     Mouse(Mouse),
-    /// The terminal has this size now.
+    /// The terminal has changed size.
     Resize {
-        /// Columns.
+        /// The width, columns.
         width: u16,
-        /// Rows.
+        /// The height, rows.
         height: u16,
     },
-    /// The time.
+    /// The current time.
     Time(Times),
-    /// What the console measured of itself.
+    /// A measurement of the console itself.
     Measured(Measured),
-    /// News of a run; of one that is not open any more it is dropped.
+    /// A message about a run; dropped if the run is no longer open.
     Run(RunId, RunMsg),
-    /// What was found on the disk.
+    /// The contents of the disk.
     Found(Box<Found>),
-    /// Which parameters are kept under names.
+    /// The saved presets.
     Presets(Vec<Preset>),
-    /// A job is done, or why it failed, as a sentence.
+    /// A job has finished: its result, or why it failed, as a sentence.
     Done(Job, Result<String, String>),
-    /// Which planners were found, and which plugins were not accepted.
+    /// The result of a survey of the plugins.
     Planners {
-        /// Planners to choose from.
+        /// The planners to choose from.
         found: Vec<PlannerInfo>,
-        /// Plugins that cannot be chosen.
+        /// The refused plugins.
         refused: Vec<RefusedPlugin>,
     },
-    /// News of the console itself; a CRIT one becomes an alarm.
+    /// A message about the console itself; a CRIT one becomes an alarm.
     Notice {
-        /// How much it asks of the operator.
+        /// The severity.
         severity: Severity,
-        /// What, as a sentence.
+        /// The message, as a sentence.
         text: String,
     },
-    /// The process was sent a signal.
+    /// The process received a signal.
     Signal(Signal),
     /// A thread of the console panicked.
     ThreadPanicked {
-        /// Its name.
+        /// The name of the thread.
         thread: String,
-        /// What it said.
+        /// The panic message.
         message: String,
     },
 }
 
-/// What the mouse did.
+/// Mouse input.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Mouse {
-    /// A button was pressed and came up at the same place.
+    /// A button was pressed and released at the same place.
     Click(Target),
-    /// It was dragged on the map, from one place in the tank to another.
+    /// The mouse was dragged on the map, from one point of the tank to another.
     Drag {
-        /// Place where it was, metres.
+        /// The point where the drag step began, metres.
         from: Point,
-        /// Place where it is, metres.
+        /// The current point, metres.
         to: Point,
     },
     /// The wheel was turned.
     Wheel {
-        /// Away from the operator.
+        /// Whether the wheel was turned away from the operator.
         up: bool,
-        /// What it was on.
+        /// The target under the mouse.
         on: Target,
     },
 }
 
-/// What the mouse is on.
+/// The screen element under the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Target {
-    /// A place on the map, metres, tank frame.
+    /// A point on the map, metres, tank frame.
     Map(Point),
-    /// The name of a key.
+    /// A key name.
     Key(ActionId),
-    /// A line of a list, by its place in it.
+    /// A line of a list, by its index.
     Row(Rows, usize),
-    /// Something else.
+    /// Anything else.
     Else,
 }
 
@@ -112,196 +113,231 @@ pub enum Rows {
     Runs,
     /// The table of alarms.
     Alarms,
-    /// The events, the newest first.
+    /// The events, newest first.
     Events,
-    /// Plugin files.
+    /// The plugin files.
     Plugins,
-    /// Missed areas of the result.
+    /// The missed areas on the result screen.
     Missed,
     /// Past runs on the review screen.
     Past,
 }
 
-/// News of a run that is open.
+/// A message about an open run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum RunMsg {
-    /// The scenario could not be opened, with file, line and key.
+    /// The scenario could not be opened; the reason, with file, line and key.
     OpenFailed(String),
     /// Events of the mission.
     Events(Vec<Event>),
-    /// The console that flies the run is gone without having closed it; only who looks on hears that.
+    /// The console that runs the mission has exited without closing the run; sent only to a view-only console.
     WriterGone,
-    /// How the engine does.
+    /// The health of the engine.
     Health(Health),
     /// An order did not reach the mission.
     OrderFailed {
-        /// Which.
+        /// The order.
         order: Order,
-        /// Why, as a sentence.
+        /// The reason, as a sentence.
         why: String,
     },
-    /// What a planner is doing that takes its time (`Planning (rpf)`), and how long that may take, seconds; `None` when
-    /// it is done.
+    /// Long work by a planner (`Planning (rpf)`) and its time limit, seconds; `None` when the work is done.
     Busy(Option<(String, Option<f64>)>),
-    /// How far that is.
+    /// The progress of that work.
     BusyAt {
-        /// Share done, 0 to 1.
+        /// The share done, 0 to 1.
         share: f64,
-        /// What is being done, a few words; may be empty.
+        /// The current activity in a few words; may be empty.
         what: String,
     },
-    /// What was found before the start: disk, recorder, engine, clock.
+    /// The results of the checks before the start: disk, recorder, engine, clock.
     Checked(Vec<Check>),
-    /// What a plan promises, and the ask that it answers.
+    /// The estimate for a plan, and the ask that the plan answers.
     Estimated(Option<AskId>, Box<Estimate>),
-    /// How far the plan is that is made for comparison: the share done, and what is being done.
+    /// The progress of the plan for comparison: the share done, and the current activity.
     CompareAt(f64, String),
-    /// A plan was made for comparison, or why not, as a sentence.
+    /// The plan for comparison, or why there is none, as a sentence.
     Compared(PlannerChoice, Result<Box<GhostPlan>, String>),
-    /// How far the forecast of a planner is: the share of the task done.
+    /// The progress of a planner's forecast: the share of the task done.
     ForecastAt(PlannerChoice, f64),
-    /// How the mission would go on with a planner, or why that is not known, as a sentence.
+    /// The forecast for a planner, or why there is none, as a sentence.
     Forecast(PlannerChoice, Result<Box<Forecast>, String>),
     /// The run has ended and its files are closed.
     Closed(Box<RunResult>),
-    /// What a re-scan and the runs before it scanned together, or why that is not known, as a sentence.
+    /// The floor that a re-scan and the runs before it scanned together, or why that is unknown, as a sentence.
     Combined(Result<Box<Account>, String>),
-    /// News of a past run that is played back.
+    /// A message about a replay.
     Replay(ReplayMsg),
 }
 
-/// News of a past run that is played back.
+/// A message about a replay.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ReplayMsg {
-    /// More of a run is loaded; the marks are those that are new.
+    /// More of a run has been loaded; contains only the new marks.
     Loaded(Side, Reel),
-    /// The run at another moment.
+    /// The run at a different moment.
     At(Side, Box<Run>),
-    /// Events between the moment before and a later one.
+    /// The events between the previous moment and a later one.
     Moved(Side, Vec<Event>),
-    /// The time of the run goes on no more: its end is reached.
+    /// Playback has stopped at the end of the run.
     Stopped,
-    /// The report of a run; for the one that is played with where it is kept.
+    /// The report of a run; for the replayed run, also where it is stored.
     Reported(Side, Box<Summary>, String),
-    /// A run cannot be read, with the reason as a sentence.
+    /// A run cannot be read; the reason, as a sentence.
     Failed(Side, String),
-    /// What people noted about the run that is played, or why that cannot be read or written.
+    /// The notes about the replayed run, or why they cannot be read or written.
     Noted(Result<Notes, String>),
 }
 
-/// What a replay is asked for.
+/// A request to the replay.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Transport {
-    /// Let time go on, or stop it.
+    /// Play or pause.
     Play(bool),
-    /// Go to a moment: mission time, seconds.
+    /// Seek to a moment: mission time, seconds.
     Seek(f64),
-    /// Which moments of the two runs correspond.
+    /// Change how moments of the two runs are matched.
     Align(Align),
-    /// Read another run beside it, by the name of its folder, or none.
+    /// Load a second run for comparison, by the name of its folder; `None` removes it.
     Compare(Option<String>),
-    /// Keep what people noted.
+    /// Save the notes.
     Keep(Notes),
 }
 
 /// A signal to the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(strum::EnumCount))]
 pub enum Signal {
-    /// SIGINT: as Ctrl-C.
+    /// SIGINT: same as Ctrl-C.
     Interrupt,
-    /// SIGTERM: hold and leave.
+    /// SIGTERM: hold and quit.
     Terminate,
-    /// SIGHUP, or the terminal was closed: hold and leave.
+    /// SIGHUP, or the terminal was closed: hold and quit.
     Hangup,
-    /// Any other signal that would end the process, by its number: hold and leave.
+    /// Any other signal that would end the process, by number: hold and quit.
     End(i32),
-    /// SIGTSTP: hold and give the terminal back for a while.
+    /// SIGTSTP: hold, then suspend and restore the terminal.
     Stop,
     /// SIGCONT: redraw.
     Continue,
 }
 
-/// Work on past runs that is done beside the screen.
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Interrupt => "SIGINT",
+            Self::Terminate => "SIGTERM",
+            Self::Hangup => "SIGHUP",
+            Self::End(number) => return write!(f, "signal {number}"),
+            Self::Stop => "SIGTSTP",
+            Self::Continue => "SIGCONT",
+        })
+    }
+}
+
+/// Background work on a past run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Job {
-    /// Compute a run again and compare it with its journal.
+    /// Recompute a run and compare it with its journal.
     Verify(String),
     /// Write the report of a run beside its journal.
     Report(String),
     /// Open the recording of a run in the viewer.
     View(String),
-    /// The same while the run is played back, with the moment that is shown, such as `T+00:12:30`.
+    /// Open the recording at the current moment of the replay, such as `T+00:12:30`.
     ViewAt(String, String),
 }
 
-/// What the caller has to do, in order.
+/// An effect that the caller carries out, in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Effect {
-    /// Close the run that is open, if one is, and open a scenario.
+    /// Close the open run, if any, and open a scenario.
     Open {
-        /// What the new run is called.
+        /// The id of the new run.
         id: RunId,
         /// The scenario.
         source: Source,
         /// The planner to use instead of the scenario's.
         planner: Option<PlannerChoice>,
-        /// How fast it shall go.
+        /// The speed of the mission.
         speed: Speed,
     },
-    /// Close the run that is open, if one is, and play a past one back.
+    /// Close the open run, if any, and replay a past one.
     Replay {
-        /// What the new run is called.
+        /// The id of the new run.
         id: RunId,
-        /// Name of its folder.
+        /// The name of the run's folder.
         run: String,
     },
-    /// Something for the replay that is open.
+    /// A request to the open replay.
     Transport(Transport),
-    /// Look at everything outside the screen that the start depends on.
+    /// Run the start checks that need access outside the screen.
     Check {
-        /// Space that the recording of the mission is expected to take, bytes.
+        /// The expected size of the mission's recording, bytes.
         needed_bytes: u64,
     },
-    /// Have another planner plan the mission that waits, for comparison; one that is being made is given up.
+    /// Have a different planner plan the waiting mission, for comparison; cancels any such planning in progress.
     Compare(PlannerChoice),
-    /// Forecast how the held mission would go on with some planners; forecasts that are being made are given up.
+    /// Forecast how the held mission would continue with the given planners; cancels any forecasts in progress.
     Forecast(Vec<PlannerChoice>),
-    /// Give up the forecasts that are being made.
+    /// Cancel the forecasts in progress.
     StopForecasting,
-    /// Give up the plan that is being made for comparison.
+    /// Cancel the plan for comparison that is being made.
     StopComparing,
-    /// Keep parameters of a planner under a name.
+    /// Save a planner's parameters as a preset.
     SavePreset {
-        /// The name.
+        /// The name of the preset.
         name: String,
         /// The planner with the value of every parameter.
         choice: PlannerChoice,
     },
-    /// Take together what runs on one floor have scanned: the last one is a re-scan of what the others missed.
+    /// Combine the scanned floor of several runs in one tank; the last run is a re-scan of what the others missed.
     Combine(Vec<String>),
-    /// Look at the plugins again.
+    /// Rescan the plugins.
     Survey,
-    /// Look at scenarios, past runs and the disk again.
+    /// Rescan the scenarios, past runs and disk space.
     Look,
-    /// Do something beside the screen.
+    /// Start a background job.
     Do(Job),
     /// Give the mission an order.
     Order(Order),
-    /// Change the pace of the simulation.
+    /// Change the simulation speed.
     Speed(Speed),
     /// Redraw every cell.
     Redraw,
-    /// Give the terminal back and stop the process until SIGCONT.
+    /// Restore the terminal and stop the process until SIGCONT.
     Suspend,
     /// Ring the terminal's bell.
     Bell,
-    /// Take the mouse from the terminal, or give it back.
+    /// Turn mouse capture on or off.
     Mouse(bool),
-    /// Put a line into the clipboard of the terminal.
+    /// Copy a line to the terminal's clipboard.
     Copy(String),
-    /// Close the recording and leave. Orders before it in the list are to be obeyed first.
+    /// Close the recording and quit. Orders earlier in the list must be carried out first.
     Quit {
-        /// The signal that asked for it, if one did.
+        /// The signal that requested it, if any.
         signal: Option<Signal>,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use strum::EnumCount;
+
+    #[test]
+    fn every_signal_has_a_word_of_its_own() {
+        let all: [Signal; Signal::COUNT] = [
+            Signal::Interrupt,
+            Signal::Terminate,
+            Signal::Hangup,
+            Signal::End(3),
+            Signal::Stop,
+            Signal::Continue,
+        ];
+        let words: BTreeSet<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(words.len(), all.len(), "{words:?}");
+        assert!(words.iter().all(|word| !word.is_empty() && !word.contains('_')), "{words:?}");
+    }
 }

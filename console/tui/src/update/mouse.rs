@@ -1,4 +1,5 @@
-//! The mouse. It reads, scrolls, selects and opens; questions about moving or ending are answered on the keyboard alone.
+//! Mouse input. The mouse inspects, scrolls, selects and opens; questions about moving or ending can be answered only
+//! on the keyboard.
 
 use super::act::{act, select};
 use super::map;
@@ -7,10 +8,10 @@ use crate::actions::ActionId;
 use crate::model::home::HomeList;
 use crate::model::{Model, Overlay};
 
-/// Lines that a step of the wheel scrolls.
+/// Lines scrolled per wheel step.
 const WHEEL: isize = 3;
 
-/// Takes in what the mouse did.
+/// Handles mouse input.
 pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
     let is_question = matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping);
     if is_question || !model.ui.mouse {
@@ -36,7 +37,7 @@ pub(super) fn take(model: &mut Model, mouse: Mouse) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Selects a line; a click on the line that is selected opens it, as Enter does, which moves nothing.
+/// Selects a line. A click on the selected line opens it, as Enter does, which never moves the robot.
 fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     let was_focused = !focus(model, list);
     let before = selected(model, list);
@@ -48,7 +49,7 @@ fn click(model: &mut Model, list: Rows, index: usize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Gives a list of the home screen the arrow keys; whether it did not have them.
+/// Gives a list of the home screen the arrow keys; returns whether they were elsewhere before.
 fn focus(model: &mut Model, list: Rows) -> bool {
     let wanted = match list {
         Rows::Scenarios => HomeList::Scenarios,
@@ -58,7 +59,7 @@ fn focus(model: &mut Model, list: Rows) -> bool {
     std::mem::replace(&mut model.home.list, wanted) != wanted
 }
 
-/// The place of the selected line in a list.
+/// The index of the selected line in a list.
 fn selected(model: &Model, list: Rows) -> usize {
     match list {
         Rows::Scenarios => model.home.scenario,

@@ -1,4 +1,4 @@
-//! What can be done now, and why not otherwise. Footer and keys ask the same question.
+//! The actions that are possible now, and why others are not. Footer and keys use the same checks.
 
 use super::go::named_run;
 use super::look_only::{allowed, no_orders};
@@ -8,46 +8,46 @@ use crate::actions::{ActionId, find};
 use crate::model::{Model, Overlay, Screen, ui::Ask};
 use mission::{Order, Phase, PlannerChoice, Refusal, Severity};
 
-/// Whether an action can be done now.
+/// Checks that an action is possible now.
 ///
 /// # Errors
-/// Why not, and what would be right, as a sentence.
+/// Returns the reason why not, and how to proceed, as a sentence.
 pub fn offered(model: &Model, id: ActionId) -> Result<(), String> {
     let Some(action) = find::row(id) else { return Ok(()) };
     allowed(model, action).and_then(|()| (action.can)(model)).map_err(|why| model.console.keys.spelled(&why))
 }
 
-/// Whether there is something that Enter opens.
+/// Checks that Enter has something to open.
 pub(crate) fn accept(model: &Model) -> Result<(), String> {
     if matches!(model.ui.overlay, Overlay::Preflight { .. }) {
-        return demand(model.n_by_hand() > 0, "nothing is ticked by hand in this scenario");
+        return demand(model.n_by_hand() > 0, "this scenario has no manual checks");
     }
     let opens = (model.ui.screen.row().opens)(model).is_some();
     demand(model.ui.overlay != Overlay::None || opens, "nothing to open here")
 }
 
-/// Whether there is another pane to go to.
+/// Checks that there is another pane to switch to.
 pub(crate) fn other_pane(model: &Model) -> Result<(), String> {
     let turns = model.ui.screen == Screen::Home || !model.ui.panes().is_empty();
-    demand(turns, "there is one pane only")
+    demand(turns, "there is only one pane")
 }
 
-/// Whether a mission is open.
+/// Checks that a mission is open.
 pub(crate) fn is_open(model: &Model) -> Result<(), String> {
     demand(model.live.source.is_some(), "no mission is open; choose one on screen 1 (Home)")
 }
 
-/// Whether an area was missed.
+/// Checks that there is a missed area.
 pub(crate) fn missed(model: &Model) -> Result<(), String> {
-    demand(!model.live.missed().is_empty(), "no area was missed")
+    demand(!model.live.missed().is_empty(), "no missed areas")
 }
 
-/// Whether there is a run to do something with.
+/// Checks that a run is selected.
 pub(crate) fn run(model: &Model) -> Result<(), String> {
     demand(named_run(model).is_some(), "no run is selected")
 }
 
-/// What was missed is scanned by the planner of the run.
+/// Checks that the run's own planner, which is used for the re-scan, can scan.
 pub(crate) fn rescan(model: &Model) -> Result<(), String> {
     let planner = model.planner().filter(|_| model.ui.screen == Screen::Result);
     match planner.and_then(|planner| Some((planner, planner.why_no_coverage()?))) {
@@ -59,7 +59,7 @@ pub(crate) fn rescan(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Shows the operator why something is not done.
+/// Shows the operator why an action is refused.
 pub(super) fn refuse(model: &mut Model, why: String) -> Vec<Effect> {
     model.say(Severity::Watch, why);
     Vec::new()
@@ -69,12 +69,12 @@ pub(crate) fn demand(met: bool, otherwise: &str) -> Result<(), String> {
     if met { Ok(()) } else { Err(otherwise.to_owned()) }
 }
 
-/// Whether a screen is shown.
+/// Checks that a screen is shown.
 pub(crate) fn on_screen(model: &Model, screen: Screen) -> Result<(), String> {
     demand(model.ui.screen == screen, &format!("only on screen {} ({})", screen.digit(), screen.name()))
 }
 
-/// Whether the mission would accept an order, by its own table.
+/// Checks that the mission would accept an order, by the mission's own rules.
 pub(crate) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
     no_orders(model)?;
     model.live.run.standing.standing().allows(order).map_err(|why| {
@@ -85,7 +85,7 @@ pub(crate) fn accepted(model: &Model, order: &Order) -> Result<(), String> {
     })
 }
 
-/// Whether there is something to stop, or to resume.
+/// Checks that there is something to stop or resume.
 pub(crate) fn hold(model: &Model) -> Result<(), String> {
     if model.live.is_replay() {
         return replay::is_loaded(model);
@@ -93,11 +93,11 @@ pub(crate) fn hold(model: &Model) -> Result<(), String> {
     if model.live.may_move() { Ok(()) } else { accepted(model, &Order::Hold) }
 }
 
-/// Whether the mission can be started.
+/// Checks that the mission can be started.
 pub(crate) fn start(model: &Model) -> Result<(), String> {
     demand(model.live.failure.is_none(), "the scenario could not be opened")?;
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
-    demand(!model.live.preflight.is_starting, "already checking for the start; <cancel-plan>: cancel")?;
+    demand(!model.live.preflight.is_starting, "start checks already running; <cancel-plan>: cancel")?;
     demand(model.live.asked.is_none(), "start already requested; <hold>: HOLD")?;
     if let Some(busy) = model.live.busy.as_ref().filter(|_| model.live.waits()) {
         return Err(format!("{}: not started; start again when the plan is ready", busy.how_far()));
@@ -110,29 +110,29 @@ pub(crate) fn start(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Ending a mission that was never started would leave a run of nothing.
+/// Checks that the mission was started: ending it before would leave an empty run.
 pub(crate) fn abort(model: &Model) -> Result<(), String> {
     let is_waiting = *model.live.run.phase() == Phase::Waiting && !model.live.may_move();
     demand(!is_waiting, "the mission has not been started")?;
     accepted(model, &Order::Abort)
 }
 
-/// Whether another planner can drive.
+/// Checks that the planner can be changed.
 pub(crate) fn swap(model: &Model) -> Result<(), String> {
     let choice = PlannerChoice::default();
-    // Orders are obeyed in order: after HOLD was sent the list may open without waiting for the answer.
+    // Orders are carried out in sequence, so after HOLD the list may open without waiting for the answer.
     if !model.live.hold_asked {
         accepted(model, &Order::ChoosePlanner(choice))?;
     }
     has_planners(model)
 }
 
-/// Whether a planner was found.
+/// Checks that any planner was found.
 pub(crate) fn has_planners(model: &Model) -> Result<(), String> {
     demand(!model.console.planners.is_empty(), "no planners found yet")
 }
 
-/// Whether there is planning to give up.
+/// Checks that there is planning to cancel.
 pub(crate) fn cancel_plan(model: &Model) -> Result<(), String> {
     let live = &model.live;
     let is_planning = live.waits() && live.busy.is_some();
@@ -140,7 +140,7 @@ pub(crate) fn cancel_plan(model: &Model) -> Result<(), String> {
     demand(is_open, "nothing is being planned")
 }
 
-/// Whether the planner has parameters.
+/// Checks that the planner has parameters.
 pub(crate) fn parameters(model: &Model) -> Result<(), String> {
     match model.planner() {
         None => Err("no planner loaded yet".into()),
@@ -148,7 +148,7 @@ pub(crate) fn parameters(model: &Model) -> Result<(), String> {
     }
 }
 
-/// Whether time passes whose speed can be set.
+/// Checks that time is passing at a speed that can be set.
 pub(crate) fn simulating(model: &Model) -> Result<(), String> {
     if model.live.is_replay() {
         return Ok(());
@@ -156,7 +156,7 @@ pub(crate) fn simulating(model: &Model) -> Result<(), String> {
     demand(model.live.run.about.is_some() && !model.live.run.has_ended(), "no mission is open")
 }
 
-/// One mission at a time.
+/// Checks that no mission is in progress: only one is allowed at a time.
 pub(crate) fn nothing_under_way(model: &Model) -> Result<(), String> {
     if !model.live.is_replay() {
         no_orders(model)?;
@@ -165,28 +165,28 @@ pub(crate) fn nothing_under_way(model: &Model) -> Result<(), String> {
     demand(!model.live.is_under_way(), &why)
 }
 
-/// Whether there is a faster speed, or a slower one.
+/// Checks that there is a faster or slower speed.
 pub(crate) fn speed(model: &Model, faster: bool) -> Result<(), String> {
     simulating(model)?;
     let end = if faster { "already at maximum speed" } else { "already at minimum speed" };
     demand(model.live.speed.stepped(faster).is_some(), end)
 }
 
-/// What would be right, in keys.
+/// How to proceed, as keys.
 fn remedy(why: &Refusal, phase: &Phase) -> Option<&'static str> {
     match why {
         Refusal::NotStarted => Some("<start>: start"),
         Refusal::NoPlan => Some("<plan-again>: plan"),
         Refusal::PlanFailed { .. } => Some("<planner>: change planner"),
-        // Space asks to resume then.
+        // Space asks to resume in this case.
         Refusal::AlreadyStarted if matches!(phase, Phase::Held(_)) => None,
         Refusal::AlreadyStarted
         | Refusal::AlreadyMoving
         | Refusal::StepNeedsHold
         | Refusal::SwapNeedsHold => Some("<hold>: HOLD"),
-        Refusal::Ended(_) => Some("<home> opens another one"),
+        Refusal::Ended(_) => Some("<home> opens another scenario"),
         Refusal::NoShadow => Some(":shadow NAME flies one"),
-        // These say themselves what would be right, as far as there is anything.
+        // These messages already state what to do, if anything.
         Refusal::Planning
         | Refusal::OtherPlan { .. }
         | Refusal::NotLive { .. }

@@ -1,4 +1,4 @@
-//! Keys within lists, lines and questions.
+//! Keys in lists, input lines and questions.
 
 use super::act::act;
 use super::alarms;
@@ -15,19 +15,19 @@ use crate::model::ui::{Ask, Edit, MapLayer, Purpose};
 use crate::model::{Ghost, Model, Overlay, Palette, parameter, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, PlannerInfo, Severity};
 
-/// Puts something over the screen.
+/// Opens an overlay.
 pub(crate) fn open(model: &mut Model, overlay: Overlay) -> Vec<Effect> {
     model.ui.overlay = overlay;
     Vec::new()
 }
 
-/// Opens the line that asks; the robot does not move yet.
+/// Opens the confirmation line; the robot does not move yet.
 pub(crate) fn ask(model: &mut Model, ask: Ask) -> Vec<Effect> {
     model.console.notice = None;
     open(model, Overlay::Confirm(ask))
 }
 
-/// Takes back a question to which Enter would make the robot move; whether one was open.
+/// Withdraws a question whose confirmation would move the robot; returns whether one was open.
 pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     let moves = matches!(
         model.ui.overlay,
@@ -40,7 +40,7 @@ pub(super) fn withdraw_motion(model: &mut Model) -> bool {
     moves
 }
 
-/// Agrees, or takes the selected line; with nothing open, what Enter does on the screen.
+/// Confirms the question or takes the selected line; without an overlay, does what Enter does on the screen.
 pub(crate) fn accept(model: &mut Model) -> Vec<Effect> {
     match model.ui.overlay.clone() {
         Overlay::None => (model.ui.screen.row().enter)(model),
@@ -74,7 +74,7 @@ pub(crate) fn open_parameters(model: &mut Model) -> Vec<Effect> {
     open(model, Overlay::Parameters { selected: 0, edit: None })
 }
 
-/// Back without doing anything.
+/// Closes the overlay without any effect.
 pub(super) fn cancel(model: &mut Model) {
     if let Overlay::Parameters { edit: edit @ Some(_), .. } = &mut model.ui.overlay {
         *edit = None;
@@ -95,7 +95,7 @@ pub(super) fn cancel(model: &mut Model) {
     }
 }
 
-/// Checks again at the moment of the answer: things may have changed since the question.
+/// Carries out a confirmed question. Checks again first: conditions may have changed since the question was asked.
 fn agree(model: &mut Model, ask: &Ask) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let id = match ask {
@@ -125,7 +125,7 @@ fn quit(model: &mut Model) -> Vec<Effect> {
     end.into_iter().chain([Effect::Quit { signal: None }]).collect()
 }
 
-/// Takes the selected planner. Checked again: the mission went on while the list was open.
+/// Takes the selected planner. Checks again first: the mission continued while the list was open.
 fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<Effect> {
     let Some(planner) = model.console.planners.get(selected).cloned() else { return Vec::new() };
     let id = match purpose {
@@ -141,7 +141,7 @@ fn choose_planner(model: &mut Model, purpose: Purpose, selected: usize) -> Vec<E
     choose(model, purpose, planner)
 }
 
-/// Takes a planner for some purpose, if it can fly the mission; whether it shall drive is asked first.
+/// Takes a planner for a purpose, if it can fly the mission; asks for confirmation before it drives.
 pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) -> Vec<Effect> {
     if let Some(why) = model.live.run.cannot_fly(&planner) {
         let why = format!("planner {} {why}", planner.id);
@@ -156,7 +156,7 @@ pub(super) fn choose(model: &mut Model, purpose: Purpose, planner: PlannerInfo) 
     }
 }
 
-/// Has another planner plan the mission that waits.
+/// Has a different planner plan the waiting mission, for comparison.
 fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let since_mono_s = model.console.now.mono_s;
@@ -164,7 +164,7 @@ fn compare(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     vec![Effect::Compare(choice)]
 }
 
-/// Gives up the start that was agreed to, or what is being planned, or takes the second plan from the map.
+/// Cancels a confirmed start or a plan in progress, or removes the second plan from the map.
 pub(crate) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
     if model.live.preflight.is_starting {
         preflight::cancel(model);
@@ -173,12 +173,12 @@ pub(crate) fn cancel_plan(model: &mut Model) -> Vec<Effect> {
     if model.live.plans.ghost.take().is_some() {
         return vec![Effect::StopComparing];
     }
-    // The same planner, restarted, is not asked for a plan.
+    // Restarting the same planner does not request a plan.
     let choice = model.live.run.planning.choice.clone();
     choice.into_iter().map(|choice| Effect::Order(Order::ChoosePlanner(choice))).collect()
 }
 
-/// Opens the line in which a value is typed.
+/// Opens the input line for a value.
 pub(crate) fn edit(model: &mut Model) -> Vec<Effect> {
     let Overlay::Parameters { selected, .. } = model.ui.overlay else { return Vec::new() };
     let Some((planner, choice)) = model.edited() else { return Vec::new() };
@@ -192,7 +192,7 @@ pub(crate) fn edit(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Whether a parameter can be set now; that of a draft always can.
+/// Checks that a parameter can be set now; parameters of a draft always can.
 fn settable(model: &Model, key: &str, value: &ParamValue) -> Result<(), String> {
     if is_drafting(model) {
         return Ok(());
@@ -208,7 +208,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     let info = model.edited().and_then(|(planner, _)| planner.parameters.get(selected));
     let Some(info) = info else { return open(model, Overlay::None) };
     let key = info.key.clone();
-    // Checked again: the mission may have changed while the value was typed.
+    // Check again: the mission may have changed while the value was typed.
     let checked = parameter::parse(info, edit.line.text()).and_then(|value| {
         settable(model, &key, &value)?;
         Ok(value)
@@ -230,7 +230,7 @@ fn take_value(model: &mut Model, selected: usize, edit: Edit) -> Vec<Effect> {
     }
 }
 
-/// Selects another line, so many further down.
+/// Moves the selection down by `by` lines.
 pub(super) fn select(model: &mut Model, by: isize) {
     let lines = match &model.ui.overlay {
         Overlay::Commands(palette) => palette::choices(model, palette).len(),

@@ -1,4 +1,4 @@
-//! The command line: what it offers, completes, recalls and runs.
+//! The command line: suggestions, completion, history and execution.
 
 use super::command::{self, line};
 use super::message::Effect;
@@ -12,21 +12,21 @@ use crate::screens;
 use mission::spelling::nearest;
 use std::cmp::Reverse;
 
-/// Most command lines that are remembered.
+/// The maximum number of command lines remembered.
 const MAX_HISTORY: usize = 100;
 
-/// What the list of the command line offers.
+/// A suggestion in the list of the command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Choice {
     /// A command.
     Command(&'static Action),
-    /// A short name of the operator's, and what it stands for.
+    /// An alias defined by the operator, and the command line it stands for.
     Alias(String, String),
-    /// A value for the command that was typed.
+    /// A value for the typed command.
     Value(String),
 }
 
-/// What the list of a command line offers, best first.
+/// The suggestions for a command line, best first.
 pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
     let text = palette.line.text();
     if let Some(values) = command::candidates(model, palette.line.before()) {
@@ -41,7 +41,8 @@ pub fn choices(model: &Model, palette: &Palette) -> Vec<Choice> {
     exact.into_iter().chain(ranked(model, typed).into_iter().map(Choice::Command)).chain(others).collect()
 }
 
-/// The commands that answer what was typed, best first; with nothing typed, those of other screens and panes come last.
+/// The commands that match the typed text, best first; if nothing is typed, those of other screens and panes come
+/// last.
 fn ranked(model: &Model, typed: &str) -> Vec<&'static Action> {
     let here = [&[Context::Anywhere, Context::Screen], screens::contexts(model)].concat();
     if typed.is_empty() {
@@ -66,7 +67,7 @@ fn weight(risk: Risk) -> u8 {
     }
 }
 
-/// How far down the history a command was last used; larger is more recent.
+/// The position in the history where a command was last used; larger is more recent.
 fn last_use(model: &Model, action: &Action) -> Option<usize> {
     let is_of = |line: &String| line.split_whitespace().next() == Some(action.name);
     model.console.history.iter().rposition(is_of)
@@ -78,7 +79,7 @@ pub(super) fn begin(model: &mut Model, id: ActionId) -> Vec<Effect> {
     open(model, Overlay::Commands(Palette::begun(&format!("{name} "))))
 }
 
-/// Enter: runs the line, or the selected command; what is wrong is shown in the line, which stays open.
+/// Handles Enter: runs the line or the selected command; an error is shown in the line, which stays open.
 pub(super) fn accept(model: &mut Model, palette: Palette) -> Vec<Effect> {
     let text = palette.line.text().trim().to_owned();
     match choices(model, &palette).into_iter().nth(palette.selected) {
@@ -105,7 +106,7 @@ fn unknown(text: &str) -> String {
     format!("no such command{}", near.unwrap_or_default())
 }
 
-/// Runs a command from the list. What needs a value stays open for it.
+/// Runs a command from the list; if it needs a value, the line stays open for it.
 fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     if action.runs_alone() {
@@ -114,7 +115,8 @@ fn chosen(model: &mut Model, action: &'static Action, typed: &str) -> Vec<Effect
     super::act(model, action.id)
 }
 
-/// Runs a line that was not typed into the screen. It answers no question; what stops the robot needs no answer before it.
+/// Runs a line that was not typed on the screen. Such a line cannot answer a question; a command that stops the robot
+/// runs even while a question is open.
 pub(super) fn obey(model: &mut Model, line: &str) -> Vec<Effect> {
     let stops = command::read(model, line).is_ok_and(|command| command.stops());
     if !stops && matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping) {
@@ -154,7 +156,7 @@ fn remember(model: &mut Model, line: &str) {
     history.drain(..surplus);
 }
 
-/// Tab: completes the word at the cursor by the selected line of the list.
+/// Handles Tab: completes the word at the cursor from the selected line of the list.
 pub(super) fn complete(model: &mut Model) {
     let Overlay::Commands(palette) = &model.ui.overlay else { return };
     let mut palette = palette.clone();
@@ -172,7 +174,8 @@ pub(super) fn complete(model: &mut Model) {
     model.ui.overlay = Overlay::Commands(Palette { selected: 0, fault: None, ..palette });
 }
 
-/// Up on the first line of the list goes back in the history, Down in the history forth again; whether it did.
+/// Moves through the history: Up on the first line of the list goes back, Down goes forward; returns whether it
+/// moved.
 pub(super) fn recalls(model: &mut Model, by: isize) -> bool {
     let Overlay::Commands(palette) = &mut model.ui.overlay else { return false };
     let recalled = match by {

@@ -7,10 +7,10 @@ use crate::model::{Model, Pane, Screen};
 use mission::Severity;
 use world::Point;
 
-/// Doublings of the map's scale around a place that is looked at, at least: a quarter of the tank.
+/// The minimum zoom when showing a place, in doublings of the scale: a quarter of the tank.
 const PLACE_ZOOM: u8 = 2;
 
-/// Shows a place of the tank in the middle of the mission's map, under its cursor.
+/// Shows a place on the mission screen's map, centred and with the cursor on it.
 pub(super) fn show(model: &mut Model, place: Point, what: &str) -> Vec<Effect> {
     let Some(about) = &model.live.run.about else { return refuse(model, "no mission loaded yet".into()) };
     let (low, high) = about.world.boundary.bounds();

@@ -1,4 +1,4 @@
-//! The check before the start.
+//! The pre-flight check.
 
 use super::message::Effect;
 use super::offer::refuse;
@@ -6,18 +6,18 @@ use super::send::send;
 use crate::model::{Model, Overlay, Screen, ui::Ask};
 use mission::{Check, Order, PlanId, Severity};
 
-/// What a recording takes of a mission's time, bytes a second: 90 to 110 MB an hour were measured.
+/// The growth of a recording, bytes per second of mission time; the measured rate is 90 to 110 MB an hour.
 const BYTES_PER_S: f64 = 30_000.0;
-/// A mission takes longer than its plan says.
+/// A safety factor: missions take longer than planned.
 const MARGIN: f64 = 2.0;
 
-/// Opens the list of checks, and looks again.
+/// Opens the list of checks and repeats the checks.
 pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::Preflight { selected: 0 };
     look(model)
 }
 
-/// The operator agreed to the start of the plan that was shown: everything is checked once more, now.
+/// The operator agreed to start the plan shown: repeats all checks now.
 pub(super) fn start(model: &mut Model, seen: Option<PlanId>) -> Vec<Effect> {
     (model.live.preflight.is_starting, model.live.preflight.seen) = (true, seen);
     look(model)
@@ -29,7 +29,7 @@ fn look(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Check { needed_bytes: (time_s * MARGIN * BYTES_PER_S) as u64 }]
 }
 
-/// What was found; starts the mission if that was agreed to and nothing blocks it.
+/// Takes the results of the checks; starts the mission if the operator agreed to that and nothing blocks it.
 pub(super) fn checked(model: &mut Model, found: Vec<Check>) -> Vec<Effect> {
     let preflight = &mut model.live.preflight;
     (preflight.found, preflight.is_checking) = (Some(found), false);
@@ -46,14 +46,14 @@ pub(super) fn checked(model: &mut Model, found: Vec<Check>) -> Vec<Effect> {
     std::iter::once(noted).chain(send(model, start)).collect()
 }
 
-/// Gives the start up that was agreed to.
+/// Cancels a confirmed start.
 pub(super) fn cancel(model: &mut Model) {
     if std::mem::take(&mut model.live.preflight.is_starting) {
         model.say(Severity::Info, "start cancelled");
     }
 }
 
-/// Ticks the selected point by hand, or takes the tick away; nothing moves.
+/// Ticks or unticks the selected item; nothing moves.
 pub(super) fn tick(model: &mut Model) -> Vec<Effect> {
     let Overlay::Preflight { selected } = model.ui.overlay else { return Vec::new() };
     let n_by_hand = model.n_by_hand();

@@ -1,4 +1,4 @@
-//! Parameters under a name: kept, and taken after a look at what they change.
+//! Parameter presets: saving, reviewing and applying.
 
 use super::alarms;
 use super::message::Effect;
@@ -8,28 +8,28 @@ use super::send::send;
 use crate::model::{Model, Overlay, preset};
 use mission::{Noted, Order, PlannerChoice, Severity};
 
-/// Whether a preset can be taken now.
+/// Checks that a preset can be applied now.
 ///
 /// # Errors
-/// Why not, as a sentence.
+/// Returns the reason why not, as a sentence.
 pub(crate) fn can_load(model: &Model) -> Result<(), String> {
-    demand(!model.console.presets.is_empty(), "there are no presets yet; preset-save NAME keeps one")?;
+    demand(!model.console.presets.is_empty(), "no presets yet; preset-save NAME saves one")?;
     accepted(model, &Order::ChoosePlanner(PlannerChoice::default()))
 }
 
-/// Keeps the parameters of the active planner under a name. One that there is already stays as it is.
+/// Saves the active planner's parameters as a preset. An existing preset is never overwritten.
 pub(super) fn save(model: &mut Model, name: String) -> Vec<Effect> {
     let Some(info) = model.planner() else { return refuse(model, "no planner loaded yet".into()) };
     if let Err(why) = preset::check_name(&name) {
         return refuse(model, why);
     }
     if model.console.presets.iter().any(|preset| preset.name == name) {
-        return refuse(model, format!("there is a preset {name} already; choose another name"));
+        return refuse(model, format!("preset {name} already exists; choose another name"));
     }
     vec![Effect::SavePreset { name, choice: preset::whole(model.live.run.planning.choice.as_ref(), info) }]
 }
 
-/// Shows what a preset changes; it is taken from there.
+/// Shows what a preset would change; the operator applies it from there.
 pub(super) fn load(model: &mut Model, name: &str) -> Vec<Effect> {
     match loaded(model, name) {
         Ok(choice) => open(model, Overlay::Preset { name: name.to_owned(), choice, selected: 0 }),
@@ -39,9 +39,9 @@ pub(super) fn load(model: &mut Model, name: &str) -> Vec<Effect> {
 
 fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
     let found = model.console.presets.iter().find(|preset| preset.name == name);
-    let choice = found.ok_or_else(|| format!("there is no preset {name}"))?.choice.clone();
+    let choice = found.ok_or_else(|| format!("no preset {name}"))?.choice.clone();
     let choice = choice.map_err(|why| format!("preset {name} is refused: {why}"))?;
-    let info = model.info_of(&choice.id).ok_or_else(|| format!("planner {} was not found", choice.id))?;
+    let info = model.info_of(&choice.id).ok_or_else(|| format!("planner {} not found", choice.id))?;
     if let Some(why) = model.live.run.cannot_fly(info) {
         return Err(format!("planner {} {why}", info.id));
     }
@@ -53,16 +53,16 @@ fn loaded(model: &Model, name: &str) -> Result<PlannerChoice, String> {
     Ok(preset::by_hand(&choice, info))
 }
 
-/// Takes a preset that was looked at. Nothing moves: the planner plans with it.
+/// Applies a preset after the review. Nothing moves: the planner replans with the parameters.
 pub(super) fn take(model: &mut Model, name: &str, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let planner = choice.id.clone();
     let order = Order::ChoosePlanner(choice);
-    // Checked again: the mission may have changed meanwhile.
+    // Check again: the mission may have changed meanwhile.
     if let Err(why) = accepted(model, &order) {
         return refuse(model, why);
     }
-    model.say(Severity::Info, format!("preset {name} taken; the planner plans with it"));
+    model.say(Severity::Info, format!("preset {name} applied; the planner replans with it"));
     let noted = alarms::note(model, Noted::PresetTaken { preset: name.to_owned(), planner });
     noted.into_iter().chain(send(model, order)).collect()
 }

@@ -1,24 +1,24 @@
-//! Which messages change what is seen, and how soon it is worth a frame.
+//! Which messages change the screen, and how soon they need a frame.
 
 use super::{Msg, RunMsg};
 use crate::model::{Health, Model};
 use mission::EventKind;
 
-/// How soon a message is worth a frame.
+/// How soon a message needs a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Redraw {
-    /// Nothing that is seen changes.
+    /// Nothing visible changes.
     No,
-    /// Values of a robot that stands still: within a second.
+    /// Values of a robot that stands still change: draw within a second.
     Calm,
-    /// As soon as there may be a frame.
+    /// Draw as soon as possible.
     Soon,
 }
 
-/// How soon a message is worth a frame, before it is taken in.
+/// How soon a message needs a frame; called before the message is applied.
 pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
     match msg {
-        // What is measured of the console shows only in its alarms.
+        // Measurements of the console are visible only through its alarms.
         Msg::Time(_) | Msg::Measured(_) => Redraw::No,
         Msg::Found(found) if model.home.found.as_ref() == Some(found) => Redraw::No,
         Msg::Presets(presets) if model.console.presets == *presets => Redraw::No,
@@ -36,12 +36,12 @@ pub fn redraw(model: &Model, msg: &Msg) -> Redraw {
     }
 }
 
-/// The speed that is reached is measured all the time and shown nowhere.
+/// Compares everything except the reached speed, which is measured continuously but shown nowhere.
 fn is_same(one: &Health, other: &Health) -> bool {
     one.recording == other.recording
 }
 
-/// What comes tick by tick whether anything happens or not.
+/// Whether an event arrives with every tick, even if nothing happens.
 fn is_telemetry(kind: &EventKind) -> bool {
     matches!(
         kind,

@@ -1,4 +1,4 @@
-//! A past run that is played back: keys, and what is heard of it.
+//! Replays: keys and messages.
 
 use super::go;
 use super::message::{Effect, ReplayMsg, Transport};
@@ -9,48 +9,48 @@ use crate::model::{LineEdit, Model, Overlay, Replay, RunId, RunResult, Screen};
 use account::Notes;
 use mission::{Event, Severity};
 
-/// Whether a run is selected that can be played back.
+/// Checks that a run is selected that can be replayed.
 pub(crate) fn can_open(model: &Model) -> Result<(), String> {
     nothing_under_way(model)?;
     offer::run(model)
 }
 
 fn replay(model: &Model) -> Result<&Replay, String> {
-    model.live.replay.as_deref().ok_or_else(|| "no run is played back; <review>: choose one".into())
+    model.live.replay.as_deref().ok_or_else(|| "no run is being replayed; <review>: choose one".into())
 }
 
-/// Whether a run is played back and can be seen.
+/// Checks that a replay is loaded far enough to be shown.
 pub(crate) fn is_loaded(model: &Model) -> Result<(), String> {
     replay(model)?;
-    demand(model.live.run.about.is_some(), "the run is being loaded")
+    demand(model.live.run.about.is_some(), "the run is still loading")
 }
 
-/// Whether another run is selected, to be compared.
+/// Checks that a different run is selected for comparison.
 pub(crate) fn can_compare(model: &Model) -> Result<(), String> {
     let played = &replay(model)?.name;
     let is_other = go::named_run(model).is_some_and(|run| run != *played);
-    demand(is_other, "select another run than the one that is played")
+    demand(is_other, "select a run other than the one being replayed")
 }
 
-/// Whether two runs are compared.
+/// Checks that two runs are being compared.
 pub(crate) fn has_second(model: &Model) -> Result<(), String> {
     let is_second = replay(model)?.other.is_some();
-    demand(is_second, "no second run; <compare-run> on screen 6 (Review) takes one")
+    demand(is_second, "no second run; <compare-run> on screen 6 (Review) selects one")
 }
 
-/// Whether something can be noted about the run.
+/// Checks that notes can be written about the run.
 pub(crate) fn can_note(model: &Model) -> Result<(), String> {
     replay(model)?.unreadable.clone().map_or(Ok(()), Err)
 }
 
-/// Whether there is a bookmark to remove.
+/// Checks that there is a bookmark to remove.
 pub(crate) fn can_unmark(model: &Model) -> Result<(), String> {
     can_note(model)?;
     let is_marked = replay(model)?.notes.bookmark(model.live.run.clock.t_s).is_some();
     demand(is_marked, "no bookmark here; <next-bookmark> <previous-bookmark>: go to one")
 }
 
-/// Plays a past run back instead of the run that is open.
+/// Replaces the open run with a replay of a past run.
 pub(super) fn open(model: &mut Model, run: String) -> Vec<Effect> {
     if let Err(why) = nothing_under_way(model) {
         return refuse(model, why);
@@ -60,12 +60,12 @@ pub(super) fn open(model: &mut Model, run: String) -> Vec<Effect> {
     vec![Effect::Replay { id, run }]
 }
 
-/// Shows which floor only one of two runs scanned, or not.
+/// Shows or hides the floor that only one of the two runs scanned.
 pub(crate) fn toggle_difference(model: &mut Model) {
     with(model, |replay| replay.shows_difference = !replay.shows_difference);
 }
 
-/// Another way in which moments of two runs correspond.
+/// Changes how moments of the two runs are matched.
 pub(crate) fn align(model: &mut Model) -> Vec<Effect> {
     let align = with(model, |replay| {
         replay.align = replay.align.next();
@@ -76,7 +76,7 @@ pub(crate) fn align(model: &mut Model) -> Vec<Effect> {
     vec![Effect::Transport(Transport::Align(align))]
 }
 
-/// Stops time and opens the line for the text of a bookmark.
+/// Pauses and opens the input line for a bookmark's text.
 pub(crate) fn open_bookmark(model: &mut Model) -> Vec<Effect> {
     let t_s = model.live.run.clock.t_s;
     let notes = model.live.replay.as_ref().map(|replay| &replay.notes);
@@ -98,7 +98,7 @@ fn with<T>(model: &mut Model, change: impl FnOnce(&mut Replay) -> T) -> Option<T
     model.live.replay.as_deref_mut().map(change)
 }
 
-/// Lets time go on, from the beginning if it is at the end, or stops it.
+/// Plays or pauses; at the end, plays from the beginning.
 pub(crate) fn toggle(model: &mut Model) -> Vec<Effect> {
     let t_s = model.live.run.clock.t_s;
     let Some(replay) = &mut model.live.replay else { return Vec::new() };
@@ -109,13 +109,13 @@ pub(crate) fn toggle(model: &mut Model) -> Vec<Effect> {
     rewind.into_iter().chain([play]).collect()
 }
 
-/// Stops time, if it goes on.
+/// Pauses, if the replay is playing.
 pub(super) fn pause(model: &mut Model) -> Vec<Effect> {
     let is_playing = model.live.replay.as_ref().is_some_and(|replay| replay.is_playing);
     if is_playing { toggle(model) } else { Vec::new() }
 }
 
-/// Goes to another moment of the run.
+/// Jumps to a different moment of the run.
 pub(super) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
     let run = &model.live.run;
     let (from_s, tick_s) = (run.clock.t_s, run.about.as_ref().map_or(0.1, |about| about.mission.tick_s));
@@ -123,7 +123,7 @@ pub(super) fn go_to(model: &mut Model, jump: Jump) -> Vec<Effect> {
     let Some(t_s) = target_s else {
         return refuse(model, nothing_there(jump).into());
     };
-    // Who looks for an event wants to see it.
+    // An operator who looks for an event wants to see it.
     let is_search = !matches!(jump, Jump::Minute | Jump::MinuteBack | Jump::Start);
     let paused = if is_search { pause(model) } else { Vec::new() };
     if let Some(text) = model.live.replay.as_ref().and_then(|replay| replay.notes.bookmark(t_s)) {
@@ -141,8 +141,8 @@ fn nothing_there(jump: Jump) -> &'static str {
         Jump::AlarmBack => "no earlier alarm",
         Jump::Bookmark => "no later bookmark",
         Jump::BookmarkBack => "no earlier bookmark",
-        Jump::Tick | Jump::Minute | Jump::End => "this is the end of the run",
-        Jump::TickBack | Jump::MinuteBack | Jump::Start => "this is the beginning of the run",
+        Jump::Tick | Jump::Minute | Jump::End => "already at the end of the run",
+        Jump::TickBack | Jump::MinuteBack | Jump::Start => "already at the beginning of the run",
     }
 }
 
@@ -150,17 +150,17 @@ fn seek(t_s: f64) -> Vec<Effect> {
     vec![Effect::Transport(Transport::Seek(t_s))]
 }
 
-/// Goes to a moment that was typed; one behind the end is the end.
+/// Seeks to a typed time; a time after the end leads to the end.
 pub(super) fn seek_to(model: &mut Model, t_s: f64) -> Vec<Effect> {
     let until_s = model.live.replay.as_ref().map_or(0.0, |replay| replay.reel.until_s);
     if t_s > until_s {
         let (asked, end) = (clock(t_s), clock(until_s));
-        model.say(Severity::Info, format!("{asked} is after the last event, {end}: that is shown"));
+        model.say(Severity::Info, format!("{asked} is after the last event, {end}; showing the last event"));
     }
     seek(t_s.clamp(0.0, until_s))
 }
 
-/// Reads another run beside the one that is played; the same run once more takes it away.
+/// Loads a second run for comparison; the same run again removes it.
 pub(super) fn compare(model: &mut Model, run: String) -> Vec<Effect> {
     let is_other = |replay: &Replay| replay.other.as_ref().is_some_and(|other| other.name == run);
     if model.live.replay.as_deref().is_some_and(is_other) {
@@ -172,22 +172,22 @@ pub(super) fn compare(model: &mut Model, run: String) -> Vec<Effect> {
     vec![Effect::Transport(Transport::Compare(Some(run)))]
 }
 
-/// Sets a bookmark with the text that was typed.
+/// Sets a bookmark with the typed text.
 pub(super) fn take_bookmark(model: &mut Model, line: &LineEdit) -> Vec<Effect> {
     model.ui.overlay = Overlay::None;
     let t_s = model.live.run.clock.t_s;
     bookmark(model, t_s, line.text())
 }
 
-/// Sets a bookmark at a moment.
+/// Sets a bookmark at the given moment.
 pub(super) fn bookmark(model: &mut Model, t_s: f64, text: &str) -> Vec<Effect> {
     let said = format!("bookmark set at T+{}", clock(t_s));
     keep(model, &said, |notes| notes.mark(t_s, text))
 }
 
-/// Keeps a remark about the whole run.
+/// Saves a remark about the whole run.
 pub(super) fn remark(model: &mut Model, text: &str) -> Vec<Effect> {
-    keep(model, "remark kept", |notes| notes.remark(text))
+    keep(model, "remark saved", |notes| notes.remark(text))
 }
 
 fn keep(model: &mut Model, said: &str, change: impl FnOnce(&mut Notes) -> Result<(), String>) -> Vec<Effect> {
@@ -201,7 +201,7 @@ fn keep(model: &mut Model, said: &str, change: impl FnOnce(&mut Notes) -> Result
     }
 }
 
-/// Takes in news of the replay.
+/// Handles a message about the replay.
 pub(super) fn hear(model: &mut Model, msg: ReplayMsg) {
     let Some(replay) = &mut model.live.replay else { return };
     match msg {
@@ -215,7 +215,7 @@ pub(super) fn hear(model: &mut Model, msg: ReplayMsg) {
                 reel.grow(news);
             }
             if let Some(problem) = problem {
-                model.say(Severity::Warn, format!("plays up to here only: {problem}"));
+                model.say(Severity::Warn, format!("the replay ends here: {problem}"));
             }
         }
         ReplayMsg::At(Side::A, run) => {
@@ -259,14 +259,14 @@ pub(super) fn hear(model: &mut Model, msg: ReplayMsg) {
     }
 }
 
-/// What happened to the screen then is of no use now: the change is dropped.
+/// Folds events into a run. The changes that they would make on a live screen are irrelevant here and are dropped.
 fn fold(run: &mut crate::model::Run, events: &[Event]) {
     for event in events {
         run.fold(event);
     }
 }
 
-/// Shows the run that is played, after it was chosen in a list.
+/// Shows the replayed run after it was chosen in a list.
 pub(super) fn show(model: &mut Model) -> Vec<Effect> {
     go::go(model, Screen::Mission)
 }

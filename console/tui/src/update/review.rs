@@ -1,4 +1,4 @@
-//! The review screen: past runs, chosen to be played back or compared.
+//! The review screen: selects past runs to replay or compare.
 
 use super::message::Effect;
 use super::offer::{offered, refuse};
@@ -7,7 +7,7 @@ use crate::actions::ActionId;
 use crate::model::Model;
 use mission::Severity;
 
-/// Plays the selected run back; one that is played already is shown.
+/// Replays the selected run; if it is already being replayed, shows it.
 pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     let selected = model.review.run(&model.home).map(|run| run.name.clone());
     let Some(run) = selected else { return refuse(model, "no run is selected".into()) };
@@ -20,7 +20,7 @@ pub(crate) fn enter(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Takes the next sort order.
+/// Changes to the next sort order.
 pub(crate) fn sort(model: &mut Model) -> Vec<Effect> {
     model.review.sort = model.review.sort.next();
     model.review.selected = 0;

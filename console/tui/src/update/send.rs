@@ -1,26 +1,26 @@
-//! Orders to the mission.
+//! Sends orders to the mission.
 
 use super::message::Effect;
 use super::preflight;
 use crate::model::{Model, Speed, parameter};
 use mission::{Order, ParamValue, Severity};
 
-/// Sends an order and remembers that an answer is due if it makes the robot move.
+/// Sends an order; if it makes the robot move, records that an answer is due.
 pub(crate) fn send(model: &mut Model, order: Order) -> Vec<Effect> {
     let moves = matches!(order, Order::Resume | Order::FlyUncertified | Order::Step | Order::StepTo(_))
         || order.is_start();
     if moves {
         model.live.asked = Some(order.clone());
-        // A HOLD that was sent before it does not stop what comes after it.
+        // An earlier HOLD does not stop a robot that a later order moves.
         model.live.hold_asked = false;
     }
-    // Before the start every change is followed by the plan that it leads to.
+    // Before the start, every change leads to a new plan.
     let plans = model.live.waits() && matches!(order, Order::ChoosePlanner(_) | Order::SetParameter { .. });
     let plan = plans.then_some(Effect::Order(Order::Plan));
     std::iter::once(Effect::Order(order)).chain(plan).collect()
 }
 
-/// Sends the new value of a parameter, and says what it was: while the robot moves it takes effect at once.
+/// Sends a new parameter value and shows the old one; while the robot moves, the value takes effect immediately.
 pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -> Vec<Effect> {
     let info = model.planner().and_then(|info| info.parameters.iter().find(|info| info.key == key));
     if let Some(info) = info {
@@ -35,7 +35,8 @@ pub(super) fn set_parameter(model: &mut Model, key: String, value: ParamValue) -
 
 /// Sends HOLD whenever the mission would accept it, and after an order that makes the robot move.
 ///
-/// Who stops the robot is in no hurry: the mission goes on no faster than the clock until the operator says so again.
+/// HOLD also limits the simulation to real time, because an operator who stops the robot is in no hurry; only the
+/// operator raises the speed again.
 pub(crate) fn hold_now(model: &mut Model) -> Vec<Effect> {
     preflight::cancel(model);
     model.console.settling = None;

@@ -1,4 +1,4 @@
-//! Planners in shadow: which one flies there, and that it takes over.
+//! Planners in shadow: starting and promoting them.
 
 use super::message::Effect;
 use super::news;
@@ -8,20 +8,20 @@ use super::send::send;
 use crate::model::{Cause, Model, Overlay};
 use mission::{Order, PlannerChoice, PlannerInfo, Severity};
 
-/// Whether a planner can begin to fly in shadow.
+/// Checks that a planner can start to fly in shadow.
 pub(crate) fn can_begin(model: &Model) -> Result<(), String> {
     accepted(model, &Order::Shadow(PlannerChoice::default()))?;
     has_planners(model)
 }
 
-/// Flies a planner in shadow; the one that drives, perhaps from another build, with the parameters that it has.
+/// Flies a planner in shadow. The active planner, perhaps from a newer build, keeps its parameters.
 pub(super) fn begin(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     open(model, Overlay::None);
     let driving = model.live.run.planning.choice.clone().filter(|driving| driving.id == choice.id);
     send(model, Order::Shadow(driving.unwrap_or(choice)))
 }
 
-/// Informs the operator of a mission in progress which planners were rebuilt.
+/// Informs the operator of a running mission which planners were rebuilt.
 pub(super) fn tell_rebuilt(model: &mut Model, found: &[PlannerInfo]) {
     let is_rebuilt = |now: &&PlannerInfo| {
         model.console.planners.iter().any(|before| before.id == now.id && before.sha256 != now.sha256)
@@ -29,10 +29,10 @@ pub(super) fn tell_rebuilt(model: &mut Model, found: &[PlannerInfo]) {
     let ids: Vec<&str> = found.iter().filter(is_rebuilt).map(|info| info.id.as_str()).collect();
     let text = match ids[..] {
         [] => return,
-        [id] => format!("planner {id} was rebuilt: :shadow {id} flies the new build beside the old"),
+        [id] => format!("planner {id} was rebuilt: :shadow {id} flies the new build in shadow"),
         _ => {
             let ids = ids.join(", ");
-            format!("planners {ids} were rebuilt: :shadow NAME flies a new build beside the old")
+            format!("planners {ids} were rebuilt: :shadow NAME flies a new build in shadow")
         }
     };
     if can_begin(model).is_ok() {

@@ -1,4 +1,4 @@
-//! What the operator does about AE stations: excludes one, takes it back, makes a simulated one fail.
+//! The operator's actions on AE stations: excluding a station, using it again, making a simulated one fail.
 
 use super::command::Value;
 use super::offer::{accepted, demand};
@@ -7,10 +7,10 @@ use crate::model::Model;
 use mission::{Injection, Order, RangeFault};
 use world::StationId;
 
-/// Whether something can be done about a station now.
+/// Checks that an action on a station is possible now.
 ///
 /// # Errors
-/// Why not, as a sentence.
+/// Returns the reason why not, as a sentence.
 pub(crate) fn can(model: &Model, id: ActionId) -> Result<(), String> {
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     let station = model.live.run.stations().first().ok_or("this mission has no AE stations")?.id;
@@ -23,7 +23,7 @@ pub(crate) fn can(model: &Model, id: ActionId) -> Result<(), String> {
     accepted(model, &order)
 }
 
-/// The order that a command is about a station; nothing if a value is missing.
+/// The order for a command about a station; `None` if a value is missing.
 pub(super) fn order(
     model: &Model,
     id: ActionId,

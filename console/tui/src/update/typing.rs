@@ -1,4 +1,4 @@
-//! Lines in which text is typed.
+//! Input lines.
 
 use super::offer::demand;
 use super::palette;
@@ -6,32 +6,33 @@ use crate::keys::Key;
 use crate::model::{LineEdit, Model, Overlay};
 use mission::{ParamKind, Severity};
 
-/// Whether a line is open in which text is typed: letters and the space do nothing else then.
+/// Whether an input line is open, in which letters and space are text.
 pub fn is_typing(model: &Model) -> bool {
     use Overlay::{Bookmark, Commands, Filter, Parameters, Shelve};
     let overlay = &model.ui.overlay;
     matches!(overlay, Commands(_) | Parameters { edit: Some(_), .. } | Filter(_) | Shelve(_) | Bookmark(_))
 }
 
-/// Gives a key to the line that is open; whether there is such a line and the key does something in it.
+/// Passes a key to the open input line; returns whether there is one and it uses the key.
 pub(super) fn press(model: &mut Model, key: Key) -> bool {
     edit(model, |line| line.press(key)).unwrap_or(false)
 }
 
-/// Puts pasted text into the line that is open; without one it goes nowhere, so that no paste is ever a command.
+/// Inserts pasted text into the open input line. Without such a line the text is discarded, so that a paste never
+/// becomes a command.
 pub(super) fn paste(model: &mut Model, pasted: &str) {
     if edit(model, |line| line.insert(pasted)).is_none() {
         model.say(Severity::Info, "nowhere to paste");
     }
 }
 
-/// Whether the line that is open can be completed.
+/// Checks that the open input line can be completed.
 pub(crate) fn can_complete(model: &Model) -> Result<(), String> {
     let completes = matches!(model.ui.overlay, Overlay::Commands(_)) || !options(model).is_empty();
     demand(completes, "nothing to complete here")
 }
 
-/// The words that the parameter takes whose value is being typed.
+/// The values of the parameter being edited, if they are words.
 fn options(model: &Model) -> &[String] {
     let Overlay::Parameters { selected, edit: Some(_) } = &model.ui.overlay else { return &[] };
     let info = model.edited().and_then(|(planner, _)| planner.parameters.get(*selected));
@@ -57,7 +58,7 @@ pub(crate) fn complete(model: &mut Model) {
     }
 }
 
-/// Edits the line that is open, if one is; what was answered about the old text no longer counts.
+/// Edits the open input line, if any; an error about the old text is cleared.
 fn edit<T>(model: &mut Model, how: impl FnOnce(&mut LineEdit) -> T) -> Option<T> {
     let line = line(&mut model.ui.overlay)?;
     let before = line.text().to_owned();
@@ -91,12 +92,12 @@ fn changed(model: &mut Model) {
     }
 }
 
-/// The text by which the list of the screen is filtered.
+/// The filter text of the screen's list.
 pub(super) fn filtered(model: &Model) -> &str {
     model.ui.screen.row().filter.map_or(model.ui.needle.as_str(), |(text, _)| text(model))
 }
 
-/// Filters the list of the screen by a text.
+/// Filters the screen's list.
 pub(super) fn filter(model: &mut Model, text: &str) {
     let filter = match model.ui.screen.row().filter {
         Some((_, text_mut)) => text_mut(model),

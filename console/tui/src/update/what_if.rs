@@ -1,4 +1,4 @@
-//! How a held mission would go on with one planner or another.
+//! Forecasts of how a held mission would continue with different planners.
 
 use super::message::Effect;
 use super::offer::refuse;
@@ -8,7 +8,7 @@ use crate::model::what_if::MOST;
 use crate::model::{Candidate, Forecast, Model, Overlay, WhatIf, preset};
 use mission::{Order, ParamValue, Parameters, PlannerChoice, Severity};
 
-/// Opens the comparison: the planner as it is, and the others that can fly this mission.
+/// Opens the comparison with the unchanged active planner and the others that can fly this mission.
 pub(crate) fn open(model: &mut Model) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     if model.live.what_if.is_some() {
@@ -30,12 +30,12 @@ fn candidate(choice: PlannerChoice) -> Candidate {
     Candidate { choice, at: None, made: None }
 }
 
-/// Adds a planner; the forecasts that are there stay.
+/// Adds a planner; existing forecasts are kept.
 pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     model.ui.overlay = Overlay::WhatIf;
     let Some(what_if) = &mut model.live.what_if else { return Vec::new() };
     if what_if.candidates.iter().any(|candidate| candidate.choice == choice) {
-        return refuse(model, format!("planner {} is compared already", choice.id));
+        return refuse(model, format!("planner {} is already compared", choice.id));
     }
     what_if.candidates.truncate(MOST - 1);
     what_if.candidates.push(candidate(choice));
@@ -44,7 +44,7 @@ pub(super) fn add(model: &mut Model, choice: PlannerChoice) -> Vec<Effect> {
     vec![Effect::Forecast(open.map(|candidate| candidate.choice.clone()).collect())]
 }
 
-/// Opens the parameters of the selected candidate, to be changed for a further forecast.
+/// Opens the parameters of the selected candidate, to change them for another forecast.
 pub(crate) fn draft(model: &mut Model) -> Vec<Effect> {
     let chosen = model.live.what_if.as_ref().and_then(WhatIf::candidate).map(|found| found.choice.clone());
     let Some(choice) = chosen else { return Vec::new() };
@@ -58,7 +58,7 @@ pub(crate) fn draft(model: &mut Model) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Takes the value of a parameter into the draft.
+/// Sets a parameter of the draft.
 pub(super) fn set(model: &mut Model, key: &str, value: ParamValue) {
     let Some(mut draft) = take_draft(model) else { return };
     draft.parameters.insert(key.to_owned(), value);
@@ -69,17 +69,17 @@ pub(super) fn set(model: &mut Model, key: &str, value: ParamValue) {
     }
 }
 
-/// Takes the draft out of the comparison.
+/// Removes the draft from the comparison and returns it.
 pub(super) fn take_draft(model: &mut Model) -> Option<PlannerChoice> {
     model.live.what_if.as_mut()?.draft.take()
 }
 
-/// Forecasts the draft.
+/// Starts a forecast for the draft.
 pub(crate) fn forecast_draft(model: &mut Model) -> Vec<Effect> {
     take_draft(model).map_or_else(Vec::new, |draft| add(model, draft))
 }
 
-/// Looks at another candidate, so many further on.
+/// Moves the selection by `by` candidates.
 pub(crate) fn select(model: &mut Model, by: isize) {
     if let Some(what_if) = &mut model.live.what_if {
         let last = what_if.candidates.len().saturating_sub(1);
@@ -87,7 +87,8 @@ pub(crate) fn select(model: &mut Model, by: isize) {
     }
 }
 
-/// Takes the selected candidate: asks, unless it goes on as it is. What was compared is written down.
+/// Chooses the selected candidate, after asking unless it is the unchanged active planner. The comparison is recorded
+/// in the journal.
 pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let Some(what_if) = &model.live.what_if else { return Vec::new() };
     let Some(candidate) = what_if.candidate() else { return Vec::new() };
@@ -103,19 +104,19 @@ pub(super) fn choose(model: &mut Model) -> Vec<Effect> {
     let noted = Effect::Order(Order::NoteOutlooks(what_if.outlooks()));
     if what_if.selected == 0 {
         model.ui.overlay = Overlay::None;
-        let text = format!("planner {} stays; <hold>: resume", choice.id);
+        let text = format!("planner {} stays active; <hold>: resume", choice.id);
         model.say(Severity::Info, model.console.keys.spelled(&text));
         return vec![noted];
     }
     std::iter::once(noted).chain(ask(model, Ask::Swap(choice))).collect()
 }
 
-/// Closes the comparison; forecasts that are there stay as long as the mission is held here.
+/// Closes the comparison; finished forecasts are kept for as long as the mission is held here.
 pub(super) fn close(model: &mut Model) {
     model.ui.overlay = Overlay::None;
 }
 
-/// Forgets forecasts that no longer hold.
+/// Discards forecasts that are out of date.
 pub(super) fn forget(model: &mut Model) -> Vec<Effect> {
     let Some(what_if) = model.live.what_if.take() else { return Vec::new() };
     let is_drafting = what_if.draft.is_some() && matches!(model.ui.overlay, Overlay::Parameters { .. });
@@ -125,14 +126,14 @@ pub(super) fn forget(model: &mut Model) -> Vec<Effect> {
     vec![Effect::StopForecasting]
 }
 
-/// Takes how far a forecast is.
+/// Records the progress of a forecast.
 pub(super) fn at(model: &mut Model, choice: &PlannerChoice, share: f64) {
     if let Some(candidate) = find(model, choice) {
         candidate.at = Some(share);
     }
 }
 
-/// Takes a forecast.
+/// Records a forecast.
 pub(super) fn made(model: &mut Model, choice: &PlannerChoice, forecast: Result<Forecast, String>) {
     if let Some(candidate) = find(model, choice) {
         candidate.made = Some(forecast);

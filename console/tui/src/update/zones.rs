@@ -1,4 +1,4 @@
-//! No-go zones that the operator draws.
+//! No-go zones drawn by the operator.
 
 use super::command::Value;
 use super::offer::{accepted, demand};
@@ -6,16 +6,16 @@ use crate::model::Model;
 use mission::Order;
 use world::Point;
 
-/// Whether a zone can be drawn now.
+/// Checks that a zone can be drawn now.
 ///
 /// # Errors
-/// Why not, as a sentence.
+/// Returns the reason why not, as a sentence.
 pub(crate) fn can(model: &Model) -> Result<(), String> {
     demand(model.live.run.about.is_some(), "no mission loaded yet")?;
     accepted(model, &Order::DrawZone(Vec::new()))
 }
 
-/// The order to draw a box between two corners; nothing if the other one is missing.
+/// The order to draw a box between two corners; `None` if the second corner is missing.
 pub(super) fn order(a: Point, mut values: impl Iterator<Item = Value>) -> Option<Order> {
     let b = values.find_map(|value| match value {
         Value::Corner(corner) => Some(corner),

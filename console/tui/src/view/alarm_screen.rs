@@ -1,4 +1,4 @@
-//! The alarms screen: what is wrong, why, and what can be done.
+//! The alarm screen: alarms, their causes, and the possible actions.
 
 mod actions;
 mod detail;
@@ -17,13 +17,13 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
-/// Columns of the detail pane where actions stand beside it.
+/// Width of the detail pane when the actions are beside it, columns.
 const DETAIL: u16 = 72;
-/// Rows of the events of an alarm, with their frame.
+/// Rows of the pane with an alarm's events, including the frame.
 const EVENTS: u16 = 5;
-/// Which keys run the actions of an alarm that are open.
+/// The keys that run the actions of the open list.
 const RUN: &str = "<first-action>-<fourth-action> run";
-/// Rows that the table keeps, with its frame.
+/// Minimum rows of the table, including the frame.
 const TABLE: u16 = 7;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -34,7 +34,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     }
 }
 
-/// Whether the screen shows the actions itself, so that no list has to be put over it.
+/// Whether the screen itself shows the actions, so that no overlay list is needed.
 pub(super) fn shows_actions(model: &Model) -> bool {
     let whole = matches!(model.ui.arrangement(), Arrangement::Wide | Arrangement::Narrow);
     whole && model.ui.screen == Screen::Alarms
@@ -81,7 +81,7 @@ fn actions_block<'t>(look: &Look, title: &str) -> ratatui::widgets::Block<'t> {
     look.block(border, title, &look.keys(note))
 }
 
-/// The last lines of the log about an alarm, newest first.
+/// The last log lines about an alarm, newest first.
 fn of_alarm(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let entries = alarm.events.iter().rev().filter_map(|number| look.run.log.get(*number));
     entries.take(usize::from(EVENTS) - 2).map(|entry| look.line(events::row(entry, columns))).collect()

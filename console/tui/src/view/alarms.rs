@@ -1,4 +1,4 @@
-//! The alarms pane of a large screen: every alarm in a line, the most severe first.
+//! The alarms pane of a large screen: one line per alarm, most severe first.
 
 use super::look::{Look, Parts, fill};
 use super::{events, text};
@@ -9,7 +9,7 @@ use crate::theme::Role;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Columns from which an alarm takes one line.
+/// Width from which an alarm takes one line, columns.
 const BESIDE: usize = 64;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -33,7 +33,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// State first; the words beside it, or below it where the pane is narrow.
+/// The rows of an alarm: state first, then the text beside it or, in a narrow pane, below it.
 fn rows(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Parts> {
     let state = match (alarm.is_active(), alarm.is_unacknowledged()) {
         (true, false) => "ack",

@@ -1,8 +1,8 @@
-//! Seven bits for terminals that have no more.
+//! Reduces the screen to 7-bit characters, for terminals that have no others.
 
 use ratatui::buffer::Buffer;
 
-/// What stands for what.
+/// The replacements.
 const PLAIN: &[(&str, char)] = &[
     ("│", '|'),
     ("┌┐└┘├┤┼●▅▆", '+'),
@@ -28,7 +28,7 @@ const PLAIN: &[(&str, char)] = &[
     ("°", 'd'),
 ];
 
-/// Puts a plain character in the place of each one that is not; a question mark where nothing else fits.
+/// Replaces every character outside ASCII; a question mark where there is no better replacement.
 pub(super) fn reduce(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {

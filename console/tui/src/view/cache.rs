@@ -1,5 +1,5 @@
-//! What is kept from frame to frame because it costs time and rarely changes, and where the last frame put what a mouse can
-//! hit. A cold cache gives the same cells as a warm one.
+//! Data kept between frames: results that are expensive and rarely change, and the places that the mouse can hit. A
+//! cold cache gives the same cells as a warm one.
 
 use super::map::{PlateDrawing, PlateKey, ShadeKey, Shades, Window};
 use crate::actions::ActionId;
@@ -9,7 +9,7 @@ use ratatui::layout::{Position, Rect};
 use std::rc::Rc;
 use world::{Floor, PlateMap};
 
-/// What is kept from frame to frame.
+/// Data kept between frames.
 #[derive(Debug, Default)]
 pub struct Cache {
     shades: Option<(ShadeKey, Shades)>,
@@ -19,7 +19,7 @@ pub struct Cache {
     places: Places,
 }
 
-/// Where the last frame put what a mouse can hit.
+/// The places in the last frame that the mouse can hit.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     map: Option<(Rect, Window)>,
@@ -27,7 +27,7 @@ pub struct Places {
     rows: Vec<(Rect, Rows, usize)>,
 }
 
-/// What the plates of cells depend on.
+/// The inputs of the plate map.
 #[derive(Debug, Clone, PartialEq)]
 struct PlateMapKey {
     layout: world::PlateLayout,
@@ -36,27 +36,27 @@ struct PlateMapKey {
 }
 
 impl Cache {
-    /// Where the last frame put what a mouse can hit.
+    /// The places in the last frame that the mouse can hit.
     pub fn places(&self) -> &Places {
         &self.places
     }
 
-    /// Forgets where things were: another frame begins.
+    /// Clears the places at the beginning of a frame.
     pub(super) fn clear_places(&mut self) {
         self.places = Places::default();
     }
 
-    /// Notes where the map is.
+    /// Records the area of the map.
     pub(super) fn place_map(&mut self, area: Rect, window: Window) {
         self.places.map = Some((area, window));
     }
 
-    /// Notes where a key is named.
+    /// Records the area of a key name.
     pub(super) fn place_key(&mut self, area: Rect, id: ActionId) {
         self.places.keys.push((area, id));
     }
 
-    /// Notes where a line of a list is.
+    /// Records the area of a list line.
     pub(super) fn place_row(&mut self, area: Rect, list: Rows, index: usize) {
         self.places.rows.push((area, list, index));
     }
@@ -73,12 +73,12 @@ impl Cache {
         kept(&mut self.plates, key, make)
     }
 
-    /// Which floor only one of two runs scanned.
+    /// The shares of the floor that each of two runs scanned.
     pub(super) fn shares(&mut self, a: &Raster, b: &Raster) -> Shares {
         kept(&mut self.shares, (a.stamp(), b.stamp()), || Shares::of(a, b))
     }
 
-    /// The plate of every cell of a floor.
+    /// The plate of each cell of a floor.
     pub(super) fn plate_map(
         &mut self,
         layout: &world::PlateLayout,
@@ -91,7 +91,7 @@ impl Cache {
 }
 
 impl Places {
-    /// What the last frame showed at a place.
+    /// The screen element at a position in the last frame.
     pub fn target(&self, column: u16, row: u16) -> Target {
         let at = Position { x: column, y: row };
         if let Some((_, id)) = self.keys.iter().find(|(area, _)| area.contains(at)) {

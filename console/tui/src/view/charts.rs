@@ -1,4 +1,4 @@
-//! Charts of the last minutes, with the limit as a line.
+//! Charts of the last minutes, with the limit drawn as a line.
 
 use super::look::Look;
 use super::map::{Stroke, Window};
@@ -13,14 +13,14 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Canvas;
 use world::Point;
 
-/// Columns of the labels beside a curve.
+/// Width of the labels beside a curve, columns.
 const LABELS: u16 = 6;
-/// Seconds of mission time after which a curve moves to the left.
+/// Mission time after which a curve shifts to the left, seconds.
 const PAGE_S: f64 = 60.0;
-/// Room above the limit or the largest value.
+/// Headroom above the limit or the largest value, as a factor.
 const HEADROOM: f64 = 1.15;
 
-/// What a chart shows.
+/// The contents of a chart.
 struct Series<'a> {
     title: &'static str,
     values: &'a History,
@@ -78,7 +78,7 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     let top = HEADROOM * largest.max(limit.unwrap_or(0.0));
     let top = if top > 0.0 && top.is_finite() { top } else { 1.0 };
     let plot = Rect { x: area.x + LABELS, width: area.width - LABELS, ..area };
-    // The curve grows to the right, and moves to the left once a minute: a frame costs little in between.
+    // The curve grows to the right and shifts left once a minute, so the frames in between are cheap.
     let newest_s = series.values.newest_s();
     let end_s = ((newest_s / PAGE_S).floor() + 1.0) * PAGE_S;
     let x = [end_s - HISTORY_S as f64, end_s];
@@ -101,7 +101,7 @@ fn plot(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>) {
     label(look, frame, area, series, top, 0.0);
 }
 
-/// Writes a value at its height beside the curve.
+/// Writes a value beside the curve, at its height.
 fn label(look: &Look, frame: &mut Frame, area: Rect, series: &Series<'_>, top: f64, value: f64) {
     let share = (value / top).clamp(0.0, 1.0);
     let up = (share * f64::from(area.height - 1)).round() as u16;

@@ -1,4 +1,4 @@
-//! The line above the keys: a question if one is open, else what comes next.
+//! The line above the keys: the open question, otherwise what comes next.
 
 use super::field::field;
 use super::lists::place_cursor;
@@ -14,15 +14,15 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Rows of the question before the start, at most.
+/// Maximum rows of the question before the start.
 const MOST_ROWS: usize = 3;
 
-/// Rows that the line takes: more than one only for what nobody may overlook before the robot moves for the first time.
+/// The rows of the line: more than one only for what nobody may overlook before the robot first moves.
 pub(super) fn rows(look: &Look, columns: u16) -> u16 {
     whole_question(look.model, columns).map_or(1, |lines| lines.len() as u16)
 }
 
-/// The question before the start with everything that is started, in as many lines as it takes.
+/// The full question before the start, in as many lines as it needs.
 fn whole_question(model: &Model, columns: u16) -> Option<Vec<String>> {
     let is_start = matches!(model.ui.overlay, Overlay::Confirm(Ask::Start(_)));
     let clauses = asked(model).filter(|_| is_start)?;
@@ -67,7 +67,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     frame.render_widget(Line::from(vec![look.span(Role::Text, " "), look.span(role, text)]), area);
 }
 
-/// The line in which a filter is typed, what is wrong with it, and which keys end it.
+/// Draws the filter input line with its error and the keys that close it.
 fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
     let problem = look.model.ui.events.matches.filter().problems.first();
     let problem = problem
@@ -82,7 +82,7 @@ fn filter(look: &Look, frame: &mut Frame, area: Rect, line: &LineEdit) {
     );
 }
 
-/// A line of text with its cursor between what it is for and what it does.
+/// Draws an input line with its cursor between a prompt and a note.
 fn typed(look: &Look, frame: &mut Frame, area: Rect, (prompt, line): (&str, &LineEdit), after: &str) {
     let columns = usize::from(area.width).saturating_sub(1);
     let room = columns.saturating_sub(text::width(prompt) + text::width(after)).max(columns / 3);
@@ -92,17 +92,17 @@ fn typed(look: &Look, frame: &mut Frame, area: Rect, (prompt, line): (&str, &Lin
     place_cursor(frame, area, (1 + text::width(prompt) + shown.cursor, 0));
 }
 
-/// The question that is open, or what comes next.
+/// The open question, otherwise what comes next.
 pub(super) fn clauses(model: &Model) -> Clauses {
     asked(model).map_or_else(|| next::clauses(model), |clauses| (Role::Confirm, clauses))
 }
 
-/// The question that is open, with the keys that answer it.
+/// The open question, with the keys that answer it.
 pub(crate) fn question(model: &Model) -> Option<String> {
     asked(model).map(|clauses| clauses.join(" "))
 }
 
-/// What is asked and which keys answer come in the first clause: they are never left out.
+/// The clauses of the open question. The first one contains the question and the keys, and is never left out.
 fn asked(model: &Model) -> Option<Vec<String>> {
     let moves = || format!("Robot will move (planner {}).", model.live.run.planner_id().unwrap_or("unknown"));
     let clauses = match &model.ui.overlay {
@@ -170,7 +170,7 @@ fn asked(model: &Model) -> Option<Vec<String>> {
     Some(clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// What is started, as a clause: length and time of the plan, and whether it is certified for the tether.
+/// The plan to be started, as a clause: length and time, and whether it is certified for the tether.
 fn promised(model: &Model) -> String {
     let length = match &model.live.run.planning.plan {
         Some(plan) if plan.path.is_empty() => "Step by step, no path planned".to_owned(),
@@ -178,7 +178,7 @@ fn promised(model: &Model) -> String {
         None => "No plan yet".into(),
     };
     let time = model.live.estimate().map_or_else(
-        || "time not known".to_owned(),
+        || "time unknown".to_owned(),
         |estimate| format!("{} of mission time", clock(estimate.time_s)),
     );
     let has_tether = model.live.run.about.as_ref().is_some_and(|about| about.mission.tether.is_some());
@@ -191,7 +191,7 @@ fn promised(model: &Model) -> String {
     format!("{length}, {time}, {certificate}.")
 }
 
-/// What the line does in which is typed for how long an alarm is put aside.
+/// The note after the input line for shelving an alarm.
 fn shelve(model: &Model, shelving: &Shelving) -> String {
     let keys = model.console.keys.spelled("<accept>: shelve, <cancel>: cancel.");
     match &shelving.refusal {

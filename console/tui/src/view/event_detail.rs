@@ -1,4 +1,4 @@
-//! One event with everything that it says, in words.
+//! The details of one event, in words.
 
 mod facts;
 
@@ -12,9 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Columns of the names of figures.
+/// Width of the figure names, columns.
 const NAMES: usize = 12;
-/// Among how many lines an event of the same kind is looked for with every frame.
+/// How many lines are searched for an event of the same kind in every frame.
 const NEAR: usize = 2000;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (number, entry): (u64, &Entry)) {
@@ -26,7 +26,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (number, entry): 
     fill(frame, area, block, lines(look, (number, entry), columns));
 }
 
-/// Rows that it takes in some columns, with its frame.
+/// The rows that the detail needs, including the frame.
 pub(super) fn rows(look: &Look, event: (u64, &Entry), width: u16) -> u16 {
     lines(look, event, usize::from(width.saturating_sub(2))).len() as u16 + 2
 }
@@ -45,7 +45,7 @@ fn lines(look: &Look, (number, entry): (u64, &Entry), columns: usize) -> Vec<Lin
     fields::lines(look, &all, NAMES, columns)
 }
 
-/// What became of the alarm that it belongs to.
+/// The current state of the alarm that the event belongs to.
 fn alarm(look: &Look, entry: &Entry) -> Option<Field> {
     let cause = Cause::of(&entry.what.event()?.kind)?;
     let alarm = look.run.alarms.get(&cause)?;

@@ -1,4 +1,4 @@
-//! Events, newest first: the pane of the mission screen, and the screen of their own.
+//! Events, newest first: the pane of the mission screen, and the events screen.
 
 use super::look::{Look, Parts, fill};
 use super::{event_detail, table, text};
@@ -14,12 +14,12 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
-/// What can be typed into the filter.
+/// Examples of filter terms.
 const TERMS: &str = "   sev>=watch source=ae,tether station=C t>00:05 \"two words\" -text";
-/// Rows that the list keeps beside the whole event, with its frame.
+/// Minimum rows of the list beside the detail, including the frame.
 const LIST: u16 = 7;
 
-/// The pane of the mission screen.
+/// Draws the pane of the mission screen.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let ui = &look.model.ui;
     let needle = without_least(&ui.needle);
@@ -36,7 +36,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// The screen of their own.
+/// Draws the events screen.
 pub(crate) fn screen(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
     let events = &look.model.ui.events;
     let selected = events.selected().filter(|_| events.is_open);
@@ -79,7 +79,7 @@ fn list(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// The filter, what of it was not understood underlined, and why not; while it is typed, what can be.
+/// The filter with invalid parts underlined, and why they are invalid; while it is being typed, examples of terms.
 fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     let ui = &look.model.ui;
     let is_typed = matches!(ui.overlay, Overlay::Filter(_));
@@ -98,7 +98,7 @@ fn filter_lines(look: &Look, columns: usize) -> Vec<Line<'static>> {
     std::iter::once(line).chain(hint).collect()
 }
 
-/// A filter in pieces that were understood and pieces that were not.
+/// Splits a filter into valid and invalid pieces.
 fn pieces(text: &str, filter: &Filter) -> Vec<(bool, String)> {
     let mut pieces = Vec::new();
     let mut at = 0;
@@ -112,7 +112,7 @@ fn pieces(text: &str, filter: &Filter) -> Vec<(bool, String)> {
     pieces
 }
 
-/// How a severity looks.
+/// The role of a severity.
 pub(super) fn role(severity: Severity) -> Role {
     match severity {
         Severity::Info => Role::Text,
@@ -122,7 +122,7 @@ pub(super) fn role(severity: Severity) -> Role {
     }
 }
 
-/// A line of the log in some columns.
+/// A log line, cut to some columns.
 pub(super) fn row(entry: &Entry, columns: usize) -> Parts {
     let again = if entry.count > 1 { format!(" (×{})", entry.count) } else { String::new() };
     let front = format!(" T+{} ", text::clock(entry.t_s));

@@ -1,15 +1,15 @@
-//! A line in which text is typed, with the terminal's cursor.
+//! An input line, with the terminal's cursor.
 
 use super::text;
 use crate::model::LineEdit;
 
-/// The part of a line that fits into some columns.
+/// The visible part of an input line.
 pub(super) struct Field {
-    /// The text from the first character that is shown.
+    /// The text from the first visible character on.
     pub text: String,
-    /// Column of the cursor within it.
+    /// The column of the cursor within the text.
     pub cursor: usize,
-    /// Bytes of the line before it.
+    /// The number of bytes of the line before the text.
     pub skipped: usize,
 }
 

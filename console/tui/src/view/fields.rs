@@ -1,14 +1,14 @@
-//! Named figures, one below the other.
+//! Named figures, one below another.
 
 use super::look::{Look, Parts};
 use super::text;
 use crate::theme::Role;
 use ratatui::text::Line;
 
-/// A name and what it stands before, in as many lines as it takes.
+/// A name and a value, which may take several lines.
 pub(super) type Field = (&'static str, String);
 
-/// Fields in some columns, the names in the first ones.
+/// The lines of some fields; the names take the first `names` columns.
 pub(super) fn lines(look: &Look, fields: &[Field], names: usize, columns: usize) -> Vec<Line<'static>> {
     let room = columns.saturating_sub(names + 2).max(8);
     let rows = fields.iter().flat_map(|(name, words)| {

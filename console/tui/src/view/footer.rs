@@ -1,4 +1,4 @@
-//! The keys that do something now, from the one table.
+//! The keys that are active now, from the action table.
 
 use super::look::Look;
 use super::text;
@@ -16,7 +16,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// What goes first when there is too little room.
+/// The actions that are dropped first if space is short.
 const DISPENSABLE: [ActionId; 19] = [
     ActionId::Difference,
     ActionId::Align,
@@ -51,17 +51,17 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     frame.render_widget(written(look, hints), area);
 }
 
-/// As many keys as fit into some columns.
+/// The footer line, with as many keys as fit.
 pub(super) fn line(look: &Look, columns: usize) -> Line<'static> {
     written(look, fitting(look.model, columns))
 }
 
-/// The keys of which all fit into some columns.
+/// The keys that fit.
 fn fitting(model: &Model, columns: usize) -> Vec<Hint> {
     let mut hints = hints(model);
     let paged = model.ui.arrangement() == Arrangement::Paged;
     for id in DISPENSABLE {
-        // One pane at a time: without the key to the next one the others are lost.
+        // With one pane at a time, the others could not be reached without the key to the next one.
         let kept = paged && id == ActionId::NextPane;
         if width(&hints) > columns && !kept {
             hints.retain(|hint| hint.id != id);
@@ -77,7 +77,7 @@ fn written(look: &Look, hints: Vec<Hint>) -> Line<'static> {
     look.line(parts)
 }
 
-/// A key and what it does.
+/// A key and its label.
 struct Hint {
     id: ActionId,
     keys: String,
@@ -94,14 +94,14 @@ fn width(hints: &[Hint]) -> usize {
     hints.iter().map(Hint::width).sum()
 }
 
-/// The keys that do something now; keys with the same label stand together.
+/// The active keys; keys with the same label are grouped.
 fn hints(model: &Model) -> Vec<Hint> {
     let contexts = contexts(model);
     let mut hints: Vec<Hint> = Vec::new();
     for action in ACTIONS.iter().filter(|action| shown(action, &contexts, model)) {
         let is_text = contexts.contains(&Context::Text);
         let mut keys = model.console.keys.of(action).iter();
-        // In a text field a character is not a key.
+        // In an input line a character is text, not a key.
         let Some(key) = keys.find(|key| !(is_text && matches!(key, Key::Char(_)))) else { continue };
         let label = label(action, model);
         match hints.last_mut().filter(|last| last.label == label) {
@@ -117,7 +117,8 @@ fn hints(model: &Model) -> Vec<Hint> {
 
 fn shown(action: &Action, contexts: &[Context], model: &Model) -> bool {
     let in_screen = contexts.contains(&Context::Screen);
-    // In a list or line the stop keys only stop, so there they are shown only while something can be stopped.
+    // In a list or input line the stop keys only stop the robot, so they are shown only while there is something to
+    // stop.
     let idle =
         matches!(action.id, ActionId::Hold | ActionId::Interrupt) && !in_screen && !model.live.may_move();
     action.works_in(contexts)

@@ -1,4 +1,4 @@
-//! The home screen: what there is to open, what was flown, what is wrong.
+//! The home screen: scenarios, past runs and problems.
 
 use super::look::{Look, Parts, fill};
 use super::{events, table, text};
@@ -12,9 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
-/// Rows of the attention pane with its frame, at most.
+/// Maximum rows of the attention pane, including the frame.
 const ATTENTION: u16 = 10;
-/// Columns of the task of a scenario, and the least for how its last run ended.
+/// Columns of a scenario's task, and the minimum for how its last run ended.
 const TASK: usize = 7;
 const END: usize = 10;
 
@@ -59,7 +59,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     if rows.len() > height {
         let more = rows.len() - height.saturating_sub(1);
         rows.truncate(height.saturating_sub(1));
-        rows.push(vec![(Role::Watch, format!(" {more} more points; `tankops runs` lists every run"))]);
+        rows.push(vec![(Role::Watch, format!(" {more} more items; `tankops runs` lists every run"))]);
     }
     fill(frame, attention, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
@@ -77,7 +77,7 @@ fn scenarios(look: &Look, frame: &mut Frame, area: Rect) {
     let names = name_columns(&listed, columns);
     let rows: Vec<Parts> = listed.iter().map(|entry| scenario_row(look, entry, names, columns)).collect();
     let selected = (home.list == HomeList::Scenarios).then_some(home.scenario);
-    // As many rows as the longest text takes: the list keeps its height whatever is selected.
+    // Sized for the longest text, so that the height of the list does not depend on the selection.
     let longest = listed.iter().map(|entry| about_lines(look, entry, columns).len()).max().unwrap_or(0);
     let about = if height > 12 { longest.min(height / 2) } else { 0 };
     let shown = table::window(selected.unwrap_or(0), rows.len(), height - about);
@@ -122,7 +122,7 @@ fn scenario_row(look: &Look, entry: &ScenarioEntry, names: usize, columns: usize
     parts
 }
 
-/// How a run ended, with what it scanned if that was its task.
+/// How a run ended, with its coverage if its task was to scan.
 fn end(run: &PastRun) -> String {
     match run.reachable {
         Some(share) if run.end == "complete" => format!("{} %", text::percent(share)),
@@ -172,12 +172,13 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// Columns of when a run began, how long it took and what it scanned, each with a blank.
+/// Columns of a run's start, duration and coverage, each with a blank.
 const BEGAN: usize = 12;
 const TIME: usize = 9;
 const REACH: usize = 7;
 
-/// What is left out of the rows of runs so that their names fit: the time first, then all but the end.
+/// The column widths of the run rows. To make the names fit, the time is dropped first, then everything except the
+/// outcome.
 fn run_columns(names: usize, columns: usize) -> [usize; 4] {
     let least = 1 + names + END + 1;
     let room = |rest: usize| columns.saturating_sub(1 + END + 1 + rest);
@@ -197,7 +198,7 @@ fn name_of(run: &PastRun) -> &str {
 fn run_row(run: &PastRun, [began, name, time, reach]: [usize; 4]) -> Parts {
     let took = run.mission_time_s.map_or_else(|| "-".into(), text::clock);
     let scanned = run.reachable.map_or_else(String::new, |share| format!("{} %", text::percent(share)));
-    // Without a column of its own, what was scanned says more than that the run is complete.
+    // Without a coverage column, the coverage is more useful than the word "complete".
     let end = if reach == 0 && run.end == "complete" && run.reachable.is_some() {
         scanned.clone()
     } else {
@@ -236,7 +237,7 @@ fn filter_note(look: &Look) -> String {
     }
 }
 
-/// How many points need the operator.
+/// The number of items that need the operator.
 fn open_points(found: &Found) -> usize {
     found.attention.iter().filter(|point| point.severity > Severity::Info).count()
 }

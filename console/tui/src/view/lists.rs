@@ -1,4 +1,4 @@
-//! Lists over the screen: commands, planners, parameters, layers.
+//! Overlay lists: commands, planners, parameters, layers.
 
 mod commands;
 pub(super) mod list;
@@ -16,7 +16,7 @@ pub(super) use list::place_cursor;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Widest list.
+/// Maximum width of a list, columns.
 const WIDTH: u16 = 78;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {

@@ -1,4 +1,4 @@
-//! What every part of the view needs: the model, and how the terminal shows it.
+//! The context that every part of the view needs: the model, and the way the terminal shows it.
 
 use super::cache::Cache;
 use super::text;
@@ -12,32 +12,33 @@ use ratatui::widgets::{Block, Paragraph};
 use std::borrow::Cow;
 use std::cell::RefCell;
 
-/// What every part of the view needs.
+/// The context that every part of the view needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub model: &'a Model,
-    /// The run that the panes show.
+    /// The run shown in the panes.
     pub run: &'a Run,
     pub caps: Caps,
     pub theme: &'a Theme,
     pub cache: &'a RefCell<Cache>,
 }
 
-/// Pieces of a line, each with what it stands for.
+/// The pieces of a line with their roles.
 pub(crate) type Parts = Vec<(Role, String)>;
 
 impl Look<'_> {
-    /// Whether letters stand for what colours and half characters show elsewhere.
+    /// Whether letters replace the colours and half characters used elsewhere.
     pub(crate) fn is_plain(&self) -> bool {
         self.caps.colours == Colours::None || self.caps.glyphs == Glyphs::Ascii
     }
 
-    /// Whether a value that comes with every tick has not come for two ticks, or nothing at all is heard of the mission.
+    /// Whether a value that arrives with every tick has been missing for two ticks, or the mission is silent
+    /// altogether.
     pub(crate) fn is_stale(&self, t_s: Option<f64>) -> bool {
         t_s.is_some_and(|t_s| self.model.silent_s().is_some() || self.run.is_overdue(t_s))
     }
 
-    /// Whether the estimated pose is old.
+    /// Whether the estimated pose is stale.
     pub(crate) fn is_pose_stale(&self) -> bool {
         self.is_stale(self.run.position.pose.map(|_| self.run.position.pose_t_s))
     }
@@ -50,7 +51,7 @@ impl Look<'_> {
         Line::from(parts.into_iter().map(|(role, text)| self.span(role, text)).collect::<Vec<_>>())
     }
 
-    /// A sentence with the keys that the operator has for the actions that it names as `<end>`.
+    /// A sentence with its `<end>`-style placeholders replaced by the operator's keys.
     pub(crate) fn keys(&self, sentence: &str) -> String {
         self.model.console.keys.spelled(sentence)
     }
@@ -75,7 +76,7 @@ impl Look<'_> {
     }
 }
 
-/// The lines of highest rank (the lowest number) that fit into some rows, in their order.
+/// The highest-ranked lines (lowest numbers) that fit into some rows, in their original order.
 pub(crate) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
     let mut ranks: Vec<u8> = lines.iter().map(|(rank, _)| *rank).collect();
     ranks.sort_unstable();
@@ -83,17 +84,17 @@ pub(crate) fn ranked(lines: Vec<(u8, Line<'_>)>, rows: usize) -> Vec<Line<'_>> {
     lines.into_iter().filter(|(rank, _)| *rank <= last).map(|(_, line)| line).collect()
 }
 
-/// The mark of a value that is older than it should be.
+/// Marks a value as stale if it is.
 pub(crate) fn marked(is_stale: bool, (role, value): (Role, String)) -> (Role, String) {
     match (is_stale, role) {
         (false, _) => (role, value),
-        // That something is wrong matters more than that it is old.
+        // An alarm colour takes precedence over the stale mark.
         (true, Role::Crit) => (role, format!("◌{value}")),
         (true, _) => (Role::Stale, format!("◌{value}")),
     }
 }
 
-/// Lines in a pane; one that is too long ends in an ellipsis.
+/// Draws lines in a pane; lines that are too long end in an ellipsis.
 pub(crate) fn fill(frame: &mut Frame, area: Rect, block: Block<'_>, lines: Vec<Line<'_>>) {
     let columns = usize::from(block.inner(area).width);
     let lines: Vec<Line> = lines.into_iter().map(|line| cut(line, columns)).collect();

@@ -1,4 +1,4 @@
-//! The map: scanned floor below, walls, obstacles, paths and forces above, in one canvas.
+//! The map on one canvas: scanned floor at the bottom; walls, obstacles, paths and forces on top.
 
 mod drawn;
 mod legend;
@@ -23,7 +23,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::canvas::Canvas;
 
-/// Room about the tank, as a share of its size.
+/// Margin around the tank, as a factor of its size.
 const MARGIN: f64 = 1.04;
 /// Columns and rows from which the map has a legend.
 const LEGEND: (u16, u16) = (64, 20);
@@ -53,7 +53,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left = readout::cursor(look, ui, inner.width)
         .or_else(|| window.map(|window| (Role::Dim, scale(window))))
         .unwrap_or((Role::Dim, String::new()));
-    // The cursor was asked for; the scale is left out where there is no room.
+    // The operator asked for the cursor, so if space is short the scale is dropped.
     let room = usize::from(below.width).saturating_sub(text::width(&robot.1));
     let fits = text::width(&left.1) < room;
     if fits || ui.cursor.is_some() {
@@ -84,7 +84,7 @@ fn keys(look: &Look, width: usize, title: usize) -> String {
     spelled.find(|keys| text::width(keys) + title + 9 <= width).unwrap_or_default()
 }
 
-/// What of the floor is seen in an area.
+/// The part of the floor that is visible in an area.
 fn window(look: &Look, area: Rect) -> Option<Window> {
     let (model, run) = (look.model, look.run);
     let (low, high) = run.about.as_ref()?.world.boundary.bounds();
@@ -117,7 +117,7 @@ fn draw_floor(look: &Look, frame: &mut Frame, area: Rect, window: Window) {
     shade::paint(look, window, area, frame.buffer_mut());
 }
 
-/// A bar of a round number of metres.
+/// A scale bar for a round number of metres.
 fn scale(window: Window) -> String {
     let longest_m = window.column_m * 16.0;
     let decade = 10.0_f64.powf(longest_m.log10().floor());

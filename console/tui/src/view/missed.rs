@@ -1,4 +1,4 @@
-//! The missed areas, when the mission has ended: what and where, the largest first.
+//! The missed areas once the mission has ended: reason and place, largest first.
 
 use super::look::{Look, fill};
 use super::text;
@@ -8,7 +8,7 @@ use account::{Account, Area, MissReason};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// The account of the floor of a run that is over.
+/// The account of the floor of a run that has ended.
 pub(super) fn account<'a>(look: &Look<'a>) -> Option<&'a Account> {
     look.model.live.result.as_ref()?.summary.floor.as_ref()
 }
@@ -41,7 +41,7 @@ fn row(area: &Area<MissReason>, columns: usize) -> String {
     text::wording([area.to_string(), format!("{place}: {}", brief(area)), place], columns)
 }
 
-/// The reason for most of an area, and how many more there are.
+/// The main reason for a missed area, and the number of further reasons.
 pub(super) fn brief(area: &Area<MissReason>) -> String {
     match area.causes.len().saturating_sub(1) {
         0 => area.reason.briefly().to_owned(),

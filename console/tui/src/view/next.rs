@@ -1,14 +1,14 @@
-//! The line that says what comes next and whether anybody is needed.
+//! The line that states what comes next and whether anybody is needed.
 
 use super::{events, text};
 use crate::model::{Busy, Model, Replay, Screen};
 use crate::theme::Role;
 use mission::{Hold, HoldReason, Outcome, Phase, PositionTrust, Readiness, Resumes, Severity};
 
-/// How a line looks, and its clauses, the most important one first.
+/// The role of the line, and its clauses, most important first.
 pub(super) type Clauses = (Role, Vec<String>);
 
-/// What comes next, with the keys that the operator has.
+/// What comes next, with the operator's keys.
 pub(super) fn clauses(model: &Model) -> Clauses {
     let (role, mut clauses) = by_phase(model);
     if model.live.is_look_only() {
@@ -21,7 +21,7 @@ pub(super) fn clauses(model: &Model) -> Clauses {
     (role, clauses.iter().map(|clause| model.console.keys.spelled(clause)).collect())
 }
 
-/// What a replay is, and which key goes on.
+/// The line of a replay, with the key that plays or pauses.
 fn played(model: &Model, replay: &Replay) -> String {
     let next = match (model.live.is_opening, replay.is_playing) {
         (true, _) => "reading the run...",
@@ -45,7 +45,7 @@ fn by_phase(model: &Model) -> Clauses {
         (Some(_), _) => (Role::Title, vec!["Order sent...".into()]),
         (None, Phase::Held(hold)) => {
             let mut clauses = held(model, hold);
-            // That the robot will move by itself goes before what a planner is doing.
+            // The warning that the robot will move automatically comes before the work of a planner.
             let at = if hold.resumes.is_never() { 1 } else { 2 }.min(clauses.len());
             clauses.splice(at..at, work.into_iter().flatten());
             (Role::Hold, clauses)
@@ -75,7 +75,7 @@ fn by_phase(model: &Model) -> Clauses {
     }
 }
 
-/// What comes next, without figures that change all the time.
+/// What comes next, without figures that keep changing.
 pub(crate) fn standing(model: &Model) -> String {
     if let Some(busy) = &model.live.busy {
         return format!("{}.", busy.work);
@@ -86,7 +86,7 @@ pub(crate) fn standing(model: &Model) -> String {
     clauses(model).1.join(" ")
 }
 
-/// Where the operator goes from a mission that has ended.
+/// The keys that lead on from a mission that has ended.
 fn more(model: &Model) -> String {
     match model.ui.screen {
         Screen::Result => "<again>: plan again, <rescan>: re-scan, <home>: home.",
@@ -95,7 +95,7 @@ fn more(model: &Model) -> String {
     .into()
 }
 
-/// What a planner is doing and how far, for how long already and its limit, and what exactly.
+/// The work of a planner with its progress, elapsed time, limit and current activity.
 fn work(model: &Model, busy: &Busy) -> Vec<String> {
     let passed_s = (model.console.now.mono_s - busy.since_mono_s).max(0.0) as u64;
     let time = |limit_s: f64| format!(", {passed_s} s (limit {} s)", limit_s as u64);
@@ -108,7 +108,7 @@ fn work(model: &Model, busy: &Busy) -> Vec<String> {
     std::iter::once(first).chain(what).collect()
 }
 
-/// As many clauses as fit into some columns; the first one is cut if need be.
+/// As many clauses as fit into some columns; the first one is cut if necessary.
 pub(super) fn joined(clauses: &[String], columns: usize) -> String {
     let mut line = clauses.first().map_or_else(String::new, |first| text::fit(first, columns));
     for clause in clauses.iter().skip(1) {
@@ -133,7 +133,7 @@ fn idle(model: &Model) -> Clauses {
     let is_opened = model.planner().is_some() || model.live.run.planning.fault.is_some();
     let is_preparing = match model.live.run.standing.standing().readiness {
         Readiness::Preparing => true,
-        // The plan is asked for as soon as the run is open.
+        // The plan is requested as soon as the run is open.
         Readiness::NoPlan => !is_opened,
         _ => false,
     };
@@ -141,7 +141,7 @@ fn idle(model: &Model) -> Clauses {
         return (Role::Title, vec!["Start when the plan is ready.".into()]);
     }
     let preflight = "<preflight>: pre-flight check.";
-    // A planner that is still being opened blocks nothing yet.
+    // A planner that is still opening does not block the start yet.
     if let Some(failed) = model.blocking_check().filter(|_| is_opened) {
         let (what, why) =
             (format!("Start blocked: {}.", failed.what), format!("{}.", text::capitalized(&failed.found)));
@@ -178,7 +178,7 @@ fn running(model: &Model) -> Clauses {
     (Role::Title, vec![format!("Next target: {at}; path {done} % done."), calm])
 }
 
-/// Why the robot stands, then what ends the hold.
+/// Why the robot is held, then what ends the hold.
 fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     let position = model.live.run.standing.standing().position;
     let clauses = match trouble(position) {
@@ -189,7 +189,7 @@ fn held(model: &Model, Hold { by, resumes }: &Hold) -> Vec<String> {
     clauses.into_iter().chain(message(by)).collect()
 }
 
-/// What is wrong with the position, and what it takes to move again.
+/// The problem with the position, and what is needed before the robot may move again.
 fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     match position {
         PositionTrust::Good => None,
@@ -200,8 +200,8 @@ fn trouble(position: PositionTrust) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// A hold that ends by itself. The second clause is short enough for 60 columns: nobody shall be surprised by a robot that
-/// moves.
+/// A hold that ends automatically. The second clause fits into 60 columns, so that nobody is surprised by a robot
+/// that starts to move.
 fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     let when = match (resumes, by) {
         (Resumes::ByFallback, _) => "Resumes with fallback planner.",
@@ -213,7 +213,7 @@ fn held_for_now(by: &HoldReason, resumes: Resumes) -> Vec<String> {
     vec![format!("{}.", state(by)), when.into(), "<hold>: HOLD (stay held).".into()]
 }
 
-/// A hold that only an order ends, and none that moves the robot is accepted now.
+/// A hold that only an order ends, while the mission accepts no order that moves the robot.
 fn held_without_position(by: &HoldReason, (trouble, needs): (&str, &str)) -> Vec<String> {
     let state = match by {
         HoldReason::PositionLost | HoldReason::RangesInconsistent => format!("HELD: {trouble}."),
@@ -229,7 +229,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     const RETRY: &str = "<hold>: retry.";
     const PLANNER: &str = "<planner>: change planner.";
     let (state, remedies): (&str, &[&str]) = match by {
-        // Why the robot was held is over.
+        // The reason for the hold is gone.
         HoldReason::PositionLost => ("HELD: position recovered", &[RESUME]),
         HoldReason::RangesInconsistent => ("HELD: ranges agree again", &[RESUME]),
         HoldReason::Stepped => (state(by), &[RESUME]),
@@ -243,7 +243,7 @@ fn held_for_good(by: &HoldReason) -> Vec<String> {
     std::iter::once(format!("{state}.")).chain(remedies.iter().map(|remedy| (*remedy).to_owned())).collect()
 }
 
-/// Why the robot stands, without a full stop.
+/// Why the robot is held, without a full stop.
 fn state(by: &HoldReason) -> &'static str {
     match by {
         HoldReason::Operator => "HELD by operator",
@@ -259,7 +259,7 @@ fn state(by: &HoldReason) -> &'static str {
     }
 }
 
-/// The details, where there is room for them.
+/// The details of the hold, shown if there is space.
 fn message(by: &HoldReason) -> Option<String> {
     match by {
         HoldReason::PlannerFault { message }

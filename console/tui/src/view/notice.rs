@@ -1,4 +1,5 @@
-//! What was said to the operator last, in lines of its own right above the state: it covers neither that nor a question.
+//! The latest notice to the operator, in its own lines just above the state; it covers neither the state nor a
+//! question.
 
 use super::look::Look;
 use super::{confirm, events, text};
@@ -10,10 +11,10 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph};
 
-/// Rows of a notice, at most.
+/// The maximum rows of a notice.
 const MOST_ROWS: usize = 3;
 
-/// A notice in as many lines as it takes, and how they look.
+/// The role and the wrapped lines of a notice.
 pub(super) fn lines(model: &Model, columns: usize) -> Option<(Role, Vec<String>)> {
     let notice = model.notice()?;
     let role = if notice.severity == Severity::Info { Role::Title } else { events::role(notice.severity) };
@@ -27,7 +28,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let columns = usize::from(area.width);
     let Some((role, lines)) = lines(look.model, columns) else { return };
     let foot = confirm::rows(look, area.width) + 1;
-    // The line on top stays, and a row of what the screen shows.
+    // Leave the top line and one row of the screen visible.
     let most = area.height.saturating_sub(foot + 2);
     let rows = most.min(lines.len() as u16);
     let place = Rect { y: area.bottom().saturating_sub(foot + rows), height: rows, ..area };

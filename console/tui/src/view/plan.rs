@@ -1,5 +1,5 @@
-//! The plan screen: a mission before it moves: its path on the map, what it promises, what was changed, and beside it
-//! another planner's plan.
+//! The plan screen, for a mission before the start: the path on the map, the estimate, changed parameters, and a
+//! different planner's plan beside it.
 
 mod estimate;
 mod parameters;
@@ -12,9 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
-/// Columns of the panes at the side, on a wide and on a narrow screen.
+/// Columns of the side panes, on a wide and on a narrow screen.
 const SIDE: (u16, u16) = (50, 34);
-/// Most rows of the reasons against a plan.
+/// Maximum rows of objections to a plan.
 const REASONS: usize = 6;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -30,7 +30,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let side = if wide { SIDE.0 } else { SIDE.1 };
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(area);
     map::draw(look, frame, left);
-    // The parameters have one row at least.
+    // The parameters have at least one row.
     let rows = if wide { 10 } else { 7 };
     let [top, middle, bottom] = Layout::vertical([
         Constraint::Length(rows),
@@ -51,7 +51,7 @@ fn failure(look: &Look, frame: &mut Frame, area: Rect, why: &str) {
     fill(frame, area, block, lines);
 }
 
-/// Which planner, how far it is, and what speaks against its plan.
+/// Draws the planner, its progress, and the objections to its plan.
 fn state(look: &Look, frame: &mut Frame, area: Rect) {
     let block = look.block(Role::Border, "Planner", &look.keys("<planner> change  <compare> compare"));
     let columns = usize::from(block.inner(area).width).saturating_sub(1);
@@ -98,21 +98,21 @@ fn certificate(look: &Look) -> Option<Parts> {
     })
 }
 
-/// What speaks against the plan.
+/// The objections to the plan.
 fn objections(look: &Look) -> Vec<String> {
     use crate::model::Cause;
     let alarms = look.run.alarms.list().iter();
     alarms
         .filter(|alarm| matches!(alarm.cause, Cause::Certificate | Cause::Planner))
         .map(|alarm| match alarm.text.split_once(": ") {
-            // That it is not certified is said above.
+            // The line above already states that the plan is not certified.
             Some((_, why)) if alarm.cause == Cause::Certificate => text::capitalized(why),
             _ => alarm.text.clone(),
         })
         .collect()
 }
 
-/// How far the second plan is.
+/// The progress of the second plan.
 fn ghost(look: &Look, columns: usize) -> Vec<Parts> {
     let Some(ghost) = &look.model.live.plans.ghost else { return Vec::new() };
     let id = &ghost.choice.id;

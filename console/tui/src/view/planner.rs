@@ -9,9 +9,9 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Most rows that a fault takes.
+/// Maximum rows of a fault.
 const FAULT_ROWS: usize = 2;
-/// Columns from which labels are full words.
+/// Width from which labels are full words, columns.
 const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -38,7 +38,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     let run = look.run;
     let is_stale = look.is_pose_stale();
     let pose = |value: String| marked(is_stale, (Role::Text, value));
-    // Its name is in the top line as well: how another one differs is worth more.
+    // The active planner's name is also in the top line, so the differences of the shadow planner matter more.
     let of_name = if run.shadow.is_some() { 3 } else { 2 };
     let mut rows = vec![(of_name, "planner", planner(look))];
     if let Some(fault) = &run.planning.fault {
@@ -59,7 +59,7 @@ fn rows_of(look: &Look, wide: bool, room: usize) -> Vec<(u8, &'static str, Value
     rows
 }
 
-/// The better plan that is offered: what it saves, and which key takes it.
+/// The better plan on offer: the saving, and the key that takes the plan.
 fn better(look: &Look, offer: &Offer, room: usize) -> Value {
     let saves = text::number((offer.flown.time_s - offer.better.time_s) / 60.0, 1);
     let of = text::number(offer.flown.time_s / 60.0, 1);
@@ -94,7 +94,7 @@ fn cross_track(run: &Run, room: usize) -> String {
     text::wording([format!("{off} m from preset path"), format!("{off} m")], room)
 }
 
-/// Speed and heading as estimated.
+/// The estimated speed and heading.
 fn motion(run: &Run, room: usize) -> String {
     let speed = run.position.speed_m_per_s().map_or_else(|| "-".into(), |speed| text::number(speed, 2));
     let heading = run.position.pose.map_or_else(|| "-".into(), |pose| text::degrees(pose.heading_rad));
@@ -108,7 +108,7 @@ fn motion(run: &Run, room: usize) -> String {
     )
 }
 
-/// The last command; one that is old is marked, for the robot does not follow it for long.
+/// The last command; marked if it is stale, because the robot does not follow an old command for long.
 fn command(look: &Look, room: usize) -> Value {
     let run = look.run;
     let Some((t_s, command)) = &run.planning.command else { return (Role::Text, "-".into()) };
@@ -134,7 +134,7 @@ fn command(look: &Look, room: usize) -> Value {
     };
     let comma = if status.is_empty() { "" } else { ", " };
     let wordings = [format!("{status}{comma}{full}"), format!("{status}{comma}{short}"), status.to_owned()];
-    // The mark takes a column.
+    // The stale mark takes one column.
     let words = text::wording(wordings, room.saturating_sub(1));
     marked(look.is_stale(Some(*t_s)), (role, words))
 }

@@ -1,4 +1,4 @@
-//! The plugins screen: which files were found, how each stands, what its planners are, and why others were refused.
+//! The plugins screen: the files found with their states and planners, and why others were refused.
 
 use super::look::{Look, Parts, fill};
 use super::{table, text};
@@ -10,7 +10,7 @@ use mission::{ParamInfo, PlannerInfo, Sandbox};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Digits of a hash that are shown.
+/// The number of hash digits shown.
 const HASH: usize = 12;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -42,7 +42,7 @@ fn files(look: &Look, frame: &mut Frame, area: Rect, (found, selected): (&[Plugi
     if lines.is_empty() {
         lines.push(look.line([(
             Role::Warn,
-            " No plugins found; `tankops planners` shows where they are searched for.".into(),
+            " No plugins found; `tankops planners` shows where tankops looks for them.".into(),
         )]));
     }
     fill(frame, area, block, lines);
@@ -105,7 +105,7 @@ fn detail(look: &Look, frame: &mut Frame, area: Rect, plugin: &Plugin<'_>) {
 fn state_words(state: PluginState) -> &'static str {
     match state {
         PluginState::Ready => "ready",
-        PluginState::Active => "active: one of its planners drives",
+        PluginState::Active => "active: one of its planners is driving",
         PluginState::Changed => "CHANGED on disk; <planner>: choose the planner again to use the new build",
         PluginState::Refused => "REFUSED",
     }

@@ -1,4 +1,4 @@
-//! The position pane: the AE stations' measurements, and how far to trust them.
+//! The position pane: the AE stations' measurements, and how reliable they are.
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
@@ -10,9 +10,9 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::{Station, StationId};
 
-/// Seconds of mission time that the curve shows.
+/// Mission time that the curve covers, seconds.
 const CURVE_S: usize = 120;
-/// Columns from which the pane writes full words.
+/// Width from which the pane uses full words, columns.
 const WIDE: usize = 40;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -24,7 +24,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, ranked(lines, usize::from(inner.height)));
 }
 
-/// Where status words stand, they come first: what is cut or left out comes later.
+/// The lines of a wide pane. Status words come first, because the ends of lines are cut.
 fn wide_lines(look: &Look, inner: Rect) -> Vec<(u8, Line<'static>)> {
     let columns = usize::from(inner.width);
     let run = look.run;
@@ -75,7 +75,7 @@ fn stations(run: &Run) -> &[Station] {
     run.about.as_ref().map_or(&[], |about| &about.world.stations)
 }
 
-/// Stations heard in the last ranging cycle, of how many.
+/// Stations heard in the last ranging cycle, out of the total.
 fn heard(run: &Run, of: &str) -> String {
     let heard = run.position.ranged_t_s.map_or_else(|| "-".into(), |_| run.position.heard.to_string());
     format!("{heard}{of}{}", stations(run).len())
@@ -114,7 +114,7 @@ fn curve(look: &Look, columns: usize) -> Line<'static> {
     look.line([(Role::Text, " ".into()), (Role::Watch, curve), (Role::Dim, note)])
 }
 
-/// How far to trust the last fix, and how old it is.
+/// The state and age of the last fix.
 fn fix(look: &Look) -> (Role, String) {
     let run = look.run;
     let Some(age_s) = run.position.fix_age_s(run.clock.t_s) else {
@@ -137,7 +137,7 @@ fn state(run: &Run) -> (Role, &'static str) {
     }
 }
 
-/// A few words per station: its residual, or why it was rejected; those rejected come first.
+/// A few words per station: its residual, or why it was rejected; rejected stations come first.
 fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>> {
     let mut words = Parts::new();
     if let Some(fix) = &look.run.position.fix {
@@ -164,7 +164,7 @@ fn station_lines(look: &Look, columns: usize, rows: usize) -> Vec<Line<'static>>
     lines.into_iter().take(rows).map(|line| look.line(line)).collect()
 }
 
-/// A station that has no part in the fix, and why.
+/// A station that is not used in the fix, and why.
 fn rejected(run: &Run, id: StationId, why: &Exclusion) -> String {
     let name = run.station_name(id);
     match why {

@@ -1,9 +1,9 @@
-//! Nothing on the screen but what can be seen, whoever wrote the text.
+//! Removes invisible characters from the screen, whoever wrote the text.
 
 use foreign::is_plain;
 use ratatui::buffer::Buffer;
 
-/// Leaves out of every cell what is not plain; a cell with nothing else shows that there was something.
+/// Removes invisible characters from every cell; a cell that would become empty shows a placeholder.
 pub(super) fn make(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().chars().all(is_plain) {

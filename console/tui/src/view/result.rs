@@ -1,4 +1,5 @@
-//! The result screen: what a mission has achieved against what its plan promised, what was missed and why, what comes next.
+//! The result screen: the achieved figures beside the plan's estimate, the missed areas with their reasons, and what
+//! comes next.
 
 mod figures;
 mod floor;
@@ -12,11 +13,11 @@ use mission::Outcome;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Columns of the panes at the side, on a wide and on a narrow screen.
+/// Columns of the side panes, on a wide and on a narrow screen.
 const SIDE: (u16, u16) = (62, 42);
-/// Rows of the floor's shares with their frame, at least.
+/// Minimum rows of the floor shares, including the frame.
 const FLOOR: u16 = 6;
-/// Rows of the list of missed areas with its frame.
+/// Rows of the list of missed areas, including the frame.
 const MISSED: u16 = 10;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -38,7 +39,7 @@ pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Length(side)]).areas(above);
     let rows = figures::rows(look, result, right.width.saturating_sub(2)) + 2;
     let [achieved, floor] = Layout::vertical([Constraint::Length(rows), Constraint::Fill(1)]).areas(right);
-    // Without room for both, what was scanned counts more than where: the map is one key away.
+    // If both do not fit, the shares matter more than the map, which is one key away.
     let floor = if left.width > 0 && floor.height < FLOOR { left } else { floor };
     if left.width > 0 && floor != left {
         map::draw(look, frame, left);
@@ -53,7 +54,7 @@ fn ending(result: &RunResult) -> String {
     result.summary.outcome.map_or_else(|| "CUT OFF".into(), |outcome| outcome.word().to_uppercase())
 }
 
-/// How the title of the result looks.
+/// The role of the result's title.
 fn role(result: &RunResult) -> Role {
     if result.summary.outcome == Some(Outcome::Complete) { Role::Good } else { Role::Warn }
 }

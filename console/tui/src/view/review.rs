@@ -1,4 +1,4 @@
-//! The review screen: past runs, what is known of the selected one, and the comparison of two.
+//! The review screen: past runs, details of the selected run, and the comparison of two runs.
 
 mod compare;
 
@@ -12,9 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 
-/// Rows of what is below the list, with frames.
+/// Rows of the panes below the list, including frames.
 const BELOW: (u16, u16) = (18, 10);
-/// Columns of what is known of the selected run, beside the comparison.
+/// Columns of the selected run's details, beside the comparison.
 const ABOUT: u16 = 56;
 
 pub(crate) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) {
@@ -80,7 +80,7 @@ fn runs(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, lines);
 }
 
-/// Which run is played back, and which is compared with it.
+/// The mark of the replayed run or of the run that it is compared with.
 fn mark(replay: Option<&Replay>, run: &PastRun) -> &'static str {
     let Some(replay) = replay else { return " " };
     let is_other = replay.other.as_ref().is_some_and(|other| other.name == run.name);
@@ -91,7 +91,7 @@ fn mark(replay: Option<&Replay>, run: &PastRun) -> &'static str {
     }
 }
 
-/// How wide the columns of the table are.
+/// The widths of the table columns.
 #[derive(Clone, Copy)]
 struct Widths {
     scenario: usize,
@@ -100,12 +100,12 @@ struct Widths {
     notes: usize,
 }
 
-/// Columns of how a run ended, with the one that keeps it apart from what is beside it.
+/// Columns of how a run ended, including one blank.
 const END: usize = 10;
-/// Columns of mark, date, end and coverage.
+/// Columns of mark, date, outcome and coverage.
 const FIXED: usize = 3 + 12 + END + 7;
 
-/// What there is no room for is left out: first the time, then the planner.
+/// The column widths; if space is short, the time is dropped first, then the planner.
 fn widths(listed: &[&PastRun], columns: usize) -> Widths {
     let widest = |name: fn(&PastRun) -> &str| {
         listed.iter().map(|run| text::width(name(run))).max().unwrap_or(0).max(8) + 1
@@ -148,7 +148,7 @@ fn row(run: &PastRun, mark: &str, widths: Widths) -> Parts {
     ]
 }
 
-/// What people noted, and what is wrong, shortest first.
+/// Remarks, bookmarks and problems, shortest first.
 fn notes(run: &PastRun) -> String {
     let bookmarks = (run.bookmarks > 0).then(|| format!("●{}", run.bookmarks));
     let all =

@@ -1,4 +1,4 @@
-//! The stations pane of a large screen: what each AE station measured, and whether it was used.
+//! The stations pane of a large screen: the measurement of each AE station, and whether it was used.
 
 use super::look::{Look, Parts, fill, marked};
 use super::{position, text};
@@ -9,7 +9,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use world::{Station, StationId};
 
-/// Columns of the table: heading, width, and rank; where there is too little room those of the highest number are left out.
+/// The table columns: heading, width and rank; if space is short, the columns with the highest rank number are
+/// dropped.
 const TABLE: [(&str, usize, u8); 6] = [
     ("station", 7, 0),
     ("range", 8, 2),
@@ -50,7 +51,7 @@ fn row(look: &Look, station: &Station, columns: usize) -> Parts {
     vec![(role, if words.starts_with('◌') { words } else { format!(" {words}") })]
 }
 
-/// The cells of a row that have room in some columns; words stand left, figures right.
+/// The cells of a row that fit; words are left-aligned, figures right-aligned.
 fn laid_out(cells: [String; 6], columns: usize) -> String {
     let width = |most: u8| -> usize {
         TABLE.iter().filter(|(.., rank)| *rank <= most).map(|(_, width, _)| width + 1).sum()
@@ -66,7 +67,7 @@ fn laid_out(cells: [String; 6], columns: usize) -> String {
     cells.join(" ")
 }
 
-/// What the last fix made of a station: its residual and the largest one accepted, metres, and a word.
+/// The result of the last fix for a station: its residual and its gate, metres, and a word.
 fn state(look: &Look, station: StationId) -> (Role, Option<f64>, Option<f64>, &'static str) {
     let Some(fix) = &look.run.position.fix else { return (Role::Text, None, None, "-") };
     let left_out = fix.excluded.iter().find(|(excluded, _)| *excluded == station);

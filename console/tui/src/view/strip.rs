@@ -1,4 +1,4 @@
-//! The control strip of a terminal too small for a map: state, alarm, position, and the keys that matter.
+//! The control strip of a terminal too small for a map: state, alarm, position, and the most important keys.
 
 use super::look::Look;
 use super::next::Clauses;
@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
         frame.render_widget(block, area);
     }
     let columns = usize::from(inner.width);
-    // A question comes first: at this size nothing may push it out.
+    // A question comes first, so that at this size nothing can push it off the screen.
     let mut lines = Vec::new();
     if asks(look.model) {
         lines.extend(wrapped(look, &confirm::clauses(look.model), columns));
@@ -66,13 +66,13 @@ fn position(look: &Look) -> String {
     format!(" {scanned} % of reachable floor, ±{error} m{lost}")
 }
 
-/// A sentence in as many lines as it takes.
+/// Clauses, wrapped into lines.
 fn wrapped(look: &Look, (role, clauses): &Clauses, columns: usize) -> Vec<Line<'static>> {
     let lines = text::wrap(&clauses.join(" "), columns.saturating_sub(1));
     lines.into_iter().map(|line| Line::from(look.span(*role, format!(" {line}")))).collect()
 }
 
-/// Whether a question about moving or leaving is open.
+/// Whether a question about moving or quitting is open.
 fn asks(model: &Model) -> bool {
     matches!(model.ui.overlay, Overlay::Confirm(_) | Overlay::Quit | Overlay::Stepping)
 }

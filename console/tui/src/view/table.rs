@@ -1,4 +1,4 @@
-//! Tables of a screen: rows of which one is selected, as many as fit.
+//! Tables: as many rows as fit, with a selected one.
 
 use super::look::{Look, Parts};
 use super::text;
@@ -8,18 +8,18 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use std::ops::Range;
 
-/// The part of a list that is shown in some rows: the selected line is always in it.
+/// The visible part of a list, which always contains the selected line.
 pub(crate) fn window(selected: usize, len: usize, rows: usize) -> Range<usize> {
     let first = (selected + 1).saturating_sub(rows).min(len.saturating_sub(rows));
     first..(first + rows).min(len)
 }
 
-/// How many rows a list has, and which of them are shown if not all: `15`, `1-10 of 15`.
+/// The number of rows and, if not all are visible, which of them are: `15`, `1-10 of 15`.
 pub(crate) fn counted(shown: &Range<usize>, len: usize) -> String {
     if shown.len() == len { len.to_string() } else { format!("{}-{} of {len}", shown.start + 1, shown.end) }
 }
 
-/// A row; the selected one begins with a mark and is reversed to its end.
+/// A row; the selected one begins with a mark and is reversed up to its end.
 pub(crate) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize) -> Line<'static> {
     parts.insert(0, (Role::Text, if selected { ">" } else { " " }.into()));
     if !selected {
@@ -34,7 +34,8 @@ pub(crate) fn row(look: &Look, mut parts: Parts, selected: bool, columns: usize)
     line
 }
 
-/// The rows of a table that fit, the selected one among them; `None`: the table does not take the arrow keys.
+/// The rows of a table that fit, including the selected one; `None` means that the table does not take the arrow
+/// keys.
 pub(crate) fn rows(
     look: &Look,
     all: Vec<Parts>,
@@ -46,7 +47,7 @@ pub(crate) fn rows(
     numbered.map(|(index, parts)| row(look, parts, selected == Some(index), columns)).collect()
 }
 
-/// Notes for the mouse where the shown rows of a list are; the first of them is at the top of an area.
+/// Records the areas of the visible rows for the mouse; the first row is at the top of the area.
 pub(crate) fn place(look: &Look, area: Rect, list: Rows, shown: Range<usize>) {
     for (y, index) in (area.top()..area.bottom()).zip(shown) {
         look.cache.borrow_mut().place_row(Rect { y, height: 1, ..area }, list, index);

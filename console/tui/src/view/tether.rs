@@ -1,4 +1,4 @@
-//! The tether pane: how much is out, round what, and whether there is a return path.
+//! The tether pane: the length out, the wraps, and the return path.
 
 use super::look::{Look, Parts, fill, marked, ranked};
 use super::text;
@@ -7,7 +7,7 @@ use crate::theme::Role;
 use mission::Phase;
 use ratatui::{Frame, layout::Rect};
 
-/// Columns from which the pane writes full words.
+/// Width from which the pane uses full words, columns.
 const WIDE: usize = 38;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -32,7 +32,7 @@ fn note(look: &Look) -> &'static str {
 
 fn wide_lines(look: &Look, tether: &Tether, columns: usize) -> Vec<(u8, Parts)> {
     let is_stale = look.is_stale(tether.t_s);
-    // The label takes 13 columns, the mark of what is old one.
+    // The label takes 13 columns and the stale mark one.
     let room = columns.saturating_sub(14);
     let row = |rank: u8, label: &str, value: (Role, String)| {
         (rank, vec![(Role::Dim, format!(" {label:<12}")), marked(is_stale, value)])
@@ -100,7 +100,7 @@ fn beside_limit(value: f64, limit: Option<f64>) -> Role {
     }
 }
 
-/// The largest wrap and where it is.
+/// The largest wrap and its obstacle.
 fn worst(look: &Look, tether: &Tether, room: usize) -> String {
     if tether.is_snagged {
         return "UNKNOWN (snagged)".into();

@@ -1,4 +1,4 @@
-//! Numbers and words as the screen writes them.
+//! Formats numbers and words for the screen.
 
 pub(crate) use crate::model::log::clock;
 
@@ -6,18 +6,18 @@ use crate::model::Speed;
 use ratatui::text::Span;
 use world::{Point, coverage::percent_text};
 
-/// A share as a percentage without its sign.
+/// A share as a percentage, without the sign.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { percent_text(share, 1) } else { number(share, 1) }
 }
 
-/// A number with some decimals; a dash for what is not a number.
+/// A number with some decimals; a dash if it is not finite.
 pub(crate) fn number(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "-".into();
     }
     let text = format!("{value:.decimals$}");
-    // A rounded zero has no sign.
+    // A value that rounds to zero has no sign.
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
         text.trim_start_matches('-').into()
     } else {
@@ -25,12 +25,12 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A place on the floor.
+/// The coordinates of a place on the floor.
 pub(crate) fn place(point: Point) -> String {
     format!("{}, {} m", number(point.x, 2), number(point.y, 2))
 }
 
-/// The pace of the simulation.
+/// The simulation speed.
 pub(crate) fn speed(speed: Speed) -> String {
     match speed {
         Speed::Times(factor) => format!("×{factor}"),
@@ -44,7 +44,7 @@ pub(crate) fn degrees(heading_rad: f64) -> String {
     number(if degrees >= 360.0 { 0.0 } else { degrees }, 0)
 }
 
-/// Text no wider than some columns; an ellipsis stands for what is cut.
+/// Text cut to a width; an ellipsis replaces the rest.
 pub(crate) fn fit(text: &str, columns: usize) -> String {
     if width(text) <= columns {
         return text.to_owned();
@@ -62,14 +62,14 @@ pub(crate) fn fit(text: &str, columns: usize) -> String {
     cut
 }
 
-/// The first of some wordings, the fullest first, that fits into some columns; the last one if none does.
+/// The first of several wordings, longest first, that fits; the last one if none does.
 pub(crate) fn wording<const N: usize>(wordings: [String; N], columns: usize) -> String {
     let fits = wordings.iter().position(|words| width(words) <= columns).unwrap_or(N - 1);
     wordings.into_iter().nth(fits).unwrap_or_default()
 }
 
-/// The leading clauses of a sentence that fit into some columns, for a row whose whole sentence stands elsewhere; an
-/// ellipsis only if not even the first clause fits.
+/// The leading clauses of a sentence that fit, for a row whose full sentence is shown elsewhere; ends in an ellipsis
+/// only if not even the first clause fits.
 pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     if width(sentence) <= columns {
         return sentence.to_owned();
@@ -80,7 +80,7 @@ pub(crate) fn clauses(sentence: &str, columns: usize) -> String {
     fitting.map_or_else(|| fit(sentence, columns), str::to_owned)
 }
 
-/// As many of some names as fit, and how many more there are.
+/// As many names as fit, and the number of further ones.
 pub(crate) fn names(names: &[&str], columns: usize) -> String {
     let wordings = (0..names.len()).map(|left_out| match left_out {
         0 => names.join(" "),
@@ -89,20 +89,20 @@ pub(crate) fn names(names: &[&str], columns: usize) -> String {
     wordings.into_iter().find(|words| width(words) <= columns).unwrap_or_else(|| format!("{}", names.len()))
 }
 
-/// A sentence without its full stop, with a capital letter.
+/// A sentence with a capital letter and without its full stop.
 pub(crate) fn capitalized(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Text of exactly some columns, padded on the right.
+/// Text padded or cut to an exact width.
 pub(crate) fn column(text: &str, columns: usize) -> String {
     let cut = fit(text, columns);
     let blank = columns.saturating_sub(width(&cut));
     cut + &" ".repeat(blank)
 }
 
-/// The first lines of a text; an ellipsis at the end of the last one if there are more.
+/// The first lines of a text; the last one ends in an ellipsis if there are more.
 pub(crate) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -> Vec<String> {
     if lines.len() > most {
         lines.truncate(most);
@@ -113,12 +113,12 @@ pub(crate) fn first_lines(mut lines: Vec<String>, most: usize, columns: usize) -
     lines
 }
 
-/// Columns that a text takes.
+/// The width of a text, columns.
 pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// Words in lines of at most some columns.
+/// Wraps a sentence into lines of a maximum width.
 pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split_whitespace() {
@@ -133,13 +133,13 @@ pub(crate) fn wrap(sentence: &str, columns: usize) -> Vec<String> {
     lines
 }
 
-/// A bar of some columns that is filled to a share.
+/// A bar, filled to a share.
 pub(crate) fn bar(share: f64, columns: usize) -> String {
     let full = if share.is_finite() { (share.clamp(0.0, 1.0) * columns as f64).round() as usize } else { 0 };
     "█".repeat(full) + &"░".repeat(columns - full)
 }
 
-/// A curve in some columns, from 0 to `top`; each column shows the largest of its values.
+/// A sparkline from 0 to `top`; each column shows the largest of its values.
 pub(crate) fn sparkline(
     values: impl ExactSizeIterator<Item = f64>,
     top: f64,

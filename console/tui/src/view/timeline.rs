@@ -1,4 +1,4 @@
-//! The time of a run that is played back: where it is, and what lies before and behind.
+//! The timeline of a replay: the current moment, and the marks before and after it.
 
 use super::look::Look;
 use super::text;
@@ -13,10 +13,10 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// Columns of a clock time with a blank.
+/// Columns of a clock time and a blank.
 const CLOCK: usize = 9;
 
-/// Takes the rows of the timeline from the foot of an area and draws it there; the area that is left.
+/// Draws the timeline at the bottom of an area; returns the remaining area.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arrangement) -> Rect {
     let Some(replay) = &look.model.live.replay else { return area };
     let is_framed = arrangement == Arrangement::Wide;
@@ -35,7 +35,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, arrangement: Arra
 const LEGEND: &str = "· event  ▲ hold  ! alarm  ● bookmark  ┃ now";
 
 fn title(look: &Look, replay: &Replay) -> String {
-    // A short journal is read before the first picture of it is there.
+    // A short journal is fully read before its first frame is shown.
     let is_whole = replay.reel.is_whole && !look.model.live.is_opening;
     match (is_whole, &replay.other) {
         (false, _) => format!("loading {} %", percent(&replay.reel)),
@@ -64,7 +64,7 @@ fn lines(look: &Look, replay: &Replay, columns: usize, is_framed: bool) -> Vec<L
     lines
 }
 
-/// A run from its beginning to as far as it is loaded.
+/// The bar of a run, from its beginning to the end of the loaded part.
 fn bar(
     look: &Look,
     (name, reel, run): (&str, &Reel, &Run),
@@ -97,7 +97,7 @@ fn bar(
     look.line(parts)
 }
 
-/// What goes before what where there is room for one.
+/// The rank of a mark where several share one place.
 fn rank(mark: &Mark) -> u8 {
     match (mark.kind, mark.severity) {
         (MarkKind::Event, Severity::Info) => 1,
@@ -115,7 +115,7 @@ fn shown(mark: &Mark) -> (Role, char) {
     }
 }
 
-/// How the two runs differ now.
+/// The difference between the two runs at this moment.
 fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'static> {
     let rasters = look.model.live.run.coverage.as_ref().zip(other.run.coverage.as_ref());
     let Some((a, b)) = rasters else {
@@ -129,7 +129,7 @@ fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'
     } else {
         (" % of reachable: ", format!(" by {align}"))
     };
-    // In the colours of the map.
+    // The colours are those of the map.
     let roles =
         if replay.shows_difference { [Role::Good, Role::Ghost, Role::Partly] } else { [Role::Text; 3] };
     let words = [format!("only A {a}, "), format!("only B {b}, "), format!("both {both}")];
@@ -137,7 +137,7 @@ fn beside(look: &Look, replay: &Replay, other: &Other, columns: usize) -> Line<'
     look.line([(Role::Dim, head.to_owned())].into_iter().chain(parts).chain([(Role::Dim, foot)]))
 }
 
-/// The bookmark here, or the last line of the log.
+/// The bookmark at this moment, otherwise the last log line.
 fn here(look: &Look, replay: &Replay, columns: usize) -> Line<'static> {
     let run = &look.model.live.run;
     if let Some(bookmark) = replay.notes.bookmark(run.clock.t_s) {

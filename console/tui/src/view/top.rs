@@ -1,4 +1,4 @@
-//! The line on top: who is in charge, what runs, whether it is recorded, what is wrong.
+//! The top line: who is in control, what is running, whether it is recorded, and the alarms.
 
 use super::look::{Look, Parts};
 use super::text;
@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use world::Boundary;
 
-/// Columns of the names of tank and planner for which the words about alarms become letters.
+/// Columns of the tank and planner names below which the alarm words are reduced to letters.
 const LEAST_NAMES: usize = 24;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
@@ -19,7 +19,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let gap = if wide { "   " } else { " " };
     let state = state(look.model);
     let time = time(look.model);
-    // Names take what the rest leaves; the tank goes first, for the planner can change.
+    // The names take the remaining columns. The tank is dropped first, because the planner can change.
     let screen = look.model.ui.screen;
     let name = format!("{} {} ", screen.digit(), screen.name());
     let screen = if wide { text::width(&name) + gap.len() } else { 0 };
@@ -34,7 +34,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let left = [vec![(Role::Text, " ".into())], state, blank(), names, time, blank(), alarms].concat();
     let used: usize = left.iter().map(|(_, text)| text::width(text)).sum();
     frame.render_widget(look.line(left), area);
-    // The names are cut for it before it is left out.
+    // The names on the left are cut before the screen name is dropped.
     if wide && used + screen <= usize::from(area.width) {
         let width = text::width(&name) as u16;
         let line = Line::from(look.span(Role::Dim, name)).right_aligned();
@@ -47,7 +47,7 @@ fn right_of(area: Rect, width: u16) -> Rect {
     Rect { x: area.right() - width, width, ..area }
 }
 
-/// Who is in charge, and whether the robot moves.
+/// Who is in control, and whether the robot moves.
 pub(super) fn state(model: &Model) -> Parts {
     if let Some(replay) = &model.live.replay {
         let word = if replay.is_playing { "▶ PLAY" } else { "‖ PAUSE" };
@@ -98,7 +98,7 @@ fn names(model: &Model, wide: bool, gap: &str, room: usize) -> Parts {
         .collect()
 }
 
-/// Mission time, pace and recording.
+/// Mission time, speed and recording.
 pub(super) fn time(model: &Model) -> Parts {
     let clock = match model.silent_s() {
         Some(silent_s) => {
@@ -106,11 +106,11 @@ pub(super) fn time(model: &Model) -> Parts {
         }
         None => (Role::Text, format!("T+{} ", text::clock(model.live.run.clock.t_s))),
     };
-    // How fast it is played back; the robot is not connected.
+    // The replay speed; no robot is connected.
     if model.live.is_replay() {
         return vec![clock, (Role::Text, format!("{} ", text::speed(model.live.speed)))];
     }
-    // A journal says neither how fast its mission goes nor whether it is recorded.
+    // The journal states neither the speed of its mission nor whether it is being recorded.
     if model.live.is_look_only() {
         return vec![clock];
     }
@@ -128,7 +128,7 @@ fn recording(model: &Model) -> (Role, String) {
     }
 }
 
-/// How many alarms of each severity there are, and whether some are not acknowledged.
+/// The number of alarms of each severity, marked if any are unacknowledged.
 pub(super) fn alarms(model: &Model, wide: bool) -> Parts {
     if model.live.run.alarms.open().next().is_none() {
         return vec![(Role::Dim, if wide { "ALARM none" } else { "! none" }.into())];

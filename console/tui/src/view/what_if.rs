@@ -1,4 +1,4 @@
-//! How a held mission would go on with one planner or another: its way on the map, its figures side by side.
+//! Forecasts of how a held mission would continue with different planners: paths on the map, figures side by side.
 
 use super::look::{Look, Parts, fill};
 use super::{map, text};
@@ -89,7 +89,7 @@ const FIGURES: [(&str, Figure); 8] = [
     }),
 ];
 
-/// What the selected one ends with, and what the forecasts rest on.
+/// The end of the selected forecast, and what the forecasts are based on.
 fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     let selected = what_if.candidate().map(|candidate| match &candidate.made {
         Some(Ok(forecast)) => (Role::Text, format!("{}: {}.", candidate.choice.id, forecast.outlook.reason)),
@@ -98,8 +98,8 @@ fn remarks(what_if: &WhatIf, columns: usize) -> Vec<Parts> {
     });
     let basis = (
         Role::Dim,
-        "From the estimate and the map as it is known: obstacles not found yet are not included. The mission and its \
-         recording are not affected; choosing another planner asks first and does not move the robot."
+        "Based on the current estimate and map: obstacles not found yet are not included. The mission and \
+        its recording are not affected; choosing another planner asks first and does not move the robot."
             .to_owned(),
     );
     let set = what_if.candidate().filter(|candidate| !candidate.choice.parameters.is_empty());

@@ -152,8 +152,8 @@ fn a_command_shelves_the_named_alarm_or_the_selected_one() {
     };
     let cases = [
         ("", "shelve 15m \"pump noise\"", "no alarm is selected; name one (alarm=NAME) or go to 4"),
-        ("4", "shelve 61m noise", "1 to 60 minutes"),
-        ("4", "shelve 15m", "a reason is needed, such as: 15 pump noise"),
+        ("4", "shelve 61m noise", "must be 1 to 60 minutes"),
+        ("4", "shelve 15m", "reason missing; for example: 15 pump noise"),
         ("4", "shelve 15m \"pump noise\"", "shelved for 15 min: station S4 rejected"),
         (
             "",
@@ -178,7 +178,7 @@ fn what_is_critical_or_over_cannot_be_shelved() {
     assert_eq!(notice(&screen), "a CRIT alarm cannot be shelved");
     screen.press([Key::Down]);
     screen.type_text("d");
-    assert_eq!(notice(&screen), "it has cleared; a: acknowledge");
+    assert_eq!(notice(&screen), "the alarm has cleared; a: acknowledge");
     assert_eq!(screen.model.ui.overlay, Overlay::None);
 }
 

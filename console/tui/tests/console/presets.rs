@@ -46,7 +46,7 @@ fn a_preset_is_taken_after_a_look_at_what_it_changes() {
         assert_eq!(run(&mut screen, "preset-load soft"), []);
         let shown = text(&drawn(&screen.model, RICH, (80, 24)));
         for words in
-            ["Preset soft (rpf)", "rpf_gain", "1 of 5 parameters change. Enter: take them.", "Nothing moves"]
+            ["Preset soft (rpf)", "rpf_gain", "1 of 5 parameters change. Enter: apply them.", "Nothing moves"]
         {
             assert!(shown.contains(words), "{words}: {shown}");
         }
@@ -86,8 +86,8 @@ fn the_parameters_are_kept_whole_under_a_new_name() {
     let [Effect::SavePreset { name, choice }] = &saved[..] else { panic!("{saved:?}") };
     assert_eq!((name.as_str(), choice.id.as_str(), choice.parameters.len()), ("mine", "rpf", 5));
     for (name, why) in [
-        ("soft", "there is a preset soft already; choose another name"),
-        ("../x", "no name for a preset: `../x`; write 1 to 40 letters, digits, - or _"),
+        ("soft", "preset soft already exists; choose another name"),
+        ("../x", "invalid preset name `../x`; use 1 to 40 letters, digits, - or _"),
     ] {
         assert_eq!((run(&mut screen, &format!("preset-save {name}")), notice(&screen)), (vec![], why));
     }
@@ -110,7 +110,7 @@ fn a_draft_is_forecast_and_moves_nothing() {
     assert!(text(&drawn(&screen.model, RICH, (120, 36))).contains("rpf with rpf_gain = 0.8."));
     // The same once more, and one that is given up.
     assert_eq!(screen.type_text("pw"), []);
-    assert_eq!(notice(&screen), "planner rpf is compared already");
+    assert_eq!(notice(&screen), "planner rpf is already compared");
     screen.press([Key::Char('p'), Key::Esc]);
     assert_eq!(screen.model.ui.overlay, Overlay::WhatIf);
     screen.press([Key::Esc, Key::Char('p')]);

@@ -10,7 +10,7 @@ const HEAD: &str = "\
 <!-- Made from the rows in console/tui/src/actions/rows/. INSTA_UPDATE=always cargo test --release -p tui renews it. -->
 
 Keys are those of the preset `default`; `keys.toml` changes them (operator guide). SAFE cannot make the robot move, MOVES can and asks
-first, ENDS ends the mission and asks first. A command is typed after `:`, its values after its name; a value with spaces stands in
+first, ENDS ends the mission and asks first. A command is typed after `:`, its values after its name; a value with spaces goes in
 double quotes. Tab completes, the up key recalls earlier lines.
 
 ## Commands

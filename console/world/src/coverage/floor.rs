@@ -1,26 +1,26 @@
-//! The floor as a grid, and what each cell of it is.
+//! The floor as a grid, with the kind of each cell.
 
 use super::tool::Tool;
 use geometry::{Point, Pose, Vector};
 use serde::{Deserialize, Serialize};
 use std::{ops::Range, sync::Arc};
 
-/// Centres this far outside a box are still looked at, as a share of a cell: whatever rounding does, none is overlooked.
+/// Centres this far outside a box are still tested, as a share of a cell, so that rounding never excludes one.
 const BESIDE_CELLS: f64 = 1e-3;
 
-/// What a cell of the floor is.
+/// The kind of a cell of the floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cell {
     /// Not floor: outside the tank or inside an obstacle.
     Outside,
-    /// Floor to which no passage leads that is wide enough for the robot.
+    /// Floor that the robot cannot get to, because no passage is wide enough.
     Unreachable,
     /// Floor along the shell that the tool cannot reach, because the hull keeps clear of the wall.
     Margin,
     /// Floor beside obstacles that the tool cannot reach, because the hull keeps clear of them.
     Beside,
-    /// Floor in a zone that the robot must not enter, beyond the reach of the tool.
+    /// Floor in a no-go zone, beyond the reach of the tool.
     NoGo,
     /// Floor that the tool can reach.
     Reachable,
@@ -28,8 +28,8 @@ pub enum Cell {
 
 /// The floor as a grid of square cells, row by row from the south-west corner, tank frame.
 ///
-/// A cell is floor if its centre is. It is reachable if the tool covers its centre from some position to which the
-/// robot can drive from the start. Written as runs of equal cells.
+/// A cell is floor if its centre is. It is reachable if there is a position that the robot can drive to from the
+/// start and from which the tool covers the centre of the cell. Serialised as runs of equal cells.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
@@ -55,12 +55,12 @@ pub struct Floor {
     pub(super) cells: Arc<Vec<Cell>>,
 }
 
-/// Some cells of one row: index of the first and how many.
+/// A run of cells in one row: index of the first, and their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellRun(pub u32, pub u32);
 
 impl CellRun {
-    /// The indices of the cells.
+    /// Returns the indices of the cells.
     ///
     /// ```
     /// assert_eq!(world::CellRun(3, 2).range(), 3..5);
@@ -70,7 +70,7 @@ impl CellRun {
         self.0 as usize..(self.0 as usize).saturating_add(self.1 as usize)
     }
 
-    /// Appends cells behind all that are in the list.
+    /// Appends cells that follow all cells in the list.
     #[inline]
     pub(super) fn append(runs: &mut Vec<Self>, cells: Range<usize>) {
         match runs.last_mut() {
@@ -80,12 +80,12 @@ impl CellRun {
     }
 }
 
-/// Some neighbouring cells and what they are: kind, index of the first, how many.
+/// A run of adjacent cells of the same kind: kind, index of the first, and their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KindRun(pub Cell, pub u32, pub u32);
 
 impl Floor {
-    /// Most cells of a floor; more are refused, here and where scenarios are checked.
+    /// The most cells of a floor; larger floors are refused, here and when scenarios are checked.
     pub const MOST_CELLS: usize = 4_000_000;
 
     /// Whether another floor has its cells at the same positions.
@@ -105,7 +105,7 @@ impl Floor {
             && (self.origin, self.cell_m) == (other.origin, other.cell_m)
     }
 
-    /// Index of the cell under a point; `None` outside the grid.
+    /// Returns the index of the cell under a point; `None` outside the grid.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -123,7 +123,7 @@ impl Floor {
             .then(|| offset.y as usize * self.width + offset.x as usize)
     }
 
-    /// Centre of a cell, metres.
+    /// Returns the centre of a cell, metres.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -142,7 +142,7 @@ impl Floor {
         self.origin + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell_m
     }
 
-    /// What a cell is.
+    /// Returns the kind of a cell.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -227,7 +227,8 @@ impl Floor {
         Arc::make_mut(&mut self.cells)[index] = kind;
     }
 
-    /// The whole floor as runs of equal cells; [`Floor::change`] with them turns any aligned floor into this one.
+    /// Returns the whole floor as runs of equal cells. Passing them to [`Floor::change`] turns any aligned floor into
+    /// this one.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -243,7 +244,7 @@ impl Floor {
         kind_runs(self.cells.iter().copied().enumerate())
     }
 
-    /// Number of cells of the grid.
+    /// The number of cells of the grid.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -275,8 +276,8 @@ impl Floor {
         neighbours(index, self.width, self.cells.len())
     }
 
-    /// Whether the cell under a place and those around it that are floor are all reachable; `None` if only some of them are: the
-    /// border of what is reachable runs there.
+    /// Whether the cell under a place and all adjacent floor cells are reachable; `None` if some are and others are
+    /// not, so that the border of the reachable floor runs there.
     pub(super) fn are_all_reachable_about(&self, place: Point) -> Option<bool> {
         let cell = self.cell_at(place)?;
         let (column, row) = (cell % self.width, cell / self.width);
@@ -291,7 +292,7 @@ impl Floor {
         (all == any).then_some(any)
     }
 
-    /// Cells whose centre lies within `reach_m` of the segment from `a` to `b`, in order of their index.
+    /// Returns the cells whose centres lie within `reach_m` of the segment from `a` to `b`, in order of their index.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -307,7 +308,8 @@ impl Floor {
         self.cells_under(Tool::Disc { swath_m: 2.0 * reach_m }, at(a), at(b))
     }
 
-    /// Cells whose centre comes under a tool between two poses that are close together, in order of their index.
+    /// Returns the cells whose centres a tool passes between two poses that are close together, in order of their
+    /// index.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -324,7 +326,8 @@ impl Floor {
         self.runs_under(tool, a, b).into_iter().flat_map(CellRun::range).collect()
     }
 
-    /// The same as runs, one in each row; several where the tool turned about a point of it.
+    /// Returns the cells of [`Self::cells_under`] as runs: one in each row, or several if the tool turned about a
+    /// point of itself.
     ///
     /// ```
     /// use world::{Boundary, CellRun, Floor, Point, World};
@@ -349,7 +352,7 @@ impl Floor {
             let is_under = |column: &usize| passage.contains(self.center_of(*column, row));
             let index = |column: usize| row * self.width + column;
             if passage.is_convex() {
-                // One piece: only the cells beside its two ends are looked at.
+                // The run is contiguous, so only the cells near its two ends are tested.
                 let first = columns.clone().find(is_under);
                 if let Some((first, last)) = first.zip(columns.rfind(is_under)) {
                     CellRun::append(&mut runs, index(first)..index(last) + 1);
@@ -364,25 +367,26 @@ impl Floor {
         runs
     }
 
-    /// Which of so many rows or columns have their centres between two distances from the origin, perhaps with one beside them.
+    /// Returns which of `count` rows or columns have their centres between two distances from the origin. One more at
+    /// either end may be included.
     fn centers(&self, from_m: f64, to_m: f64, count: usize) -> Range<usize> {
         let first = (from_m / self.cell_m - 0.5 - BESIDE_CELLS).max(0.0);
         let last = to_m / self.cell_m - 0.5 + BESIDE_CELLS;
-        // Without calls of the C library, which rounds as slowly as a row is looked at.
+        // Avoids the rounding functions of the C library, which take as long as the rest of a row.
         let whole = first as usize;
         let first = whole.saturating_add(usize::from((whole as f64) < first));
         let past = if last >= 0.0 { (last as usize).saturating_add(1) } else { 0 };
         first..past.min(count)
     }
 
-    /// The cells of a box, perhaps with some beside it, in order of their index.
+    /// Returns the cells of a box in order of their index; some adjacent cells may be included.
     pub(super) fn cells_in(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
         let (columns, rows) = self.spans(low, high);
         let width = self.width;
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// The columns and rows of a box, perhaps with some beside it.
+    /// Returns the columns and rows of a box; some adjacent ones may be included.
     fn spans(&self, low: Point, high: Point) -> (Range<usize>, Range<usize>) {
         let first = (low - self.origin) / self.cell_m;
         let last = (high - self.origin) / self.cell_m;
@@ -393,7 +397,7 @@ impl Floor {
     }
 }
 
-/// The four neighbours of a cell in a grid of rows `width` cells long, `count` cells in all, as far as they exist.
+/// Returns the neighbours of a cell, at most four, in a grid with rows of `width` cells and `count` cells in all.
 pub(crate) fn neighbours(index: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let column = index % width;
     let west = (column > 0).then(|| index - 1);
@@ -402,7 +406,7 @@ pub(crate) fn neighbours(index: usize, width: usize, count: usize) -> impl Itera
     [west, east, south, north].into_iter().flatten()
 }
 
-/// Cells in order of their index, as runs of neighbours of one kind.
+/// Combines cells, in order of their index, into runs of the same kind.
 pub(super) fn kind_runs(cells: impl Iterator<Item = (usize, Cell)>) -> Vec<KindRun> {
     let mut runs: Vec<KindRun> = Vec::new();
     for (index, cell) in cells {
@@ -416,7 +420,7 @@ pub(super) fn kind_runs(cells: impl Iterator<Item = (usize, Cell)>) -> Vec<KindR
     runs
 }
 
-/// The written form of a [`Floor`].
+/// The serialised form of a [`Floor`].
 #[derive(Clone, Serialize, Deserialize)]
 struct FloorRuns {
     origin: Point,
@@ -441,10 +445,11 @@ impl TryFrom<FloorRuns> for Floor {
         let FloorRuns { origin, cell_m, width, height, runs } = written;
         let count = width.checked_mul(height).filter(|count| *count <= Self::MOST_CELLS);
         let most = Self::MOST_CELLS;
-        let count = count.ok_or_else(|| format!("a floor of {width} by {height} cells; at most {most}"))?;
+        let count =
+            count.ok_or_else(|| format!("the floor has {width} by {height} cells; the limit is {most}"))?;
         let in_runs: u64 = runs.iter().map(|(_, length)| u64::from(*length)).sum();
         if in_runs != count as u64 {
-            return Err(format!("a floor of {width} by {height} cells with {in_runs} in its runs"));
+            return Err(format!("the floor has {width} by {height} cells, but {in_runs} in its runs"));
         }
         let cells = runs.iter().flat_map(|(cell, length)| std::iter::repeat_n(*cell, *length as usize));
         Ok(Self { origin, cell_m, width, height, cells: Arc::new(cells.collect()) })

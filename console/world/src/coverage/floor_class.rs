@@ -1,30 +1,30 @@
-//! What floor counts as, for everybody who shows or writes it.
+//! The classes of floor that screen, reports and files distinguish.
 
 use super::Cell;
 
-/// What a cell counts as. Characters and colours are with those who draw.
+/// The class of a cell. Characters and colours are defined where cells are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FloorClass {
-    /// No floor.
+    /// Not floor.
     Outside,
-    /// In reach and not scanned, while the mission lasts.
+    /// Reachable and not scanned, while the mission lasts.
     ToDo,
-    /// In reach and not scanned when the mission has ended.
+    /// Reachable and not scanned after the mission.
     Missed,
     /// Scanned.
     Scanned,
     /// Scanned more than once.
     Again,
-    /// Scanned in part; never a single cell.
+    /// Partly scanned; never used for a single cell.
     Partial,
-    /// Out of reach along the shell.
+    /// Unreachable because it is along the shell.
     Margin,
-    /// Out of reach elsewhere.
+    /// Unreachable for any other reason.
     Unreachable,
 }
 
 impl FloorClass {
-    /// What a cell of some kind counts as that was scanned so often, while the mission lasts.
+    /// Returns the class of a cell of this kind, scanned this many times, while the mission lasts.
     ///
     /// ```
     /// use world::{Cell, FloorClass};
@@ -42,13 +42,13 @@ impl FloorClass {
         }
     }
 
-    /// The same when the mission has ended that was to scan the floor.
+    /// Returns the class after the mission that was to scan the floor.
     #[must_use]
     pub fn when_over(self) -> Self {
         if self == Self::ToDo { Self::Missed } else { self }
     }
 
-    /// Whether all or some of it was scanned.
+    /// Whether any of it was scanned.
     pub fn is_scanned(self) -> bool {
         matches!(self, Self::Scanned | Self::Again | Self::Partial)
     }

@@ -1,4 +1,4 @@
-//! Which cells are floor, and which of them the tool can reach.
+//! Determines which cells are floor, and which of them the tool can reach.
 
 use super::{
     floor::{Cell, Floor, KindRun, kind_runs},
@@ -11,22 +11,22 @@ use crate::{
 use geometry::{Boundary, Point, Shape, Vector};
 use std::sync::Arc;
 
-/// Cells along each side of the blocks that are asked for their distance first.
+/// The number of cells along each side of the blocks whose clearance is queried first.
 const BLOCK: usize = 8;
 
-/// A floor with all that is needed to update it when an obstacle is found.
+/// A floor with all data that are needed to update it when an obstacle is found.
 #[derive(Clone)]
 pub struct FloorMaker {
     floor: Floor,
-    /// Distance from the centre of every cell to the nearest solid, metres; exact only where it is from 0 to `room_m`.
+    /// Distance from the centre of every cell to the nearest solid, metres; exact only between 0 and `room_m`.
     clearance_m: Vec<f32>,
-    /// Whether a zone forbids the robot's centre in a cell.
+    /// For each cell, whether a zone keeps the robot's centre out.
     forbidden: Vec<bool>,
-    /// The outlines of the zones that forbid.
+    /// The outlines of the no-go zones.
     zones: Vec<Shape>,
-    /// Where the robot would have room if the tank were empty.
+    /// The free floor in an empty tank.
     empty: Room,
-    /// Where it has room, and which of these places are connected.
+    /// The free floor, and which parts of it are connected.
     room: Room,
     connected: Connected,
     room_m: f64,
@@ -35,11 +35,12 @@ pub struct FloorMaker {
 }
 
 impl Floor {
-    /// The floor of a tank for a robot whose centre keeps `room_m` (hull radius and clearance) from everything solid, with
-    /// a tool of some swath, driving from `start`; all in metres and the tank frame.
+    /// Creates the floor of a tank for a robot whose centre keeps `room_m` (hull radius plus clearance) from
+    /// everything solid. The tool has the given swath, and the robot drives from `start`. All values are in metres
+    /// and in the tank frame.
     ///
-    /// Costs one distance query per block of 64 cells, one per cell of the blocks near something solid, a flood fill, and some
-    /// queries per cell along the rim of what the tool reaches.
+    /// Costs one distance query per block of 64 cells, one per cell of the blocks close to anything solid, a flood
+    /// fill, and some queries per cell along the border of the reachable floor.
     ///
     /// ```
     /// use world::{Boundary, Floor, Point, World};
@@ -55,7 +56,7 @@ impl Floor {
 }
 
 impl FloorMaker {
-    /// The floor of a tank; see [`Floor::new`].
+    /// Creates the floor of a tank; see [`Floor::new`].
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, World};
@@ -72,7 +73,7 @@ impl FloorMaker {
         Self::of(&Floor { origin: low, cell_m, width, height, cells }, world, room_m, swath_m, start)
     }
 
-    /// The floor of a tank with its cells at the positions of another floor's.
+    /// Creates the floor of a tank with the grid of another floor.
     ///
     /// ```
     /// use world::{Boundary, Floor, FloorMaker, Point, World};
@@ -100,7 +101,8 @@ impl FloorMaker {
         maker
     }
 
-    /// Whether the tool can reach a place on the floor from where the robot can drive: exact, and not cell by cell.
+    /// Whether the tool can reach a place on the floor from anywhere that the robot can drive. The result is exact
+    /// and does not depend on the grid.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, World};
@@ -122,7 +124,7 @@ impl FloorMaker {
             || self.floor.cells_near(place, place, reach_m).into_iter().any(is_home)
     }
 
-    /// The floor as it is now.
+    /// Returns the current floor.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, World};
@@ -137,7 +139,7 @@ impl FloorMaker {
 
     /// Updates the floor after a no-go zone with this outline was drawn; returns the cells that changed.
     ///
-    /// Costs a flood fill.
+    /// Costs one flood fill.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, Shape, World};
@@ -153,10 +155,10 @@ impl FloorMaker {
         self.classified(world)
     }
 
-    /// Updates the floor after obstacles with these outlines appeared or moved slightly; returns the cells that changed.
-    /// `world` and `map` are the tank as it is now.
+    /// Updates the floor after obstacles with these outlines appeared or moved slightly; returns the cells that
+    /// changed. `world` and `map` describe the tank after the change.
     ///
-    /// Costs a distance query per cell near the outlines and a flood fill.
+    /// Costs one distance query per cell near the outlines, and one flood fill.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Obstacle, ObstacleId, ObstacleMap, Point, Shape, World};
@@ -169,7 +171,7 @@ impl FloorMaker {
     /// assert!(!maker.update(&tank, &map, &[shape]).is_empty());
     /// ```
     pub fn update(&mut self, world: &World, map: &ObstacleMap, changed: &[Shape]) -> Vec<KindRun> {
-        // Wide enough for the former outline of a moved obstacle too: it moved only slightly.
+        // Obstacles move only slightly, so this margin also includes their former outlines.
         let reach_m = self.room_m + self.swath_m;
         for shape in changed {
             for index in around(&self.floor, shape, reach_m) {
@@ -179,7 +181,7 @@ impl FloorMaker {
         self.classified(world)
     }
 
-    /// Classifies the floor anew; the cells that changed.
+    /// Classifies the floor again; returns the cells that changed.
     fn classified(&mut self, world: &World) -> Vec<KindRun> {
         let before = Arc::clone(&self.floor.cells);
         self.classify(world);
@@ -207,10 +209,11 @@ impl FloorMaker {
         }
     }
 
-    /// Cells that the tool reaches from the middle of a cell are reachable.
+    /// Marks as reachable the cells that the tool reaches from the centre of a connected cell.
     fn reach_from_cells(&mut self, free: &[bool]) {
         let home: Vec<bool> = (0..free.len()).map(|cell| self.connected.is_home(cell)).collect();
-        // Of these cells the one that is nearest to any other cell has a neighbour that is not one of them.
+        // The connected cell nearest to any other cell always has a neighbour that is not connected, so the edge
+        // cells suffice.
         let is_at_edge = |index: usize| self.floor.neighbours(index).any(|next| !home[next]);
         let edge: Vec<usize> = (0..home.len()).filter(|cell| home[*cell] && is_at_edge(*cell)).collect();
         for cell in (0..home.len()).filter(|cell| home[*cell]) {
@@ -221,7 +224,7 @@ impl FloorMaker {
         }
     }
 
-    /// Cells that the tool reaches from a corner of the floor on which the robot has room are reachable.
+    /// Marks as reachable the cells that the tool reaches from a corner of the free floor.
     fn reach_from_corners(&mut self) {
         let corners: Vec<Point> = self.room.corners().filter(|corner| self.leads_to(*corner)).collect();
         for corner in corners {
@@ -237,7 +240,7 @@ impl FloorMaker {
         }
     }
 
-    /// What a cell of floor is that the tool reaches neither from a cell nor from a corner.
+    /// Classifies a floor cell that the tool reaches neither from a cell nor from a corner.
     fn kind_beside(&self, index: usize, is_free: bool) -> Cell {
         let center = self.floor.center(index);
         if is_free {
@@ -254,7 +257,7 @@ impl FloorMaker {
         if is_cut_off { Cell::Unreachable } else { self.why_not(index) }
     }
 
-    /// Why the tool cannot reach a cell that is not merely cut off.
+    /// Finds the reason why the tool cannot reach a cell that is not merely cut off.
     fn why_not(&self, index: usize) -> Cell {
         let center = self.floor.center(index);
         if self.forbidden[index] && f64::from(self.clearance_m[index]) >= self.room_m {
@@ -269,7 +272,7 @@ impl FloorMaker {
         self.connected.leads_to(&self.room, &self.floor, place)
     }
 
-    /// How far the tool reaches to each side of the robot's middle, metres.
+    /// The reach of the tool to each side of the robot's centre, metres.
     fn reach_m(&self) -> f64 {
         self.swath_m / 2.0
     }
@@ -284,8 +287,9 @@ fn room_beside<'a>(
     Room::new(boundary, solids, room_m, swath_m / 2.0)
 }
 
-/// The distance from the centre of every cell to the nearest solid, metres. Where the distance in the middle of a block shows
-/// that all its cells have `room_m`, or that all are solid, they have the bound that shows it.
+/// Returns the distance from the centre of every cell to the nearest solid, metres. If the distance at the centre of
+/// a block shows that all its cells have at least `room_m`, or that all are solid, the cells get this bound instead
+/// of their exact distance.
 fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
     let mut clearances_m = vec![0.0; grid.len()];
     for (row, column) in (0..grid.height)
@@ -310,14 +314,14 @@ fn clearances_m(grid: &Floor, map: &ObstacleMap, room_m: f64) -> Vec<f32> {
     clearances_m
 }
 
-/// Marks the cells from which the middle of the robot would be in a zone, or too near to it.
+/// Marks the cells from which the robot's centre would be in a zone or too close to it.
 fn forbid(grid: &Floor, outline: &Shape, room_m: f64, forbidden: &mut [bool]) {
     for index in around(grid, outline, room_m) {
         forbidden[index] |= outline.distance_m(grid.center(index)) < room_m;
     }
 }
 
-/// The cells of the box around an outline, with some margin.
+/// Returns the cells of the box around an outline, with a margin.
 fn around(floor: &Floor, shape: &Shape, margin_m: f64) -> impl Iterator<Item = usize> + use<> {
     let (low, high) = shape.bounds();
     let margin = Vector::new(margin_m, margin_m);

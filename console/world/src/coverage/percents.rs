@@ -1,10 +1,11 @@
 //! Percentages that sum to 100.
 
-/// Shares as percentages with one decimal; they sum to 100.0 if the shares sum to 1 (largest remainder method).
+/// Returns shares as percentages with one decimal; they sum to 100.0 if the shares sum to 1 (largest remainder
+/// method).
 ///
-/// The first share is rounded as usual, so that it reads the same where it stands alone ([`percent`]), but never up to 100.0
-/// while another one is left. The others are rounded down, and the tenths that are then missing go to those with the largest
-/// remainders.
+/// The first share is rounded to nearest, so that it reads the same as when printed alone ([`percent`]), but never up
+/// to 100.0 while any other share is left. The others are rounded down, and the missing tenths go to those with the
+/// largest remainders.
 ///
 /// ```
 /// use world::coverage::percents;
@@ -26,7 +27,7 @@ pub fn percents<const N: usize>(shares: [f64; N]) -> [f64; N] {
     parts.map(|part| part / 10.0)
 }
 
-/// A share as it is printed wherever it stands alone: in per cent with one decimal, 100.0 only if nothing is left.
+/// Returns a share as it is printed alone: in per cent with one decimal, and 100.0 only if nothing is left.
 ///
 /// ```
 /// use world::coverage::percent;
@@ -36,7 +37,7 @@ pub fn percent(share: f64) -> f64 {
     percents([share, 1.0 - share])[0]
 }
 
-/// A share as text in per cent with so many decimals, never 100 unless it is all.
+/// Formats a share in per cent with a number of decimals, never as 100 unless it is complete.
 ///
 /// ```
 /// use world::coverage::percent_text;

@@ -1,4 +1,4 @@
-//! Cells of the floor as polygons, and polygons as cells.
+//! Converts cells of the floor to polygons, and polygons to cells.
 
 use super::floor::Floor;
 use geometry::{
@@ -6,7 +6,7 @@ use geometry::{
     shape::{bounds_of, rectangle, ring_contains},
 };
 
-/// The corners of a square about a point, counter-clockwise from the south-west one.
+/// Returns the corners of a square about a point, counter-clockwise from the south-west one.
 ///
 /// ```
 /// use world::{Point, coverage::regions::square};
@@ -16,7 +16,8 @@ pub fn square(center: Point, edge_m: f64) -> Vec<Point> {
     rectangle(center - Vector::new(edge_m, edge_m) / 2.0, center + Vector::new(edge_m, edge_m) / 2.0)
 }
 
-/// For every cell whether its centre lies in one of some polygons; `None` without polygons, which stands for all cells.
+/// Returns for every cell whether its centre lies in one of the polygons; `None` without polygons, which means all
+/// cells.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
@@ -42,10 +43,11 @@ pub fn cells_within(floor: &Floor, polygons: &[Vec<Point>]) -> Option<Vec<bool>>
     Some(within)
 }
 
-/// Wanted cells as boxes that do not overlap, made of square blocks of `block` by `block` cells.
+/// Returns the wanted cells as boxes that do not overlap, made of square blocks of `block` by `block` cells.
 ///
-/// A block is taken if at least half of its floor is wanted: slivers are dropped and ragged edges straightened.
-/// Neighbouring blocks of one row are joined, and equal stretches of consecutive rows. Costs one look at every cell.
+/// A block is included if at least half of its floor is wanted, so slivers are dropped and ragged edges are
+/// straightened. Adjacent blocks of a row are joined, and so are equal stretches of consecutive rows. Every cell is
+/// tested once.
 ///
 /// ```
 /// use world::{Boundary, Floor, Point, World};
@@ -91,7 +93,7 @@ struct BlockBox {
     top: usize,
 }
 
-/// Runs of taken columns: the first and, exclusive, the end.
+/// Runs of included columns: the first, and the end (exclusive).
 fn spans(columns: usize, is_taken: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut spans: Vec<(usize, usize)> = Vec::new();
     for column in (0..columns).filter(|column| is_taken(*column)) {

@@ -1,8 +1,9 @@
-//! Where the robot's middle has room, exactly and without cells: at some distance from everything that is solid or forbidden.
+//! The free floor: the places that the robot's centre can occupy, at a given distance from everything solid or
+//! forbidden. It is computed exactly, without cells.
 //!
-//! The rim of that floor is made of arcs and straight pieces at the distance from each solid. The place on it that is nearest
-//! to a point is either the foot of the perpendicular on one of these pieces or a corner, where two of them cross. Both are
-//! tried, and each place that has room from everything is one from which the tool may reach the point.
+//! The rim of the free floor consists of arcs and straight pieces at that distance from each solid. The point on the
+//! rim nearest to a given point is either the foot of a perpendicular on one of these pieces, or a corner where two
+//! pieces cross. Both are tried. From every candidate that is free, the tool may reach the given point.
 
 mod passages;
 mod rim;
@@ -15,10 +16,10 @@ use geometry::{Boundary, Point, Shape, Vector, polyline::nearest_on_segment, pol
 use rim::{Core, Rim};
 use std::collections::BTreeMap;
 
-/// A distance that falls short by no more than this is kept, metres: what fits exactly, fits.
+/// A distance that is too short by no more than this still counts as kept, metres, so that an exact fit is accepted.
 pub(super) const TIE_M: f64 = 1e-6;
 
-/// Where the middle of the robot has room, tank frame.
+/// The free floor, tank frame.
 #[derive(Clone)]
 pub(super) struct Room {
     map: ObstacleMap,
@@ -26,13 +27,14 @@ pub(super) struct Room {
     cores: Vec<Core>,
     boxes: Boxes,
     keep_m: f64,
-    /// Corners of the rim, in squares of `square_m`.
+    /// The corners of the rim, by squares of `square_m`.
     corners: BTreeMap<(i64, i64), Vec<Point>>,
     square_m: f64,
 }
 
 impl Room {
-    /// Where the robot has `room_m` from a wall and some shapes, for a tool that reaches `reach_m` to each side.
+    /// Creates the free floor at `room_m` from a wall and some shapes, for a tool that reaches `reach_m` to each
+    /// side.
     pub(super) fn new<'a>(
         boundary: &Boundary,
         shapes: impl Iterator<Item = &'a Shape>,
@@ -65,30 +67,30 @@ impl Room {
         room
     }
 
-    /// Whether the robot has room at a place.
+    /// Whether a place is free.
     pub(super) fn has(&self, at: Point) -> bool {
         self.map.clearance_m(at) >= self.keep_m - TIE_M
     }
 
-    /// Whether the robot has room on all of a straight way between two places where it has room.
+    /// Whether the straight line between two free places is free.
     pub(super) fn is_way(&self, a: Point, b: Point) -> bool {
         let keeps = |core: &Core| core.way_m((a, b)) >= self.keep_m - TIE_M;
         self.boxes.near(a, b, self.keep_m).all(|index| keeps(&self.cores[index]))
     }
 
-    /// Every corner of the rim.
+    /// Iterates over the corners of the rim.
     pub(super) fn corners(&self) -> impl Iterator<Item = Point> + '_ {
         self.corners.values().flatten().copied()
     }
 
-    /// Places with room within `reach_m` of a point without room, among them the nearest one of every region.
+    /// Returns free places within `reach_m` of a place that is not free, among them the nearest one of every region.
     pub(super) fn places_near(&self, at: Point, reach_m: f64) -> impl Iterator<Item = Point> + '_ {
         let within_m = reach_m + TIE_M;
         let feet = self.feet(at).into_iter().filter(move |foot| (foot - at).norm() <= within_m);
         self.corners_near(at, within_m).chain(feet.filter(|foot| self.has(*foot)))
     }
 
-    /// The corners of the rim within a distance of a place.
+    /// Returns the corners of the rim within a distance of a place.
     pub(super) fn corners_near(&self, at: Point, within_m: f64) -> impl Iterator<Item = Point> + '_ {
         let (column, row) = self.square(at);
         let squares = (-1..=1).flat_map(move |y| (-1..=1).map(move |x| (column + x, row + y)));
@@ -99,7 +101,7 @@ impl Room {
             .filter(move |corner| (corner - at).norm() <= within_m)
     }
 
-    /// The nearest place at the right distance from each solid that is too near.
+    /// Returns, for each solid that is too close, the nearest place at the required distance from it.
     fn feet(&self, at: Point) -> Vec<Point> {
         let near = self.boxes.near(at, at, self.keep_m).map(|index| &self.cores[index]);
         let mut feet: Vec<Point> = near.flat_map(|core| core.feet(at, self.keep_m)).collect();
@@ -143,7 +145,8 @@ impl Core {
         (self.a.inf(&self.b) - margin, self.a.sup(&self.b) + margin)
     }
 
-    /// The place at `room_m` from it in the direction of a place that is nearer; on both sides of one on the line itself.
+    /// Returns the place at `room_m` from the core in the direction of a place that is closer; on both sides if that
+    /// place is on the core's line itself.
     fn feet(&self, at: Point, room_m: f64) -> Vec<Point> {
         let nearest = nearest_on_segment(self.a, self.b, at);
         let away = at - nearest;
@@ -158,7 +161,7 @@ impl Core {
         ways.map(|way| nearest + way * off_m).collect()
     }
 
-    /// Its distance from a segment, metres.
+    /// Returns the distance of the core from a segment, metres.
     fn way_m(&self, (a, b): (Point, Point)) -> f64 {
         if segments_cross(self.a, self.b, a, b) {
             return -self.radius_m;

@@ -5,18 +5,18 @@ use super::tool::Tool;
 use geometry::{Boundary, Point, Pose, Shape, Vector, polyline::edges, unit_vector};
 use std::{collections::BTreeMap, f64::consts::TAU};
 
-/// Length of a stretch, metres; more where the wall is so long that there would be too many.
+/// The length of a stretch, metres; longer if the wall would have too many stretches.
 const SPACING_M: f64 = 0.025;
-/// Most stretches of a wall.
+/// The most stretches of a wall.
 const MOST_STRETCHES: f64 = 20_000.0;
-/// Layers into which the zone is divided from the shell inwards.
+/// The number of layers into which the zone is divided, from the shell inwards.
 const LAYERS: usize = 15;
-/// Edge of the squares by which stretches are found, metres.
+/// The edge of the squares that index the stretches, metres.
 const BUCKET_M: f64 = 0.5;
 
-/// The zone along the shell, and which of it a tool has passed.
+/// The critical zone along the shell, and which part of it a tool has passed.
 ///
-/// A pass far from the wall costs two distance queries; any other one test for each stretch beside it.
+/// A pass far from the wall costs two distance queries; any other pass costs one test for each nearby stretch.
 ///
 /// ```
 /// use world::{Boundary, Pose, ShellZone, Tool};
@@ -29,20 +29,20 @@ pub struct ShellZone {
     boundary: Boundary,
     width_m: f64,
     stretches: Vec<Stretch>,
-    /// The stretches in each square, by row and column from the south-west corner; squares without any are left out, so
-    /// the cost of a tank grows with its shell and not with its area.
+    /// The stretches in each square, by row and column from the south-west corner. Empty squares are left out, so the
+    /// cost of a tank grows with its shell and not with its area.
     squares: BTreeMap<(usize, usize), Vec<u32>>,
     origin: Point,
 }
 
-/// A short stretch of the wall and the floor before it.
+/// A short stretch of the wall, with the floor in front of it.
 #[derive(Debug, Clone, PartialEq)]
 struct Stretch {
-    /// Its middle, on the wall, metres.
+    /// The middle of the stretch, on the wall, metres.
     at: Point,
-    /// Inward, one layer thick, metres.
+    /// Vector inwards, one layer thick, metres.
     step: Vector,
-    /// Its length, metres.
+    /// The length of the stretch, metres.
     length_m: f64,
     /// Layers that lie in the tank, one bit each.
     inside: u32,
@@ -59,19 +59,20 @@ pub struct ShellFigures {
     pub done_m: f64,
     /// Scanned share of the zone's area, 0 to 1.
     pub scanned: f64,
-    /// Distance from the shell to the scanned floor, metres: the median along the part of the shell where the zone is not
-    /// done. It is the width of the zone where nothing was scanned, and 0 if all of it is done.
+    /// Distance from the shell to the scanned floor, metres: the median along the part of the shell where the zone is
+    /// incomplete. It is the width of the zone where nothing was scanned, and 0 if the zone is complete.
     pub gap_m: f64,
 }
 
-/// A short stretch of the shell beside free floor, and how the zone before it was scanned.
+/// A short stretch of the shell beside free floor, and how much of the zone in front of it was scanned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShellStretch {
-    /// Its middle, on the wall, metres.
+    /// The middle of the stretch, on the wall, metres.
     pub at: Point,
-    /// Way along the wall to its beginning, metres: counter-clockwise from due east, or from the first corner on.
+    /// Distance along the wall to the beginning of the stretch, metres: counter-clockwise from due east, or from the
+    /// first corner.
     pub along_m: f64,
-    /// Its length, metres.
+    /// The length of the stretch, metres.
     pub length_m: f64,
     /// Free share of the zone's width, 0 to 1.
     pub free: f64,
@@ -82,7 +83,7 @@ pub struct ShellStretch {
 }
 
 impl ShellFigures {
-    /// The figures of some stretches.
+    /// Returns the figures of some stretches.
     ///
     /// ```
     /// use world::{Boundary, ShellFigures, ShellZone};
@@ -109,7 +110,7 @@ impl ShellFigures {
 }
 
 impl ShellZone {
-    /// The zone of some width along a wall, metres, of which nothing has been scanned.
+    /// Creates the zone of a given width along a wall, metres, of which nothing has been scanned.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -127,7 +128,7 @@ impl ShellZone {
         Self { boundary: boundary.clone(), width_m, stretches, squares, origin }
     }
 
-    /// Whether a shape may reach into the zone; a cheap test that may say so of one nearby.
+    /// Whether a shape may reach into the zone; a quick test that may also return true for a nearby shape.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -141,7 +142,7 @@ impl ShellZone {
         self.boundary.wall_distance_m(nalgebra::center(&low, &high)) <= reach_m
     }
 
-    /// Marks what a tool passes between two poses that are close together.
+    /// Marks the parts that a tool passes between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, Pose, ShellZone, Tool};
@@ -170,7 +171,7 @@ impl ShellZone {
         }
     }
 
-    /// Adds what was passed in another record of the same zone.
+    /// Adds the passes in another record of the same zone.
     ///
     /// ```
     /// use world::{Boundary, Pose, ShellZone, Tool};
@@ -186,7 +187,7 @@ impl ShellZone {
         }
     }
 
-    /// How much of the zone was scanned, apart from points that `is_solid` excludes.
+    /// Returns how much of the zone was scanned, without points for which `is_solid` is true.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -198,7 +199,8 @@ impl ShellZone {
         ShellFigures::of(&self.profile(is_solid))
     }
 
-    /// The stretches beside free floor, in their order along the wall, apart from points that `is_solid` excludes.
+    /// Returns the stretches beside free floor, in their order along the wall, without points for which `is_solid` is
+    /// true.
     ///
     /// ```
     /// use world::{Boundary, ShellZone};
@@ -230,13 +232,13 @@ impl ShellZone {
 }
 
 impl Stretch {
-    /// The middle of a layer; the first layer lies along the shell.
+    /// Returns the middle of a layer; the first layer lies along the shell.
     fn in_layer(&self, layer: usize) -> Point {
         self.at + self.step * (layer as f64 + 0.5)
     }
 }
 
-/// The column or row of squares at some distance from the edge of the first one.
+/// Returns the column or row of a square by its distance from the edge of the first square.
 fn bucket(offset_m: f64) -> usize {
     (offset_m / BUCKET_M).max(0.0) as usize
 }
@@ -275,7 +277,7 @@ fn stretches(boundary: &Boundary, width_m: f64) -> Vec<Stretch> {
     }
 }
 
-/// The weighted median of some values, each with its weight; 0 for none.
+/// Returns the weighted median of values, each with its weight; 0 without values.
 fn median(mut values: Vec<(f64, f64)>) -> f64 {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = values.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;

@@ -1,21 +1,21 @@
-//! Where a shape lies at a height.
+//! The horizontal extent of a shape at a given y coordinate.
 
 use geometry::Point;
 
-/// From where to where, west to east, metres.
+/// The west and east ends, metres.
 pub(super) type Span = (f64, f64);
 
-/// Where a convex polygon lies at a height.
+/// Returns the extent of a convex polygon at a given `y`.
 #[inline]
 pub(super) fn polygon_span(corners: &[Point], y: f64) -> Option<Span> {
     somewhere(crossings(corners, y).fold(NOWHERE, widened))
 }
 
-/// Everything within a distance of a segment.
+/// All points within a distance of a segment.
 pub(super) struct Capsule {
     ends: [Point; 2],
     reach_m: f64,
-    /// The corners of what lies beside the segment; none if it has no length.
+    /// The corners of the rectangle along the segment; `None` if the segment has no length.
     sides: Option<[Point; 4]>,
 }
 
@@ -26,7 +26,7 @@ impl Capsule {
         Self { ends: [a, b], reach_m, sides }
     }
 
-    /// Where it lies at a height. A tool is asked for it at a hundred heights a tick.
+    /// Returns the extent of the capsule at a given `y`. Called about a hundred times a tick for a tool.
     #[inline]
     pub(super) fn span(&self, y: f64) -> Option<Span> {
         let mut span = NOWHERE;
@@ -46,7 +46,7 @@ impl Capsule {
     }
 }
 
-/// Less than any place.
+/// An empty span.
 const NOWHERE: Span = (f64::INFINITY, f64::NEG_INFINITY);
 
 #[inline]
@@ -59,13 +59,13 @@ fn somewhere((low, high): Span) -> Option<Span> {
     (low <= high).then_some((low, high))
 }
 
-/// Where an edge crosses a height.
+/// Returns where an edge crosses a given `y`.
 #[inline]
 fn crossing(a: &Point, b: &Point, y: f64) -> Option<f64> {
     ((a.y <= y) != (b.y <= y)).then(|| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)))
 }
 
-/// Where the outline of a polygon crosses a height.
+/// Returns where the outline of a polygon crosses a given `y`.
 #[inline]
 pub(super) fn crossings(corners: &[Point], y: f64) -> impl Iterator<Item = f64> {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));

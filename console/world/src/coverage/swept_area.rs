@@ -1,4 +1,4 @@
-//! Which part of a floor a tool swept, by area: the check of what is counted in cells.
+//! Computes the area that a tool swept, to check the coverage counted in cells.
 
 use super::{
     floor_maker::FloorMaker,
@@ -11,18 +11,18 @@ use geometry::{
 };
 use nalgebra::{Isometry2, Rotation2};
 
-/// Direction of the rows, radians from east: askew, so that neither walls nor lanes lie along them.
+/// Direction of the rows, radians from east; oblique, so that neither walls nor lanes are parallel to them.
 const ASKEW_RAD: f64 = 0.345;
-/// Distance between rows, metres; more on a floor that would have too many.
+/// Distance between rows, metres; larger if a floor would have too many rows.
 const ROW_M: f64 = 0.02;
-/// Most rows of a floor.
+/// The most rows of a floor.
 const MOST_ROWS: f64 = 5_000.0;
-/// How exactly the border of the floor in reach is found along a row, metres.
+/// The accuracy of the border of the reachable floor along a row, metres.
 const EDGE_M: f64 = 1e-5;
-/// Spans of a row that are nearer than this are one, metres.
+/// Spans of a row with a gap below this are joined, metres.
 const SEAM_M: f64 = 1e-9;
 
-/// What a tool swept, as spans of rows across a floor: exact along each row, as is the floor.
+/// The area that a tool swept, as spans of rows across a floor; exact along each row.
 ///
 /// ```
 /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -32,16 +32,16 @@ const SEAM_M: f64 = 1e-9;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweptArea {
-    /// From the tank's frame to that of the rows.
+    /// The rotation from the tank frame to the frame of the rows.
     askew: Rotation2<f64>,
     first_m: f64,
     row_m: f64,
-    /// Of every row what was swept, in order and apart.
+    /// The swept spans of every row, ordered and disjoint.
     rows: Vec<Vec<Span>>,
 }
 
 impl SweptArea {
-    /// The floor within a wall, of which nothing was swept.
+    /// Creates the floor within a wall, with nothing swept.
     ///
     /// ```
     /// use world::{Boundary, SweptArea};
@@ -62,7 +62,7 @@ impl SweptArea {
         Self { askew, first_m: low, row_m, rows: vec![Vec::new(); count] }
     }
 
-    /// Adds what a tool passes between two poses that are close together.
+    /// Adds the area that a tool passes between two poses that are close together.
     ///
     /// ```
     /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -87,7 +87,7 @@ impl SweptArea {
         }
     }
 
-    /// Adds what was swept in another record of the same floor.
+    /// Adds the swept area of another record of the same floor.
     ///
     /// ```
     /// use world::{Boundary, Pose, SweptArea, Tool};
@@ -105,7 +105,7 @@ impl SweptArea {
         }
     }
 
-    /// What was swept in all, floor or not, square metres.
+    /// Returns the total swept area, including parts that are not floor, square metres.
     ///
     /// ```
     /// use world::{Boundary, SweptArea};
@@ -115,8 +115,8 @@ impl SweptArea {
         self.rows.iter().flatten().map(|(from, to)| to - from).sum::<f64>() * self.row_m
     }
 
-    /// The swept share of the floor that the tool can reach, 0 to 1, within a wall and beside what stands on it; `None` if there
-    /// is no such floor.
+    /// Returns the swept share of the floor that the tool can reach, 0 to 1, within a wall and without the given
+    /// solids; `None` if there is no such floor.
     ///
     /// ```
     /// use world::{Boundary, FloorMaker, Point, Pose, SweptArea, Tool, World};
@@ -154,7 +154,7 @@ impl SweptArea {
         self.first_m + (row as f64 + 0.5) * self.row_m
     }
 
-    /// Adds a convex shape around some corners to the rows that it meets.
+    /// Adds a convex shape, given by its corners, to the rows that it meets.
     fn add(&mut self, corners: &[Point], around_m: f64, span: impl Fn(f64) -> Option<Span>) {
         let (low, high) = corners
             .iter()
@@ -169,7 +169,7 @@ impl SweptArea {
         }
     }
 
-    /// Where a row lies within the wall.
+    /// Returns the spans of a row within the wall.
     fn wall_spans(&self, boundary: &Boundary, y: f64) -> Vec<Span> {
         match boundary {
             Boundary::Circle { radius_m } => {
@@ -185,7 +185,7 @@ impl SweptArea {
         }
     }
 
-    /// The parts of some spans in which the tool can reach the floor.
+    /// Returns the parts of some spans in which the tool can reach the floor.
     fn reachable(&self, spans: &[Span], floor: &FloorMaker, y: f64) -> Vec<Span> {
         let is_reached = |x: f64| floor.reaches(self.askew.inverse() * Point::new(x, y));
         let mut reachable: Vec<Span> = Vec::new();
@@ -194,7 +194,7 @@ impl SweptArea {
             let at = |k: usize| from + (to - from) * (k as f64 / count);
             let (mut before_m, mut was_reached) = (*from, false);
             for k in 0..=count as usize {
-                // The very end of a span lies on what ends it.
+                // The very end of a span lies on a wall or obstacle.
                 let here_m = at(k).clamp(from + EDGE_M, (to - EDGE_M).max(from + EDGE_M));
                 let now_reached = is_reached(here_m);
                 let edge_m = || if k == 0 { *from } else { border_m(before_m, here_m, is_reached) };
@@ -210,7 +210,8 @@ impl SweptArea {
     }
 }
 
-/// Where reach begins or ends between two places on a row, of which one is reached and one is not, metres.
+/// Finds where the reachable floor begins or ends between two places on a row, of which exactly one is reachable,
+/// metres.
 fn border_m(mut low_m: f64, mut high_m: f64, is_reached: impl Fn(f64) -> bool) -> f64 {
     let at_low = is_reached(low_m);
     while high_m - low_m > EDGE_M {
@@ -220,7 +221,7 @@ fn border_m(mut low_m: f64, mut high_m: f64, is_reached: impl Fn(f64) -> bool) -
     f64::midpoint(low_m, high_m)
 }
 
-/// The four triangles that a bar sweeps between two poses that are close together.
+/// Returns the four triangles that a bar sweeps between two poses that are close together.
 fn tool_triangles(swath_m: f64, from: Pose, to: Pose) -> [[Point; 3]; 4] {
     let half = |pose: Pose| {
         let (sin, cos) = pose.heading_rad.sin_cos();
@@ -230,12 +231,12 @@ fn tool_triangles(swath_m: f64, from: Pose, to: Pose) -> [[Point; 3]; 4] {
     [[a, a + from, b + to], [a, b + to, b], [a, a - from, b - to], [a, b - to, b]]
 }
 
-/// Puts a span into a row: what it touches becomes one with it.
+/// Inserts a span into a row, and joins it with the spans that it touches.
 fn insert(row: &mut Vec<Span>, (from, to): Span) {
     if to - from <= SEAM_M {
         return;
     }
-    // A row has few spans: to go through them is faster than to halve them.
+    // A row has few spans, so a linear search is faster than a binary search.
     let is_before = |span: &&Span| span.1 < from - SEAM_M;
     let is_met = |span: &&Span| span.0 <= to + SEAM_M;
     let first = row.iter().take_while(is_before).count();
@@ -250,7 +251,7 @@ fn insert(row: &mut Vec<Span>, (from, to): Span) {
     }
 }
 
-/// Some spans without what lies in another.
+/// Returns some spans without the parts that another span covers.
 fn without(spans: &[Span], (from, to): Span) -> Vec<Span> {
     let both = |(a, b): &Span| [(*a, b.min(from)), (a.max(to), *b)];
     spans.iter().flat_map(both).filter(|(a, b)| b > a).collect()
@@ -260,7 +261,7 @@ fn length_m(spans: &[Span]) -> f64 {
     spans.iter().map(|(from, to)| to - from).sum()
 }
 
-/// Length of what lies in both of two rows, metres.
+/// Returns the length that two rows have in common, metres.
 fn common_m(one: &[Span], other: &[Span]) -> f64 {
     let (mut common_m, mut rest) = (0.0, other);
     for (from, to) in one {
@@ -275,7 +276,7 @@ fn common_m(one: &[Span], other: &[Span]) -> f64 {
     common_m
 }
 
-/// The heights between which a part lies.
+/// Returns the lowest and highest `y` of a part.
 fn extent(part: &Part) -> Span {
     let corners = part.corners().into_iter();
     corners.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (at, round_m)| {

@@ -1,13 +1,13 @@
-//! The scanning tool and the floor that it passes.
+//! The scanning tool, and the floor that it passes.
 
 use super::span::Capsule;
 use geometry::{Point, Pose, Vector, polyline::nearest_on_segment, shape::bounds_of, wrap_angle_rad};
 use serde::{Deserialize, Serialize};
 
-/// Angle by which the tool turns between two poses that are close together, at most, radians.
+/// The largest turn of the tool between two poses that are close together, radians.
 const TURN_STEP_RAD: f64 = 0.1;
 
-/// What the robot scans with.
+/// The shape of the scanning tool.
 ///
 /// ```
 /// assert_eq!(world::Tool::Bar { swath_m: 0.6 }.swath_m(), 0.6);
@@ -15,20 +15,20 @@ const TURN_STEP_RAD: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tool {
-    /// A bar across the heading, through the robot's centre, as inspection robots have.
+    /// A bar across the heading, through the robot's centre, as on inspection robots.
     Bar {
-        /// Its length, metres.
+        /// The length of the bar, metres.
         swath_m: f64,
     },
     /// A disc about the robot's centre, for robots without a heading.
     Disc {
-        /// Its diameter, metres.
+        /// The diameter of the disc, metres.
         swath_m: f64,
     },
 }
 
 impl Tool {
-    /// Width of the strip that is scanned in one pass, metres.
+    /// Returns the width of the strip that is scanned in one pass, metres.
     ///
     /// ```
     /// assert_eq!(world::Tool::Disc { swath_m: 0.6 }.swath_m(), 0.6);
@@ -39,7 +39,7 @@ impl Tool {
         }
     }
 
-    /// The same tool, narrower by so much on each side, metres; `None` if nothing of it is left.
+    /// Returns the tool narrowed by `by_m` on each side, metres; `None` if nothing is left of it.
     ///
     /// ```
     /// use world::Tool;
@@ -55,8 +55,8 @@ impl Tool {
         })
     }
 
-    /// The passages along a path that is driven forward and turned on the spot at its corners: pairs of poses that are close
-    /// together.
+    /// Passes the pairs of close poses along a path to `pass`. The robot drives forward, and turns on the spot at
+    /// corners.
     ///
     /// ```
     /// use world::{Point, Tool};
@@ -83,7 +83,7 @@ impl Tool {
         }
     }
 
-    /// The area that it sweeps between two poses that are close together.
+    /// Returns the area that the tool sweeps between two poses that are close together.
     pub(super) fn passage(self, from: Pose, to: Pose) -> Passage {
         match self {
             Self::Bar { swath_m } => Passage::Bar(Swept::new(swath_m, from, to)),
@@ -97,22 +97,23 @@ impl Tool {
 }
 
 /// The area that a tool sweeps.
-#[expect(clippy::large_enum_variant, reason = "made and dropped once a tick, never kept")]
+#[expect(clippy::large_enum_variant, reason = "created and dropped within a tick, never stored")]
 pub(super) enum Passage {
     Bar(Swept),
     Disc {
         from: Point,
         to: Point,
         reach_m: f64,
-        /// The square of a distance is no larger where the distance is no larger than the reach, to the last bit.
+        /// The largest squared distance that counts as within reach; gives exactly the same result as comparing
+        /// distances.
         most_m2: f64,
-        /// A little more than all of it.
+        /// A capsule slightly larger than the area.
         around: Capsule,
     },
 }
 
 impl Passage {
-    /// South-west and north-east corners of the box around it.
+    /// Returns the south-west and north-east corners of the bounding box.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self {
             Self::Bar(swept) => (swept.low, swept.high),
@@ -123,7 +124,7 @@ impl Passage {
         }
     }
 
-    /// West and east ends of all of it that lies at a height, or a little further out.
+    /// Returns the west and east ends of the area at a given `y`, or points slightly beyond them.
     #[inline]
     pub(super) fn ends_at(&self, y: f64) -> (f64, f64) {
         match self {
@@ -132,7 +133,7 @@ impl Passage {
         }
     }
 
-    /// Whether what lies of it at any height is one piece.
+    /// Whether the area is a single span at every `y`.
     #[inline]
     pub(super) fn is_convex(&self) -> bool {
         match self {
@@ -152,8 +153,8 @@ impl Passage {
     }
 }
 
-/// The largest number whose square root, as rounded by the processor, is not above another number: comparing squares with it
-/// gives the same as comparing roots with the other, and takes half the time.
+/// Returns the largest number whose square root, as rounded by the processor, does not exceed `root`. Comparing
+/// squares with it gives the same result as comparing roots with `root`, in half the time.
 fn most_squared(root: f64) -> f64 {
     if root.is_nan() || root < 0.0 {
         return f64::NEG_INFINITY;
@@ -168,9 +169,9 @@ fn most_squared(root: f64) -> f64 {
     square
 }
 
-/// A point this far outside a triangle still counts, metres: neighbouring triangles leave no seam.
+/// A point this far outside a triangle still counts, metres, so that adjacent triangles leave no seam.
 const SEAM_M: f64 = 1e-9;
-/// Everything lies at least this far within its band, or within the ends at a height, metres.
+/// The margin of the band on each side of the area, and of a capsule around it, metres.
 const BESIDE_M: f64 = 1e-3;
 
 /// The area that a bar sweeps between two poses that are close together: two triangles for each half.
@@ -178,7 +179,7 @@ pub(super) struct Swept {
     low: Point,
     high: Point,
     triangles: [Triangle; 4],
-    /// The direction across the bar, and the band along it in which everything lies.
+    /// The direction perpendicular to the bar, and the band in this direction that contains the area.
     ahead: Vector,
     band: (f64, f64),
     is_convex: bool,
@@ -203,7 +204,7 @@ impl Swept {
         Self { low, high, triangles: corners.map(Triangle::new), ahead, band, is_convex }
     }
 
-    /// Where the band begins and ends at a height.
+    /// Returns where the band begins and ends at a given `y`.
     #[inline]
     fn ends_at(&self, y: f64) -> (f64, f64) {
         let at = |along: f64| (along - self.ahead.y * y) / self.ahead.x;
@@ -221,7 +222,7 @@ impl Swept {
     }
 }
 
-/// Whether an outline bends the same way at each of its four corners, and at each of them by something.
+/// Whether an outline bends in the same direction at each of its four corners, and is straight at none.
 fn is_convex(corners: [Point; 4]) -> bool {
     let bend = |k: usize| {
         let [a, b, c] = [0, 1, 2].map(|next| corners[(k + next) % 4]);
@@ -231,7 +232,7 @@ fn is_convex(corners: [Point; 4]) -> bool {
     bends.iter().all(|bend| *bend > SEAM_M) || bends.iter().all(|bend| *bend < -SEAM_M)
 }
 
-/// A triangle: its corners, and from each the way to the next, counter-clockwise; `None` without an area.
+/// A triangle as corners with the edges that start there, counter-clockwise; `None` without an area.
 struct Triangle(Option<[(Point, Vector); 3]>);
 
 impl Triangle {

@@ -1,4 +1,4 @@
-//! Many boxes, and which of them a segment meets.
+//! Many boxes, with a query for those that a segment meets.
 
 use geometry::Point;
 use glam::DVec2;
@@ -7,7 +7,7 @@ use parry2d_f64::{
     partitioning::{Bvh, BvhBuildStrategy},
 };
 
-/// Allowance for rounding in every test, metres and square metres: a segment that only touches a box meets it.
+/// Allowance for rounding in every test, metres and square metres; a segment that only touches a box meets it.
 const SLACK: f64 = 1e-9;
 
 /// Boxes in a tree; a query costs the logarithm of their number plus the number found.
@@ -17,14 +17,15 @@ pub(crate) struct Boxes {
 }
 
 impl Boxes {
-    /// Boxes by their lowest and highest corners.
+    /// Creates boxes from their lowest and highest corners.
     pub(crate) fn new(boxes: impl IntoIterator<Item = (Point, Point)>) -> Self {
         let boxes: Vec<Aabb> =
             boxes.into_iter().map(|(low, high)| Aabb::new(low.into(), high.into())).collect();
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
 
-    /// Indices of the boxes that come within `room_m` of a segment, perhaps of some more, in the order of the tree.
+    /// Returns the indices of the boxes that come within `room_m` of a segment, in the order of the tree; some more
+    /// boxes may be included.
     pub(crate) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         let (a, b): (DVec2, DVec2) = (a.into(), b.into());
         let (middle, half) = ((a + b) / 2.0, (b - a) / 2.0);

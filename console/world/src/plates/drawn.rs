@@ -1,28 +1,28 @@
-//! Plates as a drawing shows them: each with its name and outline.
+//! Plates from a drawing, each with its name and outline.
 
 use super::{NONE, Plate, PlateKind, PlateMap};
 use crate::coverage::Floor;
 use geometry::{Boundary, Point, shape::bounds_of};
 use serde::{Deserialize, Serialize};
 
-/// Name of the floor that lies on no plate of the drawing.
+/// The name for floor that lies on no plate of the drawing.
 pub const NO_PLATE: &str = "no plate";
-/// A plate with a corner nearer to the shell than this lies along it, metres.
+/// A plate lies along the shell if one of its corners is closer to the shell than this, metres.
 const AT_SHELL_M: f64 = 0.05;
-/// Floor in the gap between plates belongs to the nearest plate within so many cells.
+/// Floor in the gap between plates belongs to the nearest plate within this many cells.
 const GAP_CELLS: isize = 2;
 
 /// A plate of a drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DrawnPlate {
-    /// Its name; no two are called the same.
+    /// The name of the plate, which is unique.
     pub name: String,
     /// Corners of a simple polygon, tank frame, metres.
     pub vertices_m: Vec<Point>,
 }
 
 impl DrawnPlate {
-    /// Its outline as a closed line.
+    /// Returns the outline as a closed line.
     ///
     /// ```
     /// use world::{DrawnPlate, Point};
@@ -33,7 +33,8 @@ impl DrawnPlate {
         self.vertices_m.iter().chain(self.vertices_m.first()).copied().collect()
     }
 
-    /// Annular if it lies along the shell, else rectangular with four corners and sketch with any other number.
+    /// Returns the kind: annular along the shell; otherwise rectangular with four corners, and sketch with any other
+    /// number.
     fn kind(&self, boundary: &Boundary) -> PlateKind {
         if self.vertices_m.iter().any(|at| boundary.wall_distance_m(*at) < AT_SHELL_M) {
             PlateKind::Annular
@@ -44,10 +45,10 @@ impl DrawnPlate {
         }
     }
 
-    /// Calls `fill` with the row and the columns of all cells of a floor whose centres lie in the plate.
+    /// Calls `fill` with the row and the columns of all floor cells whose centres lie in the plate.
     fn fill(&self, floor: &Floor, mut fill: impl FnMut(usize, std::ops::Range<usize>)) {
         let (low, high) = bounds_of(&self.vertices_m);
-        // The first cell whose centre lies at or beyond a coordinate.
+        // The first cell whose centre is not below a coordinate.
         let first = |at_m: f64, origin_m: f64, n: usize| {
             (((at_m - origin_m) / floor.cell_m - 0.5).ceil().max(0.0) as usize).min(n)
         };
@@ -70,10 +71,11 @@ impl DrawnPlate {
     }
 }
 
-/// The plates of a floor and the plate of each of its cells: the first in the drawing that holds its centre.
+/// Returns the plates of a floor, and the plate of each of its cells: the first one in the drawing that contains the
+/// centre of the cell.
 pub(super) fn map(plates: &[DrawnPlate], boundary: &Boundary, floor: &Floor) -> PlateMap {
     let mut of_cell = vec![NONE; floor.len()];
-    // Lap-welded plates overlap: the first one is laid last, on top.
+    // Lap-welded plates overlap. They are filled in reverse order, so that the first plate ends up on top.
     for (index, plate) in plates.iter().enumerate().rev() {
         plate.fill(floor, |row, columns| {
             for cell in columns.map(|column| row * floor.width + column).filter(|cell| floor.is_floor(*cell))
@@ -94,7 +96,7 @@ pub(super) fn map(plates: &[DrawnPlate], boundary: &Boundary, floor: &Floor) -> 
     with_floor(&known, of_cell)
 }
 
-/// The plates that have floor, in order of kind and name.
+/// Keeps the plates that have floor, in order of kind and name.
 fn with_floor(known: &[Plate], mut of_cell: Vec<u32>) -> PlateMap {
     let mut has_floor = vec![false; known.len()];
     for plate in of_cell.iter().filter(|plate| **plate != NONE) {
@@ -110,7 +112,7 @@ fn with_floor(known: &[Plate], mut of_cell: Vec<u32>) -> PlateMap {
     PlateMap { plates: order.into_iter().map(|plate| known[plate].clone()).collect(), of_cell }
 }
 
-/// The plate of the nearest cell that has one; of several as near, the first of the drawing.
+/// Returns the plate of the nearest cell that has a plate; among equally near cells, the first plate in the drawing.
 fn nearest(of_cell: &[u32], floor: &Floor, cell: usize) -> u32 {
     let (column, row) = ((cell % floor.width) as isize, (cell / floor.width) as isize);
     let around = -GAP_CELLS..=GAP_CELLS;

@@ -1,4 +1,4 @@
-//! What blocks the robot: everything within a radius of a segment.
+//! The solids that block the robot: all points within a radius of a segment.
 
 use crate::obstacles::Boxes;
 use geometry::{
@@ -6,10 +6,10 @@ use geometry::{
     polyline::{nearest_on_segment, segments_cross},
 };
 
-/// Overlap up to which two outlines count as touching, metres.
+/// The overlap up to which two outlines only touch, metres.
 pub(super) const TOUCH_M: f64 = 1e-9;
 
-/// Everything within `radius_m` of a segment; a disc when both ends coincide.
+/// All points within `radius_m` of a segment; a disc if both ends coincide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bar {
     pub a: Point,
@@ -18,12 +18,12 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// Distance from a point to the outline, metres; negative inside.
+    /// Returns the distance from a point to the outline, metres; negative inside.
     pub(super) fn distance_m(&self, at: Point) -> f64 {
         (at - nearest_on_segment(self.a, self.b, at)).norm() - self.radius_m
     }
 
-    /// Whether a segment enters it by more than a touch.
+    /// Whether a segment enters the bar by more than a touch.
     fn blocks(&self, a: Point, b: Point) -> bool {
         let least_m = self.radius_m - TOUCH_M;
         let is_near = |p: Point, q: Point, at: Point| {
@@ -45,7 +45,7 @@ impl Bar {
     }
 }
 
-/// Many bars, found through a bounding volume hierarchy.
+/// Many bars, in a bounding volume hierarchy.
 #[derive(Debug, Clone)]
 pub(super) struct Bars {
     all: Vec<Bar>,
@@ -61,12 +61,12 @@ impl Bars {
         self.all.iter()
     }
 
-    /// Whether any blocks a segment.
+    /// Whether any bar blocks a segment.
     pub(super) fn block(&self, a: Point, b: Point) -> bool {
         self.boxes.near(a, b, 0.0).any(|index| self.all[index].blocks(a, b))
     }
 
-    /// Those whose boxes come within a radius of a point, perhaps some more.
+    /// Returns the bars whose boxes come within a radius of a point; some more may be included.
     pub(super) fn near(&self, center: Point, radius_m: f64) -> impl Iterator<Item = &Bar> {
         self.boxes.near(center, center, radius_m).map(|index| &self.all[index])
     }

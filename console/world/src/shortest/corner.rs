@@ -1,4 +1,4 @@
-//! What a path can turn about: circles, and which of their bearings are free.
+//! The circles that a path can turn about, and the free bearings on them.
 
 use super::bar::{Bar, Bars, TOUCH_M};
 use geometry::{Point, Vector, unit_vector};
@@ -10,13 +10,13 @@ pub(super) const ROUNDING_RAD: f64 = 1e-7;
 /// An interval of bearings, counter-clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Span {
-    /// In [0, 2 pi).
+    /// The start, in [0, 2 pi), radians.
     pub from_rad: f64,
-    /// Not less than that, and at most a full turn more.
+    /// The end, not less than `from_rad` and at most a full turn more, radians.
     pub to_rad: f64,
 }
 
-/// A span as directions, for tests without angles.
+/// A span as directions, so that tests need no angles.
 #[derive(Debug, Clone, Copy)]
 struct Sector {
     from: Vector,
@@ -53,7 +53,7 @@ impl Sector {
 pub(super) struct Corner {
     pub center: Point,
     pub radius_m: f64,
-    /// The bearings at which nothing else covers it; one span of a full turn if nothing does.
+    /// The bearings at which nothing else covers the circle; one span of a full turn if the circle is entirely free.
     pub free: Vec<Span>,
     sectors: Vec<Sector>,
 }
@@ -80,7 +80,8 @@ impl Corner {
         is_whole || self.sectors.iter().any(|sector| sector.contains(direction))
     }
 
-    /// How far a path can turn from a bearing, counter-clockwise and clockwise, radians; none where it is not free.
+    /// Returns how far a path can turn from a bearing, counter-clockwise and clockwise, radians; `None` where the
+    /// bearing is not free.
     pub(super) fn room_rad(&self, bearing_rad: f64) -> Option<(f64, f64)> {
         let (span, past_rad) = self.span(bearing_rad)?;
         if span.to_rad - span.from_rad >= TAU {
@@ -89,7 +90,7 @@ impl Corner {
         Some(((span.to_rad - span.from_rad - past_rad).max(0.0), past_rad.max(0.0)))
     }
 
-    /// The span of a bearing, and how far into it the bearing is.
+    /// Returns the span that contains a bearing, and the angle from its beginning.
     fn span(&self, bearing_rad: f64) -> Option<(&Span, f64)> {
         self.free.iter().find_map(|span| {
             let past_rad = (bearing_rad - span.from_rad + ROUNDING_RAD).rem_euclid(TAU) - ROUNDING_RAD;
@@ -98,8 +99,8 @@ impl Corner {
     }
 }
 
-/// The angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi); almost a full
-/// turn counts as none.
+/// Returns the angle from one bearing to another, counter-clockwise (`turn` 1) or clockwise (-1), in [0, 2 pi). An
+/// angle within rounding of a full turn becomes zero.
 pub(super) fn turned_rad(from_rad: f64, to_rad: f64, turn: f64) -> f64 {
     ((to_rad - from_rad) * turn + ROUNDING_RAD).rem_euclid(TAU) - ROUNDING_RAD
 }
@@ -117,7 +118,8 @@ impl Circle {
     /// Adds the bearings that a bar covers.
     fn cover(&self, bar: &Bar, covered: &mut Vec<Span>) {
         let along = bar.b - bar.a;
-        // For the circle at an end of a bar of the same thickness, the half that faces along the bar.
+        // If the circle is the round end of a bar of the same thickness, the half that faces along the bar is
+        // covered.
         if (bar.radius_m - self.radius_m).abs() < TOUCH_M {
             for (end, along) in [(bar.a, along), (bar.b, -along)] {
                 if end == self.center {
@@ -139,7 +141,7 @@ impl Circle {
         self.split(&cuts, covered, |at| bar.distance_m(at) < -TOUCH_M);
     }
 
-    /// Adds the intervals between cuts whose middle is covered.
+    /// Adds the intervals between cuts whose midpoint is covered.
     fn split(&self, cuts: &[f64], covered: &mut Vec<Span>, is_covered: impl Fn(Point) -> bool) {
         let mut cuts: Vec<f64> = cuts.iter().map(|cut| cut.rem_euclid(TAU)).collect();
         cuts.sort_by(f64::total_cmp);
@@ -157,7 +159,7 @@ impl Circle {
         }
     }
 
-    /// Bearings at which another circle intersects.
+    /// Returns the bearings at which another circle intersects this one.
     fn cuts_with_circle(&self, center: Point, radius_m: f64) -> Vec<f64> {
         let way = center - self.center;
         let apart_m = way.norm();
@@ -169,13 +171,13 @@ impl Circle {
         around(way, cos)
     }
 
-    /// Bearings at which a line intersects, given by a point and its unit normal.
+    /// Returns the bearings at which a line intersects the circle; the line is given by a point and its unit normal.
     fn cuts_with_line(&self, on: Point, normal: Vector) -> Vec<f64> {
         around(normal, (on - self.center).dot(&normal) / self.radius_m)
     }
 }
 
-/// The two bearings whose angle to a direction has this cosine.
+/// Returns the two bearings whose angle to a direction has this cosine.
 fn around(direction: Vector, cos: f64) -> Vec<f64> {
     if cos.abs() > 1.0 {
         return Vec::new();
@@ -191,13 +193,14 @@ impl Span {
     }
 }
 
-/// The bearings that no span covers.
+/// Returns the bearings that no span covers.
 fn complement(mut covered: Vec<Span>) -> Vec<Span> {
     covered.sort_by(|a, b| a.from_rad.total_cmp(&b.from_rad));
     let Some(first) = covered.first() else {
         return vec![Span { from_rad: 0.0, to_rad: TAU }];
     };
-    // One full turn from the start of the first span; a span that reaches beyond the end is carried over to the start.
+    // One full turn from the start of the first span. A span that extends beyond the end is carried over to the
+    // start.
     let begin_rad = first.from_rad;
     let carried_rad = covered.iter().map(|span| span.to_rad - TAU).fold(begin_rad, f64::max);
     let mut reached_rad = carried_rad;

@@ -1,4 +1,4 @@
-//! The floor, with everything solid grown so that the robot is a point.
+//! The floor, with all solids grown so that the robot is a point.
 
 use super::{
     bar::{Bar, Bars, TOUCH_M},
@@ -12,7 +12,7 @@ use geometry::{
 
 use std::collections::{HashMap, HashSet};
 
-/// Least radius of a disc or corner, metres: a path could lead across one without any extent.
+/// Least radius of a disc or corner, metres: without an extent, a path could lead across it.
 const LEAST_RADIUS_M: f64 = 1e-6;
 
 /// A floor on which the robot is a point, tank frame.
@@ -21,7 +21,7 @@ pub struct GrownFloor {
     wall: Wall,
     rings: Vec<Vec<Point>>,
     bars: Bars,
-    /// Sides that two polygons share: no path comes to them, but a place may lie on one.
+    /// Sides that two polygons share: no path reaches them, but a given point may lie on one.
     seams: Vec<Bar>,
     pub(super) corners: Vec<Corner>,
 }
@@ -33,8 +33,8 @@ enum Wall {
 }
 
 impl GrownFloor {
-    /// A floor within a wall from which the centre of the robot keeps `wall_keep_m`, among outlines, each with the distance
-    /// that the centre keeps from it, metres.
+    /// Creates a floor from a wall and outlines. The centre of the robot keeps `wall_keep_m` from the wall, and the
+    /// given distance from each outline, metres.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};
@@ -64,7 +64,7 @@ impl GrownFloor {
         Self { wall, rings, bars, seams, corners }
     }
 
-    /// Distance from a point to everything grown, metres; negative where the robot does not fit.
+    /// Returns the distance from a point to the nearest grown solid, metres; negative where the robot does not fit.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, shortest::GrownFloor};
@@ -134,8 +134,8 @@ impl Parts {
         }
     }
 
-    /// Adds the sides and corners of polygons, except those that polygons side by side hide: a path comes neither to the
-    /// side that two of them share nor to a corner that does not stick out.
+    /// Adds the sides and corners of polygons, except those hidden between adjacent polygons: a path reaches neither
+    /// a shared side nor a corner that does not protrude.
     fn join_pieces(&mut self) {
         let bits = |at: Point| (at.x.to_bits(), at.y.to_bits());
         let key = |a: Point, b: Point, bar: &Bar| (bits(a), bits(b), bar.radius_m.to_bits());
@@ -167,7 +167,7 @@ impl Parts {
         self.bars.append(&mut self.sides);
     }
 
-    /// The wall: only corners that point into the tank can be turned about.
+    /// Adds the wall: paths can turn only about corners that point into the tank.
     fn enclose(&mut self, boundary: &Boundary, keep_m: f64) -> Wall {
         let vertices = match boundary {
             Boundary::Circle { radius_m } => return Wall::Round { radius_m: radius_m - keep_m },

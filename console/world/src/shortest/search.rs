@@ -10,7 +10,7 @@ use crate::total::Total;
 use geometry::{Point, Vector};
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-/// Number of tangents after which the caller is asked again.
+/// The number of tangents after which `keep_going` is called again.
 const ASK_EVERY: usize = 64;
 /// Difference of lengths that counts as rounding, metres.
 const ROUNDING_M: f64 = 1e-12;
@@ -19,10 +19,10 @@ fn bearing_rad(direction: Vector) -> f64 {
     direction.y.atan2(direction.x)
 }
 
-/// A path can turn about a corner in two senses: turn `2 c` is corner `c` counter-clockwise, `2 c + 1` clockwise.
+/// A path can turn about a corner in two directions: turn `2 c` is corner `c` counter-clockwise, `2 c + 1` clockwise.
 type TurnId = usize;
 
-/// Where a tangent leads.
+/// The end of a tangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum End {
     Goal,
@@ -44,22 +44,22 @@ struct Exit {
     test: Test,
 }
 
-/// A path that has met a turn.
+/// A path that has reached a turn.
 struct Arrival {
     turn: Option<TurnId>,
     bearing_rad: f64,
-    /// How far the path can turn from there, radians.
+    /// How far the path can follow the turn, radians.
     room_rad: f64,
     at: Point,
     way_m: f64,
-    /// The previous arrival, and the exit by which it was left.
+    /// The previous arrival, and the exit that the path took from it.
     from: Option<(usize, usize)>,
 }
 
-/// A path that would leave an arrival by an exit; the order of the fields is that of the queue.
+/// A path that would leave an arrival by an exit. The order of the fields defines the order of the queue.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
-    /// Length so far and straight on to the goal, metres: no path by this exit is shorter.
+    /// The length so far plus the straight distance to the goal, metres: a lower bound for every path by this exit.
     least_m: Total,
     arrival: usize,
     exit: usize,
@@ -69,19 +69,19 @@ struct Candidate {
 pub(super) struct Search<'a> {
     floor: &'a GrownFloor,
     goal: Point,
-    /// The turns that may be taken.
+    /// The turns that the search may use.
     turns: Vec<TurnId>,
-    /// Exits of the start (last) and of every turn that was met.
+    /// The exits of the start (last) and of every turn reached.
     exits: Vec<Option<Vec<Exit>>>,
     arrivals: Vec<Arrival>,
-    /// Arrivals at every turn.
+    /// The arrivals at every turn.
     met: Vec<Vec<usize>>,
     queue: BinaryHeap<Reverse<Candidate>>,
     n_tested: usize,
 }
 
 impl<'a> Search<'a> {
-    /// A search among the paths that turn about some of the floor's corners.
+    /// Creates a search among the paths that turn about some of the floor's corners.
     pub(super) fn new(floor: &'a GrownFloor, start: Point, goal: Point, corners: &[usize]) -> Self {
         let n_turns = 2 * floor.corners.len();
         let mut search = Self {
@@ -136,14 +136,14 @@ impl<'a> Search<'a> {
 
     fn exit(&self, arrival: usize, exit: usize) -> &Exit {
         let slot = self.slot(self.arrivals[arrival].turn);
-        &self.exits[slot].as_ref().expect("what was left by was made on arrival")[exit]
+        &self.exits[slot].as_ref().expect("exits are created on arrival")[exit]
     }
 
-    /// Whether a tangent is free; each is tested once.
+    /// Whether a tangent is free; each tangent is tested once.
     fn is_free(&mut self, candidate: &Candidate) -> bool {
         let slot = self.slot(self.arrivals[candidate.arrival].turn);
         let floor = self.floor;
-        let exits = self.exits[slot].as_mut().expect("what is left by was made on arrival");
+        let exits = self.exits[slot].as_mut().expect("exits are created on arrival");
         let exit = &mut exits[candidate.exit];
         if exit.test == Test::Due {
             self.n_tested += 1;
@@ -153,7 +153,8 @@ impl<'a> Search<'a> {
         exit.test == Test::Free
     }
 
-    /// Continues from an arrival, unless an earlier one reaches everything it could by a path that is no longer.
+    /// Continues from an arrival, unless an earlier arrival reaches the same exits by a path of at most the same
+    /// length.
     fn arrive(&mut self, arrival: Arrival) {
         let slot = self.slot(arrival.turn);
         if let Some(id) = arrival.turn {
@@ -166,7 +167,7 @@ impl<'a> Search<'a> {
             self.exits[slot] = Some(self.exits_of(arrival.turn, arrival.at));
         }
         let index = self.arrivals.len();
-        let exits = self.exits[slot].as_ref().expect("made above");
+        let exits = self.exits[slot].as_ref().expect("created above");
         for (number, exit) in exits.iter().enumerate().filter(|(_, exit)| exit.test != Test::Blocked) {
             if let Some(arc_m) = self.arc_m(&arrival, exit.bearing_rad) {
                 let way_m = arrival.way_m + arc_m;
@@ -186,7 +187,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Length of the arc from an arrival to a bearing, in the sense of its turn; none if something blocks it.
+    /// Returns the length of the arc from an arrival to a bearing, in the direction of its turn; `None` if the arc is
+    /// blocked.
     fn arc_m(&self, arrival: &Arrival, bearing_rad: f64) -> Option<f64> {
         let Some(id) = arrival.turn else { return Some(0.0) };
         let turn = self.turn(id);
@@ -194,7 +196,7 @@ impl<'a> Search<'a> {
         (arc_rad <= arrival.room_rad + ROUNDING_RAD).then_some(arc_rad.max(0.0) * turn.signed_m.abs())
     }
 
-    /// How far a path that meets a turn at a bearing can follow it, radians.
+    /// Returns how far a path that reaches a turn at a bearing can follow it, radians.
     fn room_rad(&self, id: TurnId, bearing_rad: f64) -> f64 {
         let (ahead_rad, back_rad) = self.floor.corners[id / 2].room_rad(bearing_rad).unwrap_or_default();
         if id.is_multiple_of(2) { ahead_rad } else { back_rad }
@@ -206,7 +208,8 @@ impl<'a> Search<'a> {
         Turn { center: corner.center, signed_m: sign * corner.radius_m }
     }
 
-    /// Every tangent that leaves a turn, or the start, at a free bearing and meets another, or the goal, at one.
+    /// Returns all tangents that leave a turn or the start at a free bearing, and reach another turn at a free
+    /// bearing or the goal.
     fn exits_of(&self, turn: Option<TurnId>, at: Point) -> Vec<Exit> {
         let here = turn.map_or(Turn { center: at, signed_m: 0.0 }, |id| self.turn(id));
         let corner = turn.map(|id| &self.floor.corners[id / 2]);
@@ -231,7 +234,7 @@ impl<'a> Search<'a> {
         to_goal.into_iter().chain(to_turns).collect()
     }
 
-    /// The path that ends with a candidate's exit.
+    /// Returns the path that ends with a candidate's exit.
     fn way(&self, last: &Candidate, length_m: f64) -> Way {
         let mut pieces = Vec::new();
         let mut step = Some((last.arrival, last.exit));

@@ -3,7 +3,7 @@
 use super::bar::TOUCH_M;
 use geometry::{Point, Vector};
 
-/// A circle and the sense in which a path turns about it.
+/// A circle, and the direction in which a path turns about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     pub center: Point,
@@ -11,7 +11,7 @@ pub(super) struct Turn {
     pub signed_m: f64,
 }
 
-/// A segment that leaves one circle and meets another.
+/// A segment that leaves one circle and reaches another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tangent {
     pub from: Point,
@@ -22,15 +22,16 @@ pub(super) struct Tangent {
     pub meet: Vector,
 }
 
-/// The tangent by which a path passes from one turn to another; none if the circles are too close for it.
+/// Returns the tangent by which a path passes from one turn to another; `None` if the circles are too close together.
 ///
-/// With the vector `e` between the centres and the signed radii `s`, it runs at an angle `asin((s_j - s_i) / |e|)` to `e`.
+/// With the vector `e` between the centres and the signed radii `s`, the tangent runs at an angle
+/// `asin((s_j - s_i) / |e|)` to `e`.
 pub(super) fn tangent(i: Turn, j: Turn) -> Option<Tangent> {
     let way = j.center - i.center;
     let squared = way.norm_squared();
     let grown_m = j.signed_m - i.signed_m;
     let length_squared = squared - grown_m * grown_m;
-    // An end of the path may lie on the circle, up to rounding: then the path leaves along it.
+    // An end of the path may lie on the circle, up to rounding: then the path leaves along the circle.
     if length_squared <= -4.0 * TOUCH_M * grown_m.abs() || squared == 0.0 {
         return None;
     }

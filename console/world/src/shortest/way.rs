@@ -1,10 +1,10 @@
-//! Shortest paths as tangents and arcs, and why there is none.
+//! Shortest paths as tangents and arcs, and the reasons why there is none.
 
 use geometry::{Point, unit_vector};
 
 /// An arc is drawn at most this far outside the circle, metres, ...
 const ARC_EXCESS_M: f64 = 4e-5;
-/// ... and with corners no sharper than this, radians.
+/// ... and its corners turn by no more than this, radians.
 const ARC_STEP_RAD: f64 = 0.2;
 
 /// A piece of a shortest path.
@@ -12,20 +12,20 @@ const ARC_STEP_RAD: f64 = 0.2;
 pub enum Piece {
     /// A segment.
     Straight {
-        /// Its start.
+        /// The start of the segment.
         from: Point,
-        /// Its end.
+        /// The end of the segment.
         to: Point,
     },
     /// An arc about a grown disc or corner.
     Arc {
-        /// Its centre.
+        /// The centre of the arc.
         center: Point,
-        /// Its radius, metres.
+        /// The radius of the arc, metres.
         radius_m: f64,
-        /// Bearing of its start from the centre, radians.
+        /// Bearing of the start of the arc from the centre, radians.
         from_rad: f64,
-        /// Angle turned through, radians, positive counter-clockwise.
+        /// Angle of the arc, radians, positive counter-clockwise.
         sweep_rad: f64,
     },
 }
@@ -33,15 +33,15 @@ pub enum Piece {
 /// A shortest path, tank frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way {
-    /// Its pieces, each beginning where the one before ends.
+    /// The pieces, each beginning where the previous one ends.
     pub pieces: Vec<Piece>,
-    /// Its length, metres.
+    /// The length of the path, metres.
     pub length_m: f64,
 }
 
 impl Way {
-    /// The path as a chain of points that comes no nearer to anything than the path itself: an arc is replaced by tangents,
-    /// at most 0.04 mm outside it.
+    /// Returns the path as a chain of points that comes no closer to any solid than the path itself: arcs are
+    /// replaced by tangents, at most 0.04 mm outside.
     ///
     /// ```
     /// use world::{Point, shortest::{Piece, Way}};
@@ -69,7 +69,7 @@ impl Way {
     }
 }
 
-/// Where consecutive tangents of an arc cross, from its first tangent to its last.
+/// Returns the points where consecutive tangents of an arc cross, from the first tangent to the last.
 fn tangent_corners(
     center: Point,
     radius_m: f64,
@@ -83,29 +83,29 @@ fn tangent_corners(
     (0..n as u32).map(move |k| center + unit_vector(from_rad + half_rad * f64::from(2 * k + 1)) * outer_m)
 }
 
-/// Why there is no shortest path.
+/// The reason why there is no shortest path.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoWay {
     /// The robot does not fit at the start.
-    #[error("the start ({:.3}, {:.3}) is too near to something solid, by {by_m:.3} m", at.x, at.y)]
+    #[error("the start ({:.3}, {:.3}) is {by_m:.3} m too close to something solid", at.x, at.y)]
     StartBlocked {
         /// The start.
         at: Point,
-        /// Room that it lacks, metres.
+        /// The missing clearance, metres.
         by_m: f64,
     },
     /// The robot does not fit at the goal.
-    #[error("the goal ({:.3}, {:.3}) is too near to something solid, by {by_m:.3} m", at.x, at.y)]
+    #[error("the goal ({:.3}, {:.3}) is {by_m:.3} m too close to something solid", at.x, at.y)]
     GoalBlocked {
         /// The goal.
         at: Point,
-        /// Room that it lacks, metres.
+        /// The missing clearance, metres.
         by_m: f64,
     },
-    /// Proved: no path leads from start to goal.
-    #[error("there is no way: the search tried all {n_tangents} tangents that can be reached from the start")]
+    /// It is proven that no path leads from start to goal.
+    #[error("there is no path: the search tried all {n_tangents} tangents reachable from the start")]
     Unreachable {
-        /// Number of tangents tested.
+        /// The number of tangents tested.
         n_tangents: usize,
     },
     /// The caller stopped the search.

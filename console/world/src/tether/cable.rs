@@ -9,12 +9,12 @@ use geometry::{Boundary, Point, Shape};
 use serde::{Deserialize, Serialize};
 use std::{ops::ControlFlow, sync::Arc};
 
-/// Wraps below this do not count as contacts, radians.
+/// Contacts with a wrap below this do not count, radians.
 const LEAST_WRAP_RAD: f64 = 1e-7;
-/// Angle between the points of an arc in a drawn line, radians.
+/// Angle between the points of an arc when the cable is drawn as a line, radians.
 const ARC_STEP_RAD: f64 = 0.1;
 
-/// Where a cable bears on one obstacle.
+/// A contact of the cable with an obstacle.
 ///
 /// ```
 /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -29,17 +29,18 @@ const ARC_STEP_RAD: f64 = 0.1;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
-    /// What it bears on.
+    /// The object that the cable bears on.
     pub on: Bearing,
-    /// Angle by which the cable turns there, radians, positive counter-clockwise; more than a full turn for loops.
+    /// The angle by which the cable turns there, radians, positive counter-clockwise; more than a full turn for
+    /// loops.
     pub wrap_rad: f64,
-    /// First point of contact, seen from the anchor, tank frame.
+    /// The first point of contact, counted from the anchor, tank frame.
     pub first: Point,
-    /// Last point of contact, tank frame.
+    /// The last point of contact, tank frame.
     pub last: Point,
 }
 
-/// Why there can be no cable.
+/// The reason why there can be no cable.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TetherError {
     /// The anchor is not on the floor.
@@ -63,16 +64,16 @@ pub enum TetherError {
     AnchorNotFinite,
 }
 
-/// One post around which the cable bends.
+/// A post around which the cable bends.
 #[derive(Debug, Clone, Copy)]
 struct Bend {
     post: usize,
-    /// 1 when the cable turns counter-clockwise there, -1 otherwise.
+    /// 1 if the cable turns counter-clockwise there, -1 otherwise.
     side: f64,
     /// Bearing of the cable before and after, radians; accumulated, so a loop is a whole turn.
     into_rad: f64,
     out_rad: f64,
-    /// Cable between anchor and the first point of contact, metres.
+    /// The length of cable between the anchor and the first point of contact, metres.
     before_m: f64,
 }
 
@@ -84,10 +85,10 @@ impl Bend {
 
 /// The taut cable from an anchor to a robot that has been dragging it.
 ///
-/// Event-driven: the free span of the cable sweeps over the floor while the robot moves in a straight line. Where it
-/// becomes tangent to a post it bends there (push); where a wrap falls to zero the bend ends (pop). Angles are
-/// accumulated, never derived from the last pose alone, so any number of loops is kept. One move costs one look at the
-/// posts nearby per event.
+/// The update is event-driven: while the robot moves in a straight line, the free span of the cable sweeps over the
+/// floor. Where it becomes tangent to a post, it bends there (push); where a wrap falls to zero, the bend ends (pop).
+/// Angles are accumulated and never derived from the last pose alone, so any number of loops is preserved. A move
+/// costs one query of the nearby posts per event.
 ///
 /// ```
 /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -110,7 +111,7 @@ pub struct Cable {
 }
 
 impl Cable {
-    /// A cable of length 0, with the robot at the anchor; everything in the tank frame.
+    /// Creates a cable of length 0, with the robot at the anchor, in the tank frame.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -129,7 +130,7 @@ impl Cable {
         Self::on(anchor, Arc::new(CableObstacles::new(boundary, shapes)))
     }
 
-    /// The same among obstacles that are shared with other cables.
+    /// Creates a cable among obstacles that are shared with other cables.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -153,10 +154,10 @@ impl Cable {
         Ok(Self { obstacles, anchor, tip: anchor, start_rad: 0.0, bends: Vec::new(), signature })
     }
 
-    /// Drags the cable to where the robot is now, straight from where it was.
+    /// Drags the cable straight from the robot's previous position to its new one.
     ///
-    /// A move through an obstacle takes the shorter detour around it, and a point inside one counts as the nearest point
-    /// outside: see the module `sidestep`. A position that is not finite is ignored.
+    /// A move through an obstacle takes the shorter detour around it, and a point inside an obstacle counts as the
+    /// nearest point outside; see the module `sidestep`. A position that is not finite is ignored.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -193,9 +194,9 @@ impl Cable {
         }
     }
 
-    /// The cable as it lies where it is longest on a path.
+    /// Returns the cable at the point of a path where it is longest.
     ///
-    /// Along a straight move its length is convex, so it is longest at a point of the path.
+    /// Along a straight move, the length of the cable is convex, so it is longest at a point of the path.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -219,7 +220,7 @@ impl Cable {
         longest
     }
 
-    /// Where the cable begins, tank frame.
+    /// The start of the cable, tank frame.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -234,7 +235,7 @@ impl Cable {
         self.anchor
     }
 
-    /// Where the cable ends, tank frame: the robot, or the nearest free point to it.
+    /// The end of the cable, tank frame: the robot, or the nearest free point to it.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -250,12 +251,12 @@ impl Cable {
         self.tip
     }
 
-    /// The obstacles among which it lies.
+    /// The obstacles around the cable.
     pub(super) fn obstacles(&self) -> &Arc<CableObstacles> {
         &self.obstacles
     }
 
-    /// Length between anchor and robot, metres.
+    /// Returns the length of the cable between anchor and robot, metres.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -271,7 +272,7 @@ impl Cable {
         self.up_to_base_m() + (self.tip - base.leaves_at(base.out_rad)).norm()
     }
 
-    /// Where the cable bears, from the anchor on; consecutive posts of one obstacle make one contact.
+    /// Returns the contacts of the cable, from the anchor on; consecutive posts of one obstacle form one contact.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -298,7 +299,7 @@ impl Cable {
         contacts
     }
 
-    /// Largest wrap on one obstacle, radians, without sign; loops count in full.
+    /// Returns the largest wrap on one obstacle, radians, without sign; loops count in full.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -320,7 +321,7 @@ impl Cable {
         most
     }
 
-    /// Total wrap: the sum of the wraps on all obstacles, radians, without signs.
+    /// Returns the total wrap: the sum of the wraps on all obstacles, radians, without signs.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -335,7 +336,7 @@ impl Cable {
         self.bends.iter().map(|bend| bend.wrap_rad().max(0.0)).sum()
     }
 
-    /// Whether the cable bears on nothing and runs straight from the anchor to the robot.
+    /// Whether the cable bears on nothing, and runs straight from the anchor to the robot.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -352,7 +353,8 @@ impl Cable {
         self.bends.iter().all(|bend| bend.wrap_rad() <= LEAST_WRAP_RAD)
     }
 
-    /// The homotopy signature of the path driven; at the anchor it is empty exactly if the cable can be reeled in.
+    /// The homotopy signature of the path driven; at the anchor it is empty if, and only if, the cable can be reeled
+    /// in.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -367,7 +369,7 @@ impl Cable {
         &self.signature
     }
 
-    /// The cable as a line from the anchor to the robot, tank frame; arcs become chords of at most 0.1 rad.
+    /// Returns the cable as a line from the anchor to the robot, tank frame; arcs become chords of at most 0.1 rad.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Cable};
@@ -383,8 +385,8 @@ impl Cable {
         self.line_beside_posts(0.0)
     }
 
-    /// The same with some room between the line and every post that it bears on, metres. Ends and order are those of the
-    /// cable; between two posts the line may come nearer to what else is there.
+    /// Returns the cable as a line with a given distance from every post that it bears on, metres. Ends and order are
+    /// those of the cable; between two posts, the line may come closer to other obstacles.
     pub(super) fn line_beside_posts(&self, room_m: f64) -> Vec<Point> {
         let mut line = vec![self.anchor];
         for bend in &self.bends {
@@ -444,7 +446,7 @@ impl Cable {
         }
     }
 
-    /// One straight move that enters no obstacle.
+    /// Drags the cable along a straight move that enters no obstacle.
     fn sweep_to(&mut self, to: Point) {
         let from = self.tip;
         if from == to {
@@ -452,7 +454,7 @@ impl Cable {
         }
         self.signature.extend(from, to, &self.obstacles.rays);
         if self.bends.is_empty() && (from - self.anchor).norm() <= SLACK_M {
-            // A cable of no length has no bearing: it takes that of the move.
+            // A cable of length zero has no bearing, so it takes that of the move.
             self.start_rad = self.base().bearing_to(to).unwrap_or(self.start_rad);
         } else {
             self.turn(from, to);
@@ -462,7 +464,7 @@ impl Cable {
 
     fn turn(&mut self, from: Point, to: Point) {
         let mut released: Vec<usize> = Vec::new();
-        // One straight move causes no more events than this; rounding must not make it loop for ever.
+        // A straight move cannot cause more events than this; the limit prevents endless loops due to rounding.
         let most = 2 * (self.bends.len() + self.obstacles.posts.len()) + 8;
         for _ in 0..most {
             if self.advance(from, to, &mut released).is_break() {
@@ -495,8 +497,8 @@ impl Cable {
     }
 }
 
-/// Factor by which the total wrap multiplies the force that pulls the cable: the capstan equation (Euler-Eytelwein),
-/// e to the power of friction coefficient times total wrap in radians.
+/// Returns the factor by which the total wrap multiplies the pulling force of the cable. By the capstan equation
+/// (Euler-Eytelwein), it is e to the power of the friction coefficient times the total wrap in radians.
 ///
 /// ```
 /// let half_a_turn = std::f64::consts::PI;

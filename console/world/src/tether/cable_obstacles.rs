@@ -1,10 +1,10 @@
-//! What a cable can bear on: every obstacle and every inward corner of the wall, divided into round posts.
+//! Defines what a cable can bear on: every obstacle and every inward corner of the wall, divided into round posts.
 //!
-//! A taut line touches a solid only along its convex hull, and the convex hull of a disc, a polygon or a pipe is that of
-//! a few discs: the disc itself, the corners (discs of radius 0), the ends and bends of the pipe. A line that comes from
-//! a path outside the obstacles never passes between two posts of one solid, so posts alone give the exact taut line.
-//! Obstacles that touch or overlap need no special case: no path leads between them, so the cable bridges the notch
-//! from one to the other, and each contact is named for the obstacle that bears it. A post inside another one can bear
+//! A taut line touches a solid only along its convex hull. The convex hull of a disc, a polygon or a pipe is that of
+//! a few discs: the disc itself, the corners (discs of radius 0), or the ends and bends of the pipe. A line derived
+//! from a path outside the obstacles never passes between two posts of one solid, so posts alone give the exact taut
+//! line. Obstacles that touch or overlap need no special case: no path leads between them, so the cable bridges the
+//! notch from one to the other, and each contact names the obstacle that bears it. A post inside another one can bear
 //! nothing and is dropped.
 
 use super::{homotopy::Rays, rounded_polygon::RoundedPolygon, sidestep::Sidestep};
@@ -12,16 +12,16 @@ use crate::obstacles::Boxes;
 use geometry::{Boundary, Point, Shape, Vector, polyline::edges, shape::reflex_corners};
 use serde::{Deserialize, Serialize};
 
-/// Sine of the angle up to which a line along an edge does not enter the solid.
+/// Sine of the angle to an edge up to which a line does not count as entering the solid.
 const ALONG_EDGE: f64 = 1e-6;
-/// What is solid this far from a corner is solid right beside it, metres.
+/// Anything solid at this distance from a corner counts as directly adjacent, metres.
 const BESIDE_M: f64 = 1e-6;
 
-/// What a cable bears on.
+/// The object that a cable bears on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bearing {
-    /// The obstacle with this index in the list that the [`CableObstacles`] were made of.
+    /// The obstacle with this index in the list that the [`CableObstacles`] were made from.
     Obstacle(usize),
     /// An inward corner of the wall.
     Wall,
@@ -33,39 +33,41 @@ pub(super) struct Post {
     pub center: Point,
     pub radius_m: f64,
     pub of: Bearing,
-    /// Unit vectors along the edges that meet at a corner; zero where there are none.
+    /// Unit vectors along the edges that meet at a corner; zero if there are none.
     edges: [Vector; 2],
 }
 
 impl Post {
-    /// Whether a line of this direction may bear on the post with the post's solid on its left (`side` 1) or right (-1).
+    /// Whether a line in this direction may bear on the post, with the post's solid on its left (`side` 1) or right
+    /// (-1).
     ///
-    /// A round post lies on the side from which the line touches it; at a corner only the edges decide.
+    /// A round post lies on the side on which the line touches it; at a corner, only the edges decide.
     pub(super) fn lies_on(&self, side: f64, line: Vector) -> bool {
         let most = -ALONG_EDGE * line.norm();
         self.radius_m > 0.0 || self.edges.iter().all(|edge| side * line.perp(edge) >= most)
     }
 
-    /// South-west and north-east corner of the box around it.
+    /// Returns the south-west and north-east corners of the bounding box.
     fn bounds(&self) -> (Point, Point) {
         let far = Vector::new(self.radius_m, self.radius_m);
         (self.center - far, self.center + far)
     }
 
-    /// Whether a line can bend here, for all that is solid beside it: at a corner, both edges can be prolonged into free floor.
-    /// Floors from maps consist of many convex pieces, and most of their corners lie against other pieces.
+    /// Whether a line can bend here despite adjacent solids: at a corner, the extensions of both edges must lead into
+    /// free floor. Floors from maps consist of many convex pieces, and most of their corners adjoin other pieces.
     fn can_bear(&self, is_solid: impl Fn(Point) -> bool) -> bool {
         self.radius_m > 0.0 || !self.edges.iter().any(|edge| is_solid(self.center - edge * BESIDE_M))
     }
 }
 
-/// Where a line of some bearing touches a disc; `side` 1 has the disc on its left, -1 on its right.
+/// Returns the point where a line with a given bearing touches a disc; `side` 1 has the disc on its left, -1 on its
+/// right.
 pub(super) fn tangent_point(center: Point, radius_m: f64, side: f64, bearing_rad: f64) -> Point {
     let left = Vector::new(-bearing_rad.sin(), bearing_rad.cos());
     center - left * (side * radius_m)
 }
 
-/// Obstacles and wall as a cable meets them; made once, shared by cables.
+/// Obstacles and wall from the point of view of a cable; made once and shared by cables.
 #[derive(Debug, Clone)]
 pub struct CableObstacles {
     pub(super) posts: Vec<Post>,
@@ -78,7 +80,7 @@ pub struct CableObstacles {
 }
 
 impl CableObstacles {
-    /// Obstacles within a wall, tank frame; contacts name obstacles by their index in `shapes`.
+    /// Creates obstacles within a wall, tank frame; contacts name obstacles by their index in `shapes`.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -91,7 +93,7 @@ impl CableObstacles {
         Self::grown(boundary, shapes, 0.0)
     }
 
-    /// The same with every obstacle and inward corner grown by a margin, metres, as the centre of a hull meets them.
+    /// Creates obstacles and inward corners that are grown by a margin, metres, as they limit the centre of a hull.
     ///
     /// The rest of the wall is not grown: no taut line bears on it.
     ///
@@ -132,17 +134,18 @@ impl CableObstacles {
         }
     }
 
-    /// Posts that come within `room_m` of a segment, perhaps some more, in no order.
+    /// Returns the posts that come within `room_m` of a segment, in no particular order; some more may be included.
     pub(super) fn near(&self, a: Point, b: Point, room_m: f64) -> impl Iterator<Item = usize> + '_ {
         self.boxes.near(a, b, room_m)
     }
 
-    /// The nearest point that lies in no obstacle, as far as a few steps find one.
+    /// Returns the nearest point that lies in no obstacle, if a few steps find one.
     pub(super) fn outside(&self, point: Point) -> Point {
         self.sidestep.outside(point)
     }
 
-    /// A straight move, with stops wherever it leads through an obstacle: its end last, its start left out.
+    /// Splits a straight move by stops wherever it leads through an obstacle. Returns the stops and the end of the
+    /// move, but not its start.
     pub(super) fn with_stops_inside(&self, from: Point, to: Point, apart_m: f64) -> Vec<Point> {
         let length_m = (to - from).norm();
         let mut shares: Vec<f64> = vec![1.0];
@@ -155,7 +158,7 @@ impl CableObstacles {
         shares.into_iter().map(|share| from + (to - from) * share).collect()
     }
 
-    /// The bends of a straight move that goes around every obstacle in its way.
+    /// Adds the bends of a straight move that goes around every obstacle in its way.
     #[cfg(test)]
     pub(super) fn go_round(&self, from: Point, to: Point, way: &mut Vec<Point>) {
         self.sidestep.along(from, to, |next| way.push(next));
@@ -194,14 +197,15 @@ fn posts_of(shape: &Shape, margin_m: f64, of: Bearing) -> Vec<Post> {
     }
 }
 
-/// The corners at which a wall turns away from the floor.
+/// Returns the corners at which a wall turns away from the floor.
 fn wall_posts(boundary: &Boundary, margin_m: f64) -> Vec<Post> {
     let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
     reflex_corners(vertices).map(|k| corner_post(vertices, k, margin_m, Bearing::Wall)).collect()
 }
 
-/// The same corners as solids, grown by a margin. Each has some of the wall behind it: a disc about the corner alone would not
-/// tell on which side of it the floor lies, and a cable that bears on the corner might be led into the wall.
+/// Returns the same corners as solids, grown by a margin. Each solid includes a part of the wall behind the corner. A
+/// disc around the corner alone would not tell on which side the floor lies, so a cable that bears on the corner
+/// might be led into the wall.
 fn wall_corners(boundary: &Boundary, margin_m: f64) -> Vec<RoundedPolygon> {
     let Boundary::Polygon { vertices } = boundary else { return Vec::new() };
     let n = vertices.len();
@@ -230,7 +234,8 @@ fn ray_origin(shape: &Shape) -> Point {
     }
 }
 
-/// The posts that lie within no other one. Who hides a post holds its centre, so that few have to be compared.
+/// Returns the posts that lie within no other post. A post that hides another contains its centre, so few posts have
+/// to be compared.
 fn without_hidden(posts: &[Post]) -> Vec<Post> {
     let hides = |outer: &Post, inner: &Post, outer_first: bool| {
         let room_m = outer.radius_m - inner.radius_m - (outer.center - inner.center).norm();

@@ -1,11 +1,11 @@
-//! What a certificate is asked about: a path, where it is driven, and what the tether allows.
+//! The input of a certificate: a path, its surroundings, and the limits of the tether.
 
 use super::cable::Cable;
 use crate::tank::Obstacle;
 use geometry::{Boundary, Point};
 use serde::{Deserialize, Serialize};
 
-/// What the tether allows.
+/// The limits of the tether.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Length of the tether on the reel, metres.
@@ -16,14 +16,14 @@ pub struct Limits {
     pub wrap_total_max_rad: f64,
 }
 
-/// A path to be certified; everything in the tank frame.
+/// A path to certify; everything in the tank frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
     /// The whole path.
     pub path: &'a [Point],
-    /// Where the tether enters the tank.
+    /// The point where the tether enters the tank.
     pub anchor: Point,
-    /// The cable as it lies at the start of the path; without one it runs straight to the first point.
+    /// The cable at the start of the path; without it, the cable runs straight to the first point.
     pub cable: Option<&'a Cable>,
     /// The wall.
     pub boundary: &'a Boundary,
@@ -31,9 +31,9 @@ pub struct Case<'a> {
     pub obstacles: &'a [Obstacle],
     /// Distance that the centre of the hull keeps from everything solid, metres: hull radius plus clearance.
     pub room_m: f64,
-    /// What the tether allows.
+    /// The limits of the tether.
     pub limits: Limits,
-    /// Whether the path has to end at the anchor with the tether reeled in.
+    /// Whether the path must end at the anchor with the tether reeled in.
     pub returns: bool,
     /// Cuts: lines that the path must not cross.
     pub cuts: &'a [Vec<Point>],

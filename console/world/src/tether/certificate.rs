@@ -2,17 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What was found when a path was certified.
+/// The results of certifying a path.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Certificate {
-    /// Whether the path may be flown with a tether.
+    /// Whether the path may be run with a tether.
     pub certified: bool,
-    /// Why not, as sentences; empty when certified.
+    /// The reasons for a refusal, as sentences; empty if certified.
     pub reasons: Vec<String>,
     /// Longest cable on the path, metres.
     pub tether_length_max_m: f64,
     /// Largest distance from the anchor to a point of the path, by the shortest path, metres: the shortest reel that
-    /// would do.
+    /// would suffice.
     pub eccentricity_m: f64,
     /// Largest wrap on one obstacle at any time, radians.
     pub wrap_max_rad: f64,
@@ -20,11 +20,11 @@ pub struct Certificate {
     pub wrap_total_max_rad: f64,
     /// Cable still out after the return to the anchor, metres; absent for a path that need not return.
     pub end_length_m: Option<f64>,
-    /// Ray crossings that were not undone on return; 0 means that the cable can be reeled in.
+    /// The number of ray crossings that are not undone on return; 0 means that the cable can be reeled in.
     pub crossings_left: usize,
-    /// Number of segments of the path that are nearer to something solid than the hull allows.
+    /// Number of segments of the path that are closer to something solid than the hull allows.
     pub collisions: usize,
-    /// Least distance from the path to anything solid, metres; never more than the room needed.
+    /// Least distance from the path to anything solid, metres; never more than the required clearance.
     pub clearance_min_m: f64,
     /// Number of times that the path crosses a cut.
     pub cut_crossings: usize,
@@ -33,7 +33,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The certificate of a path that could not be evaluated at all.
+    /// Returns the certificate of a path that could not be evaluated at all.
     ///
     /// ```
     /// let refused = world::tether::Certificate::refused("the plan has no path".into());

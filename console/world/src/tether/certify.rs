@@ -1,4 +1,4 @@
-//! What a whole path does to the cable: the certificate, computed from the final path and from nothing else.
+//! Computes the certificate, which states the effect of a whole path on the cable, from the final path alone.
 
 use super::{
     cable::TetherError,
@@ -14,7 +14,7 @@ use super::{
 
 /// Certifies a path: drags the cable along it and checks for collisions, crossings of cuts and sealed floor.
 ///
-/// It knows nothing of the planner. Without cuts nothing is crossed or sealed.
+/// The result does not depend on the planner. Without cuts, nothing is crossed or sealed.
 ///
 /// ```
 /// use world::{Boundary, Point, tether::{Case, Limits, certify}};
@@ -29,16 +29,17 @@ use super::{
 /// ```
 ///
 /// # Errors
-/// [`TetherError`]: the anchor lies inside an obstacle or has a coordinate that is not finite, and the case brings no
-/// cable of its own.
+/// [`TetherError`]: the case has no cable of its own, and the anchor lies inside an obstacle or has a coordinate that
+/// is not finite.
 pub fn certify(case: &Case<'_>) -> Result<Certificate, TetherError> {
     certify_on(&Ground::new(case.anchor, case.boundary, case.obstacles), case)
 }
 
-/// The same on ground that serves several paths: that of the case's anchor, wall and obstacles.
+/// Certifies a path on ground that is shared by several paths; its anchor, wall and obstacles must be those of the
+/// case.
 ///
 /// # Errors
-/// As [`certify`].
+/// As for [`certify`].
 pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, TetherError> {
     let replay = Replay::new(case, ground)?;
     let clearance = Clearance::of(case);
@@ -63,12 +64,12 @@ pub fn certify_on(ground: &Ground, case: &Case<'_>) -> Result<Certificate, Tethe
     Ok(certificate)
 }
 
-/// What a path does to the cable itself: the figures of the certificate with the same names.
+/// The effect of a path on the cable itself; the figures are those of the certificate with the same names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strain {
     /// Longest cable, metres.
     pub tether_length_max_m: f64,
-    /// Length of the shortest cable that would do, metres.
+    /// Length of the shortest cable that would suffice, metres.
     pub eccentricity_m: f64,
     /// Largest wrap on one obstacle, radians.
     pub wrap_max_rad: f64,
@@ -76,10 +77,11 @@ pub struct Strain {
     pub wrap_total_max_rad: f64,
 }
 
-/// What a path does to the cable, without a look at collisions, cuts and sealed floor: quicker than [`certify_on`].
+/// Computes the effect of a path on the cable, without checking collisions, cuts and sealed floor: quicker than
+/// [`certify_on`].
 ///
 /// # Errors
-/// As [`certify`].
+/// As for [`certify`].
 pub fn strain(ground: &Ground, case: &Case<'_>) -> Result<Strain, TetherError> {
     let replay = Replay::new(case, ground)?;
     Ok(Strain {
@@ -91,7 +93,7 @@ pub fn strain(ground: &Ground, case: &Case<'_>) -> Result<Strain, TetherError> {
 }
 
 impl Strain {
-    /// Longest cable as a multiple of the least that would do.
+    /// Returns the longest cable as a multiple of the shortest that would suffice.
     pub fn cable_share(&self) -> f64 {
         self.tether_length_max_m / self.eccentricity_m.max(1e-9)
     }

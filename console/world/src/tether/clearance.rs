@@ -1,21 +1,21 @@
-//! The room that a path leaves the hull.
+//! The clearance that a path leaves for the hull.
 
 use super::{case::Case, rounded_polygon::RoundedPolygon};
 use crate::obstacles::{Boxes, wall_clearance_m};
 use geometry::Point;
 
-/// Room that a path may lack before that is a collision, metres: arcs are drawn as chords.
+/// A missing clearance up to this is not a collision, metres, because arcs are drawn as chords.
 const SPARE_M: f64 = 0.005;
-/// Steps in which a segment of the path is searched for its narrowest point.
+/// The number of steps in which the narrowest point of a segment is searched.
 const NARROW_STEPS: u32 = 200;
 
-/// How close a path comes to obstacles and wall.
+/// The clearance of a path from obstacles and wall.
 pub(super) struct Clearance {
-    /// Number of segments without room for the hull.
+    /// Number of segments with too little clearance for the hull.
     pub collisions: usize,
-    /// Least distance to anything solid, metres; never more than the room needed.
+    /// Least distance to anything solid, metres; never more than the required clearance.
     pub least_m: f64,
-    /// The narrowest point of the first segment without room, and the name of what is beside it.
+    /// The narrowest point of the first segment with too little clearance, and the name of the nearest obstacle.
     pub first: Option<(Point, String)>,
 }
 
@@ -49,9 +49,9 @@ impl Clearance {
     }
 }
 
-/// The point of a segment that is nearest to an obstacle, or to the wall.
+/// Returns the point of a segment that is nearest to an obstacle or to the wall.
 ///
-/// A segment may lead past a long wall or through a solid, so the least distance is searched in even steps.
+/// A segment may lead past a long wall or through a solid, so the minimum is searched in even steps.
 fn narrowest(
     case: &Case<'_>,
     solids: &[(usize, RoundedPolygon)],
@@ -69,7 +69,7 @@ fn narrowest(
     points.min_by(|p, q| distance_m(*p).total_cmp(&distance_m(*q))).unwrap_or(a)
 }
 
-/// The segments of a path; a path of one point is a segment of no length.
+/// Iterates over the segments of a path; a path of one point has a segment of length zero.
 fn segments(path: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     let single = (path.len() == 1).then(|| (path[0], path[0]));
     path.windows(2).map(|pair| (pair[0], pair[1])).chain(single)

@@ -1,10 +1,10 @@
-//! Crossings of cuts: lines that a tethered robot never crosses.
+//! Counts crossings of cuts: lines that a tethered robot must not cross.
 
 use crate::obstacles::Boxes;
 use geometry::{Point, Vector};
 
-/// How often a path crosses some cuts, all in the tank frame. A change of sides counts once; a touch without one counts
-/// not at all or twice.
+/// Returns how often a path crosses some cuts, all in the tank frame. A change of sides counts once; a touch without
+/// a change counts as zero or two crossings.
 ///
 /// ```
 /// use world::{Point, tether::crossings};
@@ -15,7 +15,7 @@ use geometry::{Point, Vector};
 pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
     let segments = cuts.iter().flat_map(|cut| cut.windows(2).map(|pair| (pair[0], pair[1])));
     if let [a, b] = *path {
-        // A tree takes longer to make than one segment takes without it.
+        // For a single segment, building a tree takes longer than testing without one.
         return segments.filter(|(p, q)| cross(a, b, *p, *q)).count();
     }
     let segments: Vec<(Point, Point)> = segments.collect();
@@ -29,8 +29,8 @@ pub fn crossings(path: &[Point], cuts: &[Vec<Point>]) -> usize {
 
 /// Whether a segment of the path crosses a segment of a cut.
 ///
-/// The whole path counts as shifted by one infinitesimal displacement (simulation of simplicity, Edelsbrunner and Mücke
-/// 1990): so each change of sides counts once, even through corners and along segments of a cut.
+/// The whole path counts as shifted by an infinitesimal displacement (simulation of simplicity, Edelsbrunner and
+/// Mücke 1990). Each change of sides therefore counts once, even through corners and along segments of a cut.
 fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     let apart = |low: f64, high: f64, from: f64, to: f64| low.max(high) < from.min(to);
     if apart(a.x, b.x, p.x, q.x)
@@ -45,8 +45,8 @@ fn cross(a: Point, b: Point, p: Point, q: Point) -> bool {
     shift_of_path(p, q, a) != shift_of_path(p, q, b) && shift_of_cut(a, b, p) != shift_of_cut(a, b, q)
 }
 
-/// Whether a point is left of a line through the origin; one on the line counts as shifted infinitesimally to the east or
-/// west, and by infinitely less to the north or south.
+/// Whether a point is left of a line through the origin. A point on the line counts as shifted infinitesimally to the
+/// east or west, and by an infinitely smaller amount to the north or south.
 fn is_left(along: Vector, at: Vector, shift: f64) -> bool {
     let sides = [along.perp(&at), -along.y * shift, along.x * shift];
     sides.into_iter().find(|side| *side != 0.0).is_some_and(|side| side > 0.0)

@@ -1,7 +1,7 @@
-//! The second opinion on the taut cable: a triangulation, the stack of its edges crossed, and a funnel through them.
+//! A cross-check of the taut cable: a triangulation, the stack of its edges crossed, and a funnel through them.
 //!
-//! Columns become polygons with many corners; for polygons the answer is exact. Test code: it costs more than the
-//! cable and needs a triangulation.
+//! Columns become polygons with many corners; for polygons, the answer is exact. Test code only: it costs more than
+//! the cable and needs a triangulation.
 
 use geometry::Point;
 use spade::{
@@ -9,7 +9,7 @@ use spade::{
     handles::FixedUndirectedEdgeHandle,
 };
 
-/// A triangulated floor and the edges that a way has crossed and not crossed back.
+/// A triangulated floor, and the edges that a path has crossed and not crossed back.
 pub(super) struct Funnel {
     floor: ConstrainedDelaunayTriangulation<Point2<f64>>,
     crossed: Vec<Portal>,
@@ -28,7 +28,7 @@ fn theirs(p: Point) -> Point2<f64> {
 }
 
 impl Funnel {
-    /// A floor with polygonal holes, within 100 m.
+    /// Creates a floor with polygonal holes, within 100 m.
     pub(super) fn new(anchor: Point, rings: &[Vec<Point>]) -> Self {
         let mut floor = ConstrainedDelaunayTriangulation::new();
         for (x, y) in [(-100., -100.), (101., -103.), (102., 104.), (-105., 106.)] {
@@ -68,12 +68,12 @@ impl Funnel {
         }
     }
 
-    /// Length of the taut cable, metres.
+    /// Returns the length of the taut cable, metres.
     pub(super) fn length_m(&self) -> f64 {
         geometry::polyline::length_m(&self.line())
     }
 
-    /// The taut cable (the funnel algorithm of Lee and Preparata, in its simple form).
+    /// Returns the taut cable (the funnel algorithm of Lee and Preparata, in its simple form).
     pub(super) fn line(&self) -> Vec<Point> {
         let mut gates: Vec<(Point, Point)> = self.crossed.iter().map(|p| (p.left, p.right)).collect();
         gates.push((self.tip, self.tip));
@@ -113,7 +113,7 @@ impl Funnel {
     }
 }
 
-/// Gates that have the apex as an end constrain nothing.
+/// Gates that end at the apex constrain nothing.
 fn skip(gates: &[(Point, Point)], from: usize, apex: Point) -> usize {
     (from..gates.len()).find(|k| gates[*k].0 != apex && gates[*k].1 != apex).unwrap_or(gates.len())
 }

@@ -1,4 +1,4 @@
-//! Shortest paths from the anchor to anywhere, whatever path the robot took: the shortest cable that would do.
+//! Shortest paths from the anchor to any point, whatever path the robot took: the shortest cable that would suffice.
 
 use super::{
     cable::Cable,
@@ -13,7 +13,7 @@ use std::{
     sync::Arc,
 };
 
-/// Differences of length that do not matter, metres.
+/// Differences in length below this do not matter, metres.
 const SAME_M: f64 = 1e-9;
 
 /// The tangent graph of the posts, searched once from the anchor by Dijkstra's algorithm.
@@ -31,18 +31,18 @@ pub struct Geodesic {
     obstacles: Arc<CableObstacles>,
     anchor: Point,
     arrivals: Vec<Arrival>,
-    /// The same by post and side: at twice the index of the post, plus one for the left-hand side.
+    /// The arrivals by post and side: at twice the index of the post, plus one for the left-hand side.
     at_post: Vec<Vec<Arrival>>,
-    /// The longest way to each post that is looked for, metres.
+    /// The longest path to each post that is searched for, metres.
     most_m: Vec<f64>,
 }
 
-/// A shortest path that has come to touch a post.
+/// A shortest path that has reached a post.
 #[derive(Debug, Clone, Copy)]
 struct Arrival {
-    /// Its last segment.
+    /// The last segment of the path.
     segment: (Point, Point),
-    /// Index of the arrival that it continues.
+    /// Index of the arrival that this one continues.
     from: Option<usize>,
     post: usize,
     side: f64,
@@ -56,11 +56,11 @@ impl Arrival {
     }
 }
 
-/// Paths to posts that wait for their turn, the shortest first.
+/// Paths to posts that wait for their turn, shortest first.
 #[derive(Default)]
 struct Waiting {
     paths: Vec<Arrival>,
-    /// Their lengths, what breaks ties, and their indices.
+    /// The lengths of the paths, two tie-breakers, and the indices of the paths.
     queue: BinaryHeap<Reverse<(Total, usize, bool, usize)>>,
 }
 
@@ -76,7 +76,8 @@ impl Waiting {
 }
 
 impl Geodesic {
-    /// All shortest paths from an anchor, tank frame; costs about `posts^2` tangents and as many lines of sight.
+    /// Computes all shortest paths from an anchor, tank frame; costs about `posts^2` tangents and as many lines of
+    /// sight.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -89,7 +90,8 @@ impl Geodesic {
         Self::searched(anchor, obstacles, most_m)
     }
 
-    /// Those that lead to some places on ways no longer than is known to be enough, each place with that length, metres.
+    /// Computes only the paths that can lead to the given places. Each place comes with an upper bound for the length
+    /// of its path, metres.
     fn toward(anchor: Point, obstacles: Arc<CableObstacles>, places: &[(Point, f64)]) -> Self {
         let squares = longest_by_square(places);
         let most_m = |post: &Post| {
@@ -107,7 +109,7 @@ impl Geodesic {
         found
     }
 
-    /// Dijkstra's algorithm; whether a tangent is free is tested only when its turn comes.
+    /// Runs Dijkstra's algorithm; a tangent is tested only when its turn comes.
     fn search(&mut self) {
         let in_sight: Vec<bool> =
             self.obstacles.posts.iter().map(|post| self.is_in_plain_sight(post)).collect();
@@ -127,8 +129,9 @@ impl Geodesic {
         }
     }
 
-    /// Whether nothing stands between the anchor and a round post, nor touches it: then the shortest path to any point of
-    /// its outline is straight, or straight to a tangent and along the outline, and never leads around another post.
+    /// Whether nothing stands between the anchor and a round post or touches the post. Then the shortest path to any
+    /// point of its outline is straight, or straight to a tangent and along the outline, and never leads around
+    /// another post.
     fn is_in_plain_sight(&self, post: &Post) -> bool {
         let way = post.center - self.anchor;
         let far = way.norm();
@@ -152,7 +155,7 @@ impl Geodesic {
         is_open(1.0, right) && is_open(-1.0, left) && !self.obstacles.posts.iter().any(is_between)
     }
 
-    /// The tangents that continue an arrival, or leave the anchor, to some of the posts.
+    /// Returns the tangents to some of the posts that continue an arrival, or leave the anchor.
     fn onward(&self, from: Option<usize>, is_meant: impl Fn(usize) -> bool) -> impl Iterator<Item = Arrival> {
         let base = from.map(|index| (self.arrivals[index], self.obstacles.posts[self.arrivals[index].post]));
         let start = base.map_or((self.anchor, 0.0, 0.0), |(a, post)| (post.center, post.radius_m, a.side));
@@ -205,7 +208,7 @@ impl Geodesic {
             })
     }
 
-    /// Whether a path that came to the same post before is as short from there on.
+    /// Whether an earlier path to the same post is at least as short.
     fn is_beaten(&self, by: &Arrival) -> bool {
         let radius_m = self.obstacles.posts[by.post].radius_m;
         self.at_post[by.slot()].iter().any(|a| {
@@ -214,7 +217,8 @@ impl Geodesic {
         })
     }
 
-    /// Length of the path that leaves a post at some bearing and ends at a point; `None` if it would not be taut.
+    /// Returns the length of the path that leaves a post at a bearing and ends at a point; `None` if the path would
+    /// not be taut.
     fn leave(&self, from: &Arrival, bearing_rad: f64, to: Point) -> Option<f64> {
         let post = &self.obstacles.posts[from.post];
         let wrap_rad = wrap_of(from, bearing_rad)?;
@@ -228,7 +232,7 @@ impl Geodesic {
             && self.arc_is_clear(post, from, bearing_rad)
     }
 
-    /// Overlapping obstacles can block the arc along an outline.
+    /// Whether the arc along an outline is clear; overlapping obstacles can block it.
     fn arc_is_clear(&self, post: &Post, from: &Arrival, bearing_rad: f64) -> bool {
         let wrap_rad = wrap_of(from, bearing_rad).unwrap_or(0.0);
         let steps = if post.radius_m > 0.0 { (wrap_rad / 0.5).ceil() as u32 } else { 0 };
@@ -243,7 +247,7 @@ impl Geodesic {
         self.obstacles.is_open(a, b)
     }
 
-    /// Length of the shortest path from the anchor to a point, metres; infinite if there is none.
+    /// Returns the length of the shortest path from the anchor to a point, metres; infinite if there is no path.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -277,8 +281,8 @@ impl Geodesic {
         least_m
     }
 
-    /// The largest of the distances from an anchor to some points, metres; each point comes with an upper bound of its own,
-    /// metres. The nearer the bounds are to the distances, the less is searched.
+    /// Returns the largest of the distances from an anchor to some points, metres. Each point comes with an upper
+    /// bound for its distance, metres. The tighter the bounds, the less is searched.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -288,7 +292,7 @@ impl Geodesic {
     /// assert_eq!(Geodesic::farthest_m(Point::origin(), empty, &points), 5.0);
     /// ```
     pub fn farthest_m(anchor: Point, obstacles: Arc<CableObstacles>, points: &[(Point, f64)]) -> f64 {
-        // No point with a bound below the largest straight distance is the farthest.
+        // A point with a bound below the largest straight distance cannot be the farthest.
         let straight_m = points.iter().map(|(point, _)| (point - anchor).norm()).fold(0.0, f64::max);
         let mut points = bounded(anchor, &obstacles, points);
         points.retain(|(_, enough_m)| *enough_m >= straight_m);
@@ -300,15 +304,16 @@ impl Geodesic {
     }
 }
 
-/// The same points with bounds that are nearer to the distances where the points come from a path that winds its cable round
-/// much: there the way straight from the anchor and round what stands in it, or from there a little along the path.
+/// Returns the same points with tighter bounds, for paths that wind their cable around many obstacles. The new bound
+/// is the length of a cable that is dragged straight from the anchor to the point. For a point close to one with such
+/// a bound, it is that bound plus the distance along the path.
 fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64)]) -> Vec<(Point, f64)> {
     let straight_m = |point: Point| {
         let mut cable = Cable::on(anchor, Arc::clone(obstacles)).ok()?;
         cable.drag_to(point);
         (!obstacles.sidestep.holds(point)).then(|| cable.length_m())
     };
-    // The last point, its bound, and the way to it from where the bound is that of a cable.
+    // The last point, its bound, and the distance along the path since the last bound that came from a cable.
     let mut before: Option<(Point, f64, f64)> = None;
     let bound = |(point, enough_m): &(Point, f64)| {
         let on = before.and_then(|(from, most_m, way_m)| {
@@ -323,10 +328,11 @@ fn bounded(anchor: Point, obstacles: &Arc<CableObstacles>, points: &[(Point, f64
     points.iter().map(bound).collect()
 }
 
-/// Places are taken together in squares of this edge, metres.
+/// Places are grouped in squares with this edge, metres.
 const SQUARE_M: f64 = 1.0;
 
-/// The longest way of all places in each square, by the middle of the square. No place is further from there than an edge.
+/// Returns the largest bound of all places in each square, by the centre of the square. No place is farther from the
+/// centre than an edge.
 fn longest_by_square(places: &[(Point, f64)]) -> Vec<(Point, f64)> {
     let mut longest: BTreeMap<(i64, i64), f64> = BTreeMap::new();
     for (place, enough_m) in places {
@@ -338,7 +344,7 @@ fn longest_by_square(places: &[(Point, f64)]) -> Vec<(Point, f64)> {
     longest.into_iter().map(|((x, y), most_m)| (Point::new(middle(x), middle(y)), most_m)).collect()
 }
 
-/// Bearing of the common tangent from one disc to another, each on its side.
+/// Returns the bearing of the common tangent from one disc to another, each on its side.
 fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
     let way = to.0 - from.0;
     let (far, offset) = (way.norm(), to.2 * to.1 - from.2 * from.1);
@@ -346,7 +352,8 @@ fn tangent(from: (Point, f64, f64), to: (Point, f64, f64)) -> Option<f64> {
         .then(|| way.y.atan2(way.x) - (offset / far).clamp(-1.0, 1.0).asin())
 }
 
-/// Angle by which a path bends around its post until it leaves at a bearing; shortest paths bend less than half a turn.
+/// Returns the angle by which a path bends around its post until it leaves at a bearing; shortest paths bend less
+/// than half a turn.
 fn wrap_of(from: &Arrival, bearing_rad: f64) -> Option<f64> {
     let turn = wrap_angle_rad(from.side * (bearing_rad - from.bearing_rad)).rem_euclid(TAU);
     let turn = if TAU - turn < 1e-9 { 0.0 } else { turn };

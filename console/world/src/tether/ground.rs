@@ -1,11 +1,11 @@
-//! What a cable lies on, made once for many paths.
+//! The surroundings of a cable, made once for many paths.
 
 use super::cable_obstacles::CableObstacles;
 use crate::tank::Obstacle;
 use geometry::{Boundary, Point};
 use std::sync::Arc;
 
-/// Obstacles and wall as a cable from one anchor meets them.
+/// Obstacles and wall as they affect a cable from one anchor.
 #[derive(Debug)]
 pub struct Ground {
     pub(super) anchor: Point,
@@ -13,7 +13,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// The ground of an anchor, tank frame.
+    /// Creates the ground of an anchor, tank frame.
     pub fn new(anchor: Point, boundary: &Boundary, obstacles: &[Obstacle]) -> Self {
         let shapes: Vec<_> = obstacles.iter().map(|o| o.shape.clone()).collect();
         Self { anchor, obstacles: Arc::new(CableObstacles::new(boundary, &shapes)) }

@@ -1,10 +1,11 @@
-//! The return path: back along the cable, with room for the hull.
+//! The return path: back along the cable, with clearance for the hull.
 //!
-//! The taut cable itself is not a path for a hull: it bears on columns. The hull's path is the taut line of the same homotopy
-//! class among obstacles grown by the hull, so it exists wherever the robot has driven. Either the robot drags that line along as
-//! it drags the cable, which costs little and never errs where the robot has room; or it is laid along the taut cable, which needs no
-//! memory of the way driven. The cable bears on what is grown, and between obstacles that stand closely the nearest place outside of
-//! them may be on the wrong side: so signature, room and walls are checked at the end.
+//! The taut cable itself is not a path for a hull, because it bears on columns. The hull's path is the taut line of
+//! the same homotopy class among obstacles grown by the hull, so it exists wherever the robot has driven. There are
+//! two ways to find it. The robot can drag this line along as it drags the cable, which costs little and is always
+//! correct where the robot fits. Or the line is laid along the taut cable, which needs no memory of the path driven.
+//! But the cable bears on obstacles that are now grown, and where they stand close together, the nearest point
+//! outside them may be on the wrong side. Signature, clearance and walls are therefore checked at the end.
 
 use super::{cable::Cable, cable_obstacles::CableObstacles, homotopy::HomotopySignature};
 use crate::obstacles::ObstacleMap;
@@ -13,17 +14,17 @@ use std::sync::Arc;
 
 /// Distance between the points at which a cable within a grown obstacle is led out of it, metres.
 const STOP_M: f64 = 0.05;
-/// Length of the path at the robot and at the anchor that may be tight, metres: the robot stands where it stands.
+/// The length at each end of the path that may be too narrow, metres: the robot cannot choose where it starts.
 const ENDS_M: f64 = 0.1;
-/// Room that a return path may lack, metres: its arcs are drawn as chords.
+/// The clearance that may be missing on a return path, metres, because its arcs are drawn as chords.
 const SPARE_M: f64 = 0.005;
 
 impl Cable {
-    /// The shortest path from the robot back to the anchor on which the cable is only reeled in, tank frame.
+    /// Returns the shortest path from the robot back to the anchor on which the cable is only reeled in, tank frame.
     ///
-    /// `grown` are the same obstacles grown by `room_m`, the room that the centre of the hull needs, and `map` the
-    /// obstacles as they are. Robot and anchor may stand nearer to something: the path then begins and ends with a step
-    /// away from it. `None` if the hull does not fit along the cable, so that no path home unwinds it.
+    /// `grown` are the same obstacles grown by `room_m`, the clearance of the hull's centre, and `map` holds the
+    /// obstacles without growth. If robot or anchor are closer to an obstacle than that, the path begins or ends with
+    /// a step away from it. `None` if the hull does not fit along the cable, so that no path home unwinds it.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -44,8 +45,9 @@ impl Cable {
         self.hulls_along(grown, room_m).find_map(|hull| self.return_path_of(&hull, map, room_m))
     }
 
-    /// The hull's own taut line, laid among obstacles grown by the room that the hull needs: along this cable, or else along a line
-    /// that keeps off whatever the cable bears on, for where a wall consists of many pieces.
+    /// Iterates over taut lines for the hull among obstacles grown by the hull's clearance: first along this cable,
+    /// then along a line that keeps its distance from all posts that the cable bears on. The second one is for walls
+    /// that consist of many pieces.
     pub fn hulls_along<'a>(
         &'a self,
         grown: &'a Arc<CableObstacles>,
@@ -58,21 +60,22 @@ impl Cable {
     fn hull_laid(&self, line: &[Point], grown: &Arc<CableObstacles>) -> Option<Self> {
         let mut hull = Self::hull_at(self.anchor(), grown)?;
         for pair in line.windows(2) {
-            // A point inside a grown obstacle counts as the nearest one outside, from where a straight line to a distant point
-            // might pass the next obstacle on its other side.
+            // A point inside a grown obstacle counts as the nearest point outside. From there, a straight line to a
+            // distant point might pass the next obstacle on the wrong side.
             hull.drag_along(&grown.with_stops_inside(pair[0], pair[1], STOP_M));
         }
         Some(hull)
     }
 
-    /// A hull's taut line of length 0 as near to the anchor as the hull comes, to be dragged along with the robot; `None` if that
-    /// is not a place for it.
+    /// Creates a taut line for the hull, of length 0, as close to the anchor as the hull fits, to be dragged along
+    /// with the robot; `None` if no such place exists.
     pub fn hull_at(anchor: Point, grown: &Arc<CableObstacles>) -> Option<Self> {
         Self::on(grown.outside(anchor), Arc::clone(grown)).ok()
     }
 
-    /// The same path as [`Self::return_path`], given the hull's own taut line: laid by [`Self::hulls_along`], or dragged by the robot
-    /// from [`Self::hull_at`]. `None` if it does not unwind this cable, or the hull does not fit.
+    /// Returns the path of [`Self::return_path`], given the hull's own taut line: laid by [`Self::hulls_along`], or
+    /// dragged by the robot from [`Self::hull_at`]. `None` if this path does not unwind the cable, or the hull does
+    /// not fit.
     pub fn return_path_of(&self, hull: &Self, map: &ObstacleMap, room_m: f64) -> Option<Vec<Point>> {
         let inner = hull.taut_line();
         let fits = has_room(&polyline::without_ends(&inner, ENDS_M), map, room_m - SPARE_M);
@@ -88,7 +91,8 @@ impl Cable {
     }
 }
 
-/// Whether a taut path keeps clear of obstacles and wall. Each of its segments is nearest to the wall at one of its ends.
+/// Whether a taut path keeps clear of obstacles and wall. Each of its segments is nearest to the wall at one of its
+/// ends.
 fn has_room(way: &[Point], map: &ObstacleMap, need_m: f64) -> bool {
     let bends = way.get(1..way.len().saturating_sub(1)).unwrap_or_default();
     way.windows(2).all(|pair| map.obstacle_clearance_m(pair[0], pair[1]) >= need_m)

@@ -1,22 +1,23 @@
-//! Homotopy signatures: which rays a path crosses and in which sense, crossings that are undone cancelled.
+//! Homotopy signatures: the rays that a path crosses and in which direction; crossings that are undone cancel out.
 //!
-//! One ray leaves each obstacle, all in one direction, so no two of them cross. Two paths with the same ends can be
-//! deformed into each other without lifting the cable over an obstacle exactly if their signatures are equal: as words
-//! over the obstacles they are elements of a free group. Cheap and exact, but they contain neither lengths nor angles.
+//! One ray leaves each obstacle, all in the same direction, so that no two rays cross. Two paths with the same ends
+//! can be deformed into each other without lifting the cable over an obstacle if, and only if, their signatures are
+//! equal: as words over the obstacles, they are elements of a free group. Signatures are cheap and exact, but contain
+//! neither lengths nor angles.
 //!
 //! Source: Kim, Bhattacharya and Kumar 2014, "Path planning for a tethered mobile robot".
 
 use geometry::{Point, Vector, unit_vector};
 
-/// Bearing of the rays, radians: one that no edge of a drawing has.
+/// Bearing of the rays, radians; chosen so that no edge of a drawing is parallel to them.
 const BEARING_RAD: f64 = 1.134_567_891;
 
-/// One crossing of a ray.
+/// A crossing of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RayCrossing {
     /// Index of the obstacle whose ray was crossed.
     pub obstacle: usize,
-    /// Whether it was crossed counter-clockwise about the obstacle.
+    /// Whether the ray was crossed counter-clockwise about the obstacle.
     pub ccw: bool,
 }
 
@@ -26,16 +27,17 @@ pub struct HomotopySignature {
     crossings: Vec<RayCrossing>,
 }
 
-/// A ray from one point within each obstacle, ready for the question which of them a move crosses.
+/// A ray from one point within each obstacle, indexed to find the rays that a move crosses.
 #[derive(Debug, Clone)]
 pub struct Rays {
     direction: Vector,
-    /// Lateral offset of each ray, clockwise of the one through the origin, metres, ascending; its obstacle; its origin.
+    /// For each ray, in ascending order: its distance to the right of a parallel ray through the origin, metres; its
+    /// obstacle; its origin.
     sorted: Vec<(f64, usize, Point)>,
 }
 
 impl Rays {
-    /// Rays from these origins, tank frame; obstacles are named by their index.
+    /// Creates rays from these origins, tank frame; obstacles are named by their index.
     ///
     /// ```
     /// use world::{Point, tether::{HomotopySignature, Rays}};
@@ -60,7 +62,7 @@ impl Rays {
 }
 
 impl HomotopySignature {
-    /// The signature of a whole path.
+    /// Returns the signature of a whole path.
     ///
     /// ```
     /// use world::{Point, tether::{HomotopySignature, Rays}};
@@ -75,7 +77,7 @@ impl HomotopySignature {
         signature
     }
 
-    /// Appends one straight move of the path.
+    /// Appends a straight move of the path.
     ///
     /// ```
     /// use world::{Point, tether::{HomotopySignature, Rays}};
@@ -93,7 +95,8 @@ impl HomotopySignature {
             let is_crossed = rays.direction.dot(&(from + (to - from) * share - origin)) > 0.0;
             is_crossed.then_some(RayCrossing { obstacle: *obstacle, ccw: end_m < start_m })
         };
-        // The move back meets the rays in exactly the reverse order, even those that coincide: all crossings cancel.
+        // The move back meets the rays in exactly the reverse order, even rays that coincide, so all crossings
+        // cancel.
         if end_m < start_m {
             passed.iter().rev().filter_map(cross).for_each(|crossing| self.append(crossing));
         } else {
@@ -110,7 +113,7 @@ impl HomotopySignature {
         }
     }
 
-    /// The crossings that remain, in the order of the path.
+    /// The remaining crossings, in the order of the path.
     ///
     /// ```
     /// use world::{Point, tether::{HomotopySignature, RayCrossing, Rays}};

@@ -1,10 +1,10 @@
-//! Which floor a tether of some length reaches.
+//! The floor that a tether of a given length reaches.
 
 use super::{cable_obstacles::CableObstacles, geodesic::Geodesic};
 use geometry::{Boundary, Point, Shape};
 use std::sync::Arc;
 
-/// The floor to which the shortest path from the anchor is no longer than the tether.
+/// The floor that the tether reaches by the shortest path from the anchor.
 #[derive(Debug, Clone)]
 pub struct Reach {
     anchor: Point,
@@ -13,7 +13,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// The floor within `within_m` of the anchor among obstacles of these outlines, tank frame.
+    /// Creates the floor within `within_m` of the anchor among obstacles with these outlines, tank frame.
     ///
     /// ```
     /// use world::{Boundary, Point, tether::Reach};
@@ -25,8 +25,8 @@ impl Reach {
         Self { anchor, paths, within_m }
     }
 
-    /// Whether the shortest path to a point is longer than the tether. A point to which there is no path is not beyond it:
-    /// it is not the tether that keeps the robot away.
+    /// Whether the shortest path to a point is longer than the tether. A point without any path is not beyond the
+    /// tether, because it is not the tether that keeps the robot away.
     ///
     /// ```
     /// use world::{Boundary, Point, Shape, tether::Reach};
@@ -38,7 +38,8 @@ impl Reach {
         self.beyond_m(place).is_some()
     }
 
-    /// By how much the shortest path to a point is longer than the tether, metres; `None` if it is not.
+    /// Returns by how much the shortest path to a point is longer than the tether, metres; `None` if it is not
+    /// longer.
     ///
     /// ```
     /// use world::{Boundary, Point, tether::Reach};

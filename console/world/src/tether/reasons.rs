@@ -1,4 +1,4 @@
-//! Why a path is refused, as sentences.
+//! The reasons for refusing a path, as sentences.
 
 use super::{
     cable::Cable, cable_obstacles::Bearing, case::Case, certificate::Certificate, clearance::Clearance,
@@ -6,10 +6,10 @@ use super::{
 };
 use geometry::Point;
 
-/// Distance from the anchor within which a path has returned, metres.
+/// A path has returned if it ends within this distance from the anchor, metres.
 const BACK_M: f64 = 0.3;
 
-/// What the reasons are derived from, besides the certificate.
+/// The data that the reasons are derived from, besides the certificate.
 pub(super) struct Reasons<'a> {
     pub case: &'a Case<'a>,
     pub replay: &'a Replay,
@@ -20,7 +20,7 @@ pub(super) struct Reasons<'a> {
 }
 
 impl Reasons<'_> {
-    /// Every reason to refuse the path, as a sentence each.
+    /// Returns all reasons for refusing the path, one sentence each.
     pub(super) fn of(&self, certificate: &Certificate) -> Vec<String> {
         let limits = &self.case.limits;
         let mut reasons: Vec<String> = Vec::new();
@@ -37,13 +37,13 @@ impl Reasons<'_> {
             .iter()
             .any(|m| m.is_nan())
         {
-            reasons.push("the room that the hull needs, or a limit of the tether, is not a number".into());
+            reasons.push("the clearance of the hull or a limit of the tether is not a number".into());
         }
         reasons.extend(self.collision(certificate));
         if certificate.tether_length_max_m > limits.reel_length_m {
             let (most_m, at) = self.replay.max_cable;
             let (place, reel_m) = (place(at), limits.reel_length_m);
-            reasons.push(format!("{most_m:.1} m of tether out at {place}, the reel holds {reel_m:.1} m"));
+            reasons.push(format!("{most_m:.1} m of tether out at {place}, but the reel holds {reel_m:.1} m"));
         }
         if certificate.wrap_max_rad > limits.wrap_max_rad {
             let (wrap_rad, on) = self.replay.max_wrap;
@@ -70,11 +70,11 @@ impl Reasons<'_> {
     fn collision(&self, certificate: &Certificate) -> Option<String> {
         let (at, name) = self.clearance.first.as_ref()?;
         let lack = match certificate.collisions {
-            1 => "1 segment of the path lacks room,".to_owned(),
-            n => format!("{n} segments of the path lack room, the first"),
+            1 => "1 segment of the path lacks clearance,".to_owned(),
+            n => format!("{n} segments of the path lack clearance, the first"),
         };
         Some(format!(
-            "{lack} at {} by {name}: least room {:.3} m, needed {:.3} m",
+            "{lack} at {} near {name}: minimum {:.3} m, required {:.3} m",
             place(*at),
             certificate.clearance_min_m,
             self.case.room_m
@@ -94,7 +94,7 @@ impl Reasons<'_> {
         let mut round: Vec<String> = self.left.contacts().iter().map(|c| self.name_of(Some(c.on))).collect();
         round.dedup();
         let round = if round.len() > 3 {
-            format!("{} obstacles, {} first", round.len(), round[0])
+            format!("{} obstacles, the first is {}", round.len(), round[0])
         } else {
             round.join(", ")
         };

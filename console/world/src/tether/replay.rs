@@ -1,4 +1,4 @@
-//! The cable along a path, with its worst moments.
+//! Replays a cable along a path and records its extremes.
 
 use super::{
     cable::{Cable, TetherError},
@@ -10,13 +10,13 @@ use super::{
 use geometry::Point;
 use std::sync::Arc;
 
-/// The cable after a path, and where on the path it was worst.
+/// The cable after a path, and its extremes on the path.
 pub(super) struct Replay {
     cable: Cable,
     lengths: Vec<(Point, f64)>,
     /// Longest cable, metres, and the position of the robot.
     pub max_cable: (f64, Point),
-    /// Largest wrap, radians, and what it was on.
+    /// Largest wrap, radians, and the object that was wrapped.
     pub max_wrap: (f64, Option<Bearing>),
     /// Largest total wrap, radians, and the position of the robot.
     pub max_sum: (f64, Point),
@@ -58,9 +58,10 @@ impl Replay {
         }
     }
 
-    /// Largest distance from the anchor to a point of the path, by the shortest path, metres.
+    /// Returns the largest distance from the anchor to a point of the path, by the shortest path, metres.
     ///
-    /// It lies between the largest straight distance and the longest cable: a search is needed only if these differ.
+    /// It lies between the largest straight distance and the longest cable, so a search is needed only if these
+    /// differ.
     pub(super) fn eccentricity_m(&self, ground: &Ground) -> f64 {
         let from_anchor_m = |(point, _): &(Point, f64)| (point - ground.anchor).norm();
         let straight_m = self.lengths.iter().map(from_anchor_m).fold(0.0, f64::max);
@@ -70,7 +71,7 @@ impl Replay {
         Geodesic::farthest_m(ground.anchor, Arc::clone(&ground.obstacles), &self.lengths)
     }
 
-    /// The cable after a straight return to the anchor.
+    /// Returns the cable after a straight return to the anchor.
     pub(super) fn cable_on_return(&self, anchor: Point) -> Cable {
         let mut cable = self.cable.clone();
         cable.drag_to(anchor);

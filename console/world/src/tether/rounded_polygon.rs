@@ -1,4 +1,4 @@
-//! A convex polygon with rounded corners: a part of what a cable and a robot cannot enter.
+//! A convex polygon with rounded corners: a part of an obstacle that a cable and a robot cannot enter.
 
 use geometry::{
     Point, Shape, Vector,
@@ -8,12 +8,12 @@ use geometry::{
 };
 use std::f64::consts::TAU;
 
-/// Number of tangents that make the outline of a round core.
+/// Number of tangents that form the outline of a round core.
 const TANGENTS: u32 = 24;
-/// Distance from an edge below which the direction from it is rounding, metres.
+/// Closer to an edge than this, the direction away from the edge is only rounding noise, metres.
 const ON_EDGE_M: f64 = 1e-9;
 
-/// All points within a radius of its core: a convex polygon, a segment or a point.
+/// All points within a radius of the core: a convex polygon, a segment or a point.
 #[derive(Debug, Clone)]
 pub(super) struct RoundedPolygon {
     /// One point, two points, or more, counter-clockwise.
@@ -26,7 +26,7 @@ pub(super) struct RoundedPolygon {
 }
 
 impl RoundedPolygon {
-    /// The parts of an obstacle grown by a margin: one, or one for each segment of a polyline.
+    /// Returns the parts of an obstacle grown by a margin: one part, or one for each segment of a polyline.
     pub(super) fn parts_of(shape: &Shape, margin_m: f64) -> Vec<Self> {
         match shape {
             Shape::Disc { center, radius_m } => vec![Self::new(vec![*center], radius_m + margin_m)],
@@ -37,7 +37,7 @@ impl RoundedPolygon {
         }
     }
 
-    /// All within a radius of a core, which has at least one point.
+    /// Creates the set of points within a radius of a core, which has at least one point.
     pub(super) fn new(mut core: Vec<Point>, radius_m: f64) -> Self {
         if core.len() > 2 && ring_area_m2(&core) < 0.0 {
             core.reverse();
@@ -48,20 +48,20 @@ impl RoundedPolygon {
         Self { core, radius_m, middle, reach_m, outline }
     }
 
-    /// South-west and north-east corner of the box around it.
+    /// Returns the south-west and north-east corners of the bounding box.
     pub(super) fn bounds(&self) -> (Point, Point) {
         let far = Vector::new(self.radius_m, self.radius_m);
         let (low, high) = bounds_of(&self.core);
         (low - far, high + far)
     }
 
-    /// Whether a segment certainly stays clear of it; a cheap test.
+    /// Whether a segment certainly stays clear of the shape; a quick test.
     fn is_far_from(&self, a: Point, b: Point) -> bool {
         let nearest = nearest_on_segment(a, b, self.middle);
         (nearest - self.middle).norm_squared() > self.reach_m * self.reach_m
     }
 
-    /// Distance from a segment, metres; not above zero if the segment enters.
+    /// Returns the distance from a segment, metres; zero or negative if the segment touches or enters the shape.
     pub(super) fn distance_m(&self, a: Point, b: Point) -> f64 {
         if let [only] = self.core[..] {
             return (nearest_on_segment(a, b, only) - only).norm() - self.radius_m;
@@ -72,7 +72,7 @@ impl RoundedPolygon {
         if inside { -from_edges - self.radius_m } else { from_edges - self.radius_m }
     }
 
-    /// Whether a segment enters it by more than a slack.
+    /// Whether a segment enters the shape by more than a slack.
     pub(super) fn is_entered_by(&self, a: Point, b: Point, slack_m: f64) -> bool {
         if self.is_far_from(a, b) {
             return false;
@@ -83,17 +83,17 @@ impl RoundedPolygon {
         self.core.len() > 2 && clip(&self.core, a, b, slack_m).is_some()
     }
 
-    /// The part of a segment within the outline: where it begins and ends, as shares of the segment.
+    /// Returns the part of a segment within the outline, as the shares of the segment where it begins and ends.
     pub(super) fn inside(&self, a: Point, b: Point) -> Option<(f64, f64)> {
         if self.is_far_from(a, b) { None } else { clip(&self.outline, a, b, 0.0) }
     }
 
-    /// Share of the segment at which it meets the outline; for sorting.
+    /// Returns the share of the segment at which it enters the outline; for sorting.
     pub(super) fn met_at(&self, a: Point, b: Point) -> f64 {
         clip(&self.outline, a, b, 0.0).map_or(0.0, |(first, _)| first)
     }
 
-    /// The nearest point outside, for a point inside; `None` for a point outside.
+    /// Returns the nearest point outside for a point inside; `None` for a point outside.
     pub(super) fn pushed_out(&self, point: Point, slack_m: f64) -> Option<Point> {
         if self.is_far_from(point, point) || self.distance_m(point, point) >= -slack_m {
             return None;
@@ -102,20 +102,21 @@ impl RoundedPolygon {
         let (nearest, normal) = edges(&self.core)
             .map(|(p, q)| (nearest_on_segment(p, q, point), Vector::new(q.y - p.y, p.x - q.x)))
             .min_by(|(p, _), (q, _)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))?;
-        // On the edge itself the direction from it is nothing but rounding.
+        // On the edge itself, the direction away from it is only rounding noise.
         let off = point - nearest;
         let away = if inside_core || off.norm() < ON_EDGE_M { normal } else { off };
         let away = away.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::x);
         Some(nearest + away * (self.radius_m + 2.0 * slack_m))
     }
 
-    /// Corners of the shorter detour, for a segment that enters.
+    /// Returns the corners of the shorter detour, for a segment that enters the shape.
     pub(super) fn detour(&self, a: Point, b: Point) -> Vec<Point> {
         self.detour_and_feet(a, b).map_or_else(Vec::new, |(_, way, _)| way)
     }
 
-    /// The shorter detour with both ends led out to the outline first. From there the detour is clear, while an end between
-    /// the rounded polygon and its outline may be visible from the last corner only through the polygon.
+    /// Returns the shorter detour, with both ends first led out to the outline. From there the detour is clear.
+    /// Otherwise, an end between the rounded polygon and its outline might be visible from the last corner only
+    /// through the polygon.
     pub(super) fn detour_outside(&self, a: Point, b: Point) -> Vec<Point> {
         let Some((enter, mut way, leave)) = self.detour_and_feet(a, b) else { return Vec::new() };
         way.insert(0, enter);
@@ -123,7 +124,7 @@ impl RoundedPolygon {
         way
     }
 
-    /// Where a segment enters the outline, the corners of the shorter detour, and where it leaves.
+    /// Returns where a segment enters the outline, the corners of the shorter detour, and where the segment leaves.
     fn detour_and_feet(&self, a: Point, b: Point) -> Option<(Point, Vec<Point>, Point)> {
         let (first, last) = clip(&self.outline, a, b, 0.0)?;
         let (from, enter) = self.on_outline(a + (b - a) * first);
@@ -136,14 +137,14 @@ impl RoundedPolygon {
         Some((enter, if is_left { left } else { right }, leave))
     }
 
-    /// Corners passed when walking counter-clockwise from one edge of the outline to another.
+    /// Returns the corners passed when walking counter-clockwise from one edge of the outline to another.
     fn corners(&self, from: usize, to: usize) -> Vec<Point> {
         let n = self.outline.len();
         let steps = (to + n - from) % n;
         (1..=steps).map(|k| self.outline[(from + k) % n]).collect()
     }
 
-    /// The nearest edge of the outline, and the nearest point on it.
+    /// Returns the nearest edge of the outline, and the nearest point on it.
     fn on_outline(&self, point: Point) -> (usize, Point) {
         let feet = edges(&self.outline).map(|(p, q)| nearest_on_segment(p, q, point)).enumerate();
         feet.min_by(|(_, p), (_, q)| (p - point).norm_squared().total_cmp(&(q - point).norm_squared()))
@@ -151,7 +152,7 @@ impl RoundedPolygon {
     }
 }
 
-/// A polygon of tangents: those along the edges of the core, and some all around.
+/// Returns a polygon of tangents: those along the edges of the core, and some in all directions.
 fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
     let mut bearings: Vec<f64> = (0..TANGENTS).map(|k| TAU * f64::from(k) / f64::from(TANGENTS)).collect();
     if core.len() > 1 {
@@ -174,7 +175,8 @@ fn outline_of(core: &[Point], radius_m: f64) -> Vec<Point> {
         .collect()
 }
 
-/// The part of a segment within a convex polygon that is shrunk by a slack: where it begins and ends, as shares.
+/// Returns the part of a segment within a convex polygon shrunk by a slack, as the shares of the segment where it
+/// begins and ends.
 fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> {
     let along = b - a;
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
@@ -184,7 +186,7 @@ fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> 
         if scale == 0.0 {
             continue;
         }
-        // Inside is left of every edge.
+        // The inside is left of every edge.
         let depth = edge.perp(&(a - p)) / scale - slack_m;
         let rate = edge.perp(&along) / scale;
         if rate == 0.0 {
@@ -203,7 +205,7 @@ fn clip(ring: &[Point], a: Point, b: Point, slack_m: f64) -> Option<(f64, f64)> 
     Some((first, last))
 }
 
-/// Distance between two segments, metres; 0 if they cross.
+/// Returns the distance between two segments, metres; 0 if they cross.
 fn between_segments_m(a: Point, b: Point, p: Point, q: Point) -> f64 {
     if segments_cross(a, b, p, q) {
         return 0.0;

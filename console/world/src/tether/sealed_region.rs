@@ -5,28 +5,29 @@ use crate::coverage::neighbours;
 use geometry::{Boundary, Point, Vector};
 use std::ops::Range;
 
-/// Smallest edge of a cell, metres.
+/// The smallest edge of a cell, metres.
 const CELL_M: f64 = 0.05;
-/// Most cells along one side.
+/// The most cells along one side.
 const MOST_CELLS: f64 = 1000.0;
-/// Regions smaller than this are slivers of the grid, square metres.
+/// Regions smaller than this are artefacts of the grid, square metres.
 const LEAST_M2: f64 = 0.05;
 
 /// All sealed regions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SealedRegions {
-    /// Their area together, square metres.
+    /// The total area of the regions, square metres.
     pub area_m2: f64,
-    /// A point in the largest of them.
+    /// A point in the largest region.
     pub at: Point,
 }
 
-/// Floor that the hull reaches without the cuts and not with them.
+/// Finds floor that the hull can reach without the cuts, but not with them.
 ///
-/// Flood fill from the anchor and from the path: where a path that crosses no cut has been, nothing is sealed. Cuts are
-/// not cells: they block the step between the centres of two neighbours, so they take no floor away.
+/// The flood fill starts from the anchor and from the path, so the floor along a path that crosses no cut is never
+/// sealed. Cuts are not cells. They block the step between the centres of two neighbours, so they do not reduce the
+/// floor.
 ///
-/// A passage narrower than a cell can look closed: what seems to be sealed is checked again with finer cells.
+/// A passage narrower than a cell can look closed, so apparently sealed floor is checked again with finer cells.
 pub(super) fn sealed_regions(case: &Case<'_>) -> Option<SealedRegions> {
     let (low, high) = case.boundary.bounds();
     let cell_m = CELL_M.max((high - low).max() / MOST_CELLS);
@@ -42,7 +43,7 @@ fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<SealedRegions> {
     let seeds = std::iter::once(&case.anchor).chain(case.path).filter_map(|point| grid.cell(*point));
     let mut seen = vec![false; grid.free.len()];
     grid.flood(&mut seen, seeds.collect(), &walls);
-    // Cells left over beside reached ones lie behind a cut, and so do those beside them.
+    // Cells that remain beside reached cells lie behind a cut, and so do the cells beside those.
     let rim = |cell: &usize| grid.is_new(&seen, *cell) && grid.neighbours(*cell).any(|other| seen[other]);
     let mut behind: Vec<usize> = (0..seen.len()).filter(rim).collect();
     behind.reverse();
@@ -67,11 +68,11 @@ fn sealed_in(case: &Case<'_>, grid: &Grid) -> Option<SealedRegions> {
     (all.area_m2 > 0.0).then_some(all)
 }
 
-/// Steps between neighbours that cross a cut.
+/// The steps between neighbours that cross a cut.
 struct Walls {
-    /// To the eastern neighbour, for every cell.
+    /// For every cell, whether the step to the eastern neighbour crosses a cut.
     east: Vec<bool>,
-    /// To the northern neighbour.
+    /// The same for the northern neighbour.
     north: Vec<bool>,
 }
 
@@ -104,7 +105,7 @@ impl Grid {
         grid
     }
 
-    /// Marks the cells of a row that the wall leaves free.
+    /// Marks the cells of a row that keep their distance from the wall.
     fn clear_row(&mut self, row: usize, case: &Case<'_>) {
         let cells = row * self.width..(row + 1) * self.width;
         let Boundary::Circle { radius_m } = case.boundary else {
@@ -131,7 +132,7 @@ impl Grid {
         Point::new(self.low.x + (column + 0.5) * self.cell_m, self.low.y + (row + 0.5) * self.cell_m)
     }
 
-    /// Column and row of the cell that contains a point, or of the nearest one.
+    /// Returns the column and row of the cell that contains a point, or of the nearest cell.
     fn place(&self, point: Point) -> (usize, usize) {
         let at = (point - self.low) / self.cell_m;
         ((at.x.max(0.0) as usize).min(self.width - 1), (at.y.max(0.0) as usize).min(self.height - 1))
@@ -142,7 +143,7 @@ impl Grid {
         Some(row * self.width + column).filter(|cell| self.free[*cell])
     }
 
-    /// The steps between neighbours that cross a cut.
+    /// Finds the steps between neighbours that cross a cut.
     fn walls(&self, cuts: &[Vec<Point>]) -> Walls {
         let mut east = vec![false; self.free.len()];
         let mut north = east.clone();
@@ -166,7 +167,8 @@ impl Grid {
         }
     }
 
-    /// Marks what can be reached from some cells without crossing a cut; returns what is new, in runs of one row.
+    /// Marks the cells that can be reached from some cells without crossing a cut; returns the newly marked cells, in
+    /// runs within a row.
     fn flood(&self, seen: &mut [bool], mut todo: Vec<usize>, walls: &Walls) -> Vec<Range<usize>> {
         let mut runs = Vec::new();
         while let Some(cell) = todo.pop() {
@@ -218,8 +220,8 @@ impl Grid {
     }
 }
 
-/// The grid lines that a segment crosses: each whole number below `count` between `from` and `to`, with the other
-/// coordinate of the segment there, rounded down.
+/// Returns the grid lines that a segment crosses: each whole number below `count` between `from` and `to`, with the
+/// other coordinate of the segment there, rounded down.
 fn steps_crossed(
     from: f64,
     to: f64,
@@ -227,7 +229,7 @@ fn steps_crossed(
     other_to: f64,
     count: usize,
 ) -> impl Iterator<Item = (i64, i64)> {
-    // A line may come from very far away.
+    // A line may start very far away.
     let line = |m: f64| m.ceil().clamp(0.0, count as f64) as i64;
     (line(from.min(to))..line(from.max(to))).map(move |line| {
         let share = (line as f64 - from) / (to - from);

@@ -1,20 +1,20 @@
-//! Moves that lead through a solid are bent around it.
+//! Bends moves that lead through a solid around it.
 //!
 //! A robot cannot drive through a column, but the estimate of its position can, and so can a plan. The rule: a move
-//! through a solid takes the shorter detour, which at a column is on the side on which the move passes the centre; a
-//! point inside counts as the nearest point outside. An estimate that strays from the truth by less than hull and column
-//! radius together therefore winds nothing: no column's centre lies between the two, so both pass every column on the
-//! same side.
+//! through a solid takes the shorter detour. At a column, this is on the side on which the move passes the centre. A
+//! point inside a solid counts as the nearest point outside. Suppose an estimate strays from the truth by less than
+//! hull and column radius together. Then no column's centre lies between the two, both pass every column on the same
+//! side, and no false wrap arises.
 
 use super::rounded_polygon::RoundedPolygon;
 use crate::obstacles::Boxes;
 use geometry::Point;
 
-/// Depth up to which a touch does not count as entering, metres.
+/// The depth up to which a touch does not count as entering, metres.
 const TOUCH_M: f64 = 1e-9;
-/// Most bends of one move; a cluster of overlapping solids can need many.
+/// The most bends of one move; a cluster of overlapping solids can need many.
 const MOST_BENDS: usize = 256;
-/// Most solids that the detour around a solid may enter in turn.
+/// The deepest nesting of detours: the detour around a solid may itself enter other solids.
 const DEEPEST: usize = 6;
 
 /// The solids that a path must not enter.
@@ -22,21 +22,22 @@ const DEEPEST: usize = 6;
 pub(super) struct Sidestep {
     solids: Vec<RoundedPolygon>,
     boxes: Boxes,
-    /// Whether the ends of a detour are led out to the outline first.
+    /// Whether the ends of a detour are first led out to the outline.
     leads_out: bool,
 }
 
 impl Sidestep {
-    /// Sidesteps around these solids.
+    /// Creates sidesteps around these solids.
     ///
-    /// With `leads_out` a move between two points at a solid keeps clear of it, as is right for grown solids, within which
-    /// robots stand. Without, such a move is a chord of the solid, like those of a taut cable that is drawn with chords.
+    /// With `leads_out`, a move between two points at a solid keeps clear of it; this suits grown solids, within
+    /// which robots can be. Without it, such a move is a chord of the solid, like the chords with which a taut cable
+    /// is drawn.
     pub(super) fn new(solids: Vec<RoundedPolygon>, leads_out: bool) -> Self {
         let boxes = Boxes::new(solids.iter().map(RoundedPolygon::bounds));
         Self { solids, boxes, leads_out }
     }
 
-    /// The nearest point that lies in no solid, as far as a few steps find one.
+    /// Returns the nearest point that lies in no solid, if a few steps find one.
     pub(super) fn outside(&self, point: Point) -> Point {
         let mut at = point;
         for _ in 0..DEEPEST {
@@ -64,13 +65,13 @@ impl Sidestep {
         self.boxes.near(center, center, radius_m + TOUCH_M).nth(1).is_none()
     }
 
-    /// The parts of a segment that lie in solids or touch them: where each begins and ends, as shares of the segment, in no
-    /// order.
+    /// Returns the parts of a segment that lie in solids or touch them, as the shares where each part begins and
+    /// ends, in no particular order.
     pub(super) fn inside(&self, from: Point, to: Point) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.near(from, to).filter_map(move |(_, solid)| solid.inside(from, to))
     }
 
-    /// Calls `go` with the end of each straight move that leads from one point to another around every solid.
+    /// Calls `go` with the end of each straight move on the way from one point to another around every solid.
     pub(super) fn along(&self, from: Point, to: Point, mut go: impl FnMut(Point)) {
         let to = self.outside(to);
         if self.first_entered(from, to).is_none() {
@@ -93,7 +94,7 @@ impl Sidestep {
             self.bend(at, corner, depth + 1, way);
             at = corner;
         }
-        // The rest of the move lies outside this solid, or touches it.
+        // The rest of the move lies outside this solid, or only touches it.
         if depth + 1 < DEEPEST { self.bend_past(solid, at, to, depth + 1, way) } else { way.push(to) }
     }
 
@@ -111,7 +112,7 @@ impl Sidestep {
         met.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, _, solid)| solid)
     }
 
-    /// Solids that a segment may meet, each with its index, in no order.
+    /// Returns the solids that a segment may meet, each with its index, in no particular order.
     fn near(&self, from: Point, to: Point) -> impl Iterator<Item = (usize, &RoundedPolygon)> {
         self.boxes.near(from, to, TOUCH_M).map(|k| (k, &self.solids[k]))
     }

@@ -1,13 +1,13 @@
-//! What happens first to the free span of a cable while its end moves in a straight line.
+//! Finds the first event at the free span of a cable while its end moves in a straight line.
 
 use super::cable_obstacles::{CableObstacles, Post, tangent_point};
 use geometry::{Point, Vector, unit_vector, wrap_angle_rad};
 
-/// Lateral slack of a contact, metres: it ends once the robot is this far on its free side, and begins half of this
-/// early. So rounding never lets a cable slip through a corner that it has just touched.
+/// Lateral slack of a contact, metres: a contact ends once the robot is this far on its free side, and begins half of
+/// this distance early. Rounding therefore never lets a cable slip through a corner that it has just touched.
 pub(super) const SLACK_M: f64 = 1e-8;
 
-/// What the free span leaves from: the anchor, or the last post.
+/// The point from which the free span leaves: the anchor, or the last post.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Base {
     pub center: Point,
@@ -20,10 +20,10 @@ pub(super) struct Base {
     pub post: Option<usize>,
 }
 
-/// What comes next in a move.
+/// The next event in a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Event {
-    /// Nothing: the end arrives.
+    /// No event: the end of the move is reached.
     Arrive,
     /// The last bend is unwound.
     Release,
@@ -32,23 +32,23 @@ pub(super) enum Event {
 }
 
 impl Base {
-    /// Where the free span begins at some bearing.
+    /// Returns where the free span begins at a given bearing.
     pub(super) fn leaves_at(&self, bearing_rad: f64) -> Point {
         tangent_point(self.center, self.radius_m, self.side, bearing_rad)
     }
 
-    /// Bearing of the free span to a point; `None` if the point is the base itself.
+    /// Returns the bearing of the free span to a point; `None` if the point is the base itself.
     pub(super) fn bearing_to(&self, point: Point) -> Option<f64> {
         let way = point - self.center;
         let far = way.norm();
         (far > 1e-12).then(|| way.y.atan2(way.x) + (self.side * self.radius_m / far).clamp(-1.0, 1.0).asin())
     }
 
-    /// Angle by which the free span turns until its end is at `to`, radians, on a move from `from`.
+    /// Returns the angle by which the free span turns on a move from `from` until its end is at `to`, radians.
     pub(super) fn turn_to(&self, from: Point, to: Point) -> f64 {
         let Some(bearing_rad) = self.bearing_to(to) else { return self.turn_to_end_here() };
         let turn = wrap_angle_rad(bearing_rad - self.out_rad);
-        // A move close to the base can turn it by nearly half a turn; the sense is that of the motion.
+        // A move close to the base can turn it by nearly half a turn; the direction is that of the motion.
         if turn.abs() > 3.0 && turn * self.sense_of(from, to) < 0.0 {
             turn - std::f64::consts::TAU.copysign(turn)
         } else {
@@ -56,17 +56,17 @@ impl Base {
         }
     }
 
-    /// The turn after which the cable ends at the base: it unwinds the whole bend there.
+    /// Returns the turn after which the cable ends at the base: the whole bend there unwinds.
     fn turn_to_end_here(&self) -> f64 {
         if self.post.is_some() { -self.side * self.wrap_rad } else { 0.0 }
     }
 
-    /// 1 if a move passes the base counter-clockwise, -1 if clockwise.
+    /// Positive if a move passes the base counter-clockwise, negative if clockwise.
     ///
-    /// A move that passes no farther from it than rounding errors came back along the cable, and unwinds it.
+    /// A move that passes the base within rounding errors came back along the cable, and unwinds it.
     fn sense_of(&self, from: Point, to: Point) -> f64 {
         let along = (to - from).normalize();
-        // A tip that stands on a corner is on no side of it; the cable's bearing still gives one.
+        // A tip exactly on a corner is on neither side of it; the cable's bearing still defines a side.
         let passed = if self.radius_m > 0.0 {
             (from - self.center).perp(&along)
         } else {
@@ -76,9 +76,9 @@ impl Base {
     }
 }
 
-/// The first event of a move that still has to turn the free span by `turn_rad`.
+/// Returns the first event of a move that still has to turn the free span by `turn_rad`.
 ///
-/// `released` are posts that this very move has unwound: a straight move cannot meet them again.
+/// `released` are the posts that this move has already unwound; a straight move cannot meet them again.
 pub(super) fn next_event(
     obstacles: &CableObstacles,
     base: &Base,
@@ -114,7 +114,7 @@ struct Sweep<'a> {
     to: Point,
     /// Unit vector of the move.
     along: Vector,
-    /// First and last position of the free span: its beginning and its direction.
+    /// First and last position of the free span: its starting point and its direction.
     start: (Point, Vector),
     end: (Point, Vector),
     /// Length of the free span at the start and at the end, metres.
@@ -153,7 +153,8 @@ impl<'a> Sweep<'a> {
         obstacles: &CableObstacles,
         is_excluded: impl Fn(usize) -> bool,
     ) -> Option<Touch> {
-        // Nothing swept is farther from the first position of the free span than its ends move.
+        // The ends of the free span move by some distance; no swept point is farther than that from the first
+        // position of the span.
         let room_m = (self.to - self.from).norm() + 2.0 * self.base.radius_m + 2.0 * SLACK_M;
         let near = obstacles.near(self.start.0, self.from, room_m);
         let may_touch = near.filter(|k| self.may_touch(&obstacles.posts[*k]) && !is_excluded(*k));
@@ -167,33 +168,35 @@ impl<'a> Sweep<'a> {
         })
     }
 
-    /// How far before the start a tangent may lie and still count, radians, for a post at this distance from the base.
+    /// Returns how far before the start a tangent may lie and still count, radians, for a post at this distance from
+    /// the base.
     fn early_rad(&self, far_m: f64) -> f64 {
         0.25 * SLACK_M / self.start_m.max(far_m).max(SLACK_M)
     }
 
-    /// The same beyond the end.
+    /// Returns how far beyond the end a tangent may lie and still count, radians.
     fn late_rad(&self, far_m: f64) -> f64 {
         0.5 * SLACK_M / self.end_m.max(far_m).max(SLACK_M)
     }
 
-    /// Whether the free span passes through a round post at the start, with the post's centre on the side it turns to.
+    /// Whether the free span passes through a round post at the start, with the post's centre on the side to which
+    /// the span turns.
     ///
-    /// It does after a move along a chord of the post that led past its tangent point, where an arc would have turned it
-    /// back and forth.
+    /// This happens after a move along a chord of the post that led past its tangent point, where an arc would have
+    /// turned the span back and forth.
     fn starts_through(&self, post: &Post, far_m: f64) -> bool {
         let aside_m = |point: Point| self.sense * self.start.1.perp(&(point - self.start.0));
-        // Later in a move the free span no longer ends where the move began.
+        // Later in a move, the free span no longer ends where the move began.
         let is_first = aside_m(self.from).abs() <= SLACK_M;
         let is_ahead = far_m < self.start_m && self.start.1.dot(&(post.center - self.start.0)) > 0.0;
         let middle_m = aside_m(post.center);
         is_first && is_ahead && middle_m > 0.0 && middle_m < post.radius_m - SLACK_M
     }
 
-    /// Cheap test: the post reaches into the cone of the sweep, on the near side of the move.
+    /// Whether the post reaches into the cone of the sweep, on the near side of the move; a quick test.
     fn may_touch(&self, post: &Post) -> bool {
         let room_m = post.radius_m + SLACK_M;
-        // The free span leaves a round base from another point at every bearing.
+        // The free span leaves a round base from a different point at every bearing.
         let wide_m = room_m + 2.0 * self.base.radius_m;
         let side_of = |o: Point, d: Vector| self.sense * d.perp(&(post.center - o));
         side_of(self.from, self.along) >= -room_m
@@ -201,7 +204,7 @@ impl<'a> Sweep<'a> {
             && side_of(self.end.0, self.end.1) <= wide_m
     }
 
-    /// The common tangent of base and post, if the free span passes it on this move.
+    /// Returns the common tangent of base and post, if the free span passes it on this move.
     fn touch(&self, k: usize, post: &Post) -> Option<Touch> {
         let way = post.center - self.base.center;
         let far = way.norm();
@@ -220,7 +223,7 @@ impl<'a> Sweep<'a> {
         let (leaves, free) = (self.base.leaves_at(bearing_rad), unit_vector(bearing_rad));
         let across = free.perp(&self.along);
         let reaches = |end: Point| far_m <= (end - leaves).norm() + SLACK_M;
-        // Beyond the line of the move the end passes before the post.
+        // Beyond the line of the move, the end passes in front of the post.
         let is_near = if across.abs() > 1e-9 {
             self.sense * self.along.perp(&(at - self.from)) >= 0.0 && (reaches(self.from) || reaches(self.to))
         } else {

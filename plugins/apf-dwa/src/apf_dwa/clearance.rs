@@ -1,4 +1,4 @@
-//! A demanded clearance is kept by plan and flight, or the plan says that it is not.
+//! Plan and flight keep the required clearance, or the plan reports that it does not.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use super::*;
@@ -9,7 +9,7 @@ const START: Point2<f64> = Point2::new(0.0, 0.0);
 const GOAL: Point2<f64> = Point2::new(12.0, 0.0);
 const TOLERANCE_M: f64 = 0.2;
 const TICK_S: f64 = 0.1;
-/// Placed as exactly as the window may.
+/// Tolerance of the comparisons, metres.
 const EXACT_M: f64 = 1e-6;
 
 fn site<'a>(obstacles: &'a [Obstacle<'a>], radius_m: f64, clearance_m: f64) -> Site<'a> {
@@ -34,7 +34,7 @@ fn site<'a>(obstacles: &'a [Obstacle<'a>], radius_m: f64, clearance_m: f64) -> S
     }
 }
 
-/// What came of a demand.
+/// The clearances kept with one set of requirements.
 #[derive(Debug)]
 struct Kept {
     is_complete: bool,
@@ -95,7 +95,7 @@ fn whatever_the_hull_and_the_clearance_plan_and_flight_keep_them_past_a_column()
                 assert!(kept.flight_m >= clearance_m - EXACT_M, "{what}");
                 assert!(kept.plan_m >= clearance_m - EXACT_M || kept.is_warned, "{what}");
                 assert_eq!(kept.is_complete, !kept.is_warned, "{what}");
-                // By the corners of the shortest way it passes; the paper's square may lead nowhere.
+                // By the corners of the shortest path the robot passes; the paper's square may lead nowhere.
                 assert!(guide < 0.5 || (kept.arrived && kept.is_complete), "{what}");
             }
         }

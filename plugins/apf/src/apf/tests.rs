@@ -60,7 +60,7 @@ fn in_a_trap_it_says_so_and_the_plan_is_not_complete() {
     assert!(!plan.unwrap().complete);
     let (level, message) = bench.logs().pop().unwrap();
     assert_eq!(level, LogLevel::Warn);
-    assert!(message.contains("the force field is trapped at (-"), "{message}");
+    assert!(message.contains("the path is trapped at (-"), "{message}");
 }
 
 #[test]

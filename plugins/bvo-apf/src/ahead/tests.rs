@@ -130,7 +130,7 @@ fn the_paper_s_own_result_stands_beside_a_way_along_the_outlines() {
     let ahead = walked(Mode::Pre, map(&SPUR, &[]), START, GOAL);
     let said: Vec<String> = ahead.tried.iter().map(ToString::to_string).collect();
     assert_eq!(ahead.tried[1].by, By::Mode(Mode::Literal));
-    assert!(said[0].starts_with("the walk in thought arrives after"), "{said:?}");
+    assert!(said[0].starts_with("simulated walk reaches the goal after"), "{said:?}");
     assert!(said[1].starts_with("mode literal ends at (3.") && said[1].ends_with(" m"), "{said:?}");
 }
 

@@ -78,7 +78,7 @@ fn a_plan_reports_how_it_left_the_trap_and_draws_its_virtual_circles() {
     let (plan, bench) = plan(&[("mode", 0.0), ("rho_0_m", 1.0), ("k_rep", 1.0)], task());
     assert!(plan.is_ok());
     let said: Vec<String> = bench.logs().into_iter().map(|(_, message)| message).collect();
-    assert!(said[0].starts_with("trapped at (") && said[1].starts_with("seals the trap with"), "{said:?}");
+    assert!(said[0].starts_with("trapped at (") && said[1].starts_with("sealing the trap with"), "{said:?}");
     assert!(bench.scalar("virtual_circles").unwrap() > 0.0);
     assert!(bench.drawings().iter().any(|d| matches!(d, Drawing::Circle { layer: Layer::Virtual, .. })));
 }
@@ -235,7 +235,7 @@ fn what_crosses_its_way_is_met_where_it_will_be() {
 fn a_map_that_is_too_large_is_refused_before_it_plans_with_what_to_choose_instead() {
     let refusal = check_size(PARTS_MOST + 1).unwrap_err();
     assert_eq!(refusal.code, Code::Unsupported);
-    assert!(refusal.message.contains("4000 at most") && refusal.message.contains("this map has 4001"));
+    assert!(refusal.message.contains("at most 4000") && refusal.message.contains("this map has 4001"));
     assert!(refusal.message.contains("choose shortest, navfn or apf-dwa"));
     assert!(check_size(PARTS_MOST).is_ok());
 }

@@ -1,14 +1,14 @@
-//! Back out of a trap along the own way, and the seal of its mouth.
+//! Retreats from a trap along the robot's own track, and seals the mouth of the trap.
 
 use super::{Machine, News, Next, Phase};
 use crate::{mouth::Mouth, view::View};
 use std::{collections::BTreeSet, f64::consts::PI};
 use world::Point;
 
-/// On the way back the trap is examined again after this distance, metres.
+/// During a retreat the trap is examined again after this distance, metres.
 const LOOK_BACK_M: f64 = 0.05;
 
-/// A retreat under way.
+/// A retreat in progress.
 #[derive(Debug, Clone)]
 pub struct Retreat {
     pub(super) ids: BTreeSet<u32>,
@@ -34,7 +34,7 @@ impl Machine {
         let out = view.and_then(|view| match retreat.mouth {
             Some(mouth) if mouth.is_withdrawn(at, hull_m, view.gap_rad) => Some(mouth),
             _ if is_at_start && view.gap_rad >= PI => Some(Mouth::from_outside(at, &view)),
-            // Deep in a spiral what looks like the mouth may not be one.
+            // Deep inside a spiral, an apparent mouth may not be the real one.
             seen => Mouth::left_behind(at, &view, seen.is_some()),
         });
         if let Some(mouth) = out {
@@ -47,7 +47,7 @@ impl Machine {
         if let Some(back) = self.trail.pop() {
             return Next::Back(back);
         }
-        // It began inside: there is no way back, and a seal would shut it in.
+        // The robot started inside the trap: it has no track to follow, and a seal would shut it in.
         let members = retreat.members.clone();
         self.go_round(at, goal, members, true);
         self.next(at, goal)

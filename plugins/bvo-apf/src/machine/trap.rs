@@ -1,4 +1,4 @@
-//! What holds the robot, and how it leaves.
+//! Finds the trap that holds the robot, and chooses the way out.
 
 use super::{CHOICE_MOST, Machine, News, Next, Phase, ROUNDS, Retreat};
 use crate::{
@@ -13,13 +13,13 @@ use std::{cmp::Ordering, f64::consts::PI};
 use steering::{Forces, Side, Solid};
 use world::{Point, Vector};
 
-/// The nearest solid on the way to the goal is looked for this far ahead, as a multiple of the law's range.
+/// The nearest solid on the way to the goal is searched for this far ahead, as a multiple of the law's range.
 const AHEAD_RANGES: f64 = 2.0;
-/// An escape that begins this near to an earlier one is another attempt at the same, metres.
+/// An escape that begins within this distance of an earlier one is another attempt at the same trap, metres.
 const SAME_PLACE_M: f64 = 1.5;
-/// Another attempt goes on until it is this much nearer to the goal than where it began, metres.
+/// Another attempt continues until the robot is closer to the goal than at its start by this much, metres.
 const GAIN_M: f64 = 1.0;
-/// A way may lie this much further off than its margin, so that rounding does not count against it, metres.
+/// Tolerance for rounding when a path is compared with its margin, metres.
 const ROUNDING_M: f64 = 1e-6;
 
 impl Machine {
@@ -34,7 +34,7 @@ impl Machine {
             View::of(from, &self.map, &members, self.map.hull_m).map_or(2.0 * PI, |view| view.gap_rad)
         };
         if gap_rad(at) >= PI || gap_rad(goal) < PI {
-            // A goal in the same trap is not sealed off: it is found along the outline.
+            // If the goal is in the same trap, the trap is not sealed: the robot finds the goal along the outline.
             let hugs = gap_rad(at) < PI;
             self.go_round(at, goal, members, hugs);
             return;
@@ -47,8 +47,8 @@ impl Machine {
         self.phase = Phase::Retreat(Retreat { ids, members, mouth, looked: None });
     }
 
-    /// Everything that pushes the robot back here, and what belongs to it: between two groups the field may have a
-    /// minimum though the robot would fit through.
+    /// All solids that push the robot back here, with their clusters. The field may have a minimum between two groups
+    /// although the robot would fit between them.
     fn all_near(&self, at: Point, culprit: usize) -> Vec<usize> {
         let reach_m = self.settings.law.rho_m + self.map.hull_m;
         let near = self.map.solids.iter().filter(|s| s.distance(at).0 < reach_m);
@@ -56,7 +56,7 @@ impl Machine {
         self.clusters.closure(&self.map, &ids)
     }
 
-    /// Whether the wall holds the robot, by itself or by what hangs on it.
+    /// Whether the wall holds the robot, directly or through obstacles connected to it.
     fn is_held_by_wall(&mut self, at: Point, goal: Point) -> bool {
         let culprit = self.culprit(at, goal).map(|index| &self.map.solids[index]);
         let rank = self.rank(at, goal);
@@ -66,14 +66,15 @@ impl Machine {
         solid.is_none_or(|(id, solid)| outline.holds(id) || by_rank(&wall, &solid).is_lt())
     }
 
-    /// What holds the robot: the first solid on the way to the goal within twice the range, or else the nearest.
+    /// The solid that holds the robot: the first one on the way to the goal within twice the range, or else the
+    /// nearest.
     fn culprit(&self, at: Point, goal: Point) -> Option<usize> {
         let rank = self.rank(at, goal);
         let ranks = self.map.solids.iter().map(rank).enumerate();
         ranks.min_by(|a, b| by_rank(&a.1, &b.1)).map(|(index, _)| index)
     }
 
-    /// Whether a solid lies off the way to the goal, and its distance, metres.
+    /// Whether a solid is clear of the path to the goal, and its distance, metres.
     fn rank(&self, at: Point, goal: Point) -> impl Fn(&Solid) -> (bool, f64) + use<> {
         let ahead = at + (goal - at).cap_magnitude(AHEAD_RANGES * self.settings.law.rho_m);
         let hull_m = self.map.hull_m;
@@ -86,11 +87,11 @@ impl Machine {
         self.outline.get_or_insert_with(|| Outline::new(&self.map, &self.clusters, margin_m, reach_m))
     }
 
-    /// Follows the outlines from here on to the goal.
+    /// Follows the outlines from here to the goal.
     pub fn follow_outlines(&mut self, at: Point, goal: Point) {
         let MachineSettings { mode, keep_m, margin_m, taut_margin_m, .. } = self.settings;
         let hull_m = self.map.hull_m;
-        // A way that is pulled taut may use every gap in which it keeps its margin; a robot that flies needs room.
+        // A path that is pulled taut may use every gap in which it keeps its margin; a robot in flight needs more room.
         let most_m = if mode == Mode::Pre { taut_margin_m + ROUNDING_M } else { margin_m };
         let follow = Follow::new(goal, self.outline(), Side::Left, hull_m + keep_m, hull_m + most_m);
         self.phase = Phase::Follow(follow);
@@ -147,7 +148,7 @@ impl Machine {
         }
     }
 
-    /// Left, as in the paper, or the side that is shorter in thought.
+    /// The left side, as in the paper, or the side with the shorter simulated detour.
     fn first_side(&mut self, at: Point, goal: Point) -> Side {
         let goes_round = self.going_round().is_some();
         if goes_round && self.rolls_out() { self.shorter_side(at, goal) } else { Side::Left }
@@ -159,7 +160,7 @@ impl Machine {
         side
     }
 
-    /// Whether it walks both sides in thought before it takes one.
+    /// Whether both sides are simulated before one is chosen.
     fn rolls_out(&self) -> bool {
         matches!(self.settings.mode, Mode::Rollout | Mode::Pre) && !self.in_thought && self.thought_left > 0
     }

@@ -9,15 +9,15 @@ use world::Point;
 pub(super) struct Cluster {
     /// Indices of the parts.
     pub parts: Vec<usize>,
-    /// Middle of the part that is furthest from the anchor: there its cut begins.
+    /// The foot: centre of the part furthest from the anchor, where the cut begins.
     pub foot: Point,
     /// Distance of the foot from the anchor, metres.
     pub rho_m: f64,
-    /// Whether there is no room between it and the wall either: it needs no cut.
+    /// Whether there is no room to the wall either, so that the cluster needs no cut.
     pub is_at_wall: bool,
-    /// How far the part at the foot reaches from it, metres.
+    /// Extent of the part at the foot, measured from the foot, metres.
     pub reach_m: f64,
-    /// From the foot to the wall along the cuts, once they are made.
+    /// The points from the foot to the wall along the cuts, once these exist.
     pub chain: Vec<Point>,
 }
 
@@ -43,7 +43,10 @@ impl Cluster {
     fn of(workspace: &Workspace, parts: Vec<usize>, near_m: f64) -> Self {
         let part = |k: &usize| &workspace.parts[*k];
         let rho_m = |k: &usize| (part(k).middle() - workspace.anchor).norm();
-        let last = parts.iter().max_by(|a, b| rho_m(a).total_cmp(&rho_m(b))).expect("there is a part");
+        let last = parts
+            .iter()
+            .max_by(|a, b| rho_m(a).total_cmp(&rho_m(b)))
+            .expect("a cluster has at least one part");
         let (foot, rho_m, reach_m) = (part(last).middle(), rho_m(last), reach_m(part(last)));
         let is_at_wall = parts.iter().any(|k| wall_gap_m(&workspace.wall, part(k)) < near_m);
         Self { parts, foot, rho_m, is_at_wall, reach_m, chain: vec![foot] }

@@ -1,4 +1,5 @@
-//! Cuts for what was found on the way: one from every cluster that the cuts of the plan under way leave loose.
+//! New cuts for obstacles found during a mission: one from every cluster that the current plan's cuts do not connect to
+//! the wall.
 
 use crate::cuts::cluster::Cluster;
 use crate::cuts::forest::to_wall_m;
@@ -9,23 +10,23 @@ use crate::workspace::Workspace;
 use geometry::convex::{Part, crossing};
 use world::{Point, Vector, polyline};
 
-/// A cut ends this far beyond another one, so that no gap is left between them, metres.
+/// A cut ends this far beyond the cut that it meets, so that no gap is left between them, metres.
 const BEYOND_M: f64 = 1e-4;
 
-/// What new cuts are laid into.
+/// The existing cuts, tether and path for new cuts.
 pub(crate) struct Extension<'a> {
     pub workspace: &'a Workspace,
-    /// The cuts of the plan under way.
+    /// The cuts of the current plan.
     pub cuts: &'a [Vec<Point>],
-    /// The tether as it lies: no new cut crosses it.
+    /// The tether as it lies: no new cut may cross it.
     pub tether: &'a [Point],
-    /// The rest of the path: a new cut crosses it as seldom as may be.
+    /// The rest of the path: a new cut crosses it as rarely as possible.
     pub path: &'a [(Point, Point)],
 }
 
 impl Extension<'_> {
-    /// New cuts, from the outermost cluster inward, each within an angle off the ray from the anchor; `None` where a cluster
-    /// can have none.
+    /// Makes new cuts, from the outermost cluster inward, each within an angle of the ray from the anchor. Returns
+    /// `None` if a cluster can have no cut.
     pub(crate) fn new_cuts(&self, angle_rad: f64) -> Option<Vec<Vec<Point>>> {
         let clusters = Cluster::all(self.workspace);
         let mut loose: Vec<&Cluster> = clusters.iter().filter(|cluster| !self.is_rooted(cluster)).collect();
@@ -39,7 +40,7 @@ impl Extension<'_> {
         Some(made)
     }
 
-    /// Whether wall or cuts hold a cluster already.
+    /// Whether the wall or existing cuts already connect a cluster.
     fn is_rooted(&self, cluster: &Cluster) -> bool {
         let meets = |cut: &[Point], part: &Part| {
             cut.windows(2).any(|w| part.segment_distance_m(w[0], w[1]) < self.workspace.keep_m)
@@ -63,8 +64,8 @@ impl Extension<'_> {
         priced.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, line)| line)
     }
 
-    /// A cut in some direction, up to the wall, a cut or the room of an obstacle that is held already; `None` if one that is
-    /// not held stands in the way.
+    /// A cut in a given direction, up to the wall, a cut, or the room of a connected obstacle; `None` if an unconnected
+    /// obstacle is in the way.
     fn along(
         &self,
         from: &Cluster,
@@ -87,13 +88,13 @@ impl Extension<'_> {
         (!is_loose).then(|| vec![foot, foot + ahead * entered_m, workspace.parts[k].middle()])
     }
 
-    /// How far along a ray the room of a part begins.
+    /// The distance along a ray at which it enters the room of a part.
     fn entered_m(&self, part: usize, foot: Point, ahead: Vector, far_m: f64) -> Option<f64> {
         let (part, room_m) = (&self.workspace.parts[part], self.workspace.keep_m + 2.0 * SLACK_M);
         if part.segment_distance_m(foot, foot + ahead * far_m) > room_m {
             return None;
         }
-        // Nothing of a convex part lies nearer than its distance.
+        // A convex part has no point closer than its distance, so the ray can advance by that much.
         let mut along_m = 0.0;
         while along_m < far_m {
             let spare_m = part.distance(foot + ahead * along_m).0 - room_m;
@@ -105,7 +106,7 @@ impl Extension<'_> {
         Some(along_m.min(far_m))
     }
 
-    /// What a cut costs, in broken lanes.
+    /// The cost of a cut, in broken lanes.
     fn cost(&self, line: &[Point]) -> f64 {
         let is_crossed = |(a, b): &&(Point, Point)| meets(line, *a, *b);
         let broken = self.path.iter().filter(is_crossed).count();
@@ -113,8 +114,8 @@ impl Extension<'_> {
     }
 }
 
-/// The cuts of a plan under way with one of them shortened, for each that goes on beyond what was found in it: cuts keep off
-/// all obstacles that were known when they were laid, but those at their ends.
+/// Variants of the cuts of the current plan. In each, one cut is shortened to end at an obstacle found in it. When they
+/// were laid, cuts avoided all known obstacles except those at their ends.
 pub(crate) fn cuts_up_to_found(workspace: &Workspace, cuts: &[Vec<Point>]) -> Vec<Vec<Vec<Point>>> {
     let shortened = |k: usize| {
         let ends = workspace.parts.iter().filter_map(move |part| up_to(part, &cuts[k], workspace.keep_m));
@@ -123,8 +124,8 @@ pub(crate) fn cuts_up_to_found(workspace: &Workspace, cuts: &[Vec<Point>]) -> Ve
     (0..cuts.len()).flat_map(shortened).collect()
 }
 
-/// A cut as far as the middle of a part that stands in it; `None` where the room of the part holds an end of the cut, or none
-/// of it.
+/// The cut up to the centre of a part that stands in it; `None` if the part's room contains an end of the cut, or does
+/// not touch the cut.
 fn up_to(part: &Part, cut: &[Point], keep_m: f64) -> Option<Vec<Point>> {
     let is_in = |at: &Point| part.distance(*at).0 < keep_m;
     if cut.first().is_some_and(is_in) || cut.last().is_some_and(is_in) {

@@ -1,4 +1,4 @@
-//! The forest of cuts: one from every cluster of obstacles, the outermost first.
+//! The forest of cuts: one cut from every cluster of obstacles, starting with the outermost.
 
 use crate::cuts::cluster::Cluster;
 use crate::pattern::Pattern;
@@ -9,15 +9,15 @@ use geometry::convex::{Part, crossing};
 use std::f64::consts::PI;
 use world::{Boundary, Point, Vector, polyline};
 
-/// What cuts may look like.
+/// Limits on cuts.
 pub(crate) struct CutRule {
     /// Largest angle between a cut and the ray from the anchor, radians.
     pub alpha_rad: f64,
-    /// No cut may make the tether longer than this, as far as can be estimated, metres.
+    /// Maximum estimated tether length that a cut may cause, metres.
     pub cable_m: f64,
 }
 
-/// A cut that must not be made: from where, and to where.
+/// A cut that must not be made: its start and its end.
 pub(super) struct Ban(Point, Point);
 
 impl Ban {
@@ -30,7 +30,7 @@ impl Ban {
     }
 }
 
-/// The cuts of a workspace, each from the foot of its cluster on, the outermost first.
+/// The cuts of a workspace, outermost first; each begins at the foot of its cluster.
 pub(super) fn cuts(
     workspace: &Workspace,
     pattern: &Pattern,
@@ -53,15 +53,15 @@ struct Forest<'a> {
     rule: &'a CutRule,
     bans: &'a [Ban],
     clusters: Vec<Cluster>,
-    /// The cuts made so far, with the clusters that they begin at.
+    /// The cuts made so far, each with the cluster where it begins.
     made: Vec<(usize, Vec<Point>)>,
 }
 
-/// One way to end a cut: at the wall, or at the foot of another cluster.
+/// A possible end of a cut: at the wall, or at the foot of another cluster.
 struct Target {
     end: Point,
     cluster: Option<usize>,
-    /// What the cut breaks, and how much too long it makes the cable, in broken lanes.
+    /// Cost of the lanes that the cut breaks and the excess cable that it causes, in broken lanes.
     cost: f64,
 }
 
@@ -74,11 +74,11 @@ impl Forest<'_> {
         self.made.push((from, line));
     }
 
-    /// The cut that breaks the fewest lanes, and the cluster that it leads to, if it does not lead to the wall.
+    /// The cut that breaks the fewest lanes, and the cluster at its end unless it ends at the wall.
     fn best_cut(&self, from: usize) -> (Vec<Point>, Option<usize>) {
         let foot = self.clusters[from].foot;
         let outward = (foot - self.workspace.anchor).try_normalize(1e-9).unwrap_or_else(Vector::x);
-        // Wider and wider, and at last through the room of other obstacles: a cut there must be.
+        // Try wider and wider angles, and finally go through the room of other obstacles: a cut is required.
         let keep_m = self.workspace.keep_m;
         for (widen_rad, berth_m) in [(0.0, BERTH_M), (0.0, 0.0), (0.5, 0.0), (1.2, -keep_m), (4.0, -keep_m)] {
             let alpha_rad = (self.rule.alpha_rad + widen_rad).min(PI);
@@ -110,7 +110,8 @@ impl Forest<'_> {
         Target { end, cluster, cost }
     }
 
-    /// Where a cut may lead within an angle off the ray outward: to the wall, along the lanes, and to other clusters.
+    /// The possible ends of a cut within an angle of the outward ray: at the wall, along the lanes, and at other
+    /// clusters.
     fn targets(&self, from: usize, outward: Vector, alpha_rad: f64) -> Vec<Target> {
         let foot = self.clusters[from].foot;
         let off_rad = |way: Vector| outward.perp(&way).atan2(outward.dot(&way)).abs();
@@ -124,7 +125,7 @@ impl Forest<'_> {
         let mut targets: Vec<Target> = fan.chain(along_lanes).map(at_wall).collect();
         for (k, other) in self.clusters_further_out(from) {
             let way = other.foot - foot;
-            // Beyond the angle as well where a cut along the ray would come too near.
+            // A larger angle is allowed if a cut along the ray would pass too close to the other cluster.
             let beside_m = other.reach_m + self.workspace.keep_m + BERTH_M;
             let in_the_way_rad = (beside_m / way.norm().max(beside_m)).asin();
             if off_rad(way) <= alpha_rad.max(in_the_way_rad) {
@@ -160,7 +161,7 @@ impl Forest<'_> {
     }
 }
 
-/// Way from a place straight on to the wall, metres.
+/// The distance from a point straight ahead to the wall, metres.
 pub(super) fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
     match wall {
         Boundary::Circle { radius_m } => {
@@ -178,14 +179,14 @@ pub(super) fn to_wall_m(wall: &Boundary, from: Point, ahead: Vector) -> f64 {
     }
 }
 
-/// Length of a taut cable to the far end of a chain of cuts, on the side of the chain where it is longer, metres.
+/// The length of a taut cable to the far end of a chain of cuts, along the longer side of the chain, metres.
 ///
-/// The sum of the links would be too long: where they bend, the cable takes the short way on the open side.
+/// The sum of the links would be too long: at bends the cable takes the short way on the open side.
 pub(super) fn taut_m(anchor: Point, chain: &[Point]) -> f64 {
     let along = |side: f64| {
         let mut path = vec![anchor];
         for next in chain {
-            // The cable bears on what it leaves on its other side only.
+            // The cable bears only on obstacles on its other side.
             while let [.., before, last] = path[..] {
                 if (last - before).perp(&(next - last)) * side > 0.0 {
                     break;

@@ -1,4 +1,5 @@
-//! The scanning tool: a flat bar across the heading, as wide as the swath, that also sweeps when the robot turns in place.
+//! The scanning tool: a flat bar across the heading, as wide as the swath, that also sweeps when the robot turns on the
+//! spot.
 
 use crate::floor::raster::{MOST_CORNERS, Raster};
 use crate::plane::left_of;
@@ -30,12 +31,12 @@ impl From<Range<usize>> for Run {
 }
 
 impl Raster {
-    /// Every cell under the bar on its way along a path, in runs of one row each; a cell may come several times.
+    /// Calls back with every cell under the bar along a path, in runs of one row each. A cell may appear several times.
     pub(super) fn along(&self, path: &[Point], visit: impl FnMut(Range<usize>)) {
         self.along_some(path, 0..path.len(), visit);
     }
 
-    /// The same with no more than some of the sides; turns are those of the whole path.
+    /// The same for only some sides of the path. Turns are those of the whole path.
     pub(crate) fn along_some(
         &self,
         path: &[Point],
@@ -55,8 +56,7 @@ impl Raster {
         }
     }
 
-    /// Cells under the bar while it turns from the way that came from `before` into the way from one point to the next, and
-    /// those along that way.
+    /// The cells under the bar along one side and during the turn into it; the preceding side comes from `before`.
     pub(crate) fn turn_and_side(
         &self,
         before: Option<Point>,
@@ -87,7 +87,7 @@ impl Raster {
         let n = (turn.abs() / WEDGE_RAD).ceil();
         let (sin, cos) = (turn / n).sin_cos();
         let mut rim = left_of(from) * (self.bar_m / 2.0);
-        // Either half of the bar sweeps a fan.
+        // Each half of the bar sweeps a fan.
         let mut fans = [[at; MOST_CORNERS]; 2];
         for k in 0..=n as usize {
             (fans[0][k + 1], fans[1][k + 1]) = (at + rim, at - rim);

@@ -1,24 +1,25 @@
 //! Rows of square cells over the floor.
 //!
-//! The rows are turned against the tank's axes. A planner that shortens paths as long as no cell is lost would otherwise
-//! keep off every straight wall by the half cell that no row of centres represents.
+//! The rows are rotated against the tank's axes. Otherwise a planner that shortens paths without losing cells would
+//! stay away from every straight wall by the half cell that no row of centres represents.
 
 use crate::plane::{direction, extent, left_of};
 use std::ops::Range;
 use world::{Boundary, Point, Vector, polyline::edges, shape::bounds_of};
 
-/// Direction of the rows, radians from east: along no wall and no lanes that people build or plan.
+/// Direction of the rows, radians from east: unlike the direction of any usual wall or lane.
 const ROWS_RAD: f64 = 0.3;
-/// Another such direction. A path that was fitted to cells seems to sweep more of them than it does; others show what it sweeps.
+/// A second such direction. A path fitted to cells appears to sweep more of them than it does; other cells show what it
+/// really sweeps.
 const OTHER_ROWS_RAD: f64 = 0.9;
-/// Corners of the largest polygon that is filled: a fan of wedges over half a turn, and its middle.
+/// Corners of the largest polygon that can be filled: a fan of wedges over half a turn, and its centre.
 pub(super) const MOST_CORNERS: usize = 11;
 /// Rows of a polygon that are filled together.
 const BAND: usize = 32;
-/// The end of a closed range as the start of what lies behind it.
+/// Converts the end of a closed range to the start of what follows it.
 const NEXT: f64 = 1e-9;
 
-/// Size of cells and direction of their rows.
+/// Size of the cells and direction of their rows.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Grain {
     cell_m: f64,
@@ -26,34 +27,34 @@ pub(crate) struct Grain {
 }
 
 impl Grain {
-    /// Cells with this edge, metres.
+    /// Cells with this edge length, metres.
     pub(crate) fn of(cell_m: f64) -> Self {
         Self { cell_m, rows_rad: ROWS_RAD }
     }
 
-    /// Cells as large in rows of another direction.
+    /// Cells of the same size in rows of the second direction.
     pub(crate) fn other(cell_m: f64) -> Self {
         Self { cell_m, rows_rad: OTHER_ROWS_RAD }
     }
 }
 
-/// Where the cells of a floor lie, and what sweeps them.
+/// The grid of cells over a floor, and the bar that sweeps them.
 #[derive(Clone, Copy)]
 pub(crate) struct Raster {
     /// Unit vector along the rows.
     ahead: Vector,
-    /// Where the first cell of the first row begins, along and across the rows, metres.
+    /// Start of the first cell of the first row, along and across the rows, metres.
     low: Point,
-    /// Edge of a cell, metres.
+    /// Edge length of a cell, metres.
     pub cell_m: f64,
     columns: usize,
     rows: usize,
-    /// Width of the bar that sweeps them, metres.
+    /// Width of the bar that sweeps the cells, metres.
     pub bar_m: f64,
 }
 
 impl Raster {
-    /// Cells over everything within a wall.
+    /// Creates cells over the area inside a wall.
     pub(super) fn over(wall: &Boundary, Grain { cell_m, rows_rad }: Grain, bar_m: f64) -> Self {
         let ahead = direction(rows_rad);
         let (low, high) = match wall {
@@ -100,7 +101,7 @@ impl Raster {
         })
     }
 
-    /// The meant cells with a cell across an edge that is not meant, or none, in order.
+    /// The selected cells that have at least one unselected edge neighbour, in order.
     pub(super) fn rim(&self, is_meant: &[bool]) -> Vec<usize> {
         let (columns, last) = (self.columns, self.columns - 1);
         let rows: Vec<&[bool]> = is_meant.chunks_exact(columns).collect();
@@ -117,7 +118,7 @@ impl Raster {
         rim
     }
 
-    /// Groups of neighbouring cells among those that are meant, largest first.
+    /// Groups of neighbouring selected cells, largest first.
     pub(crate) fn groups(&self, is_meant: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let mut open: Vec<bool> = (0..self.len()).map(is_meant).collect();
         let mut groups = Vec::new();
@@ -138,7 +139,7 @@ impl Raster {
         groups
     }
 
-    /// Those of the meant cells whose centres lie within a distance of a place, with their centres.
+    /// The selected cells whose centres are within a distance of a position, with their centres.
     pub(super) fn near(
         &self,
         place: Point,
@@ -156,8 +157,8 @@ impl Raster {
         centers.filter(move |(_, at)| (at - place).norm() <= reach_m)
     }
 
-    /// Every cell whose centre lies in a convex polygon of at most [`MOST_CORNERS`] corners, in either sense, in runs of one
-    /// row each.
+    /// Every cell whose centre is inside a convex polygon of at most [`MOST_CORNERS`] corners, in either orientation,
+    /// in runs of one row each.
     pub(super) fn fill(&self, polygon: &[Point], mut visit: impl FnMut(Range<usize>)) {
         let mut turned = [Point::origin(); MOST_CORNERS];
         for (turned, corner) in turned.iter_mut().zip(polygon) {
@@ -175,7 +176,7 @@ impl Raster {
         for (row, corner) in corner_rows.iter_mut().zip(polygon) {
             *row = self.row_from(corner.y, index_from(row_of(corner.y)), &rows);
         }
-        // Side by side through a band of rows: that takes fewer decisions than row by row through the sides.
+        // Processing side by side through a band of rows takes fewer branches than going through the sides row by row.
         for start in rows.clone().step_by(BAND) {
             let band = start..rows.end.min(start + BAND);
             let spans = self.spans(polygon, &corner_rows, &band);
@@ -185,7 +186,7 @@ impl Raster {
         }
     }
 
-    /// The cells of a row with their centres between two places along it.
+    /// The cells of a row with their centres between two positions along it.
     fn fill_row(&self, row: usize, from: f64, to: f64, visit: &mut impl FnMut(Range<usize>)) {
         let column_of = |x: f64| (x - self.low.x) / self.cell_m - 0.5;
         let (left, past) = (index_from(column_of(from)), index_from(column_of(to) + NEXT).min(self.columns));
@@ -194,7 +195,7 @@ impl Raster {
         }
     }
 
-    /// Every cell whose centre lies in a closed polygon, convex or not, in runs of one row each.
+    /// Every cell whose centre is inside a closed polygon, convex or not, in runs of one row each.
     pub(super) fn fill_ring(&self, ring: &[Point], mut visit: impl FnMut(Range<usize>)) {
         let turned: Vec<Point> = ring.iter().map(|corner| along_and_across(self.ahead, *corner)).collect();
         let (low, high) = extent(turned.iter().map(|p| p.y));
@@ -212,7 +213,8 @@ impl Raster {
         }
     }
 
-    /// Where a convex polygon begins and ends on the rows of a band; `corner_rows` are the first rows not below its corners.
+    /// The positions where a convex polygon begins and ends on the rows of a band. `corner_rows` are the first rows not
+    /// below its corners.
     fn spans(
         &self,
         polygon: &[Point],
@@ -234,13 +236,13 @@ impl Raster {
         spans
     }
 
-    /// Place of the centres of a row across the rows.
+    /// The position of a row's centres across the rows.
     fn row_y(&self, row: usize) -> f64 {
         self.low.y + (f64::from(row as u32) + 0.5) * self.cell_m
     }
 
-    /// The first of some rows whose centres do not lie below `y`, or the one behind them; rounding may have made the guess
-    /// wrong.
+    /// The first row of a range whose centres are not below `y`, or the end of the range. Corrects a first guess for
+    /// rounding.
     fn row_from(&self, y: f64, guess: usize, rows: &Range<usize>) -> usize {
         let mut row = guess.clamp(rows.start, rows.end);
         while row > rows.start && self.row_y(row - 1) >= y {
@@ -253,14 +255,14 @@ impl Raster {
     }
 }
 
-/// Coordinates of a place along and across a direction.
+/// The coordinates of a point along and across a direction.
 fn along_and_across(ahead: Vector, at: Point) -> Point {
     Point::new(ahead.dot(&at.coords), ahead.perp(&at.coords))
 }
 
-/// The first index that is not below a place.
+/// The first index that is not below a position.
 fn index_from(place: f64) -> usize {
-    // Truncation is quicker than rounding up, and negative places become 0.
+    // Truncation is quicker than rounding up, and negative positions become 0.
     let below = (place as i64).max(0);
     (below + i64::from(place > below as f64)) as usize
 }

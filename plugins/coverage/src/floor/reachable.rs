@@ -5,28 +5,28 @@ use crate::slit_domain::SlitDomain;
 use std::sync::Arc;
 use world::{Point, shape::mean_of};
 
-/// Cells of the floor, and which of them the tool can reach.
+/// The cells of the floor, and which of them the tool can reach.
 #[derive(Clone)]
 pub(crate) struct ReachableFloor {
     pub raster: Raster,
-    /// Whether the tool can reach a cell; candidates share them.
+    /// Whether the tool can reach each cell; shared by all candidates.
     pub cells: Arc<[bool]>,
-    /// Number of cells that it can reach.
+    /// Number of reachable cells.
     pub n: usize,
 }
 
 impl ReachableFloor {
-    /// The floor that the tool can reach from a domain, in cells with this edge, metres.
+    /// The floor that the tool can reach from a domain, in cells with this edge length, metres.
     pub(crate) fn new(domain: &SlitDomain<'_>, cell_m: f64) -> Self {
         Self::in_cells(domain, Grain::of(cell_m))
     }
 
-    /// The floor that the tool can reach from a domain, in such cells.
+    /// The floor that the tool can reach from a domain, in the given cells.
     pub(crate) fn in_cells(domain: &SlitDomain<'_>, grain: Grain) -> Self {
         if domain.sealed.area_m2 > 0.0 {
             return Self::of(domain, grain);
         }
-        // Cuts take no floor away: it is the same for all domains of the workspace.
+        // Cuts remove no floor, so it is the same for all domains of the workspace.
         let mut kept =
             domain.workspace.floors.iter().map(|kept| kept.get_or_init(|| (grain, Self::of(domain, grain))));
         kept.find(|(other, _)| *other == grain)
@@ -41,15 +41,15 @@ impl ReachableFloor {
             raster.fill(&triangle, |cells| free[cells].fill(true));
         }
         let (mut cells, mut is_known) = (free.clone(), free.clone());
-        // What the tool reaches beyond the middle of the hull lies within half a swath of the last free cells, as it
-        // does when the mission counts.
+        // The tool reaches beyond the hull centre by half a swath from the last free cells, just as the mission counts
+        // it.
         for cell in raster.rim(&free) {
             let near = raster.near(raster.center(cell), raster.bar_m / 2.0, |other| !is_known[other]);
             for (other, at) in near.collect::<Vec<_>>() {
                 (cells[other], is_known[other]) = (workspace.is_floor(at), true);
             }
         }
-        // The hull may go on from the last free centre to the rim of its room, by up to a cell.
+        // The hull centre may move beyond the last free cell, up to a cell further, to the edge of its room.
         for cell in raster.rim(&free) {
             let reach_m = raster.bar_m / 2.0 + raster.cell_m;
             let near = raster.near(raster.center(cell), reach_m, |other| !is_known[other]);
@@ -62,7 +62,7 @@ impl ReachableFloor {
         Self { raster, cells: cells.into(), n }
     }
 
-    /// The floor within some polygons; all of it without polygons.
+    /// The floor inside some polygons; all of it if there are no polygons.
     pub(crate) fn within(mut self, regions: &[&[Point]]) -> Self {
         if regions.is_empty() {
             return self;
@@ -74,7 +74,7 @@ impl ReachableFloor {
         self
     }
 
-    /// The cells in a polygon that the tool can reach; of a polygon that holds no centre of any, the one about its middle.
+    /// The reachable cells inside a polygon. For a polygon that contains no cell centre, the cell at its middle.
     pub(crate) fn cells_in(&self, ring: &[Point]) -> Vec<usize> {
         let mut found = Vec::new();
         self.raster.fill_ring(ring, |cells| found.extend(cells.filter(|cell| self.cells[*cell])));
@@ -84,12 +84,12 @@ impl ReachableFloor {
         found
     }
 
-    /// Whether there is floor to scan within half a swath of a place.
+    /// Whether there is floor to scan within half a swath of a position.
     pub(crate) fn is_near(&self, at: Point) -> bool {
         self.raster.near(at, self.raster.bar_m / 2.0, |cell| self.cells[cell]).next().is_some()
     }
 
-    /// Area, square metres.
+    /// The area, square metres.
     pub(crate) fn area_m2(&self) -> f64 {
         self.n as f64 * self.raster.cell_m * self.raster.cell_m
     }

@@ -1,8 +1,7 @@
-//! How a robot with tracks is steered along a path: on circular arcs that end on the path, slower where it bends.
+//! Steers a tracked robot along a path: on circular arcs that end on the path, slower at bends.
 //!
-//! Pure pursuit proper: the one arc that leaves along the heading and meets the aim. On a path of even curvature it
-//! follows without an offset, which a robot that merely turns toward its aim does not: round a column that one cuts
-//! inside.
+//! Proper pure pursuit: the one arc that leaves along the heading and meets the aim. On a path of constant curvature it
+//! follows without an offset. A robot that merely turns toward its aim has an offset, and cuts inside around a column.
 
 use planner_api::{Drive, Limits};
 use std::collections::VecDeque;
@@ -13,27 +12,27 @@ use world::{
 
 /// Angle to the aim beyond which the robot turns on the spot, radians.
 const TURN_FIRST_RAD: f64 = 0.5;
-/// Turn rate per angle on the spot, 1/s.
+/// Turn rate per angle when turning on the spot, 1/s.
 const TURN_GAIN_PER_S: f64 = 2.5;
-/// Nearer aims make the arc no tighter, metres.
+/// Closer aims do not tighten the arc, metres.
 const LEAST_REACH_M: f64 = 0.15;
-/// Share of the turn rate that an arc may take; the rest is for corrections.
+/// Share of the turn rate that an arc may use; the rest is for corrections.
 const TURN_SHARE: f64 = 0.9;
-/// A robot that something slows down turns as fast as if it drove at this speed, metres per second: heading for a column,
-/// it is slow until it has turned away, and on the arc alone it would turn as slowly as it creeps.
+/// A robot that is slowed down turns as fast as if it drove at this speed, metres per second. When it heads for a
+/// column, it is slow until it has turned away; on the arc alone it would turn as slowly as it creeps.
 const TURNING_M_PER_S: f64 = 0.15;
-/// Turn of a path that makes a corner, radians.
+/// Turn of a path that counts as a corner, radians.
 const CORNER_RAD: f64 = 0.5;
-/// A bend is what turns within this way, metres: as far as the robot looks ahead.
+/// The turns within this distance form one bend, metres: as far as the robot looks ahead.
 const BEND_M: f64 = 0.25;
-/// Nearer than this the robot is at a corner, metres.
+/// Within this distance the robot is at a corner, metres.
 const AT_CORNER_M: f64 = 0.05;
-/// A corner is approached no faster than would reach it in this time, seconds.
+/// The robot approaches a corner no faster than it could reach it in this time, seconds.
 const CORNER_S: f64 = 0.6;
-/// A robot does not slow down below this before corners, metres per second.
+/// The robot does not slow down below this speed before corners, metres per second.
 const LEAST_M_PER_S: f64 = 0.08;
 
-/// The twist along the arc that leaves along the heading and ends at the aim, with the speed of a wanted velocity.
+/// The twist along the arc that leaves along the heading and ends at the aim, at the speed of a wanted velocity.
 pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Limits) -> Drive {
     let speed = wanted.norm();
     if speed < 1e-9 {
@@ -50,8 +49,8 @@ pub(super) fn twist(wanted: Vector, heading_rad: f64, reach_m: f64, limits: &Lim
     Drive::Twist { v_m_per_s, w_rad_per_s: v_m_per_s.max(TURNING_M_PER_S.min(fastest)) * curvature }
 }
 
-/// The speed from which a robot is slow enough at every corner and bend ahead, and at the end of what is ahead, metres per
-/// second.
+/// The speed from which the robot can slow down in time for every corner and bend ahead and for the end of the path,
+/// metres per second.
 pub(super) fn speed_ahead(at: Point, ahead: &[Point], limits: &Limits) -> f64 {
     let braking = Braking::of(limits);
     let mut along_m = 0.0;
@@ -77,14 +76,14 @@ pub(super) fn speed_ahead(at: Point, ahead: &[Point], limits: &Limits) -> f64 {
     fastest.min(braking.speed_before(along_m, LEAST_M_PER_S))
 }
 
-/// How much a path turns within a short way.
+/// The turning of a path within a short distance.
 #[derive(Default)]
 struct Bends {
     within: VecDeque<(f64, f64)>,
 }
 
 impl Bends {
-    /// How sharply it turns with a turn more at a place along it, radians per metre.
+    /// The curvature at a point of a path, including one more turn there, radians per metre.
     fn sharpest_with(&mut self, along_m: f64, turn_rad: f64) -> f64 {
         self.within.push_back((along_m, turn_rad));
         while self.within.front().is_some_and(|(at_m, _)| along_m - at_m > BEND_M) {

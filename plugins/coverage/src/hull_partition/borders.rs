@@ -5,18 +5,18 @@ use crate::tuning::hull_partition::LEAST_GATE_M;
 use crate::workspace::Workspace;
 use world::{Point, polyline::edges};
 
-/// Edges lie on one line within this, metres.
+/// Edges closer than this to the same line count as collinear, metres.
 pub(super) const ON_LINE_M: f64 = 1e-5;
 
 /// A piece of the boundary between two cells.
 pub(super) struct Border {
-    /// The cells on either side, the lower one first.
+    /// The cells on either side, the lower index first.
     cells: (usize, usize),
-    /// Its ends.
+    /// The ends of the piece.
     pub ends: (Point, Point),
-    /// Whether no disc with the distance to keep covers it.
+    /// Whether the piece is outside all discs grown by the distance to keep.
     pub is_open: bool,
-    /// Whether it is open and wide enough to pass.
+    /// Whether the piece is open and wide enough to pass.
     pub is_gate: bool,
 }
 
@@ -29,14 +29,14 @@ impl Border {
         (self.ends.1 - self.ends.0).norm()
     }
 
-    /// The cell on the other side of one.
+    /// The cell on the other side.
     pub(super) fn beyond(&self, cell: usize) -> Option<usize> {
         let (a, b) = self.cells;
         if a == cell { Some(b) } else { (b == cell).then_some(a) }
     }
 }
 
-/// Everything that two cells share, in pieces that can be passed and pieces that cannot.
+/// The boundary that two cells share, in passable and impassable pieces.
 pub(super) fn borders(cells: &[Cell], workspace: &Workspace, columns: &[Column]) -> Vec<Border> {
     let mut borders = Vec::new();
     for a in 0..cells.len() {
@@ -50,7 +50,7 @@ pub(super) fn borders(cells: &[Cell], workspace: &Workspace, columns: &[Column])
     borders
 }
 
-/// Segments on the edge of both polygons.
+/// Segments on the edges of both polygons.
 fn shared(p: &[Point], q: &[Point]) -> Vec<(Point, Point)> {
     let mut found = Vec::new();
     for (a, b) in edges(p) {
@@ -71,7 +71,7 @@ fn shared(p: &[Point], q: &[Point]) -> Vec<(Point, Point)> {
     found
 }
 
-/// A border in pieces between the places where discs with the distance to keep begin and end.
+/// Divides a border where it enters and leaves discs grown by the distance to keep.
 fn pieces(
     cells: (usize, usize),
     ends: (Point, Point),

@@ -1,7 +1,7 @@
 //! Convex cells between the hull rings of the columns (Pan 2025).
 //!
-//! Cells of a ring lie between a hull edge and the ring before, bounded by two rays away from the middle; every column
-//! stands on a cell's edge or corner, none inside.
+//! The cells of a ring lie between a hull edge and the preceding ring, bounded by two rays away from the middle. Every
+//! column is on an edge or corner of a cell, and none is inside.
 
 use crate::plane::direction;
 use crate::tuning::hull_partition::WALL_SIDES;
@@ -10,7 +10,7 @@ use geometry::convex::Part;
 use std::f64::consts::TAU;
 use world::{Boundary, Point, Vector, polyline::edges, shape::ring_area_m2};
 
-/// Rounding, metres.
+/// Tolerance for rounding, metres.
 pub(super) const EPSILON_M: f64 = 1e-7;
 
 /// A disc around an obstacle.
@@ -26,7 +26,7 @@ impl Column {
     }
 }
 
-/// A cell: one convex polygon, or several that were merged.
+/// A cell: one convex polygon, or several merged ones.
 #[derive(Clone)]
 pub(super) struct Cell {
     pub polygons: Vec<Vec<Point>>,
@@ -51,7 +51,7 @@ impl Cell {
         hull(&self.polygons.concat())
     }
 
-    /// Share of its hull that it fills.
+    /// The share of its convex hull that the cell fills.
     pub(super) fn convexity(&self) -> f64 {
         self.area_m2() / ring_area_m2(&self.hull()).abs().max(1e-12)
     }
@@ -75,7 +75,7 @@ pub(super) fn cells(workspace: &Workspace, columns: &[Column]) -> Vec<Cell> {
             polygons.extend(innermost(&outer, &left, workspace.anchor));
             return polygons.into_iter().map(|polygon| Cell { polygons: vec![polygon] }).collect();
         }
-        // Rays away from a place outside the ring would not bound convex cells.
+        // Rays from a point outside the ring would not bound convex cells.
         let from = if contains(&ring, middle) { middle } else { area_and_center(&ring).1 };
         for (u, v) in edges(&ring) {
             let beyond_edge = clipped(&outer, u, u - v);
@@ -89,18 +89,20 @@ pub(super) fn cells(workspace: &Workspace, columns: &[Column]) -> Vec<Cell> {
     }
 }
 
-/// What is inside the last ring: whole, or cut along the line of the columns that are left.
+/// The area inside the last ring: whole, or cut along the line of the remaining columns.
 fn innermost(outer: &[Point], left: &[Point], anchor: Point) -> Vec<Vec<Point>> {
     let Some(first) = left.first() else { return vec![outer.to_vec()] };
-    let far =
-        left.iter().max_by(|a, b| (*a - first).norm().total_cmp(&(*b - first).norm())).expect("not empty");
+    let far = left.iter().max_by(|a, b| (*a - first).norm().total_cmp(&(*b - first).norm())).expect(
+        "the ring has at least one \
+                                                                                               point",
+    );
     let way = if left.len() > 1 { far - first } else { anchor - first };
     let way = way.try_normalize(1e-9).unwrap_or_else(Vector::x);
     let halves = [clipped(outer, *first, way), clipped(outer, *first, -way)];
     halves.into_iter().filter(|half| half.len() > 2).collect()
 }
 
-/// The part of a convex polygon on the left of a line.
+/// The part of a convex polygon to the left of a line.
 pub(super) fn clipped(polygon: &[Point], from: Point, ahead: Vector) -> Vec<Point> {
     let side = |p: Point| ahead.perp(&(p - from));
     let mut kept = Vec::new();
@@ -117,7 +119,7 @@ pub(super) fn clipped(polygon: &[Point], from: Point, ahead: Vector) -> Vec<Poin
     kept
 }
 
-/// Graham's hull; points on an edge are left for the next ring. Empty for points on one line.
+/// Graham's convex hull. Points on an edge are left for the next ring. Empty if all points are on one line.
 pub(super) fn hull(points: &[Point]) -> Vec<Point> {
     let lowest = |a: &&Point, b: &&Point| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x));
     let Some(pivot) = points.iter().min_by(lowest).copied() else { return Vec::new() };
@@ -149,7 +151,7 @@ pub(super) fn contains(polygon: &[Point], at: Point) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp(&(at - a)) >= -EPSILON_M)
 }
 
-/// Area, square metres, and its centre.
+/// The area, square metres, and the centroid.
 pub(super) fn area_and_center(polygon: &[Point]) -> (f64, Point) {
     let (mut area, mut sum) = (0.0, Vector::zeros());
     for (a, b) in edges(polygon) {

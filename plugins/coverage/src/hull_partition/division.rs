@@ -1,4 +1,4 @@
-//! The floor in cells, and the domain in which the robot moves between them: through the gates of a tree.
+//! The floor divided into cells, and the domain in which the robot moves between them: through the gates of a tree.
 
 use crate::hull_partition::borders::{Border, ON_LINE_M, borders};
 use crate::hull_partition::cells::{Cell, Column, cells};
@@ -7,7 +7,7 @@ use crate::tuning::hull_partition::{CONVEX_ENOUGH, DEEP_M, SEALED_M2, SEAM_M, SM
 use crate::workspace::Workspace;
 use world::{Point, polyline};
 
-/// Cells and what is left of the floor between them.
+/// The cells, and the domain between them.
 pub(super) struct Division<'a> {
     pub cells: Vec<Cell>,
     /// The cell of home.
@@ -16,8 +16,8 @@ pub(super) struct Division<'a> {
 }
 
 impl<'a> Division<'a> {
-    /// Merged cells, unless merging leaves a way round a column, which the paper's rule does not rule out. All borders but
-    /// the gates of the tree are cuts, or none is.
+    /// Divides the floor into merged cells, unless merging leaves a way around a column, which the paper's rule does
+    /// not rule out. Either all borders except the gates of the tree become cuts, or none do.
     pub(super) fn new(workspace: &'a Workspace, is_tree: bool) -> Option<Self> {
         let columns = Column::all(workspace);
         let cells = cells(workspace, &columns);
@@ -42,7 +42,7 @@ impl<'a> Division<'a> {
     }
 }
 
-/// Gates of the tree of shortest ways from the first cell, centre by gate to centre (Dijkstra 1959).
+/// The gates of the tree of shortest paths from the first cell, from centre through gate to centre (Dijkstra 1959).
 fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
     let mut far_m = vec![f64::INFINITY; cells.len()];
     let mut gate: Vec<Option<usize>> = vec![None; cells.len()];
@@ -64,10 +64,10 @@ fn tree(cells: &[Cell], borders: &[Border], first: usize) -> Vec<usize> {
     gate.into_iter().flatten().collect()
 }
 
-/// One gate more, where discs divide a cell so that the tree of cells leaves a part of it without any.
+/// Adds one gate where discs divide a cell so that the tree leaves a part of it without a gate.
 ///
-/// The widest border at the rim of what is sealed off that lets the robot in: it joins what was apart, so it makes no way
-/// round a column.
+/// The widest border on the edge of the sealed floor that lets the robot in. It joins parts that were separate, so it
+/// creates no way around a column.
 fn one_more_gate<'a>(
     borders: &[Border],
     gates: &[usize],
@@ -92,7 +92,7 @@ fn one_more_gate<'a>(
     })
 }
 
-/// Every border that is not a gate is a cut; pieces under the discs need none.
+/// Turns every border that is not a gate into a cut. Pieces under the discs need no cut.
 fn cuts(borders: &[Border], gates: &[usize]) -> Vec<Vec<Point>> {
     let closed = borders.iter().enumerate().filter(|(k, border)| border.is_open && !gates.contains(k));
     let mut lines: Vec<(Point, Point)> = Vec::new();
@@ -104,14 +104,14 @@ fn cuts(borders: &[Border], gates: &[usize]) -> Vec<Vec<Point>> {
         lines.push(line);
     }
     let cut = |(a, b): (Point, Point)| {
-        // A little longer, so that cuts that meet leave no slit between them.
+        // Slightly longer, so that cuts that meet leave no slit between them.
         let more = (b - a).normalize() * SEAM_M;
         vec![a - more, b + more]
     };
     lines.into_iter().map(cut).collect()
 }
 
-/// Two segments on one line that touch, as one.
+/// Joins two touching segments on one line.
 fn united(a: (Point, Point), b: (Point, Point)) -> Option<(Point, Point)> {
     let ahead = (a.1 - a.0).normalize();
     let place = |p: Point| (p - a.0).dot(&ahead);
@@ -122,7 +122,7 @@ fn united(a: (Point, Point), b: (Point, Point)) -> Option<(Point, Point)> {
     (is_on_line(b.0) && is_on_line(b.1) && touches).then_some((a.0 + ahead * ends.0, a.0 + ahead * ends.1))
 }
 
-/// Takes the seams off the ends of a cut: ways that bend about an end shall not count as crossing it.
+/// Removes the seams at the ends of a cut, so that paths bending around an end do not count as crossing it.
 pub(super) fn trim(cut: &mut [Point]) {
     if let [a, b] = cut {
         let less = (*b - *a) * (1.5 * SEAM_M / (*b - *a).norm().max(1e-9)).min(0.3);
@@ -130,7 +130,7 @@ pub(super) fn trim(cut: &mut [Point]) {
     }
 }
 
-/// Merges cells that are too small with the neighbour that makes the most convex whole.
+/// Merges each cell that is too small with the neighbour that gives the most convex result.
 pub(super) fn merged(mut cells: Vec<Cell>, workspace: &Workspace, columns: &[Column]) -> Vec<Cell> {
     let min_area_m2 = (SMALL_SWATHS * workspace.swath_m).powi(2);
     let mut left_alone: Vec<Point> = Vec::new();
@@ -158,12 +158,13 @@ pub(super) fn merged(mut cells: Vec<Cell>, workspace: &Workspace, columns: &[Col
     }
 }
 
-/// The cells that gates lead to from one.
+/// The cells that gates connect to a cell.
 fn neighbours(borders: &[Border], cell: usize) -> impl Iterator<Item = usize> {
     borders.iter().filter(|border| border.is_gate).filter_map(move |border| border.beyond(cell))
 }
 
-/// A merged cell has no column inside, and no third cell with gates to both of its parts: a column would stand between.
+/// Whether two cells may be merged: no column is inside the result, and no third cell has gates to both parts, because
+/// a column would stand between them.
 fn is_sound(borders: &[Border], whole: &Cell, (a, b): (usize, usize), columns: &[Column]) -> bool {
     let ring = whole.hull();
     let depth_m = |(p, q): (Point, Point), at: Point| (q - p).perp(&(at - p)) / (q - p).norm();

@@ -1,4 +1,4 @@
-//! The order of cells: a genetic algorithm as published (Pan 2025), and the exact order beside it for few cells.
+//! The order of cells: the published genetic algorithm (Pan 2025), and an exact order for small numbers of cells.
 
 use crate::tuning::hull_partition::{
     ELITE, GENERATIONS, MOST_EXACT, MUTATION, PATIENCE, POPULATION, TOURNAMENT,
@@ -6,16 +6,16 @@ use crate::tuning::hull_partition::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Length of an order, and the order.
+/// An order of cells and its length.
 type Measured = (f64, Vec<usize>);
 
-/// Length of the closed tour from cell 0.
+/// The length of the closed tour from cell 0.
 pub(super) fn length(order: &[usize], distance: &[Vec<f64>]) -> f64 {
     let closed = order.iter().zip(order.iter().cycle().skip(1));
     closed.map(|(a, b)| distance[*a][*b]).sum()
 }
 
-/// An order by selection, order crossover and mutation; cell 0 stays first. Reports its progress, 0 to 1.
+/// Finds an order by selection, order crossover and mutation; cell 0 stays first. Reports its progress, 0 to 1.
 pub(super) fn evolved(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -62,7 +62,7 @@ fn picked<'a>(population: &'a [Measured], random: &mut Pcg64Mcg) -> &'a [usize] 
     &population[best].1
 }
 
-/// Order crossover: a stretch of one parent, the rest in the order of the other.
+/// Order crossover: a stretch of one parent, and the rest in the order of the other.
 fn crossed(mother: &[usize], father: &[usize], random: &mut Pcg64Mcg) -> Vec<usize> {
     let n = mother.len();
     let (a, b) = (random.random_range(1..n), random.random_range(1..n));
@@ -84,7 +84,8 @@ fn mutate(order: &mut [usize], random: &mut Pcg64Mcg) {
     }
 }
 
-/// The best order, by dynamic programming over sets (Held and Karp 1962); the genetic one for many cells.
+/// Finds the best order by dynamic programming over sets (Held and Karp 1962); uses the genetic algorithm for many
+/// cells.
 pub(super) fn exact(distance: &[Vec<f64>], seed: u64, report: &dyn Fn(f64)) -> Vec<usize> {
     let n = distance.len();
     if !(4..=MOST_EXACT).contains(&n) {

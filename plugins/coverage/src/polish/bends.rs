@@ -1,4 +1,4 @@
-//! Bends: the path goes a little aside to where it would miss floor, wherever that is cheaper than a lane of its own.
+//! Bends: the path shifts slightly sideways to floor that it would miss, where that is cheaper than a separate lane.
 
 use crate::buckets::Buckets;
 use crate::floor::Run;
@@ -14,7 +14,7 @@ use world::{Point, Vector};
 
 /// A bend that may pay.
 struct Offer {
-    /// Metres of path and turning for a square metre of floor.
+    /// Metres of path and turning per square metre of floor.
     rate: f64,
     at: Point,
     base: usize,
@@ -26,16 +26,17 @@ struct Stretch {
     from: usize,
     past: usize,
     course: Course,
-    /// Its ends.
+    /// The ends of the stretch.
     a: Spot,
     b: Spot,
-    /// What it sweeps, with a side before and behind.
+    /// The cells it sweeps, including one side before and one after it.
     swept: Vec<Run>,
 }
 
 impl Track<'_> {
-    /// Bends the path to missed floor until the coverage is reached, wherever a square metre costs little enough. Returns the
-    /// number of bends. Groups of missed cells that no bend is worth, each by its first cell and their number, are remembered.
+    /// Bends the path to missed floor where a square metre costs little enough, until the required coverage is reached.
+    /// Returns the number of bends. Groups of missed cells that no bend is worth are remembered, by their first cell
+    /// and size.
     pub(super) fn bend(&mut self, terms: &Terms<'_>, vain: &mut BTreeSet<(usize, usize)>) -> Result<usize> {
         if self.coverage() >= terms.enough {
             return Ok(0);
@@ -61,7 +62,7 @@ impl Track<'_> {
             if self.coverage() >= terms.enough {
                 break;
             }
-            // The path may have changed since: only if the bend is still cheap it is made.
+            // The path may have changed in the meantime, so the bend is made only if it is still cheap.
             let Some(k) = (0..=self.sides.len()).find(|k| self.point(*k) == at) else { continue };
             let Some((stretch, spot)) = self.stretch(k, base).zip(self.domain.spot(to)) else { continue };
             if self
@@ -109,7 +110,7 @@ impl Track<'_> {
         best
     }
 
-    /// So many sides of the path on either side of a point.
+    /// The stretch that consists of this many sides of the path on either side of a point.
     fn stretch(&self, k: usize, base: usize) -> Option<Stretch> {
         let (from, past) = (k.checked_sub(base)?, k + base);
         if past > self.sides.len() {
@@ -121,8 +122,8 @@ impl Track<'_> {
         Some(Stretch { from, past, course, a, b, swept })
     }
 
-    /// What a square metre of floor would cost, metres; `None` where the way is barred, nothing is gained, or it costs more
-    /// than so much for no more floor than that.
+    /// The cost of a square metre of floor, metres. `None` if the path is blocked, nothing is gained, or the cost is
+    /// too high for the largest gain that counts.
     fn rate(
         &mut self,
         old: &Stretch,
@@ -140,7 +141,7 @@ impl Track<'_> {
         }
         let cell_m2 = self.swept.raster().cell_m2();
         let swept = self.swept_with(old.from, old.past, &way);
-        // A quick look at what the new way sweeps first.
+        // First a quick check of what the new path sweeps.
         let most_gained_m2 = f64::from(self.swept.count(0, &swept)) * cell_m2;
         if cost_m > most_m_per_m2 * most_gained_m2 {
             return None;

@@ -1,6 +1,6 @@
-//! The pass along the shell. Floor is counted in cells that are coarser than what a straight side leaves of the critical zone
-//! between itself and a round wall, and a shortcut that loses no cell may lose the zone. So the zone has the last word: the
-//! path is led back to the smallest distance from the shell, and lanes close what is still open.
+//! The pass along the shell. A straight side leaves some of the critical zone between itself and a round wall, less
+//! than a cell of the floor. A shortcut that loses no cell may therefore lose the zone. So the zone is treated last:
+//! the path is moved back to the minimum distance from the shell, and lanes close what is still open.
 
 use crate::inflation::SLACK_M;
 use crate::lanes::{Lane, thinned};
@@ -15,7 +15,7 @@ use std::ops::Range;
 use world::{Point, ShellStretch, ShellZone, Tool, polyline};
 
 impl Track<'_> {
-    /// Leads the path along the shell wherever hull and clearance have room for that.
+    /// Moves the path as close to the shell as hull and clearance allow.
     pub(super) fn pass_along_shell(&mut self, terms: &Terms<'_>) -> Result<()> {
         self.press_to_shell(terms)?;
         for lane in open_lanes(self.domain, &self.points(0..self.sides.len())) {
@@ -30,7 +30,7 @@ impl Track<'_> {
         Ok(())
     }
 
-    /// Puts stretches that run nearly as close to the shell as the hull may come there.
+    /// Moves stretches that run almost as close to the shell as the hull may come to the closest position.
     fn press_to_shell(&mut self, terms: &Terms<'_>) -> Result<()> {
         let mut at = 0;
         while at < self.sides.len() {
@@ -55,7 +55,7 @@ impl Track<'_> {
         Ok(())
     }
 
-    /// The next points from one on between which the path runs close to the shell.
+    /// The next run of points, from a given point on, that lies close to the shell.
     fn run_along_shell(&self, from: usize) -> Range<usize> {
         let n = self.sides.len();
         let is_close = |k: &usize| over_m(self.domain.workspace, self.point(*k)) < tuning::PRESSED_M;
@@ -65,28 +65,28 @@ impl Track<'_> {
     }
 }
 
-/// How much farther from the wall than the hull may come a place is, metres.
+/// The distance of a position from the wall beyond the minimum for the hull, metres.
 fn over_m(workspace: &Workspace, at: Point) -> f64 {
     workspace.wall.wall_distance_m(at) - workspace.keep_m - SLACK_M
 }
 
-/// Length of a straight way along the shell, as close to it as matters, metres.
+/// The length of a straight segment if it runs as close to the shell as possible, otherwise 0, metres.
 pub(super) fn shell_m(workspace: &Workspace, a: Point, b: Point) -> f64 {
     let is_close = |at: Point| over_m(workspace, at) < tuning::NEAR_M;
     if is_close(a) && is_close(b) && is_close(a + (b - a) / 2.0) { (b - a).norm() } else { 0.0 }
 }
 
-/// Where the middle of the hull is when it is as close as it may be to a place on the wall.
+/// The hull centre's closest position to a point on the wall.
 pub(crate) fn before_shell(workspace: &Workspace, on_wall: Point) -> Point {
     on_wall + inward(&workspace.wall, on_wall) * (workspace.keep_m + SLACK_M)
 }
 
-/// The place before which the hull is as close to the wall as it may be.
+/// The position at which the hull is as close as possible to the wall at a given point.
 fn at_shell(workspace: &Workspace, at: Point) -> Point {
     at - inward(&workspace.wall, at) * over_m(workspace, at)
 }
 
-/// A line close to the shell as close as possible to it, if that is open; its ends stay.
+/// A line near the shell, moved as close to it as possible, if that is open; its ends stay in place.
 fn pressed(domain: &SlitDomain<'_>, line: &[Point]) -> Option<Vec<Point>> {
     let (first, last) = (line[0], line[line.len() - 1]);
     let beside = polyline::resampled(line, tuning::STEP_M);
@@ -120,10 +120,10 @@ pub(crate) fn open_lanes(domain: &SlitDomain<'_>, path: &[Point]) -> Vec<Lane> {
     lanes.iter().map(|lane| thinned(lane)).collect()
 }
 
-/// The stretches of the shell that a path along it would scan closer than this one does.
+/// The stretches of the shell that a path along it would scan closer than this path does.
 pub(crate) fn open_stretches(workspace: &Workspace, path: &[Point]) -> Vec<ShellStretch> {
     let mut zone = ShellZone::new(&workspace.wall, tuning::ZONE_M);
-    // A bar that reaches the wall when the hull is as close as it may be.
+    // A bar just long enough to reach the wall when the hull is as close to it as possible.
     let tool = Tool::Bar { swath_m: workspace.swath_m.max(2.0 * (workspace.keep_m + SLACK_M)) };
     Tool::along(path, |from, to| zone.pass(tool, from, to));
     let is_solid = |at: Point| workspace.room.is_solid(at);

@@ -1,4 +1,4 @@
-//! Shortcuts: a straighter way between two points of the path, wherever it saves more than the floor that it loses is worth.
+//! Shortcuts: a straighter path between two points of the track, wherever it saves more than the lost floor is worth.
 
 use crate::plane::Course;
 use crate::polish::shell::shell_m;
@@ -19,8 +19,8 @@ struct Stretch {
 }
 
 impl Track<'_> {
-    /// Shortens and straightens wherever it pays. Only what was put in since the last time is looked at, and what leads up
-    /// to it.
+    /// Shortens and straightens wherever it pays. Only parts added since the last call, and what leads up to them, are
+    /// examined.
     pub(super) fn shorten(&mut self, terms: &Terms<'_>) -> Result<()> {
         let mut since_m = f64::INFINITY;
         for side in self.sides.iter_mut().rev() {
@@ -55,7 +55,7 @@ impl Track<'_> {
         Ok(())
     }
 
-    /// Stretches from a point on that a shortcut may replace, shortest first.
+    /// Stretches from a point that a shortcut may replace, shortest first.
     fn stretches(&self, from: usize, terms: &Terms<'_>) -> Vec<Stretch> {
         let (mut length_m, mut turn_rad, mut alone) = (0.0, 0.0, 0_u32);
         let mut stretches = Vec::new();
@@ -66,14 +66,14 @@ impl Track<'_> {
             if length_m > LONG_M || (length_m > SHORT_M && turn_rad < MUCH_TURN_RAD) {
                 break;
             }
-            // Far ends are looked at less closely.
+            // Distant ends are tried less densely.
             if to < from + 2 || !(to - from).is_multiple_of(1 + (to - from) / FINE) {
                 continue;
             }
             let leaving_rad = self.sides.get(to).map_or(0.0, |next| next.turn_rad);
             let course = Course { length_m, turn_rad: turn_rad + leaving_rad };
             let straight = self.straight(from, to);
-            // The bar cannot sweep more floor than it passes and turns over.
+            // The bar cannot sweep more floor than its length times the distance, plus its turns.
             let least_lost_m2 = f64::from(alone) * self.swept.raster().cell_m2()
                 - self.swept.raster().bar_m * (straight.length_m + self.swept.raster().bar_m);
             let most_m = course.excess_m(straight, terms.turn_m_per_rad)
@@ -85,16 +85,16 @@ impl Track<'_> {
         stretches
     }
 
-    /// The straight way between two points, whether it is open or not.
+    /// The straight path between two points, whether it is open or not.
     fn straight(&self, from: usize, to: usize) -> Course {
         Course { length_m: (self.point(to) - self.point(from)).norm(), turn_rad: 0.0 }
     }
 
-    /// Puts the shortest way in place of a stretch, if that pays; says whether it does. Cheap looks come first.
+    /// Replaces a stretch by the shortest path if that pays. Returns whether it did. Cheap checks come first.
     fn takes_shortcut(&mut self, stretch: &Stretch, terms: &Terms<'_>) -> bool {
         let Stretch { from, to, course } = *stretch;
         let (a, b) = (self.point(from), self.point(to));
-        // The straight way, whether open or not, is a quick measure of what can be gained and lost.
+        // The straight path, open or not, is a quick measure of the possible gain and loss.
         let most_m = course.excess_m(self.straight(from, to), terms.turn_m_per_rad);
         if self.seems_to_lose_more(from..to, &[a, b], QUICK_MARGIN * most_m / terms.floor_m_per_m2) {
             return false;
@@ -127,7 +127,7 @@ impl Track<'_> {
         true
     }
 
-    /// By how much less of a way runs along the shell than some sides do, metres.
+    /// The length along the shell that a path loses compared with some sides, metres.
     fn shell_lost_m(&self, sides: Range<usize>, way: &[Point]) -> f64 {
         let old_m: f64 = self.sides[sides].iter().map(|side| side.shell_m).sum();
         if old_m <= 0.0 {
@@ -138,7 +138,8 @@ impl Track<'_> {
         (old_m - fine.windows(2).map(new_m).sum::<f64>()).max(0.0)
     }
 
-    /// Whether another way in place of some sides would lose more floor than this, from a few samples across every side.
+    /// Whether replacing some sides by another path would lose more floor than this, judged by a few samples across
+    /// every side.
     fn seems_to_lose_more(&mut self, sides: Range<usize>, way: &[Point], most_m2: f64) -> bool {
         let half_m = self.swept.raster().bar_m / 2.0;
         let far_m = half_m + self.swept.raster().cell_m;
@@ -158,7 +159,7 @@ impl Track<'_> {
     }
 }
 
-/// Places of a range from its middle outward: there two ways between the same ends differ most.
+/// The positions of a range from its middle outward: in the middle, two paths between the same ends differ most.
 fn from_the_middle(range: Range<usize>) -> impl Iterator<Item = usize> {
     let n = range.len();
     let at =
@@ -166,7 +167,7 @@ fn from_the_middle(range: Range<usize>) -> impl Iterator<Item = usize> {
     (0..n).map(at)
 }
 
-/// Whether a place lies within a distance of a line.
+/// Whether a position is within a distance of a line.
 fn is_near(line: &[Point], at: Point, far_m: f64) -> bool {
     let is_near = |pair: &[Point]| {
         let (way, offset) = (pair[1] - pair[0], at - pair[0]);

@@ -1,4 +1,4 @@
-//! Ties: short lanes of their own over missed floor, where no bend is worth it.
+//! Ties: short separate lanes over missed floor, where no bend is worth it.
 
 use crate::buckets::Buckets;
 use crate::lanes::Lane;
@@ -11,19 +11,19 @@ use world::{Point, Vector, polyline};
 
 /// A lane that may be tied in.
 struct Offer {
-    /// Metres of path and turning for a square metre of floor.
+    /// Metres of path and turning per square metre of floor.
     rate: f64,
     lane: Lane,
 }
 
-/// Where a lane is tied in.
+/// The place where a lane is tied in.
 pub(super) struct Tie {
     cost_m: f64,
     side: usize,
     tied: Tied,
 }
 
-/// A lane with the ways to it and back to the path.
+/// A lane with the connectors to it and back to the path.
 struct Tied {
     into: Vec<Point>,
     lane: Lane,
@@ -37,8 +37,8 @@ impl Tied {
 }
 
 impl Track<'_> {
-    /// Ties lanes over missed floor into the path, the most worthwhile first, until the coverage is reached; groups of
-    /// fewer cells than the least are left. Returns the number of lanes.
+    /// Ties lanes over missed floor into the path, the most worthwhile first, until the required coverage is reached.
+    /// Groups smaller than the minimum number of cells are left. Returns the number of lanes.
     pub(super) fn tie_in_lanes(&mut self, terms: &Terms<'_>, least: usize) -> Result<usize> {
         if self.coverage() >= terms.enough {
             return Ok(0);
@@ -59,7 +59,7 @@ impl Track<'_> {
                 }
             }
         }
-        // Rounding must not lose a cell of 0.05 m of four.
+        // Rounding must not lose one of four cells of 0.05 m.
         let least_gain = ((LEAST_GAIN_M2 / self.swept.raster().cell_m2() + 1e-6) as usize).max(1);
         offers.sort_by(|a, b| a.rate.total_cmp(&b.rate));
         let mut n_made = 0;
@@ -67,7 +67,7 @@ impl Track<'_> {
             if self.coverage() >= terms.enough {
                 break;
             }
-            // What was tied in or swept since may leave little.
+            // Lanes tied in since then may have left little to scan.
             let Some(tie) = self.best_tie(&lane, terms, 0..self.sides.len()) else { continue };
             if self.swept.would_gain(&lane) >= least_gain {
                 self.tie(tie);
@@ -77,7 +77,7 @@ impl Track<'_> {
         Ok(n_made)
     }
 
-    /// Sides with an end near an end of a lane, and some more.
+    /// Sides with an end near an end of a lane, and some others.
     fn sides_near(&self, places: &Buckets, lane: &Lane) -> Vec<usize> {
         let ends = [lane[0], lane[lane.len() - 1]];
         let points = ends.iter().flat_map(|end| places.near(*end, TIE_M));
@@ -88,7 +88,7 @@ impl Track<'_> {
         sides
     }
 
-    /// Where among some sides a lane is best tied in, either way round.
+    /// The best place among some sides to tie in a lane, in either direction.
     pub(super) fn best_tie(
         &self,
         lane: &Lane,
@@ -96,7 +96,7 @@ impl Track<'_> {
         among: impl IntoIterator<Item = usize>,
     ) -> Option<Tie> {
         let (a, b) = (lane[0], lane[lane.len() - 1]);
-        // A look at the box around both ends leaves few points to measure.
+        // Checking the box around both ends leaves few points to measure.
         let reach = Vector::new(TIE_M, TIE_M) * 1.001;
         let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
         let near = |p: Point| {

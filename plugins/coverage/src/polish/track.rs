@@ -1,4 +1,4 @@
-//! A path under polish, side by side, with what every side sweeps.
+//! A path during polishing, side by side, with the cells that every side sweeps.
 
 use crate::buckets::Buckets;
 use crate::floor::{ReachableFloor, Run, SweptFloor};
@@ -17,24 +17,24 @@ use world::{Point, Vector};
 /// Longest side, metres.
 pub(super) const SIDE_M: f64 = 0.3;
 
-/// What a path is polished to, at which prices.
+/// The required coverage and the prices of polishing.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms<'a> {
-    /// Metres of path that turning by a radian is worth.
+    /// Metres of path that are worth a radian of turning.
     pub turn_m_per_rad: f64,
-    /// Metres of path that a square metre of floor is worth.
+    /// Metres of path that are worth a square metre of floor.
     pub floor_m_per_m2: f64,
-    /// Metres of path and turning that a square metre of floor may cost by a bend.
+    /// Metres of path and turning that a bend may cost per square metre of floor.
     pub bend_m_per_m2: f64,
     pub enough: f64,
     /// Coverage that shortcuts must leave.
     pub keep: f64,
-    /// Where the robot may go.
+    /// The positions where the robot may go.
     pub is_wanted: &'a dyn Fn(Point) -> bool,
     pub job: &'a Job,
 }
 
-/// A path with what it sweeps.
+/// A path with the floor that it sweeps.
 #[derive(Clone)]
 pub(crate) struct Track<'a> {
     pub(super) domain: &'a SlitDomain<'a>,
@@ -43,31 +43,32 @@ pub(crate) struct Track<'a> {
     pub(super) swept: SweptFloor,
 }
 
-/// The straight way from a point of a track to the next one. Point `k` of the track is where side `k` begins.
+/// The straight segment from one point of a track to the next. Side `k` begins at point `k` of the track.
 #[derive(Clone)]
 pub(super) struct Side {
     to: Point,
     pub on_lane: bool,
     pub ahead: Vector,
     pub length_m: f64,
-    /// Turning where it begins, radians.
+    /// Turn at the start of the side, radians.
     pub turn_rad: f64,
-    /// Length of it along the shell, metres.
+    /// Length along the shell, metres.
     pub shell_m: f64,
-    /// Cells that the bar sweeps while it turns into the side, and those along it: needed again and again while the
-    /// path around it changes.
+    /// The cells that the bar sweeps while it turns into the side, and those along it. They are needed repeatedly while
+    /// the path around them changes.
     turn: Vec<Run>,
     pub along: Vec<Run>,
-    /// Cells that only this side sweeps, about; no more than it really sweeps alone where it is new.
+    /// Approximate number of cells that only this side sweeps; for a new side never more than the true number.
     pub alone: u32,
     samples: Samples,
-    /// Whether it was put in since shortcuts were last looked for.
+    /// Whether the side was added since shortcuts were last searched for.
     pub is_new: bool,
-    /// Whether shortcuts from where it begins have to be looked for.
+    /// Whether shortcuts from the start of the side must be searched for.
     pub is_open: bool,
 }
 
-/// Which of the samples across a side are swept by nothing else, and after how many exchanges on the floor that was so.
+/// The samples across a side that no other part sweeps, and the number of exchanges on the floor when that was
+/// determined.
 #[derive(Clone, Copy, Default)]
 struct Samples {
     alone: [bool; SAMPLES.len()],
@@ -75,7 +76,7 @@ struct Samples {
 }
 
 impl<'a> Terms<'a> {
-    /// The terms for what is to be scanned, with the prices of a path under work.
+    /// The terms for a scope, with the usual prices of polishing.
     pub(crate) fn of(
         scope: &Scope<'_>,
         effort: Effort,
@@ -96,8 +97,8 @@ impl<'a> Terms<'a> {
 }
 
 impl<'a> Track<'a> {
-    /// A track along some pieces, each of them a lane or a way between lanes; only the new ones, and what leads up to them,
-    /// will be shortened.
+    /// Creates a track along some pieces, each a lane or a connector. Only new pieces, and what leads up to them, will
+    /// be shortened.
     pub(crate) fn new(
         domain: &'a SlitDomain<'a>,
         pieces: &[Piece],
@@ -127,7 +128,7 @@ impl<'a> Track<'a> {
         track
     }
 
-    /// Updates what some sides sweep and turn, and the turn into the side behind them.
+    /// Updates the cells and turns of some sides, and the turn into the side after them.
     fn update(&mut self, sides: Range<usize>) {
         for k in sides.start..(sides.end + 1).min(self.sides.len()) {
             let before = k.checked_sub(1);
@@ -144,7 +145,7 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Lets shortcuts be looked for everywhere again.
+    /// Allows shortcuts to be searched for everywhere again.
     pub(super) fn reopen(&mut self) {
         self.sides.iter_mut().for_each(|side| side.is_new = true);
     }
@@ -153,8 +154,8 @@ impl<'a> Track<'a> {
         self.swept.coverage()
     }
 
-    /// Coverage in the cells that the path was fitted to at which it is so much in others: a fitted path seems to sweep more than
-    /// it does.
+    /// The coverage needed in the cells to which the path was fitted so that coverage in other cells reaches `enough`.
+    /// A fitted path appears to sweep more than it does.
     pub(super) fn enough_here(&self, enough: f64, other: &ReachableFloor) -> f64 {
         let mut swept = SweptFloor::new(other.clone());
         swept.sweep(&self.points(0..self.sides.len()));
@@ -166,27 +167,27 @@ impl<'a> Track<'a> {
         k.checked_sub(1).map_or(self.start, |side| self.sides[side].to)
     }
 
-    /// The points at both ends of some sides and between them.
+    /// The points at the ends of some sides.
     pub(super) fn points(&self, sides: Range<usize>) -> Vec<Point> {
         (sides.start..=sides.end).map(|k| self.point(k)).collect()
     }
 
-    /// All points by place.
+    /// All points, indexed by position.
     pub(super) fn places(&self) -> Buckets {
         let points: Vec<(Point, Point)> =
             self.points(0..self.sides.len()).into_iter().map(|p| (p, p)).collect();
         Buckets::new(1.0, 0.0, &points)
     }
 
-    /// Where a sample across a side lies.
+    /// The position of a sample across a side.
     pub(super) fn sample(&self, side: usize, share: f64) -> Point {
         let Side { ahead, length_m, .. } = self.sides[side];
         let across = left_of(ahead) * (self.swept.raster().bar_m / 2.0);
         self.point(side) + ahead * (length_m / 2.0) + across * share
     }
 
-    /// Which samples across a side nothing else sweeps, kept between exchanges on the floor: many paths are tried
-    /// meanwhile.
+    /// The samples across a side that nothing else sweeps. The result is kept until the next exchange on the floor,
+    /// because many paths are tried in between.
     pub(super) fn samples_alone(&mut self, side: usize) -> [bool; SAMPLES.len()] {
         let n_exchanges = Some(self.swept.n_exchanges);
         if self.sides[side].samples.n_exchanges != n_exchanges {
@@ -196,12 +197,12 @@ impl<'a> Track<'a> {
         self.sides[side].samples.alone
     }
 
-    /// Sides between two points with one before and one behind, as far as there are such.
+    /// The sides between two points, with one side before and one after them where these exist.
     pub(super) fn around(&self, from: usize, to: usize) -> Range<usize> {
         from.saturating_sub(1)..(to + 1).min(self.sides.len())
     }
 
-    /// What the path sweeps on some sides, without the turn into the first one.
+    /// The cells that the path sweeps on some sides, without the turn into the first side.
     pub(super) fn swept_by(&self, sides: Range<usize>) -> Vec<Run> {
         let sides = &self.sides[sides];
         let mut runs = Vec::with_capacity(sides.iter().map(|side| side.turn.len() + side.along.len()).sum());
@@ -214,7 +215,7 @@ impl<'a> Track<'a> {
         runs
     }
 
-    /// What the path would sweep on the same sides with another way from one point to another.
+    /// The cells that the path would sweep on the same sides, with a different path between two points.
     pub(super) fn swept_with(&self, from: usize, to: usize, way: &[Point]) -> Vec<Run> {
         let (sides, mut runs) = (self.around(from, to), Vec::with_capacity(128));
         let mut path = Vec::with_capacity(way.len() + 2);
@@ -222,7 +223,7 @@ impl<'a> Track<'a> {
         path.extend(way);
         path.extend((sides.end > to).then(|| self.point(sides.end)));
         let mut fresh = 0..path.len() - 1;
-        // Sides that stay are known.
+        // The sweeps of unchanged sides are known.
         if sides.start < from && way[0] == self.point(from) {
             fresh.start += 1;
             runs.extend(&self.sides[sides.start].along);
@@ -235,13 +236,13 @@ impl<'a> Track<'a> {
         runs
     }
 
-    /// Length and turning of a way from one point of the path to another.
+    /// Length and turning of a path between two points of the track.
     pub(super) fn course(&self, from: usize, to: usize, way: &[Point]) -> Course {
         let entered = from.checked_sub(1).map(|side| self.sides[side].ahead);
         Course::of(entered, way, self.sides.get(to).map(|side| side.ahead))
     }
 
-    /// Puts other lines in place of the sides between two points.
+    /// Replaces the sides between two points by other lines.
     pub(super) fn splice(&mut self, from: usize, to: usize, lines: &[Piece]) {
         let mut sides = Vec::new();
         for Piece { points, is_lane } in lines {
@@ -254,7 +255,7 @@ impl<'a> Track<'a> {
         self.update(from..past);
     }
 
-    /// The path in pieces of one kind, without points on the straight way between others, and the floor that it swept.
+    /// The path in pieces of one kind, without intermediate points on straight lines, and the floor that it swept.
     pub(crate) fn into_pieces(self) -> (Vec<Piece>, SweptFloor) {
         let mut pieces: Vec<Piece> = Vec::new();
         for (k, side) in self.sides.iter().enumerate() {
@@ -270,7 +271,7 @@ impl<'a> Track<'a> {
     }
 }
 
-/// Adds a straight way in sides that are short enough.
+/// Divides a straight path into sides that are short enough, and adds them.
 fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
     let way = to - from;
     let length_m = way.norm();
@@ -291,7 +292,7 @@ fn divide(from: Point, to: Point, on_lane: bool, sides: &mut Vec<Side>) {
     }));
 }
 
-/// The same line without points that lie on the straight way between their neighbours.
+/// The same line without points on the straight line between their neighbours.
 fn straightened(points: &[Point]) -> Vec<Point> {
     let mut kept = vec![points[0]];
     for k in 1..points.len() - 1 {

@@ -1,9 +1,9 @@
-//! The plan under way.
+//! The current plan.
 
 use planner_api::{LegTag, Plan};
 use world::{Point, polyline};
 
-/// A straight bit of a path.
+/// A straight segment of a path.
 #[derive(Clone, Copy)]
 pub(crate) struct Side {
     pub from: Point,
@@ -12,7 +12,7 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    /// The same in bits no longer than this, metres.
+    /// Divides the segment into segments no longer than this, metres.
     pub(super) fn divided(self, most_m: f64) -> impl Iterator<Item = Self> {
         let way = self.to - self.from;
         let n = (way.norm() / most_m).ceil().max(1.0);
@@ -21,16 +21,16 @@ impl Side {
     }
 }
 
-/// A plan under way, from the place on that the robot is led to.
+/// The current plan, from the point where the robot continues.
 pub(crate) struct CurrentPlan {
     pub cuts: Vec<Vec<Point>>,
-    /// Whether its tether was as short and straight as is preferred.
+    /// Whether its tether met the preferences for length and wrap.
     pub is_preferred: bool,
     sides: Vec<Side>,
 }
 
 impl CurrentPlan {
-    /// What is left of a plan, without a way back along the tether.
+    /// Takes the rest of a plan, without a return path along the tether.
     pub(crate) fn new(plan: &Plan, is_preferred: bool) -> Self {
         let tag = |k: usize| plan.legs.iter().find(|leg| leg.first <= k && k < leg.last).map(|leg| leg.tag);
         let tagged = plan.path.windows(2).enumerate().map(|(k, w)| (w, tag(k)));
@@ -40,7 +40,7 @@ impl CurrentPlan {
         Self { cuts: plan.cuts.clone(), is_preferred, sides: ahead.map(side).collect() }
     }
 
-    /// The path.
+    /// The segments of the path.
     pub(super) fn sides(&self) -> &[Side] {
         &self.sides
     }
@@ -50,7 +50,7 @@ impl CurrentPlan {
         super::points(&self.sides)
     }
 
-    /// Length of the path, metres.
+    /// The length of the path, metres.
     pub(crate) fn length_m(&self) -> f64 {
         polyline::length_m(&self.path())
     }

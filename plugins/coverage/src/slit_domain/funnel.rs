@@ -6,26 +6,27 @@ use world::{Point, Vector};
 /// A corner of a path.
 pub(super) struct Bend {
     pub at: Point,
-    /// 1 where what it bends about lies on its left, -1 on its right, 0 at the ends of the path.
+    /// 1 if the path bends to the left here, -1 if it bends to the right, 0 at its ends.
     pub side: f64,
 }
 
 impl Bend {
-    /// Unit vector away from what the path bends about.
+    /// The unit vector away from the corner around which the path bends.
     pub(super) fn free_side(&self, before: Point, behind: Point) -> Vector {
         let ahead = |from: Point, to: Point| (to - from).try_normalize(0.0).unwrap_or_else(Vector::zeros);
         let (into, out) = (ahead(before, self.at), ahead(self.at, behind));
-        // A path that turns right back goes on round the corner.
+        // A path that reverses its direction continues around the corner.
         let along = (into + out).try_normalize(1e-9).unwrap_or_else(|| left_of(into) * self.side);
         left_of(along) * -self.side
     }
 }
 
-/// The shortest path from start to goal through a sleeve: the left and right ends of the sides that it crosses, in order.
+/// The shortest path from start to goal through a sleeve, given by the left and right ends of the sides that it
+/// crosses, in order.
 ///
-/// From its apex the funnel sees every side up to the present one between two rims. A side that narrows it moves a rim
-/// inward. Where one rim would pass the other, the path bends at the corner of the other rim: that corner is the next apex,
-/// and the walk goes on from the side on which it lies.
+/// From its apex the funnel sees every side up to the present one between two rims. A side that narrows the funnel
+/// moves a rim inward. If one rim would pass the other, the path bends at the corner of the other rim. That corner is
+/// the next apex, and the walk continues from the side that contains it.
 pub(super) fn funnel(start: Point, goal: Point, sleeve: &[(Point, Point)]) -> Vec<Bend> {
     let area = |a: Point, b: Point, c: Point| (b - a).perp(&(c - a));
     let mut path = Vec::with_capacity(8);

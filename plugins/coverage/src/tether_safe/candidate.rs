@@ -1,4 +1,4 @@
-//! Candidates of a tether-safe plan: how lanes and cuts may lie.
+//! Candidates of a tether-safe plan: combinations of a lane pattern and rules for cuts.
 
 use crate::cuts::{CutRule, broken_lanes, domain, domain_between_walls};
 use crate::draft::rotation_turns;
@@ -21,14 +21,14 @@ use world::{Boundary, coverage::percent_text, polyline, shape::ring_area_m2};
 /// One way to make a plan.
 pub(super) struct Candidate {
     pub pattern: Pattern,
-    /// Largest angle between cut and ray, radians.
+    /// Largest angle between a cut and the ray, radians.
     alpha_rad: f64,
 }
 
 impl Candidate {
-    /// What is tried, with cuts up to `alpha_rad` off the ray from the anchor.
+    /// All candidates, with cuts up to `alpha_rad` off the ray from the anchor.
     pub(super) fn all(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Self> {
-        // Contours of the outer wall are not lanes of a floor between inner walls, and too many columns break them.
+        // Contours of the outer wall are unsuitable as lanes between inner walls, and too many columns break them.
         let is_other = workspace.is_room || workspace.is_crowded();
         let is_meant = preferences.contours && (preferences.directions == 0 || !is_other);
         let contours = is_meant.then_some(Pattern::Contours);
@@ -39,7 +39,7 @@ impl Candidate {
         angles_rad(workspace, alpha_rad, patterns.len()).into_iter().flat_map(with_cuts).collect()
     }
 
-    /// What the operator calls it.
+    /// The name shown to the operator.
     pub(super) fn name(&self) -> String {
         let lanes = match self.pattern {
             Pattern::Contours => "contours".to_owned(),
@@ -50,8 +50,8 @@ impl Candidate {
         format!("{lanes}, cuts within {:.0} deg", self.alpha_rad.to_degrees())
     }
 
-    /// The domain between its cuts, unless there is no room. It costs a few domains to find how far cuts may go: as far as
-    /// the cable keeps its limits.
+    /// The domain between the candidate's cuts, if there is room. Several domains are computed to find the loosest rule
+    /// for cuts that keeps the cable within its limits.
     pub(super) fn domain<'a>(
         &self,
         workspace: &'a Workspace,
@@ -74,8 +74,8 @@ impl Candidate {
     }
 }
 
-/// Straight lanes in different directions: in a round tank those of many in which cuts and obstacles break the fewest lanes,
-/// each where obstacles break the fewest of this direction.
+/// Straight lanes in different directions. In a round tank: the directions, out of many, in which cuts and obstacles
+/// break the fewest lanes, each at the offset where obstacles break the fewest.
 fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) -> Vec<Pattern> {
     let is_round = matches!(workspace.wall, Boundary::Circle { .. }) && !workspace.is_room;
     let wanted = preferences.directions.min(most_directions(workspace, is_round));
@@ -102,7 +102,7 @@ fn straight(workspace: &Workspace, preferences: &Preferences, alpha_rad: f64) ->
     found.into_iter().take(wanted).map(|(_, rows)| pattern(rows)).collect()
 }
 
-/// Up to which angles cuts are tried, radians; several between straight walls, where lanes have few directions.
+/// The largest cut angles to try, radians; several between straight walls, where lanes have few directions.
 fn angles_rad(workspace: &Workspace, alpha_rad: f64, n_patterns: usize) -> Vec<f64> {
     if matches!(workspace.wall, Boundary::Circle { .. }) || workspace.is_crowded() {
         return vec![alpha_rad];
@@ -115,7 +115,7 @@ fn angles_rad(workspace: &Workspace, alpha_rad: f64, n_patterns: usize) -> Vec<f
     angles_rad
 }
 
-/// How many directions of straight lanes are worth their time.
+/// The number of directions of straight lanes worth the time.
 fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
     if workspace.is_crowded() {
         return 1;
@@ -123,7 +123,7 @@ fn most_directions(workspace: &Workspace, is_round: bool) -> usize {
     if is_round { most_toured(workspace) } else { BETWEEN_WALLS }
 }
 
-/// How many first tours are worth their time.
+/// The number of first tours worth the time.
 fn most_toured(workspace: &Workspace) -> usize {
     let area_m2 = match &workspace.wall {
         Boundary::Circle { radius_m } => PI * radius_m * radius_m,
@@ -132,7 +132,7 @@ fn most_toured(workspace: &Workspace) -> usize {
     ((TOURED_M * workspace.swath_m / area_m2) as usize).max(LEAST_TOURED)
 }
 
-/// What obstacles and slivers along the wall cost rows, in lanes that a cut breaks.
+/// The cost to rows of obstacles and slivers along the wall, in lanes broken by a cut.
 fn broken_by_obstacles(workspace: &Workspace, rows: &Rows) -> f64 {
     BY_OBSTACLE * rows.broken(workspace) + SLIVER_PER_M * rows.slivers_m(workspace)
 }
@@ -144,20 +144,20 @@ fn main_direction_rad(wall: &Boundary) -> f64 {
     edges.max_by(|a, b| a.norm().total_cmp(&b.norm())).map_or(0.0, |edge| edge.y.atan2(edge.x).rem_euclid(PI))
 }
 
-/// What a candidate is worth.
+/// The value of a candidate.
 pub(super) struct Worth {
     /// Length, metres.
     pub length_m: f64,
     /// Sum of changes of heading, in whole turns.
     pub turns: f64,
-    /// Swept share of the floor that the tool can reach.
+    /// Swept share of the reachable floor.
     pub coverage: f64,
-    /// What the tether says.
+    /// The certificate for the tether.
     pub certificate: Certificate,
 }
 
 impl Worth {
-    /// What a scan is worth to a robot whose cable lies like this.
+    /// Computes the value of a scan for a robot whose cable lies as given.
     pub(super) fn of(
         site: &Site<'_>,
         preferences: &Preferences,
@@ -174,7 +174,7 @@ impl Worth {
         }
     }
 
-    /// Whether another is no worse in anything and better in something.
+    /// Whether another candidate is no worse in any figure and better in at least one.
     pub(super) fn is_beaten_by(&self, other: &Self) -> bool {
         let figures = |w: &Self| {
             [w.length_m, w.turns, w.certificate.tether_length_max_m, w.certificate.wrap_total_max_rad]
@@ -183,12 +183,12 @@ impl Worth {
         pairs().all(|(own, theirs)| theirs <= own) && pairs().any(|(own, theirs)| theirs < own)
     }
 
-    /// One line for the operator.
+    /// A one-line summary for the operator.
     pub(super) fn summary(&self, name: &str) -> String {
         let c = &self.certificate;
         format!(
-            "{name}: {:.1} m, {:.0} turns, {} % of the floor in reach, cable {:.2} m ({:.3} of the least), wrap \
-             {:.0} / {:.0} deg{}",
+            "{name}: {:.1} m, {:.0} turns, {} % of reachable floor, cable {:.2} m ({:.3} of the minimum), \
+             wrap {:.0} / {:.0} deg{}",
             self.length_m,
             self.turns,
             percent_text(self.coverage, 2),
@@ -200,17 +200,18 @@ impl Worth {
         )
     }
 
-    /// Whether it is certified and meets the preferences for the cable as well.
+    /// Whether the candidate is certified and also meets the preferences for the cable.
     pub(super) fn meets(&self, preferences: &Preferences) -> bool {
         self.certificate.certified && preferences.allow(&Strain::from(&self.certificate))
     }
 
-    /// Whether it can be flown, with a tether or without one, as far as can be certified.
+    /// Whether the plan can be run, with or without a tether, as far as can be certified.
     pub(super) fn is_safe(&self, has_tether: bool) -> bool {
         self.certificate.certified || (!has_tether && self.certificate.collisions == 0)
     }
 
-    /// Whether it is to be chosen rather than another: certified, then within the preferences, then by the figure that counts.
+    /// Whether this candidate is preferred to another: certified first, then within the preferences, then by the chosen
+    /// figure.
     pub(super) fn is_before(&self, other: &Self, preferences: &Preferences) -> bool {
         let figure = |worth: &Self| match preferences.choice {
             Choice::Shortest => worth.length_m + preferences.choice_turn_m * worth.turns,

@@ -1,4 +1,4 @@
-//! What the operator sets of a tether-safe plan.
+//! The parameters that the operator sets for a tether-safe plan.
 
 use crate::tour::Effort;
 use planner_api::{Config, ParamSpec, Site, TetherLimits, choice, float, int};
@@ -6,52 +6,83 @@ use std::f64::consts::TAU;
 use steering::params as p;
 use world::tether::{Limits, Strain};
 
-/// The most that a whole turn counts, metres.
+/// Maximum price of a whole turn, metres.
 const MOST_TURN_M: f64 = 20.0;
 const UNLIMITED: Limits =
     Limits { reel_length_m: f64::INFINITY, wrap_max_rad: f64::INFINITY, wrap_total_max_rad: f64::INFINITY };
 
 const CHOOSE: ParamSpec = choice("choose", "Candidate", &["shortest", "fewest-turns", "shortest-cable"], 0)
-    .help("Which of the candidates within the limits is flown, shortest by length and turns. The log lists those that no other \
-           beats in length, turns and cable; those that look worse by their first tours are not finished, and their number is logged.")
+    .help(
+        "Which candidate within the limits to run; shortest counts length and turns. The log lists the \
+           candidates that no other beats in length, turns and cable. Candidates with a worse first tour \
+           are not finished; the log gives their number.",
+    )
     .group("Plan");
 const PATTERN: ParamSpec = choice("pattern", "Lanes", &["all", "contours", "straight"], 0)
-    .help("Lanes along the wall, straight lanes within a lap along the wall, or whichever is better.")
+    .help("Lanes along the wall, straight lanes inside a lap along the wall, or whichever is better.")
     .group("Plan");
 const DIRECTIONS: ParamSpec = int("directions", "Directions tried", "", 1, 24, 12)
-    .help("Straight lanes are tried in this many directions, fewer in large tanks: in a round tank those in which cuts and obstacles \
-           break the fewest lanes, between straight walls two.")
+    .help(
+        "Number of directions tried for straight lanes, fewer in large tanks. In a round tank: the \
+           directions in which cuts and obstacles break the fewest lanes. Between straight walls: two.",
+    )
     .group("Plan");
-const ALPHA: ParamSpec = float("alpha_deg", "Angle of cuts", "deg", 0.0, 80.0, 50.0)
-    .help("Largest angle between a cut and the ray from the anchor: 0 gives the shortest cable, more a shorter path. Between straight \
-           walls larger ones, up to 80 deg, are tried as well.")
+const ALPHA: ParamSpec = float("alpha_deg", "Cut angle", "deg", 0.0, 80.0, 50.0)
+    .help(
+        "Largest angle between a cut and the ray from the anchor. 0 gives the shortest cable; larger \
+           angles give shorter paths. Between straight walls the planner also tries larger angles, up to \
+           80 deg.",
+    )
     .group("Tether");
-const CABLE: ParamSpec = float("cable_share", "Cable over least", "", 1.0, 10.0, 1.1)
-    .help("Longest cable, as a multiple of the least that can do, if any candidate keeps it; the reel always limits it.")
+const CABLE: ParamSpec = float("cable_share", "Cable over minimum", "", 1.0, 10.0, 1.1)
+    .help(
+        "Longest cable, as a multiple of the minimum that reaches all floor. A preference: used if any \
+           candidate meets it. The reel always limits the cable.",
+    )
     .group("Tether");
 const WRAP: ParamSpec = float("wrap_deg", "Wrap on one obstacle", "deg", 10.0, 720.0, 80.0)
-    .help("Largest angle of the cable about one obstacle, if any candidate keeps it; the mission's limit always holds.")
+    .help(
+        "Largest wrap on one obstacle. A preference: used if any candidate meets it. The mission's limit \
+           always applies.",
+    )
     .group("Tether");
-const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Wrap in sum", "deg", 10.0, 3600.0, 100.0)
-    .help("Largest sum of the angles about all obstacles, if any candidate keeps it; the mission's limit always holds.")
+const SUM_WRAP: ParamSpec = float("wrap_total_deg", "Total wrap", "deg", 10.0, 3600.0, 100.0)
+    .help(
+        "Largest total wrap over all obstacles. A preference: used if any candidate meets it. The \
+           mission's limit always applies.",
+    )
     .group("Tether");
-const TURN: ParamSpec = float("turn_m", "Turn in the search", "m", 0.0, 20.0, 1.3)
-    .help("While a path is sought it may get this much longer for every whole turn saved; more leaves more floor to touch-ups.")
+const TURN: ParamSpec = float("turn_m", "Turn cost in search", "m", 0.0, 20.0, 1.3)
+    .help(
+        "Extra path length accepted for each whole turn saved while the planner searches for a path; a \
+           larger value leaves more floor to touch-ups.",
+    )
     .group("Plan");
-const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn in the choice", "m", 0.0, 20.0, 0.0)
-    .help("Among candidates one may be this much longer for every whole turn that it saves; 0: what the robot drives in the time \
-           of a turn, so that the quickest is chosen.")
+const CHOICE_TURN: ParamSpec = float("choice_turn_m", "Turn cost in choice", "m", 0.0, 20.0, 0.0)
+    .help(
+        "Extra path length accepted for each whole turn saved when choosing among candidates. 0: the \
+           distance the robot drives in the time of one turn, so that the quickest candidate is chosen.",
+    )
     .group("Plan");
-const ENOUGH: ParamSpec = float("coverage_pct", "Coverage asked", "%", 50.0, 100.0, 99.58)
-    .help("Touch-ups are added until this share of the floor in reach is scanned, by cells that no path is fitted to.")
+const ENOUGH: ParamSpec = float("coverage_pct", "Coverage target", "%", 50.0, 100.0, 99.58)
+    .help(
+        "Touch-ups are added until this share of the reachable floor is scanned, counted in cells to \
+           which no path was fitted.",
+    )
     .group("Plan");
 const CELL: ParamSpec = float("cell_m", "Cell", "m", 0.01, 0.5, 0.025)
-    .help("Edge of the cells in which floor is counted; in large tanks as much larger as keeps them below four million.")
+    .help(
+        "Edge length of the cells used to count floor; enlarged in large tanks to stay below four \
+           million cells.",
+    )
     .group("Plan");
 const KICKS: ParamSpec = float("kicks", "Search", "", 0.0, 200.0, 4.0)
-    .help("Changes tried per lane in the search for the order of lanes; more takes longer and shortens the path.")
+    .help(
+        "Number of changes tried per lane when searching for the order of lanes. More changes take \
+           longer and shorten the path.",
+    )
     .group("Plan");
-/// How near the robot goes when it comes off its path.
+/// How close the robot may come to obstacles when it leaves its path.
 const GUARD: ParamSpec = float("guard_m", "Guard distance", "m", 0.0, 1.0, 0.1)
     .help("Hull distance below which no motion toward an obstacle is allowed; never more than three quarters of the mission's clearance.")
     .group("Flight")
@@ -78,37 +109,37 @@ pub(super) const ALL: &[ParamSpec] = &[
     p::STUCK,
 ];
 
-/// Which of the candidates is flown.
+/// The criterion for choosing a candidate.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Choice {
-    /// By length and turns; candidates that look worse are not finished for it.
+    /// By length and turns; candidates that look worse are not finished.
     Shortest,
     FewestTurns,
     ShortestCable,
 }
 
-/// What the operator prefers, as the parameters explain, and what the mission demands.
+/// The operator's preferences, as described by the parameters, and the mission's limits.
 #[derive(Clone, Copy)]
 pub(super) struct Preferences {
     pub alpha_rad: f64,
     pub cable_share: f64,
-    /// Reel and wraps that are wanted.
+    /// Preferred reel length and wraps.
     pub limits: Limits,
-    /// Reel and wraps that the mission demands.
+    /// Reel length and wraps that the mission requires.
     pub demanded: Limits,
     pub choice: Choice,
     /// Price of a whole turn in the choice, metres.
     pub choice_turn_m: f64,
     pub enough: f64,
     pub cell_m: f64,
-    /// Directions of straight lanes that are tried; none if 0.
+    /// Number of directions of straight lanes to try; 0 for no straight lanes.
     pub directions: usize,
     pub contours: bool,
     pub effort: Effort,
 }
 
 impl Preferences {
-    /// The preferences that parameters express, for a mission without a tether.
+    /// Reads the preferences from the parameters, for a mission without a tether.
     pub(super) fn of(config: &Config<'_>, site: &Site<'_>) -> Self {
         let pattern = config.choice("pattern");
         Self {
@@ -140,7 +171,7 @@ impl Preferences {
         }
     }
 
-    /// The same preferences under what the mission demands: nothing of a robot without a tether.
+    /// The same preferences under the mission's limits; unchanged for a robot without a tether.
     pub(super) fn under(self, tether: Option<TetherLimits>) -> Self {
         let Some(TetherLimits { reel_length_m, wrap_max_rad, wrap_total_max_rad }) = tether else {
             return self;
@@ -153,21 +184,21 @@ impl Preferences {
         Self { limits, demanded: Limits { reel_length_m, wrap_max_rad, wrap_total_max_rad }, ..self }
     }
 
-    /// The same between inner walls, which bend the cable whatever the cuts are: only what is demanded counts.
+    /// The same between inner walls, which bend the cable whatever the cuts are. Only the mission's limits count there.
     pub(super) fn between_walls(self) -> Self {
         let Limits { wrap_max_rad, wrap_total_max_rad, .. } = self.demanded;
         let limits = Limits { wrap_max_rad, wrap_total_max_rad, ..self.limits };
         Self { alpha_rad: 0.0, cable_share: f64::INFINITY, limits, ..self }
     }
 
-    /// Whether the tether is as short and straight as is preferred.
+    /// Whether the tether meets the preferences for length and wrap.
     pub(super) fn allow(&self, strain: &Strain) -> bool {
         strain.cable_share() <= self.cable_share + 1e-6
             && strain.wrap_max_rad <= self.limits.wrap_max_rad
             && strain.wrap_total_max_rad <= self.limits.wrap_total_max_rad
     }
 
-    /// The same with so many times the length and the wraps of the tether.
+    /// The same preferences with length and wraps multiplied by these factors.
     pub(super) fn with_leeway(&self, length: f64, wrap: f64) -> Self {
         let limits = Limits {
             wrap_max_rad: self.limits.wrap_max_rad * wrap,
@@ -178,7 +209,8 @@ impl Preferences {
     }
 }
 
-/// What the robot drives at full speed in the time of a whole turn, metres; a robot that need not turn pays nothing.
+/// The distance that the robot drives at full speed in the time of a whole turn, metres; 0 for a robot that need not
+/// turn.
 fn driven_in_a_turn_m(site: &Site<'_>) -> f64 {
     let turn_m = site.limits.v_max_m_per_s * TAU / site.limits.w_max_rad_per_s;
     if turn_m.is_finite() { turn_m.clamp(0.0, MOST_TURN_M) } else { 0.0 }

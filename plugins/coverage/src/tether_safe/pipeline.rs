@@ -1,4 +1,4 @@
-//! The pipeline of a plan: candidates, their first tours, finished candidates, the chosen one.
+//! The pipeline of a plan: candidates, their first tours, finished candidates, the chosen candidate.
 
 use crate::draft::Draft;
 use crate::jobs::{Job, run_all};
@@ -14,16 +14,16 @@ use crate::workspace::Workspace;
 use planner_api::{Ctx, LogLevel, Result, Site};
 use world::tether::Cable;
 
-/// What the steps of a plan share.
+/// The data shared by the steps of a plan.
 #[derive(Clone, Copy)]
 pub(super) struct Pipeline<'a> {
     pub site: &'a Site<'a>,
     pub workspace: &'a Workspace,
     pub preferences: &'a Preferences,
     pub scope: Scope<'a>,
-    /// The cable as it lies; none at the anchor.
+    /// The cable as it lies; `None` at the anchor.
     pub cable: Option<&'a Cable>,
-    /// Whether only cuts count that the cable does not lie across.
+    /// Whether candidates are limited to cuts that the cable does not cross.
     pub must_come_in: bool,
 }
 
@@ -32,7 +32,7 @@ struct Drafted<'a> {
     name: String,
     /// Estimated cost of the finished path, metres.
     estimate_m: f64,
-    /// Whether its tether may come to be as short and straight as is preferred.
+    /// Whether its tether may still meet the preferences for length and wrap.
     may_meet: bool,
     draft: Draft<'a>,
 }
@@ -41,11 +41,11 @@ struct Drafted<'a> {
 struct Finished<'a> {
     name: String,
     worth: Worth,
-    /// Kept of the best one only: the floor of a large tank takes megabytes.
+    /// Kept only for the best candidate: the floor of a large tank takes megabytes.
     scan: Option<Scan<'a>>,
 }
 
-/// All finished candidates, and those left because of their tether.
+/// All finished candidates, and those set aside because of their tether.
 #[derive(Default)]
 pub(super) struct Tried<'a> {
     finished: Vec<Finished<'a>>,
@@ -53,7 +53,7 @@ pub(super) struct Tried<'a> {
 }
 
 impl<'a> Pipeline<'a> {
-    /// Finishes the candidates that may win; tries straighter cuts as well if none meets the preferences.
+    /// Finishes the promising candidates. Tries straighter cuts if none meets the preferences.
     pub(super) fn run(&self, stages: &mut Stages<'_>) -> Result<Tried<'a>> {
         let end = stages.end;
         let mut tried = Tried::default();
@@ -73,7 +73,7 @@ impl<'a> Pipeline<'a> {
         if !tried.is_enough(self.preferences) && !tried.left.is_empty() {
             stages.end = end;
             let left = std::mem::take(&mut tried.left);
-            self.finish(left, stages, (1.0, "candidates with more tether"), &mut tried)?;
+            self.finish(left, stages, (1.0, "candidates with a longer tether"), &mut tried)?;
         }
         Ok(tried)
     }
@@ -96,7 +96,7 @@ impl<'a> Pipeline<'a> {
         Ok(cheapest_first(drafts.into_iter().flatten()))
     }
 
-    /// A draft with what it promises.
+    /// Estimates the cost and the tether of a draft.
     fn estimated(&self, name: String, draft: Draft<'a>) -> Drafted<'a> {
         let Self { site, preferences, cable, .. } = *self;
         let estimate_m = draft.estimate_m(preferences.choice_turn_m);
@@ -107,8 +107,8 @@ impl<'a> Pipeline<'a> {
         Drafted { name, estimate_m, may_meet, draft }
     }
 
-    /// Finishes the drafts that may win, and some that look worse if none of the former meets the preferences. The cheapest of
-    /// those whose tether is too long or winds too much are left for the time being.
+    /// Finishes the promising drafts. If none of them meets the preferences, also finishes some that look worse. The
+    /// cheapest drafts whose tether is too long or winds too much are set aside.
     fn finish_promising(
         &self,
         mut drafts: Vec<Drafted<'a>>,
@@ -123,7 +123,7 @@ impl<'a> Pipeline<'a> {
         let mut hopeless = self.hopeless(&mut drafts, HOPELESS, MOST_ROUGHED);
         let (ctx, n) = (stages.ctx, drafts.len() as f64);
         ctx.scalar("candidates worked out", n, "");
-        // It is an even chance that some of those that look worse are finished as well.
+        // The chance that some of the worse-looking drafts are finished as well is taken as one half.
         let n_expected = n + hopeless.len().min(MOST_ROUGHED) as f64 / 2.0;
         self.finish(drafts, stages, (n / n_expected.max(1.0), what), tried)?;
         if !tried.is_enough(self.preferences) && !hopeless.is_empty() {
@@ -133,14 +133,14 @@ impl<'a> Pipeline<'a> {
         if let (Some(next), Some(last)) = (hopeless.first(), hopeless.last()) {
             let [from_m, to_m] = [next, last].map(|draft| draft.estimate_m - least_m);
             let n = hopeless.len();
-            let longer = format!("about {from_m:.0} to {to_m:.0} m longer by their first tours");
+            let longer = format!("about {from_m:.0} to {to_m:.0} m longer, judging by their first tours");
             ctx.log(LogLevel::Info, &format!("candidates not finished: {n}, {longer}"));
         }
         Ok(())
     }
 
-    /// Takes out the drafts behind so many, and those that cost more than the cheapest by so much, if only the cheapest is
-    /// wanted.
+    /// If only the cheapest candidate is wanted, removes and returns the drafts beyond a number, and those that exceed
+    /// the lowest cost by more than a share.
     fn hopeless(&self, drafts: &mut Vec<Drafted<'a>>, share: f64, most: usize) -> Vec<Drafted<'a>> {
         if self.preferences.choice != Choice::Shortest {
             return Vec::new();
@@ -150,7 +150,8 @@ impl<'a> Pipeline<'a> {
         drafts.split_off(n.min(most))
     }
 
-    /// Roughs drafts, and finishes those that may win then: all of them if none of the others meets the preferences.
+    /// Polishes drafts in coarse cells, and then finishes the promising ones. If none of these meets the preferences,
+    /// finishes all the others.
     fn finish(
         &self,
         drafts: Vec<Drafted<'a>>,
@@ -173,7 +174,7 @@ impl<'a> Pipeline<'a> {
         Ok(())
     }
 
-    /// Puts the last touches to drafts, and keeps the scan of the best candidate so far.
+    /// Finishes drafts, and keeps the scan of the best candidate so far.
     fn touch_up(&self, drafts: Vec<Drafted<'a>>, stage: &Stage<'_>, tried: &mut Tried<'a>) -> Result<()> {
         let Self { site, preferences, cable, .. } = *self;
         tried.finished.extend(run_all(drafts, stage, |Drafted { name, draft, .. }, job| {
@@ -194,12 +195,12 @@ fn cheapest_first<'a>(drafts: impl Iterator<Item = Drafted<'a>>) -> Vec<Drafted<
 }
 
 impl<'a> Tried<'a> {
-    /// Whether a candidate meets the preferences.
+    /// Whether any candidate meets the preferences.
     fn is_enough(&self, preferences: &Preferences) -> bool {
         self.finished.iter().any(|finished| finished.worth.meets(preferences))
     }
 
-    /// Whether a candidate is certified.
+    /// Whether any candidate is certified.
     pub(super) fn is_certified(&self) -> bool {
         self.finished.iter().any(|finished| finished.worth.certificate.certified)
     }
@@ -213,7 +214,7 @@ impl<'a> Tried<'a> {
         }
     }
 
-    /// The best candidate; logs every candidate that no other beats.
+    /// Returns the best candidate. Logs every candidate that no other beats.
     pub(super) fn chosen(self, ctx: &Ctx<'_>) -> Option<(Worth, Scan<'a>)> {
         for Finished { name, worth, .. } in &self.finished {
             if !self.finished.iter().any(|other| worth.is_beaten_by(&other.worth)) {

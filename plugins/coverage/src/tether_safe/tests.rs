@@ -52,7 +52,7 @@ fn the_reported_progress_never_goes_back() {
     for tank in [Known::E2.tank(3), Tank { columns: Vec::new(), ..Known::E3.tank(0) }] {
         let bench = plan(&tank, &[], None).1;
         bench::assert_progress_rises(&bench);
-        assert_eq!(bench.progress().last().map(|(_, what)| what.as_str()), Some("floor out of reach"));
+        assert_eq!(bench.progress().last().map(|(_, what)| what.as_str()), Some("unreachable floor"));
     }
 }
 
@@ -76,10 +76,10 @@ fn a_short_reel_gives_a_partial_plan_that_says_what_is_left() {
         "{}",
         scan.certificate.tether_length_max_m
     );
-    assert!(bench.logs().iter().any(|(_, said)| said.contains("beyond the reel")), "{:?}", bench.logs());
+    assert!(bench.logs().iter().any(|(_, said)| said.contains("reach of the reel")), "{:?}", bench.logs());
     let logs = bench.logs();
     let (_, why) = logs.iter().rfind(|(level, _)| matches!(level, LogLevel::Warn)).unwrap();
-    assert!(why.contains("reel of 6.0 m, which is too short"), "{why}");
+    assert!(why.contains("reel of 6.0 m is too short"), "{why}");
 }
 
 #[test]
@@ -160,9 +160,9 @@ fn the_ring_along_the_shell_that_the_tool_does_not_reach_is_margin_and_no_gap() 
     planner.plan(&PlanRequest::new(&reason, start, task, &site), &bench.ctx()).unwrap();
     let logs = bench.logs();
     let said: Vec<&String> = logs.iter().map(|(_, said)| said).collect();
-    assert!(said.iter().any(|said| said.contains("along the shell is beyond lanes of")), "{said:?}");
+    assert!(said.iter().any(|said| said.contains("along the shell is out of reach of lanes")), "{said:?}");
     assert!(!said.iter().any(|said| said.contains("gaps")), "{said:?}");
-    let shell = "shell: 0.09 m along it not reachable: hull radius 0.25 m + clearance 0.05 m - half of lanes of 0.42 m";
+    let shell = "shell: 0.09 m along it not reachable: hull radius 0.25 m + clearance 0.05 m - half the lane width of 0.42 m";
     assert!(said.iter().any(|said| said.starts_with(shell)), "{said:?}");
 }
 

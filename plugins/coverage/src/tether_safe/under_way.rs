@@ -1,4 +1,4 @@
-//! A plan under way: repaired where that will do.
+//! Replanning during a mission: the current plan is repaired if possible.
 
 #[cfg(test)]
 mod tests;
@@ -15,21 +15,21 @@ use crate::tuning::repair::{AHEAD_M, AS_BEFORE_M, LONGER, LONGER_CABLE, LONGER_M
 use planner_api::{LogLevel, Reason, Result};
 use world::{Point, polyline};
 
-/// A plan under way with a repair.
+/// A repair of the current plan, and its value.
 pub(super) type RepairedPlan<'a> = (Worth, Repaired<'a>);
 
-/// What became of a plan under way for which a repair was tried.
+/// The outcome of trying to repair the current plan.
 pub(super) enum Outcome<'a> {
-    /// Changed only round what was found.
+    /// The plan was changed only around the found obstacles.
     Repaired(RepairedPlan<'a>),
-    /// The repair leads a long way round: a new plan may be shorter.
+    /// The repair makes a long detour: a new plan may be shorter.
     Long(RepairedPlan<'a>),
     /// A new plan is needed.
     Lost,
 }
 
 impl<'a> Outcome<'a> {
-    /// A long repair that is still shorter than a new plan and the way back along the tether before it.
+    /// Returns a long repair if it is still shorter than a new plan with its return along the tether.
     pub(super) fn if_shorter_than(self, new: &Worth, lead_in: &[Point]) -> Option<RepairedPlan<'a>> {
         let Self::Long(repair) = self else { return None };
         let new_m = new.length_m + polyline::length_m(lead_in);
@@ -37,12 +37,13 @@ impl<'a> Outcome<'a> {
     }
 }
 
-/// Whether a long repair is better than a new plan with all of its way: that is longer still, or not safe for the tether.
+/// Whether a long repair is better than a new plan: the new plan is even longer in total, or is not safe for the
+/// tether.
 fn is_kept_to(repair_m: f64, new_m: f64, is_new_certified: bool) -> bool {
     repair_m < new_m || !is_new_certified
 }
 
-/// Repairs the plan under way, if one is to be kept to.
+/// Repairs the current plan, if there is one.
 pub(super) fn repaired<'a>(
     pipeline: &Pipeline<'a>,
     current: Option<&CurrentPlan>,
@@ -63,7 +64,7 @@ pub(super) fn repaired<'a>(
     let laid = likeliest_first(laid.into_iter().flatten(), &limits, pipeline);
     let ctx = stages.ctx;
     let log = |message: &str| ctx.log(LogLevel::Info, message);
-    let mut why = "the cuts leave no way".to_owned();
+    let mut why = "the cuts leave no path".to_owned();
     for laid in laid {
         let polished = run_all(vec![laid], &stages.next(0.7, "repair"), |laid, job| {
             let repaired = repair.polished(laid, job)?;
@@ -76,12 +77,12 @@ pub(super) fn repaired<'a>(
             }
         }
     }
-    log(&format!("a new plan instead of a repair: {why}"));
+    log(&format!("a new plan replaces the repair: {why}"));
     Ok(Outcome::Lost)
 }
 
-/// Repairs in the order in which they are polished, until one will do: those first whose tether will be as short and straight as is
-/// preferred, then those where it is as it must be; of these the shortest.
+/// Orders repairs for polishing, which ends with the first success. Repairs whose tether will meet the preferences come
+/// first, then those that meet the limits; within each group the shortest comes first.
 fn likeliest_first<'a>(
     laid: impl Iterator<Item = Laid<'a>>,
     limits: &RepairLimits<'_>,
@@ -101,48 +102,48 @@ fn likeliest_first<'a>(
     ranked.into_iter().map(|(_, laid)| laid).collect()
 }
 
-/// What a repaired plan must keep to; a new plan takes its place where it does not.
+/// Limits of a repaired plan. If it exceeds them, a new plan is made.
 struct RepairLimits<'a> {
     current: &'a CurrentPlan,
-    /// What is preferred of the tether, with some leeway.
+    /// The preferences for the tether, with some leeway.
     tether: Preferences,
-    /// Whether the robot cannot go on.
+    /// Whether the robot cannot continue.
     is_blocked: bool,
 }
 
 impl RepairLimits<'_> {
-    /// What becomes of a plan under way with a repair that keeps to the limits.
+    /// The outcome of a repair that keeps to the limits.
     fn outcome<'a>(&self, repair: RepairedPlan<'a>, log: &dyn Fn(&str)) -> Outcome<'a> {
         let longest_m = self.current.length_m() * (1.0 + LONGER) + LONGER_M;
         if repair.0.length_m > longest_m {
             let what = repair.0.summary("repair");
-            log(&format!("a new plan may be shorter than a repair: {what}; limit {longest_m:.0} m"));
+            log(&format!("a new plan may be shorter than the repair: {what}; limit {longest_m:.0} m"));
             return Outcome::Long(repair);
         }
         log(&repair.0.summary("plan under way, repaired"));
         Outcome::Repaired(repair)
     }
 
-    /// The limit that a repaired plan exceeds.
+    /// The limit that a repaired plan exceeds, if any.
     fn exceeded(&self, worth: &Worth, repaired: &Repaired<'_>) -> Option<String> {
         let Self { current, tether, is_blocked } = self;
         let least = repaired.enough.min(COMPLETE);
         if !worth.certificate.certified {
             Some(worth.certificate.reasons.join("; "))
         } else if current.is_preferred && !worth.meets(tether) {
-            Some("the tether would be too long or wind too much".to_owned())
+            Some("the tether would be too long or its wrap too large".to_owned())
         } else if worth.coverage < least {
-            Some(format!("it should scan {:.2} %", 100.0 * least))
+            Some(format!("coverage is below {:.2} %", 100.0 * least))
         } else if *is_blocked && goes_on(current, &repaired.scan.path()) {
-            // A robot that cannot go on must not be asked to go on.
-            Some("it leads on where the robot was blocked".to_owned())
+            // A robot that cannot continue must not be sent on along the same path.
+            Some("it continues where the robot was blocked".to_owned())
         } else {
             None
         }
     }
 }
 
-/// Whether a path begins as the plan under way goes on.
+/// Whether a path begins as the current plan continues.
 fn goes_on(current: &CurrentPlan, path: &[Point]) -> bool {
     let first = |path: &[Point], far_m: f64| {
         let fine = polyline::resampled(path, 0.1);

@@ -1,4 +1,4 @@
-//! Connectors between lanes: shortest paths of the slit domain, computed when they are first needed.
+//! Connectors between lanes: shortest paths of the slit domain, computed when first needed.
 
 use crate::lanes::Lane;
 use crate::plane::Course;
@@ -7,7 +7,7 @@ use crate::tour::costs::{Costs, End};
 use std::cell::RefCell;
 use world::{Point, Vector};
 
-/// Connectors between the ends of lanes, home and start, and what they cost: metres and turns.
+/// Connectors between the ends of lanes, home and start, and their costs in metres and turns.
 pub(crate) struct Connectors<'a> {
     domain: &'a SlitDomain<'a>,
     ends: Vec<LaneEnd>,
@@ -18,13 +18,13 @@ pub(crate) struct Connectors<'a> {
 struct LaneEnd {
     at: Point,
     spot: Option<Spot>,
-    /// The heading at which the lane is left here; none at home and start.
+    /// The heading at which the robot leaves the lane at this end; `None` at home and start.
     out: Option<Vector>,
 }
 
 impl<'a> Connectors<'a> {
-    /// Connectors of some lanes; costs that are known may come from connectors of the first of these lanes with the same
-    /// home and start.
+    /// Creates the connectors of some lanes. Known costs may come from connectors of the first of these lanes with the
+    /// same home and start.
     pub(crate) fn new(
         domain: &'a SlitDomain<'a>,
         lanes: &[Lane],
@@ -53,7 +53,7 @@ impl<'a> Connectors<'a> {
         self.ends[end].at
     }
 
-    /// The way from one end to another.
+    /// The path from one end to another.
     pub(crate) fn path(&self, u: End, v: End) -> Vec<Point> {
         match (self.ends[u].spot, self.ends[v].spot) {
             (Some(from), Some(to)) => self.domain.path_between(from, to),
@@ -61,12 +61,12 @@ impl<'a> Connectors<'a> {
         }
     }
 
-    /// No way is cheaper than this.
+    /// A lower bound for the cost of a connector.
     pub(super) fn least(&self, u: End, v: End) -> f64 {
         (self.at(u) - self.at(v)).norm()
     }
 
-    /// What leaving a lane at `u` and entering another at `v` costs, metres; the same in both directions.
+    /// The cost of leaving a lane at `u` and entering another at `v`, metres; the same in both directions.
     pub(super) fn cost(&self, u: End, v: End) -> f64 {
         let (u, v) = (u.min(v), u.max(v));
         let known = self.costs.borrow().get(u, v);

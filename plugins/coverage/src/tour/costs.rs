@@ -1,10 +1,9 @@
-//! Costs of connectors, as far as they were computed.
+//! Costs of connectors, as far as computed.
 
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use rustc_hash::FxHashMap;
 
-/// Ends of lanes: `2 * lane` is its first point, `2 * lane + 1` its last; behind the last lane come home, where the tour
-/// ends, and the start.
+/// Index of a lane end: `2 * lane` is its first point, `2 * lane + 1` its last. After the last lane come home, where
+/// the tour ends, and the start.
 pub(crate) type End = usize;
 
 /// A tour: the end at which each lane is entered, home first.
@@ -12,27 +11,27 @@ pub(crate) type Tour = Vec<End>;
 
 /// Relative error of a cost in single precision.
 pub(super) const ROUNDING: f64 = 1e-6;
-/// Ends up to which all costs fit into a table.
+/// Maximum number of ends for which all costs fit into a table.
 const TABLE: usize = 1600;
 
-/// Costs by pairs of ends, the smaller end first; the last two ends are home and start.
+/// Costs by pairs of ends, the smaller end first. The last two ends are home and start.
 #[derive(Default)]
 pub(crate) struct Costs {
     ends: usize,
-    /// All pairs, not a number where the cost is not known; empty where there are too many ends.
+    /// All pairs, NaN where the cost is not known; empty if there are too many ends.
     table: Vec<f32>,
-    /// The known pairs otherwise.
-    map: HashMap<u64, f32, BuildHasherDefault<Mixer>>,
+    /// The known pairs if there are too many ends for the table.
+    map: FxHashMap<u64, f32>,
 }
 
 impl Costs {
-    /// The same costs with so many ends, no fewer than now: new ones come before home and start.
+    /// The same costs for this many ends, at least as many as now. New ends come before home and start.
     pub(super) fn with_ends(self, ends: usize) -> Self {
         if self.ends == ends {
             return self;
         }
         let table = if ends <= TABLE { vec![f32::NAN; ends * ends] } else { Vec::new() };
-        let mut costs = Self { ends, table, map: HashMap::default() };
+        let mut costs = Self { ends, table, map: FxHashMap::default() };
         let moved = |end: End| if end + 2 < self.ends { end } else { end + ends - self.ends };
         for (place, cost) in self.table.iter().enumerate().filter(|(_, cost)| !cost.is_nan()) {
             costs.set(moved(place / self.ends), moved(place % self.ends), *cost);
@@ -62,26 +61,6 @@ impl Costs {
 
 fn pair(u: End, v: End) -> u64 {
     (u as u64) << 32 | v as u64
-}
-
-/// Hashes pairs of ends, which no adversary chooses, by one multiplication.
-#[derive(Default)]
-struct Mixer(u64);
-
-impl Hasher for Mixer {
-    fn finish(&self) -> u64 {
-        self.0 ^ self.0 >> 32
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.write_u64(u64::from(*byte));
-        }
-    }
-
-    fn write_u64(&mut self, number: u64) {
-        self.0 = (self.0 ^ number).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    }
 }
 
 #[cfg(test)]

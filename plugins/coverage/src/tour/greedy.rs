@@ -1,4 +1,5 @@
-//! The first tour: of neighbours, the few ends that are cheapest to go to, the cheapest pairs are joined first.
+//! The first tour: for each end, neighbours are the few ends cheapest to reach, and the cheapest pairs are joined
+//! first.
 
 use crate::jobs::Job;
 use crate::tour::connectors::Connectors;
@@ -8,17 +9,17 @@ use planner_api::Result;
 use std::collections::HashMap;
 use world::Point;
 
-/// How far a tour is when neighbours are listed, as a share of its time, about.
+/// Approximate progress of a tour when neighbours are listed, as a share of its time.
 pub(super) const LISTED: f64 = 0.3;
 
-/// An end and what it costs to go there, metres.
+/// An end and the cost of going there, metres.
 #[derive(Clone, Copy)]
 pub(super) struct Neighbour {
     pub end: End,
     pub cost_m: f64,
 }
 
-/// The cheapest ends from every end, cheapest first.
+/// The cheapest neighbours of every end, cheapest first.
 pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<Vec<Neighbour>>> {
     let n = connectors.len();
     let mut buckets: HashMap<(i64, i64), Vec<End>> = HashMap::new();
@@ -35,7 +36,7 @@ pub(super) fn neighbours(connectors: &Connectors<'_>, job: &Job) -> Result<Vec<V
     (0..n).map(list).collect()
 }
 
-/// The same for so few ends that all others can be looked at.
+/// The same when there are so few ends that all others can be examined.
 pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<Neighbour>> {
     let list = |u: End| {
         let others = (0..connectors.len()).filter(|v| v / 2 != u / 2).collect();
@@ -44,12 +45,12 @@ pub(super) fn neighbours_of_few(connectors: &Connectors<'_>) -> Vec<Vec<Neighbou
     (0..connectors.len()).map(list).collect()
 }
 
-/// The square of one metre that a place lies in.
+/// The square of one metre that contains a position.
 fn bucket(at: Point) -> (i64, i64) {
     (at.x.floor() as i64, at.y.floor() as i64)
 }
 
-/// The nearest ends of other lanes, by straight ways.
+/// The nearest ends of other lanes, by straight lines.
 fn nearest(connectors: &Connectors<'_>, buckets: &HashMap<(i64, i64), Vec<End>>, u: End) -> Vec<End> {
     let (x, y) = bucket(connectors.at(u));
     let mut found: Vec<End> = Vec::new();
@@ -70,11 +71,12 @@ fn nearest_of(connectors: &Connectors<'_>, u: End, mut ends: Vec<End>) -> Vec<En
     ends
 }
 
-/// The cheapest of some ends, which come nearest first.
+/// The cheapest of some ends, which are given nearest first.
 fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<Neighbour> {
     let mut priced: Vec<Neighbour> = Vec::with_capacity(NEIGHBOURS + 1);
     for end in nearest {
-        // The rest are further away than the last in the list, and no way is shorter than the straight one.
+        // The remaining ends are further away than the highest cost in the list, and no path is shorter than a straight
+        // line.
         let least_m = connectors.least(u, end) * (1.0 - ROUNDING);
         if priced.len() == NEIGHBOURS && priced[NEIGHBOURS - 1].cost_m < least_m {
             break;
@@ -91,7 +93,7 @@ fn cheapest(connectors: &Connectors<'_>, u: End, nearest: Vec<End>) -> Vec<Neigh
 struct Chains {
     /// The end that each end is joined to.
     joined: Vec<Option<End>>,
-    /// For every lane another one of its chain, or itself: a forest with one root per chain.
+    /// For every lane another lane of its chain, or itself: a forest with one root per chain.
     above: Vec<usize>,
 }
 
@@ -126,7 +128,7 @@ impl Chains {
     }
 }
 
-/// A tour by the cheapest pairs of neighbours.
+/// Makes a tour from the cheapest pairs of neighbours.
 pub(super) fn greedy(connectors: &Connectors<'_>, near: &[Vec<Neighbour>]) -> Tour {
     let n = connectors.len();
     let mut chains = Chains { joined: vec![None; n], above: (0..n / 2).collect() };
@@ -137,7 +139,7 @@ pub(super) fn greedy(connectors: &Connectors<'_>, near: &[Vec<Neighbour>]) -> To
         pairs.extend(fresh.map(|to| (to.cost_m, u, to.end)));
     }
     chains.join_all(pairs);
-    // What is left are a few chains: join the nearest loose ends.
+    // A few chains are left: join the nearest loose ends.
     let mut loose = chains.loose();
     while loose.len() > 2 {
         let pairs = loose.iter().enumerate().flat_map(|(k, u)| loose[..k].iter().map(move |v| (*u, *v)));

@@ -1,4 +1,4 @@
-//! Local search: 2-opt and Or-opt over neighbour lists, then small kicks that are kept when they help.
+//! Local search: 2-opt and Or-opt over neighbour lists, then small kicks that are kept if they help.
 
 use crate::jobs::Job;
 use crate::tour::connectors::Connectors;
@@ -10,10 +10,10 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::VecDeque;
 
-/// Less is not a gain, metres.
+/// A smaller change does not count as a gain, metres.
 const LEAST_GAIN_M: f64 = 1e-6;
 
-/// How hard to try, and what turns cost.
+/// The effort of the search, and the price of turns.
 #[derive(Clone, Copy)]
 pub(crate) struct Effort {
     pub turn_m_per_rad: f64,
@@ -21,22 +21,22 @@ pub(crate) struct Effort {
     pub seed: u64,
 }
 
-/// A tour under improvement.
+/// A tour being improved.
 struct Search<'a> {
     connectors: &'a Connectors<'a>,
     near: &'a [Vec<Neighbour>],
     entries: Tour,
-    /// Where in the tour each lane is.
+    /// The position of each lane in the tour.
     place: Vec<usize>,
 }
 
-/// Two ends that may be joined, their partners, and what is known of the connectors, metres.
+/// Two ends that may be joined, their partners, and the known costs of the connectors, metres.
 struct Join {
     u: End,
     pu: End,
     v: End,
     pv: End,
-    /// From `u` to its partner, and from `v` to its own.
+    /// From `u` to its partner, and from `v` to its partner.
     left_m: f64,
     opened_m: f64,
     /// From `u` to `v`.
@@ -46,11 +46,11 @@ struct Join {
 /// A change of the tour.
 struct Change {
     gain_m: f64,
-    /// The ends that are joined otherwise now.
+    /// The ends that are joined differently now.
     touched: Vec<End>,
 }
 
-/// Improves a tour as far as the effort goes.
+/// Improves a tour as far as the effort allows.
 pub(super) fn improved(
     connectors: &Connectors<'_>,
     near: &[Vec<Neighbour>],
@@ -95,7 +95,7 @@ impl Search<'_> {
         let home = self.connectors.len() / 2 - 1;
         self.entries.rotate_left(self.place[home]);
         if self.entries[0] != 2 * home {
-            // The same ring the other way round: it leaves from the start and ends at home.
+            // The same ring reversed: it leaves from the start and ends at home.
             self.entries.iter_mut().for_each(|e| *e ^= 1);
             self.entries[1..].reverse();
         }
@@ -112,12 +112,12 @@ impl Search<'_> {
         if self.is_exit(u) { self.entries[(k + 1) % n] } else { self.entries[(k + n - 1) % n] ^ 1 }
     }
 
-    /// Cost of the connector behind the lane at a place of the tour.
+    /// The cost of the connector after the lane at a position of the tour.
     fn cost_behind(&self, k: usize) -> f64 {
         self.connectors.cost(self.entries[k] ^ 1, self.entries[(k + 1) % self.entries.len()])
     }
 
-    /// Improves until nothing near the given ends gets better; returns what was gained, metres.
+    /// Improves the tour until no improvement remains near the given ends. Returns the gain, metres.
     fn descend(&mut self, mut queue: VecDeque<End>, job: &Job) -> Result<f64> {
         let mut waiting = vec![false; self.connectors.len()];
         for u in &queue {
@@ -143,7 +143,7 @@ impl Search<'_> {
         Ok(gained_m)
     }
 
-    /// Joins an end to the first of its neighbours that makes the tour better, by either kind of move.
+    /// Joins an end to the first of its neighbours that improves the tour, by either kind of move.
     fn improve(&mut self, u: End) -> Option<Change> {
         let (near, ways, pu) = (self.near, self.connectors, self.partner(u));
         let left_m = ways.cost(u, pu);
@@ -178,11 +178,11 @@ impl Search<'_> {
         Some(Change { gain_m, touched: vec![u, v, pu, pv] })
     }
 
-    /// Turns the lanes from one place to another the other way round.
+    /// Reverses the lanes from one position to another.
     fn reverse(&mut self, i: usize, j: usize) {
         let n = self.entries.len();
         if j + 1 - i > n / 2 + 1 {
-            // The rest of the ring the other way round is the same tour, and shorter to turn.
+            // Reversing the rest of the ring instead gives the same tour and is shorter.
             let (from, count) = (j + 1, n - (j + 1 - i));
             for k in 0..count / 2 {
                 self.entries.swap((from + k) % n, (from + count - 1 - k) % n);
@@ -203,7 +203,7 @@ impl Search<'_> {
         let (&Join { u, v, pv, .. }, ways) = (join, self.connectors);
         let (n, start, is_exit) = (self.entries.len(), self.place[u / 2], self.is_exit(u));
         for run in 1..=RUN.min(n.saturating_sub(3)) {
-            // The run reaches from `u` away from its partner.
+            // The run extends from `u` away from its partner.
             let far = if is_exit { (start + n + 1 - run) % n } else { (start + run - 1) % n };
             let (first, last) = if is_exit { (far, start) } else { (start, far) };
             let is_inside = |end: End| (self.place[end / 2] + n - first) % n < run;
@@ -234,14 +234,15 @@ impl Search<'_> {
         None
     }
 
-    /// Takes a run out and puts it back so that `u` meets `v`.
+    /// Takes a run out and reinserts it so that `u` meets `v`.
     fn relink(&mut self, first: usize, run: usize, u: End, v: End) {
         let n = self.entries.len();
         self.entries.rotate_left(first);
         let mut taken: Vec<End> = self.entries.drain(..run).collect();
-        let at = self.entries.iter().position(|e| e / 2 == v / 2).expect("the run does not hold it");
+        let at =
+            self.entries.iter().position(|e| e / 2 == v / 2).expect("the run does not contain the position");
         let v_is_exit = self.entries[at] != v;
-        // Behind an exit the run begins with `u`; before an entry it ends with it.
+        // After an exit the run begins with `u`; before an entry it ends with it.
         if v_is_exit != (taken[0] == u) {
             taken.reverse();
             for entry in &mut taken {

@@ -13,10 +13,10 @@ struct Mine {
 impl Planner for Mine {
     const ID: &'static str = env!("CARGO_PKG_NAME");
     const NAME: &'static str = "Straight to the target";
-    const ABOUT: &'static str = "Drives to the target; looks at no obstacle.";
+    const ABOUT: &'static str = "Drives straight to the target and ignores obstacles.";
     const CAPS: Caps = Caps::LOCAL;
     const PARAMS: &'static [ParamSpec] =
-        &[float("speed", "Speed", "m/s", 0.01, 2.0, 0.2).help("Speed on the way.").live()];
+        &[float("speed", "Speed", "m/s", 0.01, 2.0, 0.2).help("Speed on the way to the target.").live()];
 
     fn configure(config: &Config<'_>, site: &Site<'_>, _ctx: &Ctx<'_>) -> Result<Self> {
         Ok(Self { speed_m_per_s: config.float("speed"), limit_m_per_s: site.limits.v_max_m_per_s })
@@ -26,7 +26,7 @@ impl Planner for Mine {
         let targets = match request.task {
             Task::Goto { goal, .. } => vec![goal],
             Task::Follow { targets, .. } => targets.to_vec(),
-            Task::Cover { .. } => return Err(PlannerError::new(Code::Unsupported, "covers no floor")),
+            Task::Cover { .. } => return Err(PlannerError::new(Code::Unsupported, "does not cover floors")),
         };
         let path = [vec![request.start.position], targets].concat();
         let cost = path.windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();

@@ -80,7 +80,7 @@ fn a_refusal_says_what_is_wrong() {
     let error = asked((-1.1, 0.0), (5.0, 0.0), &site).unwrap_err();
     assert_eq!(
         error.message,
-        "the start touches obstacle 7: (-1.10, 0.00) is 0.10 m from it, the hull needs 0.25 m"
+        "the start touches obstacle 7: (-1.10, 0.00) is only 0.10 m from it; the hull needs 0.25 m"
     );
 }
 
@@ -117,7 +117,10 @@ fn what_is_discovered_on_the_goal_under_way_is_no_reason_to_stop() {
     let plan = ask(Reason::MapChanged).unwrap();
     assert!(!plan.complete && plan.path[plan.path.len() - 1] == Point2::new(5.0, 0.0));
     assert_eq!(ask(Reason::Start).unwrap_err().code, Code::GoalOccupied);
-    assert_eq!(bench.logs()[0].1, "obstacle 7 is on the goal; the robot goes on in case it moves away");
+    assert_eq!(
+        bench.logs()[0].1,
+        "obstacle 7 is on the goal; the robot will continue to the goal if the obstacle moves away"
+    );
 }
 
 #[test]

@@ -1,18 +1,18 @@
-//! What the console hands to a planner.
+//! What the console passes to a planner.
 #![allow(missing_docs, reason = "the header explains the fields")]
 
 use super::{Leg, Pose, Sized32, Str, Vec2};
 
-/// An outline is a disc: `points[0]` is its centre, `size_m` its radius.
+/// Outline kind: a disc; `points[0]` is its centre, `size_m` its radius.
 pub const OUTLINE_DISC: u32 = 0;
-/// An outline is a polygon with these corners, counter-clockwise.
+/// Outline kind: a polygon; `points` are its corners, counter-clockwise.
 pub const OUTLINE_POLYGON: u32 = 1;
-/// An outline is a line through these points, `size_m` half its thickness.
+/// Outline kind: a line through `points`; `size_m` is half its thickness.
 pub const OUTLINE_POLYLINE: u32 = 2;
-/// Flag of an obstacle that was discovered on the way.
+/// Flag of an obstacle that was found during the mission.
 pub const OBSTACLE_DISCOVERED: u32 = 1;
 
-/// Numbers of [`crate::Reason`].
+/// The numbers of [`crate::Reason`].
 pub const REASON_START: u32 = 0;
 pub const REASON_BLOCKED: u32 = 1;
 pub const REASON_MAP_CHANGED: u32 = 2;
@@ -20,7 +20,7 @@ pub const REASON_OPERATOR: u32 = 3;
 pub const REASON_SWAP: u32 = 4;
 pub const REASON_RECOVER: u32 = 5;
 
-/// Numbers of [`crate::Task`].
+/// The numbers of [`crate::Task`].
 pub const TASK_GOTO: u32 = 0;
 pub const TASK_FOLLOW: u32 = 1;
 pub const TASK_COVER: u32 = 2;
@@ -35,7 +35,7 @@ pub struct Outline {
     pub size_m: f64,
 }
 
-/// Something solid. Arrays of it carry a stride, so that it can grow.
+/// A solid object. Arrays of obstacles carry a stride, so that the struct can grow.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Obstacle {
@@ -45,7 +45,7 @@ pub struct Obstacle {
     pub velocity: Vec2,
 }
 
-/// A part of the floor with a meaning of its own. Arrays of it carry a stride.
+/// A special part of the floor, see [`crate::ZoneKind`]. Arrays of zones carry a stride, so that the struct can grow.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Zone {
@@ -54,7 +54,7 @@ pub struct Zone {
     pub outline: Outline,
 }
 
-/// The drawing of the tank, the robot and the margins.
+/// The tank, the robot and the margins that the mission requires.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Site {
@@ -121,7 +121,7 @@ pub struct PlanIn {
     pub way_complete: u32,
 }
 
-/// What is known in one tick.
+/// A planner's view of one tick.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct StepIn {
@@ -144,7 +144,7 @@ pub struct StepIn {
     pub obstacle_stride: u32,
 }
 
-// SAFETY: numbers and raw pointers, and each begins with its size.
+// SAFETY: consists of numbers and raw pointers and begins with its size.
 unsafe impl Sized32 for Site {}
 // SAFETY: as above.
 unsafe impl Sized32 for PlanIn {}

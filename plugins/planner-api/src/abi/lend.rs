@@ -1,6 +1,6 @@
-//! The console's side of the inputs: safe values lent to a planner as the structs of the table.
+//! The console's side of the inputs: lends safe values to a planner as structs of the C ABI.
 //!
-//! Every struct made here points into the values it was made from and is good for as long as they stay in place.
+//! Every struct made here points into the values that it was made from and is valid as long as they stay in place.
 
 use super::{Leg, Obstacle, Outline, PlanIn, Pose, Site, StepIn, Str, Vec2, Zone, input};
 use crate::{PoseEstimate, Reason, Task, TetherLimits, site};
@@ -36,7 +36,7 @@ fn boundary(from: &site::Boundary<'_>) -> Outline {
     }
 }
 
-/// Obstacles for the table.
+/// Converts obstacles to the C ABI.
 pub fn obstacles(from: &[site::Obstacle<'_>]) -> Vec<Obstacle> {
     let flags = |discovered| if discovered { input::OBSTACLE_DISCOVERED } else { 0 };
     from.iter()
@@ -49,12 +49,12 @@ pub fn obstacles(from: &[site::Obstacle<'_>]) -> Vec<Obstacle> {
         .collect()
 }
 
-/// Zones for the table.
+/// Converts zones to the C ABI.
 pub fn zones(from: &[site::Zone<'_>]) -> Vec<Zone> {
     from.iter().map(|z| Zone { kind: z.kind as u32, reserved: 0, outline: outline(&z.outline) }).collect()
 }
 
-/// A site for the table; `obstacles` and `zones` are those of `from`, already lent.
+/// Converts a site to the C ABI; `obstacles` and `zones` are the converted ones of `from`.
 pub fn site(from: &site::Site<'_>, obstacles: &[Obstacle], zones: &[Zone]) -> Site {
     let pace =
         Pace { v_max_m_per_s: from.limits.v_max_m_per_s, w_max_rad_per_s: from.limits.w_max_rad_per_s };
@@ -93,18 +93,18 @@ fn pose(from: &PoseEstimate) -> Pose {
     Pose { x: from.position.x, y: from.position.y, heading: from.heading_rad }
 }
 
-/// The upper triangle of a covariance, row by row.
+/// Returns the upper triangle of a covariance, row by row.
 pub fn covariance(from: &Matrix3<f64>) -> [f64; 6] {
     [from[(0, 0)], from[(0, 1)], from[(0, 2)], from[(1, 1)], from[(1, 2)], from[(2, 2)]]
 }
 
-/// The regions of a task for the table; none unless it is to cover.
+/// Converts the regions of a coverage task to the C ABI; other tasks have none.
 fn regions(task: &Task<'_>) -> Vec<Outline> {
     let Task::Cover { regions, .. } = task else { return Vec::new() };
     regions.iter().map(|vertices| outline(&site::Outline::Polygon { vertices })).collect()
 }
 
-/// What a request borrows besides its site, as the structs of the table.
+/// What a request borrows in addition to its site, as structs of the C ABI.
 pub struct PlanParts {
     regions: Vec<Outline>,
     way_legs: Vec<Leg>,
@@ -112,7 +112,7 @@ pub struct PlanParts {
 }
 
 impl PlanParts {
-    /// The parts of a request.
+    /// Converts the parts of a request.
     pub fn of(from: &crate::PlanRequest<'_>) -> Self {
         let legs = from.under_way.map_or(&[][..], |way| &way.legs);
         let cuts = from.under_way.map_or(&[][..], |way| &way.cuts);
@@ -125,7 +125,7 @@ impl PlanParts {
     }
 }
 
-/// A request for the table; `site` and `parts` are those of `from`, already lent.
+/// Converts a request to the C ABI; `site` and `parts` are the converted ones of `from`.
 pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> PlanIn {
     let (reason, swap_from) = match from.reason {
         Reason::Start => (input::REASON_START, ""),
@@ -187,7 +187,7 @@ pub fn plan(from: &crate::PlanRequest<'_>, site: &Site, parts: &PlanParts) -> Pl
     }
 }
 
-/// What is sensed for the table; `obstacles` are those of `from`, already lent.
+/// Converts a planner's view of one tick to the C ABI; `obstacles` are the converted ones of `from`.
 pub fn step(from: &crate::Sensed<'_>, obstacles: &[Obstacle]) -> StepIn {
     let (targets_ahead, n_targets_ahead) = points(from.targets_ahead);
     let (path_ahead, n_path_ahead) = points(from.path_ahead);

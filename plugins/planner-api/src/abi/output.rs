@@ -1,4 +1,4 @@
-//! What a planner hands back.
+//! What a planner passes back.
 #![allow(missing_docs, reason = "the header explains the fields")]
 
 use super::{Sized32, Str, Vec2};
@@ -9,7 +9,7 @@ pub const PARAM_FLOAT: u32 = 0;
 pub const PARAM_INT: u32 = 1;
 pub const PARAM_FLAG: u32 = 2;
 pub const PARAM_CHOICE: u32 = 3;
-/// Flag of a parameter that may change under way.
+/// Flag of a parameter that may change during a mission.
 pub const PARAM_LIVE: u32 = 1;
 
 /// Kinds of [`Draw`].
@@ -21,7 +21,7 @@ pub const DRAW_LINE: u32 = 2;
 pub const DRIVE_TWIST: u32 = 0;
 pub const DRIVE_VELOCITY: u32 = 1;
 
-/// One declared parameter; `options` are joined by `|`.
+/// One declared parameter; the `options` are joined by `|`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Param {
@@ -40,7 +40,7 @@ pub struct Param {
     pub default: f64,
 }
 
-/// One value of a parameter; flags are 0 or 1, choices the index of the word.
+/// One parameter value: 0 or 1 for a flag, the index of the word for a choice.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Value {
@@ -48,7 +48,7 @@ pub struct Value {
     pub number: f64,
 }
 
-/// One thing drawn; frozen for the major version.
+/// One drawing; the layout is frozen for the major version.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw {
@@ -59,7 +59,7 @@ pub struct Draw {
     pub value: f64,
 }
 
-/// What a stretch of a path is for; frozen for the major version.
+/// A stretch of a path and its purpose; the layout is frozen for the major version.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Leg {
@@ -69,7 +69,7 @@ pub struct Leg {
     pub reserved: u32,
 }
 
-/// What a plan says beside its points; the console fills it with what is not an answer.
+/// What a plan contains besides its points. The console initialises it with invalid values ([`Self::UNSET`]).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanOut {
@@ -78,7 +78,7 @@ pub struct PlanOut {
     pub cost: f64,
 }
 
-/// A command; the console fills it with what is not an answer.
+/// A command. The console initialises it with invalid values ([`Self::UNSET`]).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepOut {
@@ -90,16 +90,16 @@ pub struct StepOut {
     pub b: f64,
 }
 
-// SAFETY: numbers and raw pointers, and it begins with its size.
+// SAFETY: consists of numbers and raw pointers and begins with its size.
 unsafe impl Sized32 for Param {}
 
 impl PlanOut {
-    /// An answer that has not been given.
+    /// The value before the planner has answered.
     pub const UNSET: Self = Self { size: size_of::<Self>() as u32, complete: u32::MAX, cost: f64::NAN };
 }
 
 impl StepOut {
-    /// An answer that has not been given.
+    /// The value before the planner has answered.
     pub const UNSET: Self = Self {
         size: size_of::<Self>() as u32,
         status: u32::MAX,
@@ -109,7 +109,7 @@ impl StepOut {
         b: f64::NAN,
     };
 
-    /// The command as numbers.
+    /// Stores a command as numbers.
     pub fn set(&mut self, command: Command) {
         let (drive, a, b) = match command.drive {
             Drive::Twist { v_m_per_s, w_rad_per_s } => (DRIVE_TWIST, v_m_per_s, w_rad_per_s),
@@ -124,10 +124,10 @@ impl StepOut {
         (self.status, self.drive, self.a, self.b) = (status, drive, a, b);
     }
 
-    /// The numbers as a command; the error names the one that is invalid.
+    /// Reads the command from the numbers.
     ///
     /// # Errors
-    /// A sentence for the operator that reads on after the planner's name.
+    /// Which number is invalid: a sentence for the operator that continues after the planner's name.
     pub fn get(&self) -> Result<Command, String> {
         let status = match self.status {
             0 => Status::Moving,
@@ -135,13 +135,13 @@ impl StepOut {
             2 => Status::Stuck,
             3 => Status::Waiting,
             u32::MAX => return Err("gave no command".to_owned()),
-            unknown => return Err(format!("gave the unknown status {unknown}")),
+            unknown => return Err(format!("gave unknown status {unknown}")),
         };
         let drive = match self.drive {
-            u32::MAX => return Err("gave a status and no drive".to_owned()),
+            u32::MAX => return Err("gave a status but no drive".to_owned()),
             DRIVE_TWIST => Drive::Twist { v_m_per_s: self.a, w_rad_per_s: self.b },
             DRIVE_VELOCITY => Drive::Velocity(nalgebra::Vector2::new(self.a, self.b)),
-            unknown => return Err(format!("gave the unknown kind of drive {unknown}")),
+            unknown => return Err(format!("gave unknown drive kind {unknown}")),
         };
         Ok(Command { drive, status })
     }
@@ -154,13 +154,13 @@ impl From<&crate::Leg> for Leg {
 }
 
 impl Leg {
-    /// The leg; an error if its tag is unknown.
+    /// Reads the leg.
     ///
     /// # Errors
-    /// A sentence for the operator that reads on after the planner's name.
+    /// The tag is unknown: a sentence for the operator that continues after the planner's name.
     pub fn get(&self) -> Result<crate::Leg, String> {
         let tag = LegTag::from_number(self.tag)
-            .ok_or_else(|| format!("gave a leg of the unknown kind {}", self.tag))?;
+            .ok_or_else(|| format!("gave a leg of unknown kind {}", self.tag))?;
         Ok(crate::Leg { tag, first: self.first as usize, last: self.last as usize })
     }
 }
@@ -183,7 +183,7 @@ impl From<&Drawing> for Draw {
 }
 
 impl Draw {
-    /// The drawing, if all its numbers are finite and its kind is known.
+    /// Reads the drawing; `None` if one of its numbers is not finite or its kind is unknown.
     pub fn get(&self) -> Option<Drawing> {
         let finite = [self.a.x, self.a.y, self.b.x, self.b.y, self.value].iter().all(|x| x.is_finite());
         let layer = Layer::from_number(self.layer);

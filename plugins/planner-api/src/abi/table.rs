@@ -1,10 +1,10 @@
-//! The functions of both sides, the entry of a library and its stamp.
+//! The functions of both sides, the entry of a library, and its stamp.
 #![allow(missing_docs, reason = "the header explains the fields")]
 
 use super::{Draw, Leg, Param, PlanIn, PlanOut, Site, Sized32, StepIn, StepOut, Str, Value, Vec2};
 use std::ffi::c_void;
 
-/// Signatures of the console's services; the first argument is [`Host::ctx`].
+/// Signatures of the console's services; the first argument is always [`Host::ctx`].
 pub type Ask = unsafe extern "C" fn(*mut c_void) -> u32;
 pub type AskSeconds = unsafe extern "C" fn(*mut c_void) -> f64;
 pub type TakeText = unsafe extern "C" fn(*mut c_void, *const u8, usize);
@@ -16,7 +16,7 @@ pub type TakeDraws = unsafe extern "C" fn(*mut c_void, *const Draw, usize);
 pub type TakeScalar = unsafe extern "C" fn(*mut c_void, Str, f64, Str);
 pub type TakeProgress = unsafe extern "C" fn(*mut c_void, f64, *const u8, usize);
 
-/// What the console offers during a call.
+/// The services that the console offers during a call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Host {
@@ -40,21 +40,21 @@ pub struct Host {
     pub progress: Option<TakeProgress>,
 }
 
-/// Signatures of a planner's functions; all return 0 or a [`crate::Code`].
+/// Signatures of a planner's functions; those that return `i32` return 0 or a [`crate::Code`].
 pub type Describe = unsafe extern "C" fn(*const Host) -> i32;
 pub type Create = unsafe extern "C" fn(*const Host, *const Site, *const Value, u32, *mut *mut c_void) -> i32;
 pub type Destroy = unsafe extern "C" fn(*mut c_void);
 pub type Reconfigure = unsafe extern "C" fn(*mut c_void, *const Host, *const Value, u32) -> i32;
 pub type Plan = unsafe extern "C" fn(*mut c_void, *const Host, *const PlanIn, *mut PlanOut) -> i32;
 pub type Step = unsafe extern "C" fn(*mut c_void, *const Host, *const StepIn, *mut StepOut) -> i32;
-/// Returns 0 to be stopped at once, 1 to be given a few more steps.
+/// Returns 0 to be stopped immediately, 1 to be given a few more steps.
 pub type Stopping = unsafe extern "C" fn(*mut c_void, *const Host) -> u32;
 pub type Snapshot = unsafe extern "C" fn(*mut c_void, *const Host) -> i32;
 pub type Restore = unsafe extern "C" fn(*mut c_void, *const Host, u32, *const u8, usize) -> i32;
-/// Returns the table of an optional ability by name, or null.
+/// Returns the function table of an optional extension by name, or null.
 pub type GetExtension = unsafe extern "C" fn(Str) -> *const c_void;
 
-/// One planner. Functions are optional so that a null is a message and not undefined behaviour.
+/// One planner. The functions are optional so that a null pointer causes an error message and not undefined behaviour.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Planner {
@@ -78,7 +78,7 @@ pub struct Planner {
     pub get_extension: Option<GetExtension>,
 }
 
-/// The one exported symbol: data, so that it can be read before anything is called.
+/// The one exported symbol. It is data, so that the console can read it before it calls anything.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -91,7 +91,7 @@ pub struct Entry {
     pub built_with: Str,
 }
 
-/// The stamp in its own section, which the console reads from the file before it loads the library.
+/// The stamp in a section of its own. The console reads it from the file before it loads the library.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
@@ -100,8 +100,9 @@ pub struct Stamp {
     pub abi_minor: u32,
 }
 
-/// What the stamp's section of a Rust library holds: the stamp, and the ids of its planners, each ended by a zero. So the console
-/// knows them before it loads anything; a library without ids, as one in C, has to be searched for them.
+/// The content of the stamp's section in a Rust library: the stamp and the planner ids, each ended by a zero byte. It
+/// tells the console the ids before it loads anything. A library without ids there, such as one in C, is searched for
+/// them.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label<const N: usize> {
@@ -109,29 +110,29 @@ pub struct Label<const N: usize> {
     pub ids: [u8; N],
 }
 
-/// The list that [`Entry::planners`] points at.
+/// The list of planners at which [`Entry::planners`] points.
 #[repr(transparent)]
 #[derive(Debug)]
 pub struct PlannerList<const N: usize>(pub [*const Planner; N]);
 
-// SAFETY: immutable, and their pointers lead to immutable statics.
+// SAFETY: immutable; the pointers lead to immutable statics.
 unsafe impl Sync for Entry {}
 // SAFETY: as above.
 unsafe impl Sync for Planner {}
 // SAFETY: as above.
 unsafe impl<const N: usize> Sync for PlannerList<N> {}
-// SAFETY: numbers, raw pointers and optional functions, and each begins with its size.
+// SAFETY: consists of numbers, raw pointers and optional functions, and begins with its size.
 unsafe impl Sized32 for Host {}
 // SAFETY: as above.
 unsafe impl Sized32 for Planner {}
 
 impl Stamp {
-    /// The stamp of libraries that are built against this crate.
+    /// The stamp of libraries built with this crate.
     pub const CURRENT: Self = Self { magic: super::MAGIC, abi_major: super::MAJOR, abi_minor: super::MINOR };
 }
 
 impl<const N: usize> Label<N> {
-    /// The label of a library that is built against this crate; `N` is what [`label_len`] says of these ids.
+    /// The label of a library built with this crate; `N` must be [`label_len`] of the same ids.
     pub const fn of(of: &[&str]) -> Self {
         let mut ids = [0; N];
         let (mut at, mut i) = (0, 0);
@@ -149,7 +150,7 @@ impl<const N: usize> Label<N> {
     }
 }
 
-/// Bytes that ids take in a [`Label`].
+/// The number of bytes that ids take in a [`Label`].
 pub const fn label_len(ids: &[&str]) -> usize {
     let (mut n, mut i) = (0, 0);
     while i < ids.len() {

@@ -1,4 +1,4 @@
-//! Panics end here: they are caught, reported and never unwind into the console.
+//! Catches and reports panics, so that none unwinds into the console.
 
 use super::services::HostServices;
 use crate::{Code, PlannerError, Result};
@@ -11,14 +11,14 @@ use std::path::{Component, Path};
 use std::sync::Once;
 
 thread_local! {
-    /// Where this thread panicked last, as `file:line`.
+    /// Source location of this thread's last panic, as `file:line`.
     static WHERE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// The library has a standard library of its own, so this hook is nobody else's.
+/// The plugin links its own copy of the standard library, so its panic hook affects nobody else.
 static HOOK: Once = Once::new();
 
-/// Runs what the author wrote; refusals and panics become a code, their sentence goes to the console.
+/// Runs the author's code. Refusals and panics become a code; their sentence is reported to the console.
 ///
 /// The sentence of a panic is `file:line: payload`.
 pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) -> i32 {
@@ -35,14 +35,15 @@ pub(super) fn run(services: &HostServices, call: impl FnOnce() -> Result<()>) ->
     }
 }
 
-/// Runs what the author wrote and says nothing about a panic.
+/// Runs the author's code and ignores a panic.
 pub(super) fn quietly(call: impl FnOnce()) {
-    // Nobody is left to report to: the instance is gone either way.
+    // A report would have no reader: the instance is gone either way.
     let _ = caught(call);
 }
 
-/// Work on a thread that a planner started: a panic comes back as the error of the call that waits for it, so that the
-/// console receives its place and text as of any other. A panic that only ends its thread would lose both.
+/// Runs work on a thread that a planner started. A panic there is returned as an error, which the waiting call can pass
+/// on, so that the console receives its source location and text as for any other panic. A panic that only ended its
+/// thread would lose both.
 ///
 /// ```
 /// use planner_api::{Code, on_own_thread};
@@ -65,12 +66,13 @@ fn caught<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     without_unwinding(call)
 }
 
-/// The place is known once a call of the console has set the hook; tests that call planners directly keep theirs.
+/// The source location is known once a call of the console has set the hook; tests that call planners directly keep
+/// their own hook.
 fn without_unwinding<T>(call: impl FnOnce() -> T) -> std::result::Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let place = WHERE.with_borrow(Clone::clone);
         let sentence = format!("{place}: {}", text_of(&*payload));
-        // Its drop may panic in turn.
+        // Dropping the payload may panic in turn.
         std::mem::forget(payload);
         sentence
     })
@@ -81,17 +83,17 @@ fn note(info: &PanicHookInfo<'_>) {
     let what = info.payload_as_str().unwrap_or_default();
     let trace = Backtrace::capture();
     if trace.status() == BacktraceStatus::Captured {
-        let _ = writeln!(std::io::stderr(), "by these calls:\n{trace}panicked at {place}: {what}");
+        let _ = writeln!(std::io::stderr(), "backtrace:\n{trace}panicked at {place}: {what}");
     } else if cfg!(panic = "abort") {
-        // Nothing will be caught, and the console shows the last line of what a dead worker wrote.
+        // Nothing will catch this panic; the console shows the last line that a dead worker printed.
         let _ = writeln!(std::io::stderr(), "panicked at {place}: {what}");
     }
-    // A thread that is being torn down has no such place any more; then the place stays unknown.
+    // A thread that is being torn down has lost its thread-local storage; then the source location stays unknown.
     let _ = WHERE.try_with(|last| last.replace(place));
 }
 
-/// Source files of the author's workspace as they are; others from the name of their package on, so that the same
-/// panic reads the same on every machine.
+/// Shortens an absolute path of a source file so that it begins at its package, so that the same panic reads the same
+/// on every machine. Paths within the author's workspace are relative and stay as they are.
 fn short(file: &str) -> String {
     if !Path::new(file).is_absolute() {
         return file.to_owned();
@@ -106,7 +108,7 @@ fn short(file: &str) -> String {
 
 fn text_of(payload: &(dyn Any + Send)) -> &str {
     let owned = payload.downcast_ref::<String>().map(String::as_str);
-    owned.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("the panic carries no text")
+    owned.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("the panic has no message")
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The structs of the table as the safe values that a planner sees.
+//! Converts structs of the C ABI to the safe values that a planner sees.
 
 use super::invalid;
 use crate::abi::{self, input};
@@ -9,7 +9,7 @@ use crate::{
 use geometry::{Amphibious, Pace};
 use nalgebra::{Matrix3, Point2};
 
-/// Points where they lie.
+/// Borrows points in place.
 unsafe fn points<'a>(ptr: *const abi::Vec2, n: u32) -> &'a [Point2<f64>] {
     // SAFETY: promised by the caller; a point is two doubles, as `abi` asserts.
     unsafe { abi::slice(ptr.cast(), n as usize) }
@@ -26,18 +26,18 @@ unsafe fn outline<'a>(raw: &abi::Outline) -> Result<Outline<'a>> {
         }
         input::OUTLINE_POLYGON => Ok(Outline::Polygon { vertices: points }),
         input::OUTLINE_POLYLINE => Ok(Outline::Polyline { points, half_width_m: raw.size_m }),
-        unknown => Err(invalid(&format!("the console sent an outline of the unknown kind {unknown}"))),
+        unknown => Err(invalid(&format!("the console sent an outline of unknown kind {unknown}"))),
     }
 }
 
-/// Bytes of an obstacle in the first version of the table, without its velocity.
+/// The size of an obstacle in the first version of the ABI, which had no velocity, bytes.
 const FIRST_OBSTACLE: usize = 32;
 
-/// Elements of an array whose elements may have grown: what those of an older console do not have is zero. Refuses
+/// Reads an array whose elements may have grown: fields that an older console's elements lack are zero. Refuses
 /// elements shorter than `least` bytes.
 ///
 /// # Safety
-/// `first` points at `n` elements `stride` bytes apart, and all-zero bytes are a valid `T`.
+/// `first` points at `n` elements, `stride` bytes apart, and all-zero bytes are a valid `T`.
 unsafe fn strided<T: Copy, U>(
     first: *const T,
     n: u32,
@@ -50,11 +50,11 @@ unsafe fn strided<T: Copy, U>(
     }
     let stride = stride as usize;
     if stride < least {
-        return Err(invalid("the console sent an array with elements that are too short"));
+        return Err(invalid("the console sent an array whose elements are too short"));
     }
     let element = |index: usize| {
         let mut element = std::mem::MaybeUninit::<T>::zeroed();
-        // SAFETY: the caller promises `n` elements `stride` bytes apart, and that zeros are a valid element.
+        // SAFETY: the caller promises `n` elements, `stride` bytes apart, and that all-zero bytes are a valid element.
         unsafe {
             let from = first.cast::<u8>().add(index * stride);
             std::ptr::copy_nonoverlapping(from, element.as_mut_ptr().cast(), stride.min(size_of::<T>()));
@@ -75,7 +75,7 @@ unsafe fn obstacles<'a>(first: *const abi::Obstacle, n: u32, stride: u32) -> Res
             velocity_m_per_s: raw.velocity.into(),
         })
     };
-    // SAFETY: promised by the caller; an obstacle is numbers and raw pointers.
+    // SAFETY: promised by the caller; an obstacle consists of numbers and raw pointers.
     unsafe { strided(first, n, stride, FIRST_OBSTACLE, make) }
 }
 
@@ -86,17 +86,17 @@ unsafe fn zones<'a>(first: *const abi::Zone, n: u32, stride: u32) -> Result<Vec<
             1 => ZoneKind::Land,
             2 => ZoneKind::Underwater,
             unknown => {
-                return Err(invalid(&format!("the console sent a zone of the unknown kind {unknown}")));
+                return Err(invalid(&format!("the console sent a zone of unknown kind {unknown}")));
             }
         };
         // SAFETY: promised by the caller.
         Ok(Zone { kind, outline: unsafe { outline(&raw.outline)? } })
     };
-    // SAFETY: promised by the caller; a zone is numbers and raw pointers.
+    // SAFETY: promised by the caller; a zone consists of numbers and raw pointers.
     unsafe { strided(first, n, stride, size_of::<abi::Zone>(), make) }
 }
 
-/// A site with the arrays that its safe form borrows.
+/// A site and the arrays that its safe form borrows.
 pub(super) struct SiteParts<'a> {
     raw: abi::Site,
     boundary: Boundary<'a>,
@@ -108,7 +108,7 @@ impl SiteParts<'_> {
     /// Reads a site.
     ///
     /// # Safety
-    /// `site` is null or points at a site that stays as it is while `self` is used.
+    /// `site` is null or points at a site that does not change while `self` is used.
     pub(super) unsafe fn read(site: *const abi::Site) -> Result<Self> {
         if site.is_null() {
             return Err(invalid("the console sent no site"));
@@ -128,12 +128,12 @@ impl SiteParts<'_> {
         }
     }
 
-    /// The site as a planner sees it.
+    /// Returns the site as a planner sees it.
     pub(super) fn site(&self) -> Result<Site<'_>> {
         let motion = match self.raw.motion {
             0 => Motion::Point,
             1 => Motion::Unicycle,
-            unknown => return Err(invalid(&format!("the console sent the unknown motion {unknown}"))),
+            unknown => return Err(invalid(&format!("the console sent the unknown motion type {unknown}"))),
         };
         Ok(Site {
             revision: self.raw.revision,
@@ -157,7 +157,8 @@ impl SiteParts<'_> {
     }
 }
 
-/// Acceleration of a robot that stops at once, as those of a console were that does not say it, metres per second squared.
+/// Acceleration when the console does not state it, metres per second squared. The robots of older consoles stopped
+/// instantly.
 const AT_ONCE_M_PER_S2: f64 = 1e3;
 
 fn acceleration(site: &abi::Site) -> f64 {
@@ -173,17 +174,17 @@ fn amphibious(site: &abi::Site) -> Option<Amphibious> {
     })
 }
 
-/// The values of parameters, with keys that are UTF-8.
+/// Reads parameter values and checks that their keys are UTF-8.
 ///
 /// # Safety
-/// `first` points at `n` values that stay as they are while the result is used.
+/// `first` points at `n` values that do not change while the result is used.
 pub(super) unsafe fn config_values<'a>(first: *const abi::Value, n: u32) -> Result<Vec<Value<'a>>> {
     // SAFETY: promised by the caller.
     let raw: &[abi::Value] = unsafe { abi::slice(first, n as usize) };
     raw.iter()
         .map(|value| {
             // SAFETY: promised by the caller.
-            let key = unsafe { text(value.key) }.ok_or_else(|| invalid("a key is not UTF-8"))?;
+            let key = unsafe { text(value.key) }.ok_or_else(|| invalid("a parameter key is not UTF-8"))?;
             Ok(Value { key, number: value.number })
         })
         .collect()
@@ -203,7 +204,7 @@ fn estimate(pose: abi::Pose, covariance: &[f64; 6]) -> PoseEstimate {
     }
 }
 
-/// Why a plan is wanted; a reason of a newer console counts as the operator's wish.
+/// Reads why a plan is requested; a reason that only newer consoles have counts as the operator's request.
 ///
 /// # Safety
 /// `raw.from` points at a text.
@@ -219,10 +220,10 @@ pub(super) unsafe fn reason_of(raw: &abi::PlanIn) -> Reason {
     }
 }
 
-/// The regions of a request: what is still to cover.
+/// Reads the regions of a request, which are still to be covered.
 ///
 /// # Safety
-/// `raw.regions` points at outlines that stay as they are while the result is used.
+/// `raw.regions` points at outlines that do not change while the result is used.
 pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2<f64>]>> {
     // SAFETY: promised by the caller.
     let outlines: &[abi::Outline] = unsafe { abi::slice(raw.regions, raw.n_regions as usize) };
@@ -238,10 +239,10 @@ pub(super) unsafe fn regions_of<'a>(raw: &abi::PlanIn) -> Result<Vec<&'a [Point2
         .collect()
 }
 
-/// The task of a request; `regions` are those of the same request.
+/// Reads the task of a request; `regions` are those of the same request.
 ///
 /// # Safety
-/// `raw.targets` points at points that stay as they are while the result is used.
+/// `raw.targets` points at points that do not change while the result is used.
 pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f64>]]) -> Result<Task<'a>> {
     // SAFETY: promised by the caller.
     let targets = unsafe { points(raw.targets, raw.n_targets) };
@@ -264,10 +265,10 @@ pub(super) unsafe fn task_of<'a>(raw: &abi::PlanIn, regions: &'a [&'a [Point2<f6
     }
 }
 
-/// The plan to be kept to, if there is one.
+/// Reads the plan to keep to, if there is one.
 ///
 /// # Safety
-/// Path, legs and cuts of `raw` point at what it says.
+/// The path, legs and cuts of `raw` point at as many elements as `raw` states.
 pub(super) unsafe fn under_way_of(raw: &abi::PlanIn) -> Result<Option<Plan>> {
     // SAFETY: promised by the caller, as everywhere below.
     let path = unsafe { points(raw.way, raw.n_way) }.to_vec();
@@ -292,10 +293,10 @@ pub(super) unsafe fn under_way_of(raw: &abi::PlanIn) -> Result<Option<Plan>> {
     Ok(Some(plan))
 }
 
-/// A request from its parts.
+/// Assembles a request from its parts.
 ///
 /// # Safety
-/// `raw.previous` points at points that stay as they are while the result is used.
+/// `raw.previous` points at points that do not change while the result is used.
 pub(super) unsafe fn plan_request<'a>(
     raw: &abi::PlanIn,
     reason: &'a Reason,
@@ -314,7 +315,7 @@ pub(super) unsafe fn plan_request<'a>(
     }
 }
 
-/// What is sensed, with the array that its safe form borrows.
+/// A planner's view of one tick, with the array that its safe form borrows.
 pub(super) struct SensedParts<'a> {
     raw: abi::StepIn,
     targets_ahead: &'a [Point2<f64>],
@@ -323,10 +324,10 @@ pub(super) struct SensedParts<'a> {
 }
 
 impl SensedParts<'_> {
-    /// Reads what is sensed.
+    /// Reads a planner's view of one tick.
     ///
     /// # Safety
-    /// `input` points at a struct that stays as it is while `self` is used.
+    /// `input` points at a struct that does not change while `self` is used.
     pub(super) unsafe fn read(input: *const abi::StepIn) -> Result<Self> {
         // SAFETY: promised by the caller.
         unsafe {
@@ -340,7 +341,7 @@ impl SensedParts<'_> {
         }
     }
 
-    /// What is sensed, as a planner sees it.
+    /// Returns the view of the tick in its safe form.
     pub(super) fn sensed(&self) -> Sensed<'_> {
         Sensed {
             tick: self.raw.tick,

@@ -1,21 +1,21 @@
-//! The console's services over the C table.
+//! The console's services, called through the C ABI.
 
 use crate::abi::{self, Host, Str};
 use crate::{Drawing, Leg, LogLevel, Services, StopReason};
 use nalgebra::Point2;
 use std::time::Duration;
 
-/// A copy of the console's table of services; what an older console lacks is not called.
+/// A copy of the console's table of services; functions that an older console lacks are not called.
 pub(super) struct HostServices(Host);
 
-/// How many drawings cross at once.
+/// The number of drawings passed in one call.
 const BATCH: usize = 32;
 
 impl HostServices {
     /// Copies the console's table.
     ///
     /// # Safety
-    /// `host` points at a table that stays valid as long as `self` is used.
+    /// `host` points at a table that is valid as long as `self` is used.
     pub(super) unsafe fn read(host: *const Host) -> Self {
         // SAFETY: promised by the caller.
         Self(unsafe { abi::copy_sized(host) })
@@ -37,7 +37,7 @@ impl HostServices {
         }
     }
 
-    /// Hands over points of a path.
+    /// Passes points of a path.
     pub(super) fn points(&self, points: &[Point2<f64>]) {
         if let (Some(take), false) = (self.0.points, points.is_empty()) {
             // SAFETY: copied before it returns; a point is two doubles, as `abi` asserts.
@@ -45,7 +45,7 @@ impl HostServices {
         }
     }
 
-    /// Reports what the stretches of the path are for.
+    /// Passes the purpose of each stretch of the path.
     pub(super) fn legs(&self, legs: &[Leg]) {
         if let (Some(take), false) = (self.0.legs, legs.is_empty()) {
             let raw: Vec<abi::Leg> = legs.iter().map(abi::Leg::from).collect();
@@ -54,7 +54,7 @@ impl HostServices {
         }
     }
 
-    /// Hands over one line that is never crossed.
+    /// Passes one cut, a line that the robot never crosses.
     pub(super) fn cut(&self, line: &[Point2<f64>]) {
         if let Some(take) = self.0.cut {
             // SAFETY: copied before it returns; a point is two doubles, as `abi` asserts.
@@ -62,7 +62,7 @@ impl HostServices {
         }
     }
 
-    /// Hands over private state.
+    /// Passes private state.
     pub(super) fn bytes(&self, bytes: &[u8]) {
         if let Some(take) = self.0.bytes {
             // SAFETY: copied before it returns.
@@ -73,7 +73,7 @@ impl HostServices {
 
 impl Services for HostServices {
     fn stop(&self) -> Option<StopReason> {
-        // SAFETY: the console's own function with the console's own pointer, as everywhere below.
+        // SAFETY: calls the console's own function with the console's own pointer, as everywhere below.
         match self.0.should_stop.map_or(0, |ask| unsafe { ask(self.0.ctx) }) {
             0 => None,
             2 => Some(StopReason::Timeout),

@@ -1,21 +1,21 @@
-//! Linear systems in which only neighbours meet.
+//! Linear systems in which each unknown depends only on its neighbours.
 
 use world::Vector;
 
-/// A symmetric positive matrix with few diagonals, and its Cholesky factor in its place.
+/// A symmetric positive definite matrix with few diagonals; its Cholesky factor replaces it in place.
 pub(super) struct Banded {
     width: usize,
-    /// Row by row, from the diagonal back.
+    /// The elements, row by row, from the diagonal backwards.
     cells: Vec<f64>,
 }
 
 impl Banded {
-    /// Zeros: so many rows, so many diagonals from the main one on.
+    /// Creates a zero matrix with this many rows, and this many diagonals from the main one on.
     pub(super) fn new(size: usize, width: usize) -> Self {
         Self { width, cells: vec![0.0; size * width] }
     }
 
-    /// Adds the square of a combination of neighbours.
+    /// Adds the square of a linear combination of neighbours.
     pub(super) fn add(&mut self, first: usize, factors: &[f64], weight: f64) {
         for (i, a) in factors.iter().enumerate() {
             for (j, b) in factors[..=i].iter().enumerate() {
@@ -42,7 +42,7 @@ impl Banded {
         }
     }
 
-    /// Solves for both coordinates at once, in place, with the factor.
+    /// Solves for both coordinates together, in place, with the Cholesky factor.
     pub(super) fn solve(&self, values: &mut [Vector]) {
         let (n, width) = (values.len(), self.width);
         for row in 0..n {

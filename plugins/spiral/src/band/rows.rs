@@ -1,22 +1,22 @@
-//! The limits of a band: linear combinations of its points and where they have to be.
+//! The limits of a band: linear combinations of its points, and where these may be.
 
 use geometry::convex::Part;
 use world::{Point, Vector, polyline};
 
-/// Penalties of solids and of turns.
+/// Penalties for solids and for turns.
 const SOLID_PENALTY: f64 = 1.0;
 const TURN_PENALTY: f64 = 15.0;
-/// Solids nearer to a piece than this beside their clearance have a row, metres.
+/// Solids get a row if a segment comes closer to them than their clearance plus this, metres.
 const REACH_M: f64 = 0.25;
 
-/// Where a combination of points has to be.
+/// The permitted values of a combination of points.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Limit<'a> {
-    /// No further to either side in a direction than this.
+    /// At most this far to either side along a direction.
     Across(Vector, f64),
-    /// So far from the origin in a direction.
+    /// At least this far from the origin in a direction.
     Beyond(Vector, f64),
-    /// This far from a part.
+    /// At least this far from a part.
     Beside(&'a Part, f64),
     /// Within a circle about the origin.
     Within(f64),
@@ -25,42 +25,42 @@ pub(super) enum Limit<'a> {
 /// A linear combination of neighbouring points with its limit and multiplier.
 #[derive(Debug, Clone)]
 pub(super) struct Row<'a> {
-    /// Which limit of which place it is, so that the multiplier survives.
+    /// Identifies the limit and the point, so that the multiplier can be carried over.
     pub key: (u32, u32),
-    /// Index of the first point.
+    /// Index of the first point in the combination.
     pub first: usize,
-    /// Factors of it and of those after it.
+    /// Factors of that point and of those after it.
     pub factors: Vec<f64>,
-    /// Where the combination has to be.
+    /// The permitted values of the combination.
     pub limit: Limit<'a>,
     /// Weight of the squared distance to the target.
     pub penalty: f64,
-    /// Multiplier by penalty.
+    /// The multiplier divided by the penalty.
     pub multiplier: Vector,
-    /// A vector within the limit.
+    /// A value within the limit.
     pub target: Vector,
 }
 
 impl<'a> Row<'a> {
-    /// A row whose multiplier is zero and whose target is the origin.
+    /// Creates a row with a zero multiplier and the origin as its target.
     pub(super) fn new(key: (u32, u32), first: usize, factors: Vec<f64>, limit: Limit<'a>) -> Self {
         let penalty = if matches!(limit, Limit::Across(..)) { TURN_PENALTY } else { SOLID_PENALTY };
         Row { key, first, factors, limit, penalty, multiplier: Vector::zeros(), target: Vector::zeros() }
     }
 
-    /// The combination of these vectors.
+    /// Returns the combination of these vectors.
     pub(super) fn of(&self, vector: impl Fn(usize) -> Vector) -> Vector {
         self.factors.iter().enumerate().map(|(k, factor)| vector(self.first + k) * *factor).sum()
     }
 
-    /// The combination of the points of a way.
+    /// Returns the combination of the points of a path.
     pub(super) fn value(&self, way: &[Point]) -> Vector {
         self.of(|index| way[index].coords)
     }
 }
 
 impl Limit<'_> {
-    /// The nearest vector that keeps the limit.
+    /// Returns the nearest value within the limit.
     pub(super) fn nearest(&self, value: Vector) -> Vector {
         match *self {
             Self::Across(direction, most_m) => {
@@ -79,16 +79,17 @@ impl Limit<'_> {
     }
 }
 
-/// What keeps a way away from a part.
+/// A condition that keeps a path away from a part.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Solid<'a> {
-    /// A circle that no piece of the way may enter.
+    /// A circle that no segment of the path may enter.
     Circle(Point, f64),
-    /// Straight sides, from which the ends of its pieces keep this far.
+    /// Straight sides, from which the ends of segments keep this distance.
     Sides(&'a Part, f64),
 }
 
-/// What keeps a way this far from a part: its corners from all of the way, its sides from the ends of its pieces.
+/// Returns the conditions that keep a path this far from a part. Corners keep all of the path away, sides only the ends
+/// of its segments.
 pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
     match part {
         Part::Capsule { a, b, half_width_m } if a == b => vec![Solid::Circle(*a, keep_m + half_width_m)],
@@ -104,10 +105,10 @@ pub(super) fn solids_of(part: &Part, keep_m: f64) -> Vec<Solid<'_>> {
 }
 
 impl<'a> Solid<'a> {
-    /// The rows of everything of a way that is near.
+    /// Adds the rows for the parts of a path that are near.
     ///
-    /// A piece that lies beyond a tangent keeps out of a circle. The middle of the piece determines which
-    /// tangent: by its nearest point, two pieces that meet on the circle would hold each other straight.
+    /// A segment stays out of a circle if it is beyond a tangent. The middle of the segment determines the tangent. If
+    /// its nearest point did, two segments that meet on the circle would keep each other straight.
     pub(super) fn rows(&self, kind: u32, way: &[Point], rows: &mut Vec<Row<'a>>) {
         match *self {
             Self::Circle(center, radius_m) => {

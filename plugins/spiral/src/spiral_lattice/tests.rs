@@ -80,7 +80,11 @@ fn a_ring_of_columns_is_refused_with_the_station_and_the_proof() {
         .collect();
     let error = refusal(&tank(&ring), &[]);
     assert_eq!(error.code, Code::NoPath);
-    assert!(error.message.contains("station") && error.message.contains("proved"), "{}", error.message);
+    assert!(
+        error.message.contains("blocked at point") && error.message.contains("proved"),
+        "{}",
+        error.message
+    );
     let end = error.partial.last().unwrap();
     assert!(end.coords.norm() > 4.2 && error.partial.len() > 1000, "{end} {}", error.partial.len());
 }

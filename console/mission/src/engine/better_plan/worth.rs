@@ -1,26 +1,28 @@
-//! What a plan for all that is left has to be worth, and where it begins.
+//! How much a plan for all that is left has to save, and where it begins.
 
 use super::super::{known::Known, requests::AskedPlan};
 use crate::{ask::PlanAsk, event::Effort, task::Joint};
 use planner_api::{Plan, PoseEstimate, Reason};
 use world::{CoverageGrid, Point, Tool};
 
-/// It begins so far ahead at least, seconds of driving: time to plan, and for an operator to decide ...
+/// Minimum lead of its beginning, seconds of driving: time to plan, and for an operator to decide.
 const LEAD_S: f64 = 60.0;
-/// ... and so far as a share of what is left of the plan: in a large tank both take longer.
+/// Minimum lead as a share of the time left of the current plan: in a large tank planning and deciding take longer.
 const LEAD_SHARE: f64 = 0.05;
-/// Less than this is not worth another plan, seconds of driving: 2 % of it and the half minute below are a seventh of it.
+/// No better plan is sought if less than this is left, seconds of driving: by the two limits below, it would have to save
+/// more than 12 % of the rest.
 const WORTH_S: f64 = 300.0;
-/// A change is worth it if it saves more than this, seconds: what an operator needs to look at it ...
+/// A change must save more than this, seconds: the time an operator needs to look at the plan ...
 const CHANGE_S: f64 = 30.0;
-/// ... and this share of the rest: so much longer than planned is the way driven, after finds that nobody foresees.
+/// ... plus this share of the rest: the typical excess of the path driven over the path planned, caused by unforeseen
+/// obstacles.
 const CHANGE_SHARE: f64 = 0.02;
-/// Two plans scan the same if they leave the same up to this share of what is left to scan: cells count by their centres, so that two
-/// plans of other lanes differ by single cells.
+/// Two plans count as scanning the same floor if they differ by at most this share of what is left to scan. Cells count
+/// by their centres, so plans with different lanes differ by single cells.
 const SAME_FLOOR_SHARE: f64 = 0.0005;
 
 impl Known {
-    /// Where a better plan would begin; `None` if too little is left from there on.
+    /// The place where a better plan would begin; `None` if too little is left after it.
     pub(super) fn joint(&self) -> Option<Joint> {
         let (cover, lanes) = (self.task.cover()?, self.task.lanes()?);
         let v_m_per_s = self.config.limits.v_max_m_per_s;
@@ -29,7 +31,8 @@ impl Known {
         (lanes.length_m() - joint.station_m >= WORTH_S * v_m_per_s).then_some(joint)
     }
 
-    /// The inputs of a plan for all that will be left where it begins, and that place; `None` if too little is left.
+    /// The inputs of a plan for all that will be left at the place where it begins, and that place; `None` if too little
+    /// is left.
     pub(in crate::engine) fn better_plan_ask(&self) -> Option<(Joint, (AskedPlan, PlanAsk))> {
         let joint = self.joint()?;
         let way = self.task.cover()?.way_to(&joint);
@@ -43,15 +46,15 @@ impl Known {
         Some((joint, (AskedPlan::from_here(Reason::MapChanged, here.position), ask)))
     }
 
-    /// What will have been scanned after some way.
+    /// The floor that will have been scanned after driving a path.
     fn coverage_after(&self, way: &[Point]) -> CoverageGrid {
         let mut coverage = self.floor.coverage.clone();
         Tool::along(way, |from, to| coverage.mark(self.config.tool(), from, to));
         coverage
     }
 
-    /// Why a plan after some way is not offered in place of a path: for what it saves, for the floor that it scans, or for the
-    /// tether.
+    /// Why a plan is not offered in place of the rest of the current path: it saves too little, scans less floor, or is
+    /// not safe for the tether.
     pub(super) fn objection_to_better(
         &self,
         way: &[Point],

@@ -1,4 +1,4 @@
-//! What is asked next of the planner that drives.
+//! The next ask to the active planner.
 
 use super::{
     super::{course::Due, known::Known, requests::under_way, worker::PendingKind, workers::Workers},
@@ -10,11 +10,12 @@ use crate::{
 };
 use planner_api::Reason;
 
-/// Private state is saved this often, seconds.
+/// Interval between snapshots of the private state, seconds.
 const SAVE_EVERY_S: f64 = 1.0;
 
 impl Driving {
-    /// The next thing that is wanted of it; no command while the robot stands for the planner that takes over.
+    /// The next ask to this planner. No command is requested while the robot stands still for the planner that takes
+    /// over.
     pub(in crate::engine) fn next_ask(
         &mut self,
         known: &mut Known,
@@ -80,7 +81,7 @@ impl Driving {
         self.worker.ask(known.tick, PendingKind::Step { usable: true }, What::Step(Box::new(step)))
     }
 
-    /// What the mission would like to have of it before the tick ends.
+    /// The answer that the mission would like from this planner before the tick ends.
     pub(in crate::engine) fn awaits(&self, known: &Known) -> Option<Awaits> {
         self.worker.pending.as_ref()?;
         Some(if !known.is_running() {

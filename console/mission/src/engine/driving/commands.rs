@@ -1,4 +1,4 @@
-//! Commands of the planner that drives: which one is sent, and what the robot is sent then.
+//! Commands of the active planner: which one is sent, and in what form the robot receives it.
 
 use super::{
     super::{
@@ -16,7 +16,7 @@ use crate::{
 use geometry::motion::drive_for;
 use planner_api::{Command, Drive, Limits};
 
-/// Distance between the points of the path flown that are kept for planners, metres.
+/// Spacing of the stored points of the path driven, which planners receive; metres.
 const TRAIL_M: f64 = 0.1;
 
 /// A command that has arrived.
@@ -25,13 +25,13 @@ pub(super) struct Arrived {
     ask: AskId,
     command: Command,
     said: Said,
-    /// For how many ticks the robot stood still for it, if a row of late ones begins with it.
+    /// The number of ticks that the robot stood still for it, if it is the first of several late commands.
     late_ticks: Option<u64>,
 }
 
 impl Driving {
-    /// Takes a command, which was asked for in this tick or in an earlier one. The freshest one that arrives before the tick
-    /// ends is sent.
+    /// Takes a command that was requested in this tick or in an earlier one. Of the commands that arrive before the tick
+    /// ends, the latest is sent.
     pub(in crate::engine) fn take_command(
         &mut self,
         (asked, usable): (&Pending, bool),
@@ -52,7 +52,7 @@ impl Driving {
         }
     }
 
-    /// Sends the command of this tick, if there is one.
+    /// Sends the command of this tick, if any.
     pub(in crate::engine) fn send(&mut self, known: &mut Known, happened: &mut Happened) -> Option<Drive> {
         let arrived = self.command.take()?;
         let (ask, command) = (arrived.ask, arrived.command);
@@ -70,28 +70,28 @@ impl Driving {
         Some(sent.drive)
     }
 
-    /// Sends no command that has arrived.
+    /// Discards a command that has arrived but was not sent.
     pub(in crate::engine) fn drop_command(&mut self, happened: &mut Happened) {
         if let Some(unsent) = self.command.take() {
             self.discard(unsent, happened);
         }
     }
 
-    /// No answer to a step that was asked before is of use any more.
+    /// Marks the answer to an open step request as unusable.
     pub(in crate::engine) fn outdate_step(&mut self) {
         if let Some(Pending { kind: PendingKind::Step { usable }, .. }) = &mut self.worker.pending {
             *usable = false;
         }
     }
 
-    /// Notes that a command is not sent; what the planner said with it is passed on all the same.
+    /// Records that a command is not sent; what the planner drew and logged with it is still passed on.
     fn discard(&self, arrived: Arrived, happened: &mut Happened) {
         let ask = arrived.ask;
         self.pass_on(arrived, happened);
         happened.push(EventKind::Discarded { ask, plan: None });
     }
 
-    /// What there is to report with a command, directly before what becomes of it.
+    /// Reports what came with a command, directly before the event for the command itself.
     fn pass_on(&self, arrived: Arrived, happened: &mut Happened) {
         if let Some(ticks) = arrived.late_ticks {
             happened.push(EventKind::PlannerLate { planner: self.id().to_owned(), ticks });
@@ -100,7 +100,7 @@ impl Driving {
     }
 }
 
-/// What a command becomes on its way to the robot, at one moment.
+/// The conversion of a command on its way to the robot, at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sending {
     heading_rad: f64,
@@ -109,8 +109,9 @@ pub struct Sending {
 }
 
 impl Sending {
-    /// A command as the robot is sent it: within its limits, in its own way of moving, and rounded as everything that is
-    /// reported. Doing this to a command that was sent changes nothing, so that recorded commands can be fed in again.
+    /// Converts a command to the form in which the robot receives it: within its limits, in its own way of moving, and
+    /// rounded like all reported numbers. Converting a sent command again changes nothing, so recorded commands can be
+    /// replayed.
     pub fn as_sent(&self, command: Command) -> Command {
         let drive = drive_for(command.drive, self.heading_rad, &self.limits, self.turn_first_rad);
         rounded_command(Command { drive, status: command.status })

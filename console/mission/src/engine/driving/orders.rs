@@ -1,4 +1,4 @@
-//! What orders mean for the planner that drives: with which plan it starts, other values of its parameters, its successor.
+//! Effects of orders on the active planner: its first plan, new parameter values, and its successor.
 
 use super::{
     super::{
@@ -17,7 +17,7 @@ use crate::{
 use planner_api::Plan;
 
 impl Driving {
-    /// The newest change of live parameters that it has not answered yet.
+    /// The latest change of live parameters that the planner has not answered yet.
     pub(in crate::engine) fn newest_change(&self) -> Option<&PlannerChoice> {
         let asked = match &self.worker.pending {
             Some(Pending { kind: PendingKind::Reconfigure(choice), .. }) => Some(choice),
@@ -26,8 +26,8 @@ impl Driving {
         self.reconfigure.as_ref().or(asked)
     }
 
-    /// Whether a choice is this planner with other live values: these change no plan, so that it goes on with its own. A value
-    /// that goes back to its default is not among them: planners are told values only.
+    /// Whether a choice is this planner with other values of live parameters only. Such a change needs no new plan.
+    /// Resetting a value to its default does not qualify, because planners receive only explicit values.
     pub(in crate::engine) fn takes_live(&self, choice: &PlannerChoice) -> bool {
         let before = &self.worker.choice;
         let is_live = |key: &String| self.worker.info.as_ref().is_some_and(|info| info.has_live(key));
@@ -42,8 +42,9 @@ impl Driving {
             && changed.all(|(key, _)| is_live(key))
     }
 
-    /// Whether it takes another value of a parameter as it is. While the mission runs, a planner that is being opened gets the
-    /// values once it is there, and refuses what it does not know; while it is held, they are given to it from the start.
+    /// Whether the planner can take a new value of a parameter directly. A planner that is being opened while the mission
+    /// runs receives the value once it is open, and refuses it if it is unknown. During a hold it is opened with the
+    /// value.
     pub(in crate::engine) fn takes_value(&self, key: &str, known: &Known) -> bool {
         match &self.worker.info {
             Some(info) => info.has_live(key) && (self.worker.is_ready() || known.is_running()),
@@ -51,13 +52,13 @@ impl Driving {
         }
     }
 
-    /// Whether the robot is held because this planner has no plan that it may fly.
+    /// Whether the robot is held because this planner has no plan that may be run.
     pub(in crate::engine) fn has_failed(&self, known: &Known) -> bool {
         let is_blamed = matches!(&known.phase, Phase::Held(hold) if hold.by.blames_planner());
         is_blamed && !self.course.has_plan()
     }
 
-    /// Whether a successor can go on from what this planner knows now.
+    /// Whether a successor can take over this planner's current state.
     pub(in crate::engine) fn can_hand_over_state(&self, successor: &str) -> bool {
         let snapshots = self.worker.info.as_ref().is_some_and(|info| info.snapshots);
         snapshots && self.worker.is_ready() && successor == self.id()
@@ -75,17 +76,17 @@ impl Driving {
             None => Readiness::NoPlan,
             Some(Err(why)) => Readiness::Failed(why),
             Some(Ok(plan)) if self.course.has_plan() => Readiness::Plan(*plan),
-            // It is made again, because something was found in its way.
+            // It is being made again, because something was found in its way.
             Some(Ok(_)) => Readiness::Preparing,
         }
     }
 
-    /// Whether the plan that the operator saw before the start is not the one to be run any more.
+    /// Whether the plan shown to the operator before the start is no longer the one to be run.
     pub(super) fn is_seen_plan_outdated(&self, known: &Known) -> bool {
         known.is_waiting() && matches!(self.first_plan, Some(Ok(_))) && !self.course.has_plan()
     }
 
-    /// Keeps which plan the operator sees before the start, or why there is none.
+    /// Records the plan shown to the operator before the start, or why there is none.
     pub(in crate::engine) fn show_first_plan(
         &mut self,
         plan: &Plan,

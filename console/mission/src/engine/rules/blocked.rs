@@ -1,5 +1,5 @@
-//! A planner that cannot go on along its lanes is asked for new ones from where the robot stands; not at once again, for
-//! the robot may have to turn or to be seen better first.
+//! A planner that cannot continue along its lanes is asked for new ones from the robot's position, after a delay: the robot
+//! may first have to turn, or to see the obstacle better.
 
 use super::seen::Verdict;
 use planner_api::{Reason, Status};
@@ -7,21 +7,21 @@ use world::Point;
 
 /// A planner that has been stuck in its lanes for this long is asked for new ones, seconds.
 const BLOCKED_S: f64 = 1.0;
-/// So many plans are asked for in one place.
+/// Maximum number of new plans at one place.
 const MOST_PLANS: usize = 4;
-/// A robot that is blocked further away than this is blocked in another place, metres.
+/// Farther away than this the robot counts as blocked at a new place, metres.
 const MOVED_ON_M: f64 = 0.3;
 
-/// For how long a planner has said that it cannot go on, and where.
+/// How long a planner has reported that it cannot continue, and where.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct BlockedRule {
     blocked_s: f64,
-    /// Where it said so last, and how often there.
+    /// The place where the planner last reported this, and the number of plans requested there.
     at: Option<(Point, usize)>,
 }
 
 impl BlockedRule {
-    /// One command of a planner, a tick after the one before; `in_lanes` says whether it follows lanes.
+    /// Processes one command per tick; `in_lanes` is true if the planner follows lanes.
     pub(crate) fn update(
         &mut self,
         status: Status,
@@ -36,7 +36,7 @@ impl BlockedRule {
         self.blocked_s = 0.0;
         let (at, times) = self.at.filter(|(at, _)| (here - at).norm() < MOVED_ON_M).unwrap_or((here, 0));
         self.at = Some((at, times + 1));
-        // Plans that all begin with the same obstacle do not help: the rule for a robot that is stuck takes over.
+        // More plans that begin at the same obstacle do not help: the rule for a stuck robot takes over.
         (times < MOST_PLANS).then_some(Verdict::Replan(Reason::Blocked))
     }
 }

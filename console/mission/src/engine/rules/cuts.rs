@@ -1,4 +1,4 @@
-//! A robot that has come off its plan across a cut would wind the cable on its way back to it.
+//! A robot that has left its plan across a cut would wind the cable when it returns to the plan.
 
 use world::{
     Boundary, ObstacleMap, Point, Vector,
@@ -7,34 +7,34 @@ use world::{
     tether::crossings,
 };
 
-/// Distance from the end of a return path within which the plan behind it has begun, metres.
+/// Distance from the end of a return path within which the plan after it counts as begun, metres.
 pub(in crate::engine) const HOME_M: f64 = 0.3;
 
-/// A cut is led on into something solid that is no further from its end than this multiple of the room for the hull: planners
-/// draw outlines around the exact ones.
+/// A cut is extended into something solid if that is no farther from its end than this multiple of the room that the hull
+/// needs: planners draw their outlines slightly larger than the exact ones.
 const ROOT_SHARE: f64 = 1.1;
-/// How far it is led into that, metres.
+/// Length of that extension inside the solid, metres.
 const ROOT_M: f64 = 0.01;
-/// A move this far beside a cut may touch it, metres.
+/// A move within this distance of a cut may touch it, metres.
 const BESIDE_M: f64 = 1e-6;
 
-/// The lines that the plan never crosses, and whether the robot has.
+/// The lines that the plan never crosses, and whether the robot has crossed them.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct CutsRule {
     cuts: Vec<Cut>,
-    /// Where the plan is bound to them from, after a return path; `None` once the robot has been there.
+    /// The point, after a return path, from which the cuts apply; `None` once the robot has been there.
     from: Option<Point>,
     seen_at: Point,
 }
 
 impl CutsRule {
-    /// The cuts of a plan that is to be flown from here, bound to them from a point on.
+    /// The cuts of a plan that begins here; they apply from the point `from` on.
     pub(crate) fn new(lines: &[Vec<Point>], from: Option<Point>, here: Point, solids: &Solids<'_>) -> Self {
         Self { cuts: lines.iter().map(|line| Cut::new(solids.rooted(line))).collect(), from, seen_at: here }
     }
 
-    /// One tick with a position that can be relied on: whether the robot has strayed across a cut by more than its hull. On
-    /// the line itself the estimate may scatter from side to side.
+    /// Processes one tick with a reliable position. Returns whether the robot has strayed across a cut by more than its
+    /// hull radius; on the line itself the estimate may scatter from side to side.
     pub(crate) fn update(&mut self, here: Point, radius_m: f64) -> bool {
         let before = std::mem::replace(&mut self.seen_at, here);
         if self.from.is_some_and(|from| (here - from).norm() > HOME_M) {
@@ -47,7 +47,7 @@ impl CutsRule {
         self.cuts.iter().any(|cut| cut.is_beyond && polyline::distance_m(&cut.line, here) > radius_m)
     }
 
-    /// The plan is given up, and its cuts with it.
+    /// Drops the cuts, because the plan is abandoned.
     pub(crate) fn clear(&mut self) {
         self.cuts.clear();
     }
@@ -59,7 +59,7 @@ struct Cut {
     line: Vec<Point>,
     /// South-west and north-east corners of the box around it.
     bounds: (Point, Point),
-    /// Whether the robot is beyond it.
+    /// Whether the robot is on the far side of the cut.
     is_beyond: bool,
 }
 
@@ -70,32 +70,33 @@ impl Cut {
         Self { line, bounds: (low - beside, high + beside), is_beyond: false }
     }
 
-    /// Whether a move may cross it: a plan of a large tank has a hundred cuts, and the robot is near to one of them.
+    /// Whether a move may cross the cut. This test saves time: a plan of a large tank has a hundred cuts, and the robot
+    /// is near one of them.
     fn is_near(&self, from: Point, to: Point) -> bool {
         let ((low, high), (west, east)) = (self.bounds, (from.inf(&to), from.sup(&to)));
         west.x <= high.x && west.y <= high.y && east.x >= low.x && east.y >= low.y
     }
 }
 
-/// What is solid on the floor, as far as planners know it.
+/// Everything solid on the floor, as far as planners know it.
 #[derive(Clone, Copy)]
 pub(in crate::engine) struct Solids<'a> {
     pub boundary: &'a Boundary,
     pub map: &'a ObstacleMap,
-    /// Room that the hull needs, metres.
+    /// Distance that the hull's centre must keep from solids, metres.
     pub room_m: f64,
 }
 
 impl Solids<'_> {
-    /// A cut from solid to solid. Many begin where the room of a column or a wall does: a robot that scatters across one and
-    /// comes back round that end would count as beyond it for good.
+    /// Extends a cut so that it runs from solid to solid. Many cuts begin at the edge of the room round a column or a
+    /// wall: a robot that scatters across one and comes back round that end would otherwise count as beyond it for good.
     fn rooted(&self, cut: &[Point]) -> Vec<Point> {
         let before = cut.first().and_then(|end| self.root(*end));
         let behind = cut.last().and_then(|end| self.root(*end));
         before.into_iter().chain(cut.iter().copied()).chain(behind).collect()
     }
 
-    /// Where the solid begins beside which a cut ends, a little inside.
+    /// The point slightly inside the solid that is next to the end of a cut.
     fn root(&self, end: Point) -> Option<Point> {
         let reach_m = ROOT_SHARE * self.room_m;
         let of_obstacles =
@@ -106,7 +107,7 @@ impl Solids<'_> {
         Some(end + onward * (distance_m + ROOT_M))
     }
 
-    /// Distance from the nearest straight wall, metres, and the nearest place on it.
+    /// Distance to the nearest straight wall, metres, and the nearest point on it.
     fn wall_beside(&self, at: Point) -> Option<(f64, Point)> {
         let Boundary::Polygon { vertices } = self.boundary else { return None };
         let places = edges(vertices).map(|(a, b)| nearest_on_segment(a, b, at));

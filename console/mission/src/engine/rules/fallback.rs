@@ -1,8 +1,8 @@
-//! After a fault of the planner another one may take over, once.
+//! After a fault of the active planner the fallback planner takes over, once.
 
 use crate::{config::MissionConfig, phase::Resumes, planner::PlannerChoice};
 
-/// Whether the automatic replacement after a fault has been used.
+/// Whether the fallback has already been used.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct FallbackRule {
     used: bool,
@@ -13,7 +13,7 @@ impl FallbackRule {
         config.fallback.as_ref().filter(|choice| !self.used && choice.id != active)
     }
 
-    /// Whether a hold because of this planner ends by itself.
+    /// Whether a hold caused by this planner ends automatically.
     pub(crate) fn resumes(&self, config: &MissionConfig, active: &str) -> Resumes {
         match self.available(config, active) {
             Some(_) => Resumes::ByFallback,
@@ -21,7 +21,7 @@ impl FallbackRule {
         }
     }
 
-    /// The planner that takes over from this one; it does so once.
+    /// The planner that takes over from this one, at most once.
     pub(crate) fn update(&mut self, config: &MissionConfig, active: &str) -> Option<PlannerChoice> {
         let choice = self.available(config, active)?.clone();
         self.used = true;

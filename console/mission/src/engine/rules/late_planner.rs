@@ -1,11 +1,11 @@
-//! A planner that does not answer in time: the robot stands still meanwhile; after a while it is held.
+//! A planner that answers late: the robot stands still meanwhile, and is held if it takes too long.
 
 use super::seen::{PlannerSeen, Verdict};
 use crate::phase::{Hold, HoldReason, Resumes};
 
-/// A command that is older than this is of no use, seconds.
+/// An older command is not sent, seconds.
 const STALE_S: f64 = 0.2;
-/// A planner that does not answer for this long holds the robot until it does, seconds.
+/// A planner that has not answered for this long puts the robot on hold until it does, seconds.
 const SILENT_S: f64 = 2.0;
 
 /// Whether the planner's last command came late.
@@ -15,20 +15,21 @@ pub(in crate::engine) struct LatePlannerRule {
 }
 
 impl LatePlannerRule {
-    /// A command arrived so many ticks after it was asked for: whether a row of late ones begins with it.
+    /// Records a command that arrived some ticks after it was requested; returns whether it is the first of several late
+    /// ones.
     pub(crate) fn arrived(&mut self, ticks: u64) -> bool {
         let begins = ticks > 0 && !self.was_late;
         self.was_late = ticks > 0;
         begins
     }
 
-    /// Whether a command of this age, in seconds, may still be sent.
+    /// Whether a command of this age, in seconds, can still be sent.
     pub(crate) fn is_fresh(age_s: f64) -> bool {
-        // Ages are multiples of a tick, as floating point numbers.
+        // Ages are multiples of the tick and carry floating-point errors.
         age_s <= STALE_S + 1e-9
     }
 
-    /// One tick of a running robot: holds it when its planner has owed an answer for too long.
+    /// Processes one tick of a running robot: holds the robot when its planner has owed an answer for too long.
     pub(crate) fn update(planner: &PlannerSeen<'_>) -> Option<Verdict> {
         let is_silent = planner.owed_s.is_some_and(|owed_s| owed_s >= SILENT_S - 1e-9);
         is_silent.then(|| {

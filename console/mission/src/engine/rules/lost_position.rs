@@ -1,4 +1,4 @@
-//! A robot whose position cannot be relied on is held until it can be.
+//! A robot with an unreliable position is held until the position is reliable again.
 
 use super::seen::{Seen, Verdict};
 use crate::{
@@ -6,14 +6,14 @@ use crate::{
     standing::PositionTrust,
 };
 
-/// For how long the position could not be relied on, seconds.
+/// How long the position has been unreliable, seconds.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct LostPositionRule {
     position_lost_s: f64,
 }
 
 impl LostPositionRule {
-    /// One tick of a running robot: holds it when the position has been bad for long enough.
+    /// Processes one tick of a running robot: holds the robot when the position has been unreliable for too long.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         self.position_lost_s =
             if seen.is_position_good() { 0.0 } else { self.position_lost_s + seen.config.tick_s };
@@ -26,7 +26,7 @@ impl LostPositionRule {
             .then_some(Verdict::Hold(Hold { by, resumes: Resumes::WhenCleared }))
     }
 
-    /// One tick of a robot that this rule holds.
+    /// Processes one tick of a robot that this rule holds.
     pub(crate) fn update_held(seen: &Seen<'_>) -> Option<Verdict> {
         seen.is_position_good().then_some(Verdict::Resume)
     }

@@ -1,4 +1,4 @@
-//! What rules see of a tick, and what they say.
+//! The inputs and the verdicts of rules.
 
 use crate::{
     config::MissionConfig,
@@ -10,10 +10,10 @@ use crate::{
 use planner_api::Reason;
 use world::Point;
 
-/// A robot that is stopped again within this distance is stopped in the same place, metres.
+/// Within this distance the robot counts as stopped at the same place again, metres.
 pub(super) const SAME_PLACE_M: f64 = 1.0;
 
-/// What the rules see of a tick.
+/// The inputs of the rules in one tick.
 pub(in crate::engine) struct Seen<'a> {
     pub config: &'a MissionConfig,
     /// Mission time at the top of the tick, seconds.
@@ -22,29 +22,29 @@ pub(in crate::engine) struct Seen<'a> {
     pub here: Point,
     pub position: PositionTrust,
     pub task: &'a Task,
-    /// What is left of the planner's path, metres, if it gave one.
+    /// Length of the rest of the planner's path, metres, if it has a path.
     pub plan_left_m: Option<f64>,
     /// Scanned share of the reachable floor, 0 to 1.
     pub scanned: f64,
-    /// Whether the bumper touched something.
+    /// Whether the bumper was touched.
     pub touched: bool,
-    /// The limit that the tether has reached in this tick.
+    /// The tether limit reached in this tick, if any.
     pub reached: Option<&'a TetherAlarm>,
     /// Whether the mission puts return paths along the tether before plans.
     pub can_replan: bool,
-    /// Whether the hull fits back along the tether.
+    /// Whether the hull fits along the tether on the way back.
     pub can_go_home: bool,
     pub planner: PlannerSeen<'a>,
 }
 
-/// What the rules see of the active planner.
+/// The active planner as the rules see it.
 pub(in crate::engine) struct PlannerSeen<'a> {
     pub id: &'a str,
-    /// Whether the robot stands because a plan is being made.
+    /// Whether the robot stands still because a plan is being made.
     pub is_waited_for: bool,
-    /// Whether an answer is owed.
+    /// Whether the planner owes an answer.
     pub owes: bool,
-    /// For how long an answer that a moving robot needs has been owed, seconds.
+    /// How long the planner has owed an answer that a moving robot needs, seconds.
     pub owed_s: Option<f64>,
 }
 
@@ -54,16 +54,16 @@ impl Seen<'_> {
     }
 }
 
-/// What follows from a rule.
+/// The verdict of a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::engine) enum Verdict {
-    /// The robot is held.
+    /// Hold the robot.
     Hold(Hold),
-    /// The robot is held, and its way is planned again from there.
+    /// Hold the robot and plan again from its place.
     HoldAndReplan(Hold),
-    /// The robot moves on.
+    /// Let the robot move again.
     Resume,
-    /// The way is planned again.
+    /// Plan again.
     Replan(Reason),
     /// The task is done.
     Done,

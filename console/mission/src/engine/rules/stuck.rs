@@ -1,4 +1,4 @@
-//! A robot that gets nowhere gets another plan in its lanes, once at each place; else an operator must help.
+//! A robot that makes no progress gets a new plan in its lanes, once at each place; after that an operator must help.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -12,22 +12,22 @@ use world::{Point, coverage::percent_text};
 #[derive(Clone)]
 pub(in crate::engine) struct StuckRule {
     watch: StuckWatch,
-    /// Where the robot was stuck last and got another plan.
+    /// The place where the robot last got a new plan because it was stuck.
     replanned_at: Option<Point>,
 }
 
 impl StuckRule {
-    /// A rule of some patience, seconds.
+    /// Creates the rule; after `patience_s` seconds without progress the robot counts as stuck.
     pub(crate) fn new(patience_s: f64) -> Self {
         Self { watch: StuckWatch::new(patience_s), replanned_at: None }
     }
 
-    /// Forgets the progress seen so far: another plan leads another way.
+    /// Forgets the progress so far, because a new plan takes a different path.
     pub(crate) fn restart(&mut self) {
         self.watch.reset();
     }
 
-    /// One tick of a robot that was free to move.
+    /// Processes one tick in which the robot was free to move.
     pub(crate) fn update(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if !self.watch.update(seen.task, seen.plan_left_m, seen.here, seen.config.tick_s) {
             return None;
@@ -42,7 +42,7 @@ impl StuckRule {
     }
 }
 
-/// An operator may know a way on; without one the mission is over.
+/// An operator may find a way on; without one the mission ends.
 fn give_up(seen: &Seen<'_>) -> Verdict {
     let (here, done) = (seen.here, percent_text(seen.task.done(), 0));
     let message = format!("no progress at {:.2}, {:.2} m, {done} % done", here.x, here.y);

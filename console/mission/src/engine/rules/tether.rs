@@ -1,4 +1,4 @@
-//! A cable that has reached a limit, or has caught on something, holds the robot.
+//! A cable that has reached a limit, or is caught, holds the robot.
 
 use super::seen::{SAME_PLACE_M, Seen, Verdict};
 use crate::{
@@ -7,33 +7,34 @@ use crate::{
 };
 use world::Point;
 
-/// So often a cable that holds the robot in one place is freed without an operator while little is scanned.
+/// Maximum number of attempts to free the cable at one place without an operator while little floor is scanned in
+/// between.
 const MOST_TIMES_CAUGHT: usize = 2;
-/// Share of the reachable floor that is worth another try.
+/// Share of the reachable floor that must be scanned in between to justify another attempt.
 const WORTH_IT: f64 = 0.01;
-/// A robot without a return path that nobody attends waits this long for one, seconds.
+/// In an unattended mission, time to wait for a return path, seconds.
 const WAIT_FOR_HOME_S: f64 = 30.0;
 
-/// What the cable has done to the robot.
+/// State of the tether rule.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct TetherRule {
-    /// Where the cable held the robot last.
+    /// The place where the cable last held the robot.
     caught: Option<Caught>,
-    /// For how long the robot has been held without a return path, seconds.
+    /// How long the robot has been held without a return path, seconds.
     waited_s: f64,
 }
 
-/// The cable held the robot.
+/// A place where the cable held the robot.
 #[derive(Debug, Clone, Copy)]
 struct Caught {
     at: Point,
-    /// Share of the reachable floor scanned when it first did so there.
+    /// Share of the reachable floor that was scanned at the first hold there.
     scanned: f64,
     times: usize,
 }
 
 impl TetherRule {
-    /// One tick of a running robot in which the cable reached a limit.
+    /// Processes one tick in which a running robot's cable reached a limit.
     pub(crate) fn update(&mut self, seen: &Seen<'_>, alarm: &TetherAlarm) -> Verdict {
         self.waited_s = 0.0;
         let message = alarm.to_string();
@@ -42,16 +43,16 @@ impl TetherRule {
             TetherAlarm::Wrap { .. } | TetherAlarm::WrapTotal { .. } | TetherAlarm::Snag { .. } => {
                 self.stop(seen, message, Outcome::Entangled)
             }
-            // What closed the way may move on.
+            // The obstacle that closed the return path may move on.
             TetherAlarm::NoReturnPath | TetherAlarm::Strayed => {
                 Verdict::Hold(held(message, Resumes::WhenCleared))
             }
         }
     }
 
-    /// A cable at its limits, or caught, holds the robot. Lanes are planned again from there, after a way that eases the
-    /// cable; with nobody there this is tried a few times in one place, and more often while floor is scanned in between;
-    /// else the mission ends.
+    /// Holds a robot whose cable is at a limit or caught, and plans lanes again after a path that frees the cable. In an
+    /// unattended mission this is tried a few times at one place, and again whenever floor has been scanned in between;
+    /// then the mission ends.
     fn stop(&mut self, seen: &Seen<'_>, message: String, outcome: Outcome) -> Verdict {
         let (at, scanned) = (seen.here, seen.scanned);
         let again = self
@@ -70,8 +71,8 @@ impl TetherRule {
         }
     }
 
-    /// One tick of a robot that this rule holds until it has a return path; with nobody there to help the mission ends after
-    /// a while.
+    /// Processes one tick of a robot that this rule holds until it has a return path. An unattended mission ends after a
+    /// while.
     pub(crate) fn update_held(&mut self, seen: &Seen<'_>) -> Option<Verdict> {
         if seen.can_go_home {
             return Some(Verdict::Resume);

@@ -1,22 +1,21 @@
-//! The mission ends unfinished when its time is up.
+//! The mission ends unfinished when its time limit is reached.
 
 use super::seen::{Seen, Verdict};
 use crate::phase::Outcome;
 
-/// Counts the time that an operator has let the mission wait: before its start, and while somebody looks after a mission that
-/// is held, its time does not run out.
+/// Measures the time that does not count: the time before the start, and attended holds.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct TimeLimitRule {
     waited_s: f64,
 }
 
 impl TimeLimitRule {
-    /// The mission begins.
+    /// Records the start of the mission.
     pub(crate) fn start(&mut self, now_s: f64) {
         self.waited_s = now_s;
     }
 
-    /// One tick of a mission under way.
+    /// Processes one tick of a mission in progress.
     pub(crate) fn update(&mut self, seen: &Seen<'_>, is_held: bool) -> Option<Verdict> {
         if seen.config.attended && is_held {
             self.waited_s += seen.config.tick_s;

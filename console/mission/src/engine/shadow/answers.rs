@@ -1,4 +1,4 @@
-//! What the answers of a planner in shadow do.
+//! Processes the answers of a planner in shadow.
 
 use super::{
     super::{
@@ -17,14 +17,15 @@ use crate::{
 };
 use planner_api::{Command, Plan};
 
-/// An answer counts in the tick of the ask and in the next one: nobody waits for it, so that it may just miss the first.
+/// An answer counts in the tick of the ask and in the next one: nobody waits for it, so it may just miss the first.
 const IN_TIME_TICKS: u64 = 1;
 
 impl Shadow {
-    /// Takes an answer.
+    /// Processes an answer.
     ///
     /// # Errors
-    /// Why it flies in shadow no more, as a sentence. That counts against nobody: the plugin may be the one that drives.
+    /// Why the planner can no longer fly in shadow, as a sentence. This counts against no plugin: the active planner may
+    /// belong to the same one.
     pub(in crate::engine) fn answer(
         &mut self,
         pending: Pending,
@@ -75,14 +76,14 @@ impl Shadow {
         self.note(EventKind::Commanded { ask: Some(ask), command, asked: None }, happened);
     }
 
-    /// Takes a plan for what is left of the task; whether it flies from where the robot is decides who promotes the planner.
+    /// Takes a plan for what is left of the task; whether it can be run from the robot's position is checked at promotion.
     fn take_plan(&mut self, plan: Plan, asked: &AskedPlan, known: &Known) {
         self.task = known.task.clone();
         self.task.take_plan(&plan);
         self.course.take(&plan);
         self.from_anchor = asked.from_anchor;
         self.plan = plan;
-        // The robot went on meanwhile: perhaps along this plan.
+        // The robot moved on meanwhile, perhaps along this plan.
         for flown in &known.trail[self.n_flown..self.now.n_flown] {
             self.advance(*flown, known);
         }
@@ -90,14 +91,14 @@ impl Shadow {
         self.course.doubt_fresh_plan(&self.task, known.config.room_m());
     }
 
-    /// Reports what it drew, reported and said besides an answer.
+    /// Reports what the planner drew, reported and logged in addition to an answer.
     fn pass_on(&mut self, said: Said, happened: &mut Happened) {
         for kind in said.into_events(&self.worker.choice.id.clone()) {
             self.note(kind, happened);
         }
     }
 
-    /// Reports what it did, as what moved nothing.
+    /// Reports an event of the planner in shadow, which has no effect on the robot.
     fn note(&mut self, kind: EventKind, happened: &mut Happened) {
         let event = EventKind::Shadowed { of: Box::new(kind) };
         self.tally.apply(&event);

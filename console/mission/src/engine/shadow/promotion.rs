@@ -1,4 +1,5 @@
-//! A planner in shadow takes over: in one tick, with its plan from where the robot is then, and without a hold.
+//! Promotion of the planner in shadow: it takes over within one tick, with its plan from the robot's current position, and
+//! without a hold.
 
 use super::{
     super::{
@@ -21,24 +22,25 @@ use crate::{
 use planner_api::{Plan, Reason};
 use world::{Point, polyline};
 
-/// It is asked so often for a plan from where the robot is; then the order is given up.
+/// Maximum number of plans requested from the robot's position; after that the order is dropped.
 const MOST_PLANS: u32 = 3;
-/// The robot goes back so far at most to where the plan that takes over begins, metres.
+/// Maximum distance that the robot drives back to the start of the plan that takes over, metres.
 const MOST_BACK_M: f64 = 3.0;
 
-/// Whether a planner in shadow is to take over.
+/// Whether the planner in shadow has been ordered to take over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Promotion {
     No,
-    /// As soon as it can; it was asked so often for a plan from where the robot is.
+    /// Take over as soon as possible; the number is that of the plans requested from the robot's position so far.
     Ordered {
         n_plans: u32,
     },
 }
 
 impl Mission {
-    /// The planner in shadow is to take over as soon as its plan flies from where the robot is: in this tick, if the robot is
-    /// at its plan. A hold that was to end by itself ends by an order now, as for any change of planners.
+    /// Orders the planner in shadow to take over as soon as its plan can be run from the robot's position: in this tick, if
+    /// the robot is close to that plan. As for any change of planner, a hold that would have ended automatically now ends
+    /// only by order.
     pub(in crate::engine) fn order_promotion(&mut self) {
         self.stay_held();
         if let Some(shadow) = &mut self.shadow {
@@ -46,18 +48,18 @@ impl Mission {
         }
     }
 
-    /// The planner in shadow is not to take over: another one was chosen.
+    /// Cancels the promotion because a different planner was chosen.
     pub(in crate::engine) fn cancel_promotion(&mut self) {
         if let Some(shadow) = &mut self.shadow {
             shadow.promotion = Promotion::No;
         }
     }
 
-    /// Lets the planner in shadow take over if that was ordered and it can.
+    /// Promotes the planner in shadow if that was ordered and it is able to.
     pub(in crate::engine) fn promote_if_due(&mut self) {
         let is_ordered = |shadow: &&Shadow| shadow.promotion != Promotion::No;
         let Some(shadow) = self.shadow.as_ref().filter(is_ordered) else { return };
-        // Nobody expects another planner to take over long after the order.
+        // Nobody expects a planner to take over long after the order.
         let refusal = self.standing().allows(&Order::Promote).err().map(|why| why.to_string());
         let barred = || shadow.worker.info.as_ref().and_then(|info| self.barred(info));
         if let Some(why) = refusal.or_else(barred) {
@@ -81,7 +83,7 @@ impl Mission {
         }
     }
 
-    /// The robot is beside the plan of the planner in shadow, which plans once more, unless it has done so too often.
+    /// The robot is not on the shadow's plan: requests one more plan, unless too many were requested already.
     fn promote_later(&mut self) {
         match &mut self.shadow {
             Some(Shadow { promotion: Promotion::Ordered { n_plans }, course, .. })
@@ -90,7 +92,9 @@ impl Mission {
                 *n_plans += 1;
                 course.want_plan(Reason::Swap { from: self.driving.id().to_owned() });
             }
-            _ => self.refuse_promotion("the robot leaves its plans before they are made; HOLD first".into()),
+            _ => self.refuse_promotion(
+                "the robot moves on before a plan from its position is ready; HOLD first".into(),
+            ),
         }
     }
 
@@ -110,7 +114,7 @@ impl Mission {
         if let Some(pending) = &mut worker.pending {
             pending.kind = PendingKind::StepInShadow;
         }
-        // A hold that blames the planner before has lost its reason.
+        // A hold caused by the previous planner has lost its reason.
         let is_held = matches!(self.known.phase, Phase::Held(_));
         let prepare = if is_held { Prepare::Plan } else { Prepare::No };
         self.happened.push(EventKind::Promoted { planner, tally });
@@ -119,13 +123,14 @@ impl Mission {
 }
 
 impl Shadow {
-    /// Whether it has a plan, and no answer of it is overdue.
+    /// Whether it has a plan and owes no overdue answer.
     fn may_take_over(&self, tick: u64) -> bool {
         let owes = self.worker.pending.as_ref().is_some_and(|pending| pending.tick + 1 < tick);
         self.course.has_plan() && !owes
     }
 
-    /// What is left of its plan from where the robot is, which has flown this way. `None` if the plan is too far off.
+    /// The rest of its plan from the robot's position, with the points of the path driven so far; `None` if the plan is too
+    /// far away.
     pub(super) fn rest_from(&self, here: Point, trail: &[Point]) -> Option<Plan> {
         let Some(route) = self.route() else { return Some(self.plan.clone()) };
         let since_asked = trail.get(self.n_flown.saturating_sub(1)..).unwrap_or_default();
@@ -133,8 +138,8 @@ impl Shadow {
         Some(rest_of(&self.plan, route.along_m(), &approach))
     }
 
-    /// The way to a plan from which the robot went away while it was made: back to it where lanes are followed exactly;
-    /// to a point, or along preset ones, planners find their own way from beside their path.
+    /// The path back to a plan that the robot moved away from while it was made. Where lanes are followed exactly, it
+    /// leads back to the plan. In other tasks planners find their own way back to their path.
     fn approach(&self, here: Point, since_asked: &[Point]) -> Option<Vec<Point>> {
         let back = || since_asked.iter().rev().copied();
         let n_back = back().position(|flown| self.is_near(flown))?;

@@ -213,7 +213,7 @@ fn a_plan_that_is_not_there_in_time_is_given_up_and_the_robot_never_waits_for_it
         stood += usize::from(flight.pose == before);
     }
     let [said] = &texts(&flight)[..] else { panic!("{:?}", texts(&flight)) };
-    let late = "it came after the robot had passed the place where it begins";
+    let late = "it arrived after the robot had passed the place where it begins";
     assert_eq!(*said, format!("no better plan of straight: {late}"));
     assert_eq!((stood, flight.closed.as_slice()), (0, &[WorkerId(2)][..]));
 }
@@ -236,7 +236,7 @@ fn orders_that_change_the_plan_drop_it() {
     let corners = world::shape::rectangle(Point::new(2.0, 2.0), Point::new(3.0, 3.0));
     let gain = Order::SetParameter { key: "gain".into(), value: ParamValue::Float(2.0) };
     for (order, why) in [
-        (swap_to("other"), "another planner was chosen"),
+        (swap_to("other"), "a different planner was chosen"),
         (gain, "a parameter was changed"),
         (Order::DrawZone(corners), "a no-go zone was drawn"),
     ] {
@@ -267,7 +267,7 @@ fn a_fault_of_the_planner_that_drives_drops_it() {
     let mut flight = with_offer();
     flight.planner.fail_at_tick = Some(flight.mission.known.tick);
     flight.tick(&[]);
-    assert_eq!(texts(&flight)[1], "no better plan of straight: the planner that drives failed");
+    assert_eq!(texts(&flight)[1], "no better plan of straight: the active planner failed");
     flight.tick(&[Order::Resume]);
     fly_past(&mut flight, &[COLUMN], 40_000);
     assert_eq!(flight.ended(), Some(Outcome::Complete));

@@ -68,12 +68,12 @@ fn a_zone_where_the_robot_or_its_anchor_is_and_one_that_is_none_are_refused() {
     let here = flight.pose.position;
     let around = |p: Point| zone((p.x - 0.5, p.y - 0.5), (p.x + 0.5, p.y + 0.5));
     let orders = [
-        (around(here), "robot stands"),
-        (around(covering().start.position), "the start lies in the zone"),
+        (around(here), "the robot is in the zone"),
+        (around(covering().start.position), "the start is in the zone"),
         (zone((1.0, 1.0), (1.0, 2.0)), "enclose"),
-        (zone((1.0, 1.0), (1e308, 1e308)), "at most 10000 m"),
+        (zone((1.0, 1.0), (1e308, 1e308)), "within 10000 m"),
         (zone((15.0, 15.0), (16.0, 16.0)), "outside the tank"),
-        (zone((-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "would block every way"),
+        (zone((-9.0, here.y - 0.8), (9.0, here.y - 0.4)), "would block every path"),
     ];
     for (order, why) in orders {
         let events = flight.tick(std::slice::from_ref(&order));

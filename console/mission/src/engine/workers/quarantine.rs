@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many faults ...
+/// Number of faults ...
 pub(in crate::engine) const MOST_FAULTS: usize = 3;
-/// ... within this mission time, seconds, and a plugin may not drive again.
+/// ... within this mission time, seconds, that bars a plugin from driving again.
 pub(in crate::engine) const WINDOW_S: f64 = 60.0;
 
-/// Counts faults by the hash of the plugin's file, over mission time.
+/// Counts faults per plugin file, by its hash, over mission time.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct Quarantine {
     faults_s: BTreeMap<String, Vec<f64>>,
@@ -15,7 +15,7 @@ pub(in crate::engine) struct Quarantine {
 }
 
 impl Quarantine {
-    /// A plugin failed at this mission time.
+    /// Records a fault of a plugin at this mission time.
     pub(crate) fn note(&mut self, sha256: &str, t_s: f64) {
         let recent = self.faults_s.entry(sha256.to_owned()).or_default();
         recent.push(t_s);
@@ -25,7 +25,7 @@ impl Quarantine {
         }
     }
 
-    /// Whether a plugin may not drive again.
+    /// Whether a plugin is barred from driving again.
     pub(crate) fn holds(&self, sha256: &str) -> bool {
         self.closed.contains(sha256)
     }

@@ -17,7 +17,8 @@ use mission::{AskId, Fault, Given};
 use std::time::Instant;
 
 impl Host {
-    /// Begins to open a planner in place of one that has this worker; what cannot be opened is answered at once.
+    /// Begins to open a planner and closes any planner that has the same worker id. A planner that cannot be opened is
+    /// answered immediately.
     pub(crate) fn open(&mut self, id: AskId, opening: Opening) {
         self.close(id.worker);
         self.planners.push(Planner::new(id.worker));
@@ -30,7 +31,7 @@ impl Host {
         self.close_unless(begun, id);
     }
 
-    /// Answers that a planner cannot be opened, if it cannot.
+    /// Closes the planner and answers with the fault, if opening it failed.
     fn close_unless(&mut self, begun: Result<(), Fault>, id: AskId) {
         if let Err(fault) = begun {
             self.close(id.worker);
@@ -38,7 +39,7 @@ impl Host {
         }
     }
 
-    /// Asks a new worker to load the next file that may have the planner.
+    /// Asks a new worker to load the next file that may contain the planner.
     fn load_next(&mut self, id: AskId, mut opening: Opening) -> Result<(), Fault> {
         loop {
             let Some(candidate) = opening.candidates.pop_front() else {
@@ -59,7 +60,7 @@ impl Host {
     /// Finds more files to try.
     ///
     /// # Errors
-    /// There are none.
+    /// No files are left.
     fn search_on(&mut self, opening: &mut Opening) -> Result<(), Fault> {
         let Opening { planner, search, first_fault, candidates, .. } = opening;
         if let Some(files) = self.catalog.search_on(planner, search, first_fault.is_none()) {
@@ -80,7 +81,7 @@ impl Host {
         Ok(worker)
     }
 
-    /// Leaves an ask open until its worker has answered.
+    /// Keeps an ask open until its worker has answered.
     fn wait_for(&mut self, id: AskId, worker: Worker, doing: Doing) {
         if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {
             planner.worker = Some(worker);
@@ -88,7 +89,7 @@ impl Host {
         }
     }
 
-    /// Takes the outcome of a stage and begins the next one.
+    /// Processes the outcome of a stage and begins the next one.
     pub(in crate::host) fn go_on_opening(
         &mut self,
         id: AskId,
@@ -129,7 +130,7 @@ impl Host {
         Err(fault)
     }
 
-    /// Makes the planner if the worker has loaded it; else tries the next file.
+    /// Creates the planner if the worker has loaded it; otherwise tries the next file.
     fn configure(
         &mut self,
         id: AskId,
@@ -153,13 +154,13 @@ impl Host {
                 return self.load_next(id, opening);
             }
         };
-        // A file before it that failed may work the next time.
+        // If an earlier file failed, it may work next time, so this file is not remembered as the first.
         let first = opening.first_fault.is_none().then_some(candidate);
         self.catalog.learn(&loaded.info.id, first);
         self.create(id, worker, opening, loaded)
     }
 
-    /// Makes the planner in a worker that has loaded it.
+    /// Creates the planner in a worker that has loaded it.
     fn create(
         &mut self,
         id: AskId,
@@ -187,8 +188,9 @@ impl Host {
         }
     }
 
-    /// A planner that was not made. In a process that has served an earlier mission it may have been the instance of that one
-    /// which did not end well: that is not the fault of this mission, and a new process shows it.
+    /// Handles a planner that could not be created. If the process has served an earlier mission, the cause may be that
+    /// mission's instance, which did not end well. This mission is not to blame for that, so the planner is loaded
+    /// again in a new process.
     fn part_or_load_again(
         &mut self,
         id: AskId,
@@ -205,7 +207,7 @@ impl Host {
         self.load_next(id, opening)
     }
 
-    /// Gives a planner that was made the state of an earlier one, if there is one that it understands.
+    /// Restores an earlier planner's state in a new planner, if there is one that fits.
     fn restore(
         &mut self,
         id: AskId,
@@ -236,7 +238,7 @@ impl Host {
         }
     }
 
-    /// The planner is ready.
+    /// Marks the planner as ready and answers the ask.
     fn opened(&mut self, id: AskId, worker: Worker, opening: Opening, loaded: Loaded, said: Said) {
         let info = Box::new(loaded.info.clone());
         if let Some(planner) = self.planners.iter_mut().find(|planner| planner.id == id.worker) {

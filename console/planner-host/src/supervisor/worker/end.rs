@@ -1,4 +1,4 @@
-//! How a worker ends: by itself, on request, or killed; it is polled and never waited for, except when it is dropped.
+//! How a worker ends: on its own, on request, or killed. It is polled and never waited for, except when it is dropped.
 
 use super::Worker;
 use super::state::{DIE_WITHIN, Dying, State};
@@ -12,7 +12,7 @@ use std::net::Shutdown;
 use std::os::unix::process::ExitStatusExt;
 use std::time::Instant;
 
-/// How a worker ended that had to be killed.
+/// The description of a worker that did not exit on request and was killed.
 const LATE: &str = "took more than 0.1 s to shut down";
 
 impl Worker {
@@ -22,12 +22,12 @@ impl Worker {
         failure
     }
 
-    /// The channel is lost: how the process ended is the outcome.
+    /// Handles a lost channel: the way in which the process ends is the outcome.
     pub(super) fn lose(&mut self, now: Instant) {
         self.state = State::Dying(Dying::new(now));
     }
 
-    /// Waits for the end of the process and for its last output; how it ended, once that is known.
+    /// Waits until the process has ended and its last output has arrived. Returns how it ended, once that is known.
     pub(super) fn advance_dying(&mut self, ready: Ready, now: Instant) -> Option<Failure> {
         let State::Dying(dying) = &mut self.state else { return None };
         let may_have_ended = ready.exited || self.process.pidfd().is_none() || now >= dying.until;
@@ -39,7 +39,7 @@ impl Worker {
             return None;
         }
         if !self.process.is_reaped() && !dying.is_killed {
-            // A process that was slow to end keeps its own reason; only one that is still alive is ended by our signal.
+            // A process that ends slowly keeps its own reason; our signal kills only one that is still alive.
             self.process.kill();
             dying.wait_for_kill(now);
             return None;
@@ -51,8 +51,8 @@ impl Worker {
         Some(Failure::Died { how: how_it_ended(status), last_output: last_line(self.process.tail()) })
     }
 
-    /// Lets the process exit by itself within a grace period, so that the planner is dropped cleanly; an open request has
-    /// no outcome then.
+    /// Lets the process exit within a grace period, so that the planner is destroyed cleanly. An open request then has
+    /// no outcome.
     pub(crate) fn shut_down(&mut self) {
         let now = Instant::now();
         self.process.read_output();
@@ -63,13 +63,14 @@ impl Worker {
             State::Idle => self.leaves_idle = true,
         }
         match self.socket.shutdown(Shutdown::Write) {
-            // The socket stays open until the worker has ended: it takes a full hang-up for the console's death.
+            // The socket stays open until the worker has ended: a full hang-up would mean to the worker that the
+            // console died.
             Ok(()) => self.state = State::Leaving(Some(now + SHUT_DOWN_WITHIN)),
             Err(_) => self.kill(),
         }
     }
 
-    /// Kills the process; an open request has no outcome then.
+    /// Kills the process. An open request then has no outcome.
     pub(crate) fn kill(&mut self) {
         if !self.is_gone() {
             self.process.kill();
@@ -85,7 +86,7 @@ impl Worker {
         } else if let Some(status) = self.process.reap() {
             self.state = State::Gone;
             if until.is_some() && !status.success() {
-                // Its own watchdog kills it when the time is over.
+                // The worker's own watchdog kills it when the grace period is over.
                 let is_late = status.signal() == Some(Signal::KILL.as_raw());
                 self.end_badly(if is_late { LATE.to_owned() } else { how_it_ended(Some(status)) });
             }
@@ -95,7 +96,7 @@ impl Worker {
         }
     }
 
-    /// A worker that was interrupted did not end by itself.
+    /// A worker that was interrupted did not exit on its own.
     fn end_badly(&mut self, how: String) {
         if self.leaves_idle {
             self.bad_end.get_or_insert(how);
@@ -104,7 +105,7 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// It is no longer polled: it is killed, and reaped unless the system is stuck.
+    /// Nothing polls the worker any more, so it is killed, and reaped unless the system is stuck.
     fn drop(&mut self) {
         self.kill();
         let until = Instant::now() + DIE_WITHIN;

@@ -1,4 +1,4 @@
-//! A request and its answer: what arrives, and the deadline.
+//! Exchanges a request and its answer, and enforces the deadline.
 
 use super::Worker;
 use super::state::{Budgeted, State};
@@ -13,7 +13,7 @@ use crate::wire::frame::Filled;
 use crate::wire::kind;
 use std::time::{Duration, Instant};
 
-/// A worker that did not answer within its budget is asked to stop and given this long before it is killed.
+/// A worker that does not answer within its budget is asked to stop, and has this long before it is killed.
 const GRACE: Duration = Duration::from_millis(100);
 
 /// What has arrived from a worker.
@@ -51,7 +51,7 @@ impl Worker {
             Arrived::Answer => return Some(Err(self.end(Failure::Late))),
             Arrived::Broken => return Some(Err(self.end(Failure::Protocol))),
             Arrived::Closed => self.lose(now),
-            // The end of the process ends the request only once there is nothing left to read.
+            // The end of the process ends the request only after everything it sent has been read.
             Arrived::Nothing if ready.exited && !ready.readable() => self.lose(now),
             Arrived::Nothing => {}
         }
@@ -83,7 +83,7 @@ impl Worker {
         }
     }
 
-    /// Takes the worker's report, given once, of how far it is closed off and for which file.
+    /// Accepts the worker's report about its sandbox and the file; it may send only one.
     fn take_sealed(&mut self) -> Read<()> {
         let sealed = whole(self.incoming.body())?;
         if self.guard.begin(sealed) { Ok(()) } else { Err(Malformed) }
@@ -104,7 +104,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Looks at the worker when it is time, and ends a request that has used up its budget.
+    /// Checks the worker when it is time, and cancels a request that has used up its budget.
     pub(super) fn keep_deadline(&mut self, now: Instant) -> Option<Failure> {
         match &mut self.state {
             State::Busy(request) if now >= request.look_at => {
@@ -129,7 +129,7 @@ impl Worker {
         }
     }
 
-    /// Asks the planner to stop, unless it has not even read the request.
+    /// Asks the planner to stop, unless the request has not been sent completely.
     pub(super) fn send_cancel(&mut self, now: Instant) {
         if self.has_sent() && self.writer.begin(kind::CANCEL, self.sequence, 0).finish().is_ok() {
             self.n_sent = 0;
@@ -137,8 +137,8 @@ impl Worker {
         }
     }
 
-    /// Reads the answer that has just arrived. If it is malformed, or says that the planner cannot continue, the process is
-    /// killed.
+    /// Reads the answer that has just arrived. If it is malformed, or states that the planner cannot continue, the
+    /// process is killed.
     pub(crate) fn take_answer<T>(&mut self, read: impl FnOnce(Body<'_>) -> Read<T>) -> Result<T, Failure> {
         match interpret(self.incoming.kind(), self.incoming.body(), read) {
             Ok(Err(failure)) if failure.ends_the_process() => Err(self.end(failure)),

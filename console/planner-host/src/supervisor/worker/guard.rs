@@ -1,4 +1,4 @@
-//! The console's side of a worker's sandbox: how far it reaches, and decisions about system calls.
+//! The console's side of a worker's sandbox: its extent, and decisions about system calls.
 
 use crate::sandbox::{Listener, Stage, Uncounted, Verdict, ends_loading, verdict};
 use crate::wire::answer::Sealed;
@@ -9,32 +9,32 @@ use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 
-/// What guards a worker.
+/// The guard of one worker.
 #[derive(Default)]
 pub(super) struct Guard {
     /// `None` until the worker has reported it.
     sealed: Option<Sealed>,
-    /// The last descriptor that came over the socket.
+    /// The last descriptor received over the socket.
     received: Option<OwnedFd>,
     listener: Option<Listener>,
     has_loaded: bool,
-    /// The folder that was last searched for a library.
+    /// The folder in which a library was last looked for.
     sought: String,
     uncounted: Uncounted,
 }
 
 impl Guard {
-    /// For a planner with this limit of memory, bytes.
+    /// Creates the guard for a planner with this memory limit, bytes.
     pub(super) fn new(memory_limit_bytes: u64) -> Self {
         Self { uncounted: Uncounted::of(memory_limit_bytes), ..Self::default() }
     }
 
-    /// How far the worker is closed off, and for which file.
+    /// Returns the worker's report about its sandbox and the file.
     pub(super) fn sealed(&self) -> Option<&Sealed> {
         self.sealed.as_ref()
     }
 
-    /// Takes the worker's report; false if there was one before. It comes before anything of the plugin has run.
+    /// Accepts the worker's report; false if there was one before. It arrives before any code of the plugin has run.
     pub(super) fn begin(&mut self, sealed: Sealed) -> bool {
         if self.sealed.is_some() {
             return false;
@@ -52,17 +52,17 @@ impl Guard {
         Stage::Loaded { no_file_can_be_opened: is_full }
     }
 
-    /// The plugin is loaded.
+    /// Notes that the plugin is loaded.
     pub(super) fn end_loading(&mut self) {
         self.has_loaded = true;
     }
 
-    /// Readable when a call waits for a decision.
+    /// Returns the descriptor that becomes readable when a call waits for a decision.
     pub(super) fn calls(&self) -> Option<BorrowedFd<'_>> {
         self.listener.as_ref().map(AsFd::as_fd)
     }
 
-    /// Decides about the call that is waiting. Returns what was tried, if it is forbidden.
+    /// Decides about the waiting call. Returns what was tried, if it is forbidden.
     pub(super) fn decide(&mut self) -> Option<String> {
         let stage = self.stage();
         let listener = self.listener.as_ref()?;
@@ -77,7 +77,7 @@ impl Guard {
         }
     }
 
-    /// Reads from the socket; until the worker has reported, a descriptor may come along.
+    /// Returns a reader of the socket; until the worker has reported, it also accepts a descriptor.
     pub(super) fn read<'a>(&'a mut self, socket: &'a UnixStream) -> impl Read + 'a {
         Reader { socket, received: self.sealed.is_none().then_some(&mut self.received) }
     }

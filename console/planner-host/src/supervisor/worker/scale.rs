@@ -1,37 +1,39 @@
-//! How much memory a busy worker has, checked often: the system limits only what it counts, and there are ways around that.
+//! Checks the memory of a busy worker frequently: the system only limits the memory that it counts, and that can be
+//! circumvented.
 
 use crate::sandbox::MAY_HIDE;
 use crate::supervisor::load::weight_of;
 use rustix::process::Pid;
 use std::time::{Duration, Instant};
 
-/// Interval at which a busy worker is weighed: in this time a thread writes to about 30 MB of new memory.
+/// How often a busy worker is weighed. Meanwhile a thread can write to about 30 MB of new memory.
 const WEIGH_EVERY: Duration = Duration::from_millis(10);
 
 /// Weighs a worker.
 pub(super) struct Scale {
-    /// Memory of its planner, bytes.
+    /// The planner's memory limit, bytes.
     limit: u64,
     look_at: Instant,
 }
 
 impl Scale {
-    /// For a planner with this limit of memory, bytes.
+    /// Creates a scale for a planner with this memory limit, bytes.
     pub(super) fn new(limit: u64) -> Self {
         Self { limit, look_at: Instant::now() }
     }
 
-    /// It was asked.
+    /// Starts weighing when a request is sent.
     pub(super) fn begin(&mut self, now: Instant) {
         self.look_at = now + WEIGH_EVERY;
     }
 
-    /// When it has to be weighed next.
+    /// Returns the time of the next weighing.
     pub(super) fn look_at(&self) -> Instant {
         self.look_at
     }
 
-    /// Weighs it when it is time. Returns its limit, bytes, if it has more than that plus what a worker itself needs.
+    /// Weighs the worker when it is due. Returns the limit, bytes, if the worker exceeds it by more than a worker needs
+    /// for itself.
     pub(super) fn weigh(&mut self, process: Pid, now: Instant) -> Option<u64> {
         if now < self.look_at {
             return None;

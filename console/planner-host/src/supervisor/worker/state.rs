@@ -3,43 +3,43 @@
 use crate::supervisor::clock::{FairClock, Load, Verdict};
 use std::time::{Duration, Instant};
 
-/// An unanswered request is first looked at after this time ...
+/// How long after a request a busy worker is first checked ...
 const FIRST_LOOK: Duration = Duration::from_millis(100);
-/// ... then at this interval ...
+/// ... how often after that ...
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// ... and near the end of its budget no more often than this, which is the resolution of the processor time.
+/// ... and the shortest interval near the end of its budget, which is the resolution of processor time.
 const LEAST_LOOK: Duration = Duration::from_millis(10);
-/// A process whose socket is closed has ended or is about to.
+/// How long a process may take to end after its socket is closed.
 const EXIT_WITHIN: Duration = Duration::from_millis(80);
-/// A killed process ends at once unless the system is stuck.
+/// How long a killed process may take to end; longer means that the system is stuck.
 pub(super) const DIE_WITHIN: Duration = Duration::from_millis(30);
-/// What a dead process printed is in the pipe already.
+/// How long to wait for the output of a dead process, which is already in the pipe.
 const OUTPUT_WITHIN: Duration = Duration::from_millis(30);
-/// Progress messages are forwarded at this rate, after an initial burst; the rest of a flood is dropped. A well-behaved
-/// worker sends 20 a second.
+/// Progress messages are forwarded at this rate, after an initial burst; the rest is dropped. A well-behaved worker
+/// sends 20 a second.
 const MOST_PER_S: f64 = 40.0;
 const MOST_AT_FIRST: f64 = 20.0;
 
 /// What a worker is doing.
 pub(super) enum State {
-    /// Nothing.
+    /// Waiting for a request.
     Idle,
-    /// It is asked.
+    /// Executing a request.
     Busy(Request),
-    /// Its budget is used up; until then it may still answer.
+    /// Out of budget; it may still answer until this time.
     Cancelling(Request, Instant),
-    /// It is ending, and what can be learned about that is being gathered.
+    /// Ending, while its exit status and output are being collected.
     Dying(Dying),
-    /// It was asked to shut down and has until then to exit by itself. Without a time it was killed and is not reaped yet.
+    /// Asked to shut down, with time until then to exit. Without a time, it was killed and is not reaped yet.
     Leaving(Option<Instant>),
-    /// It has ended and was reaped.
+    /// Ended and reaped.
     Gone,
 }
 
 /// A request without an answer.
 pub(super) struct Request {
     pub(super) kind: u8,
-    /// When it has to be looked at next.
+    /// When the worker must be checked next.
     pub(super) look_at: Instant,
     budget: Duration,
     began: Instant,
@@ -60,7 +60,7 @@ impl Request {
         Self { kind, look_at, budget, began: now, clock: FairClock::default(), n_forwarded: 0 }
     }
 
-    /// Looks at the process.
+    /// Checks the load of the process and what is left of the budget.
     pub(super) fn look(&mut self, now: Instant, load: Option<Load>) -> Budgeted {
         self.clock.advance(now.saturating_duration_since(self.began), load);
         match self.clock.evaluate(self.budget) {
@@ -73,7 +73,7 @@ impl Request {
         }
     }
 
-    /// Whether another progress message may be forwarded; if so, counts it.
+    /// Whether one more progress message may be forwarded; if so, counts it.
     pub(super) fn may_forward(&mut self, now: Instant) -> bool {
         let elapsed_s = now.saturating_duration_since(self.began).as_secs_f64();
         let may = f64::from(self.n_forwarded) < MOST_AT_FIRST + MOST_PER_S * elapsed_s;
@@ -82,26 +82,26 @@ impl Request {
     }
 }
 
-/// The end of a process that closed its channel.
+/// A process that closed its channel and is ending.
 pub(super) struct Dying {
-    /// Whether it ends by our signal.
+    /// Whether we killed the process.
     pub(super) is_killed: bool,
-    /// How long the next step of its end may take.
+    /// When the next step of its end must be complete.
     pub(super) until: Instant,
 }
 
 impl Dying {
-    /// It ends by itself, or has ended.
+    /// Waits for a process that is ending on its own or has ended.
     pub(super) fn new(now: Instant) -> Self {
         Self { is_killed: false, until: now + EXIT_WITHIN }
     }
 
-    /// It was killed.
+    /// Waits for a process that was killed.
     pub(super) fn wait_for_kill(&mut self, now: Instant) {
         (self.is_killed, self.until) = (true, now + DIE_WITHIN);
     }
 
-    /// It was reaped.
+    /// Waits for the output of a process that was reaped.
     pub(super) fn wait_for_output(&mut self, now: Instant) {
         self.until = now + OUTPUT_WITHIN;
     }

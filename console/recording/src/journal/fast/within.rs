@@ -1,4 +1,4 @@
-//! Plans within other events: of the planner in shadow, and those that came too late.
+//! Plans within other events: plans of a planner in shadow, and late plans.
 
 use mission::{AskId, Event, EventKind};
 use planner_api::{Leg, Reason};
@@ -9,7 +9,7 @@ use serde::{
 use std::fmt;
 use world::Point;
 
-/// An event that holds another one, a plan; `None` for any other.
+/// An event that contains a plan; `None` for any other event.
 pub(super) fn event(line: &str) -> Option<Event> {
     #[derive(Deserialize)]
     struct Fields {
@@ -33,7 +33,7 @@ pub(super) fn event(line: &str) -> Option<Event> {
     Some(Event { tick, t_s, kind })
 }
 
-/// A plan as an event, whose name comes first.
+/// A plan as an event whose name comes first.
 struct Plan(EventKind);
 
 #[derive(Deserialize)]

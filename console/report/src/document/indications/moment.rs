@@ -1,4 +1,4 @@
-//! Times of day, and how long after the beginning of a run they are.
+//! Times of day, and their offset from the start of a run.
 
 use jiff::{Timestamp, civil};
 
@@ -8,14 +8,15 @@ const DAY_S: f64 = 86_400.0;
 /// A time of day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Clock {
-    /// With its date.
+    /// A time with a date.
     Moment(Timestamp),
-    /// Without one, UTC.
+    /// A time of day without a date, UTC.
     Time(civil::Time),
 }
 
 impl Clock {
-    /// Reads `2026-11-24T07:40:12.5Z` with any zone (without one UTC), or `07:40:12.5`; none if it is neither.
+    /// Reads `2026-11-24T07:40:12.5Z` with any zone (UTC if there is none), or `07:40:12.5`; returns `None` for
+    /// anything else.
     pub(super) fn read(text: &str) -> Option<Self> {
         let moment = || {
             text.parse::<Timestamp>().ok().or_else(|| {
@@ -27,7 +28,7 @@ impl Clock {
         if is_date { moment().map(Self::Moment) } else { text.parse().ok().map(Self::Time) }
     }
 
-    /// Seconds after the beginning of a run; a time without a date is the first one after it.
+    /// Seconds after the start of a run; a time without a date means the first such time after the start.
     pub(super) fn after_s(self, began: Timestamp) -> f64 {
         match self {
             Self::Moment(moment) => moment.duration_since(began).as_secs_f64(),
@@ -40,7 +41,7 @@ impl Clock {
     }
 }
 
-/// When a run began, as the name of its folder says: `20261122T040132Z-...`.
+/// The start of a run, read from its folder name: `20261122T040132Z-...`.
 pub(in crate::document) fn began(name: &str) -> Option<Timestamp> {
     let stamp = name.split('-').next()?;
     let at = |range: std::ops::Range<usize>| stamp.get(range);

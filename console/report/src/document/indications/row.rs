@@ -1,4 +1,4 @@
-//! What a row says of an indication.
+//! One row of an indications file.
 
 use super::{
     Flown,
@@ -8,16 +8,16 @@ use super::{
 use foreign::unplain;
 use world::Point;
 
-/// The columns that there are.
+/// The known columns.
 pub(super) const COLUMNS: [&str; 13] = [
     "run", "t_s", "time", "left_m", "ahead_m", "x_m", "y_m", "x", "y", "kind", "size_mm", "depth_mm", "note",
 ];
-/// Those that hold numbers.
+/// The columns with numbers.
 pub(super) const NUMBERS: [&str; 7] = ["t_s", "left_m", "ahead_m", "x_m", "y_m", "size_mm", "depth_mm"];
-/// A number larger than this is not a place or size.
+/// Numbers above this cannot be a position or a size.
 const MOST: f64 = 1e9;
 
-/// A row, read and within what its numbers can be.
+/// A row whose cells were read and are within their limits.
 pub(super) struct Row<'a> {
     table: &'a Table,
     cells: &'a Cells,
@@ -26,7 +26,7 @@ pub(super) struct Row<'a> {
     clock: Option<Clock>,
     pub(super) left_m: f64,
     pub(super) ahead_m: f64,
-    /// Where it lies, if the row has coordinates.
+    /// Its position, if the row has coordinates.
     pub(super) at: Option<Point>,
     pub(super) kind: String,
     pub(super) size_mm: Option<f64>,
@@ -38,7 +38,7 @@ impl<'a> Row<'a> {
     /// Reads a row.
     ///
     /// # Errors
-    /// Everything that is wrong with its cells.
+    /// All faults of its cells.
     pub(super) fn of(
         table: &'a Table,
         cells: &'a Cells,
@@ -71,22 +71,26 @@ impl<'a> Row<'a> {
         }
         if let Some((mm, most_mm)) = depth_mm.zip(thickness_mm).filter(|(mm, most_mm)| mm > most_mm) {
             let what = format!(
-                "{mm}: must be at most {most_mm}, the thickness of the plate (inspection.nominal_thickness_mm)"
+                "{mm}: must be at most {most_mm}, the plate thickness (inspection.nominal_thickness_mm)"
             );
             faults.push(fault(cells, "depth_mm", what));
         }
         let is_bad = |name: &str| faults.iter().any(|fault| fault.column.as_deref() == Some(name));
         let place_fault = match (x_m, y_m, t_s.is_some() || clock.is_some()) {
             (Some(_), Some(_), _) if left_m.or(ahead_m).is_some() => {
-                Some(("left_m", "x_m and y_m already give the place: leave left_m and ahead_m empty"))
+                Some(("left_m", "x_m and y_m already give the position: leave left_m and ahead_m empty"))
             }
             (Some(_), Some(_), true) => {
-                Some(("x_m", "the row gives both a time and a place: leave one of them empty"))
+                Some(("x_m", "the row gives both a time and a position: leave one of them empty"))
             }
-            (Some(_), None, _) if !is_bad("y_m") => Some(("y_m", "empty; x_m and y_m belong together")),
-            (None, Some(_), _) if !is_bad("x_m") => Some(("x_m", "empty; x_m and y_m belong together")),
+            (Some(_), None, _) if !is_bad("y_m") => {
+                Some(("y_m", "missing; x_m and y_m must be given together"))
+            }
+            (None, Some(_), _) if !is_bad("x_m") => {
+                Some(("x_m", "missing; x_m and y_m must be given together"))
+            }
             (None, None, false) if !["t_s", "time", "x_m", "y_m"].into_iter().any(is_bad) => {
-                Some(("t_s", "empty; give the time, or the place in x_m and y_m"))
+                Some(("t_s", "missing; give the time, or the position in x_m and y_m"))
             }
             _ => None,
         };
@@ -111,24 +115,24 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// A fault in one of its cells.
+    /// A fault in one of the row's cells.
     pub(super) fn fault(&self, column: &str, what: String) -> Fault {
         fault(self.cells, column, what)
     }
 
-    /// What it has in a column.
+    /// The text of the row in a column.
     pub(super) fn text_of(&self, column: &str) -> &str {
         self.table.cell(self.cells, column)
     }
 
-    /// The mission time of its moment, seconds, and the column that says it.
+    /// The mission time of the indication, seconds, and the column that gives it.
     pub(super) fn mission_time(&self, run: &Flown<'_>) -> Result<(&'static str, f64), Fault> {
         match (&self.clock, run.began) {
             (None, _) => Ok(("t_s", self.t_s.unwrap_or(0.0))),
             (Some(clock), Some(began)) => Ok(("time", clock.after_s(began))),
             (Some(_), None) => {
                 let what = format!(
-                    "the folder's name does not tell when run {} began; give t_s, the mission time",
+                    "the folder name of run {} does not contain its start time; give t_s, the mission time",
                     run.name
                 );
                 Err(self.fault("time", what))
@@ -141,7 +145,7 @@ fn fault(cells: &Cells, column: &str, what: String) -> Fault {
     Fault { line: cells.line, column: Some(column.to_owned()), what }
 }
 
-/// A number with a decimal point or a decimal comma; none of an empty cell.
+/// A number with a decimal point or a decimal comma; `None` for an empty cell.
 fn number(text: &str) -> Result<Option<f64>, String> {
     if text.is_empty() {
         return Ok(None);
@@ -152,7 +156,7 @@ fn number(text: &str) -> Result<Option<f64>, String> {
         Some(value) if value.is_finite() && value.abs() <= MOST => Ok(Some(value)),
         Some(_) => Err(format!("`{text}`: must be a finite number")),
         None => Err(format!(
-            "`{text}` is not a number; write 12.5 or 12,5, without marks for thousands and without units"
+            "`{text}` is not a number; write 12.5 or 12,5, without thousands separators or units"
         )),
     }
 }

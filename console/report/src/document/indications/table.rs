@@ -1,15 +1,15 @@
-//! Rows of cells under a line of names.
+//! Rows of cells under a header line.
 
 use std::fmt;
 
-/// Something wrong in a file.
+/// A fault in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     /// The line, from 1.
     pub(super) line: u64,
-    /// Name of the column, if it is about one cell.
+    /// Name of the column, if the fault is in one cell.
     pub(super) column: Option<String>,
-    /// What is wrong, and what would be right.
+    /// What is wrong, and how to correct it.
     pub(super) what: String,
 }
 
@@ -20,26 +20,26 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Cells of a row with its line.
+/// The cells of a row, with its line number.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Cells {
     pub(super) line: u64,
     cells: csv::StringRecord,
 }
 
-/// A table as it was read.
+/// A table that was read.
 #[derive(Debug)]
 pub(super) struct Table {
     names: Vec<String>,
     pub(super) rows: Vec<Cells>,
-    /// What is wrong with rows that could not be read at all.
+    /// Faults of rows that could not be read at all.
     pub(super) broken: Vec<Fault>,
 }
 
 impl Table {
-    /// Reads a text whose cells are separated by commas, semicolons or tabs, as its first line shows.
+    /// Reads a text whose cells are separated by commas, semicolons or tabs; the first line decides which.
     pub(super) fn read(text: &str) -> Result<Self, Fault> {
-        // The reader counts a line when it has come to its end.
+        // The reader increments the line count at the end of a line.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end().to_owned() + "\n";
         let first =
             text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -56,7 +56,7 @@ impl Table {
         for (index, name) in names.iter().enumerate() {
             if !super::row::COLUMNS.contains(&name.as_str()) {
                 let known = super::row::COLUMNS.join(", ");
-                return Err(at_line(1, format!("unknown column `{name}`; there are {known}")));
+                return Err(at_line(1, format!("unknown column `{name}`; known columns: {known}")));
             }
             if names[..index].contains(name) {
                 return Err(at_line(1, format!("column `{name}` occurs twice")));
@@ -66,7 +66,7 @@ impl Table {
         loop {
             let mut cells = csv::StringRecord::new();
             let read = reader.read_record(&mut cells);
-            // Where a record begins is not kept behind comments and empty lines.
+            // The CSV reader does not record where a row begins after comments and empty lines.
             let within = cells.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64;
             let line = reader.position().line().saturating_sub(1 + within);
             match read {
@@ -78,10 +78,10 @@ impl Table {
         let table = Self { names, rows, broken };
         match (table.has("t_s").or(table.has("time")), table.has("x_m").zip(table.has("y_m"))) {
             (None, None) => {
-                Err(at_line(1, "no column gives the place: add t_s or time, or x_m and y_m".into()))
+                Err(at_line(1, "no column gives the position: add t_s or time, or x_m and y_m".into()))
             }
             _ if table.has("x_m").is_some() != table.has("y_m").is_some() => {
-                Err(at_line(1, "x_m and y_m belong together".into()))
+                Err(at_line(1, "x_m and y_m must be given together".into()))
             }
             _ if table.has("t_s").is_some() && table.has("time").is_some() => {
                 Err(at_line(1, "t_s and time both give the time: keep one".into()))
@@ -90,7 +90,7 @@ impl Table {
         }
     }
 
-    /// Where a column stands, if there is one.
+    /// The index of a column, if the table has it.
     pub(super) fn has(&self, name: &str) -> Option<usize> {
         let alias = match name {
             "x_m" => "x",
@@ -100,12 +100,12 @@ impl Table {
         self.names.iter().position(|known| known == name || known == alias)
     }
 
-    /// What a row has in a column; empty if there is no such column.
+    /// The text of a row in a column; empty if there is no such column.
     pub(super) fn cell<'a>(&self, cells: &'a Cells, name: &str) -> &'a str {
         self.has(name).and_then(|index| cells.cells.get(index)).unwrap_or_default()
     }
 
-    /// A file in which some numbers have a decimal comma and others a decimal point: which is which nobody can tell.
+    /// The fault of a file that mixes decimal commas and decimal points, which makes its numbers ambiguous.
     pub(super) fn mixed_marks(&self) -> Option<Fault> {
         let marked = |mark: char| {
             let has =
@@ -114,7 +114,8 @@ impl Table {
         };
         let (comma, point) = (marked(',')?, marked('.')?);
         let what = format!(
-            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}): keep one of them"
+            "numbers with a decimal comma (line {comma}) and with a decimal point (line {point}); use only \
+             one of them"
         );
         Some(Fault { line: comma.min(point), column: None, what })
     }
@@ -123,7 +124,8 @@ impl Table {
 fn unequal(line: u64, error: &csv::Error) -> Fault {
     let what = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => format!(
-            "{len} cells, and the first line has {expected_len}; a decimal comma needs cells that are separated by semicolons or tabs"
+            "{len} cells, but the first line has {expected_len}; numbers with a decimal comma need \
+             semicolons or tabs between cells"
         ),
         _ => error.to_string(),
     };

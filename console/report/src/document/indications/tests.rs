@@ -80,30 +80,33 @@ fn times_of_day_and_coordinates_place_as_well() {
 fn what_lies_beyond_the_tool_outside_the_tank_or_in_a_column_is_refused_all_of_it_at_once() {
     let all = refused("t_s,ahead_m,left_m\n1,40,0\n2,0,0.9\n3,0,0.25\n5,0,0.25\n99,0,0\nsoon,0,0\n");
     let expected = [
-        "found.csv: line 2, ahead_m: 40 lies beyond the tool: at most 0.3 m from its centre, half of the swath",
-        "found.csv: line 3, left_m: 0.9 lies beyond the tool: at most 0.3 m from its centre, half of the swath",
-        "found.csv: line 5, t_s: 5.000, 0.250 m lies 0.300 m within column C1: not floor that could have been scanned",
+        "found.csv: line 2, ahead_m: 40 is beyond the tool: at most 0.3 m from its centre, half the swath",
+        "found.csv: line 3, left_m: 0.9 is beyond the tool: at most 0.3 m from its centre, half the swath",
+        "found.csv: line 5, t_s: 5.000, 0.250 m is 0.300 m inside column C1, where no floor can be scanned",
         "found.csv: line 6, t_s: 99: the run lasts from 0 to 9.0 s",
-        "found.csv: line 7, t_s: `soon` is not a number; write 12.5 or 12,5, without marks for thousands and without units",
+        "found.csv: line 7, t_s: `soon` is not a number; write 12.5 or 12,5, without thousands separators or units",
     ];
     assert_eq!(all.lines().collect::<Vec<_>>(), expected);
     let outside = refused("x_m,y_m\n35.58,17.29\n");
-    assert!(outside.contains("line 2, x_m: 35.580, 17.290 m lies 27.559 m outside the tank"), "{outside}");
+    assert!(outside.contains("line 2, x_m: 35.580, 17.290 m is 27.559 m outside the tank"), "{outside}");
 }
 
 #[test]
 fn every_fault_has_its_line_and_column() {
     assert_eq!(refused("t_s,size_mm\n1,0\n"), "found.csv: line 2, size_mm: 0: must be above 0");
-    assert!(refused("t_s,depth_mm\n1,9\n").contains("line 2, depth_mm: 9: must be at most 8, the thickness"));
+    assert!(
+        refused("t_s,depth_mm\n1,9\n")
+            .contains("line 2, depth_mm: 9: must be at most 8, the plate thickness")
+    );
     assert!(refused("t_s,note\n1,\"two\nlines\"\nsoon,\n").contains("line 4, t_s: `soon` is not a number"));
     assert_eq!(refused("t_s,left_m\n1,nan\n"), "found.csv: line 2, left_m: `nan`: must be a finite number");
     let odd = refused("t_s,kind\n1,\u{202E}pit\n");
     assert_eq!(odd, "found.csv: line 2, kind: must be plain text, without U+202E");
-    assert!(refused("when\n1\n").contains("line 1: unknown column `when`; there are run, t_s, time"));
-    assert!(refused("t_s,left_m\n1,2,4\n").contains("line 2: 3 cells, and the first line has 2"));
-    assert!(refused("t_s,x,y\n1,2,3\n").contains("gives both a time and a place"));
-    assert!(refused("t_s,x,y\n,2,\n").contains("line 2, y_m: empty; x_m and y_m belong together"));
-    assert!(refused("kind\npit\n").contains("line 1: no column gives the place"));
+    assert!(refused("when\n1\n").contains("line 1: unknown column `when`; known columns: run, t_s, time"));
+    assert!(refused("t_s,left_m\n1,2,4\n").contains("line 2: 3 cells, but the first line has 2"));
+    assert!(refused("t_s,x,y\n1,2,3\n").contains("gives both a time and a position"));
+    assert!(refused("t_s,x,y\n,2,\n").contains("line 2, y_m: missing; x_m and y_m must be given together"));
+    assert!(refused("kind\npit\n").contains("line 1: no column gives the position"));
     assert!(
         refused("time\n2026-13-01T00:00:00Z\n")
             .contains("line 2, time: `2026-13-01T00:00:00Z` is not a time")
@@ -120,7 +123,7 @@ fn with_several_runs_each_indication_names_its_own() {
     assert!(
         two("run,time\nb,04:01:02\n")
             .unwrap_err()
-            .contains("line 2, time: the folder's name does not tell when run b began")
+            .contains("line 2, time: the folder name of run b does not contain its start time")
     );
 }
 

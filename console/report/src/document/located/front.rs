@@ -1,4 +1,4 @@
-//! The first sheet of a report on readings.
+//! The first sheet of a report on located readings.
 
 use super::{
     super::{
@@ -10,7 +10,7 @@ use super::{
 };
 use account::clock;
 
-/// Makes the first sheet of a mission that of readings.
+/// Turns the first sheet of a mission into that of located readings.
 pub(in crate::document) fn as_located(document: &Document, located: &Located, mut page: Page) -> Page {
     let date = Value::fact(document.inspection.inspected_on.as_ref(), "inspected_on");
     for field in &mut page.fields {
@@ -31,8 +31,8 @@ pub(in crate::document) fn as_located(document: &Document, located: &Located, mu
         heading: "Tank floor: positions located from readings",
         mark: "LOCATED FROM READINGS",
         banner: format!(
-            "Positions were computed from the readings of {}; this program flew no mission. Nothing here was planned, and \
-             no floor counts as missed.",
+            "Positions were computed from the readings of {}; this program did not run a mission. Nothing \
+             was planned, and no floor counts as missed.",
             located.files()
         ),
         is_simulation: false,
@@ -50,17 +50,17 @@ fn p95_cm(document: &Document) -> Option<f64> {
 fn verdict(document: &Document, located: &Located) -> Verdict {
     let error = p95_cm(document).map_or_else(
         || "The position error is not known.".to_owned(),
-        |p95_cm| format!("For 95 % of the time the 95 % error of the position was at most {p95_cm:.1} cm."),
+        |p95_cm| format!("The 95 % error of the position was at most {p95_cm:.1} cm for 95 % of the time."),
     );
     let floor = match located.tool_on_s {
         Some(on_s) => format!(
-            "While the tool was on, for {}, {:.1} % of the whole floor came under it with a known position; {:.1} % is guaranteed \
-             against the position error.",
+            "While the tool was on, for {}, it passed {:.1} % of the whole floor with a known position; \
+             {:.1} % is guaranteed against the position error.",
             clock(on_s),
             document.floor.whole.percent.scanned,
             document.floor.whole.percent.guaranteed.unwrap_or(0.0)
         ),
-        None => "No coverage is stated: the readings do not say when the tool was on.".to_owned(),
+        None => "No coverage is stated: the readings do not state when the tool was on.".to_owned(),
     };
     Verdict { class: "part", lead: format!("Located from readings, not a mission. {error}"), cause: floor }
 }
@@ -95,7 +95,7 @@ fn shares(document: &Document, located: &Located) -> Vec<Share> {
             value: "\u{2013}".into(),
             unit: "",
             of: "coverage not stated",
-            about: "the readings do not say when the tool was on".into(),
+            about: "the readings do not state when the tool was on".into(),
         },
     };
     vec![error, count, scanned]

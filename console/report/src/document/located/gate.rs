@@ -1,4 +1,4 @@
-//! What the gate asks of readings that were located.
+//! The gate items of a report on located readings.
 
 use super::{
     super::{
@@ -9,12 +9,12 @@ use super::{
 };
 use crate::human::text::counted;
 
-/// An answer and what it lacks.
+/// The answer to an item, and what it still lacks.
 type Answered = (String, Vec<String>);
 
-/// What was located.
+/// The readings that were located.
 pub(in crate::document) fn scope(located: &Located) -> String {
-    format!("positions located from the readings of {}; no mission was flown", located.files())
+    format!("positions located from the readings of {}; no mission was run", located.files())
 }
 
 /// The program and the readings.
@@ -24,49 +24,49 @@ pub(in crate::document) fn equipment(document: &Document, located: &Located) -> 
     format!("tankops {version}, readings {}", readings.collect::<Vec<_>>().join(", "))
 }
 
-/// Plates are stated if the tool was known to be on.
+/// Plates are stated if it is known when the tool was on.
 pub(in crate::document) fn plates(document: &Document) -> Answered {
     let count = counted(document.floor.plates.len() as u64, "plate");
     (
-        format!("{count}; no coverage is stated, because the readings do not say when the tool was on"),
+        format!("{count}; no coverage is stated, because the readings do not state when the tool was on"),
         Vec::new(),
     )
 }
 
-/// No floor was to be scanned.
+/// No floor had to be scanned.
 pub(in crate::document) fn missed(located: &Located) -> Answered {
     let what = match located.tool_on_s {
-        Some(on_s) => format!("no floor was to be scanned by a mission; the tool was on for {on_s:.1} s"),
-        None => "no floor was to be scanned by a mission, and when the tool was on is not known".into(),
+        Some(on_s) => format!("no scan of the floor was planned; the tool was on for {on_s:.1} s"),
+        None => "no scan of the floor was planned, and it is not known when the tool was on".into(),
     };
     (what, Vec::new())
 }
 
-/// Nothing was reached or not.
+/// Reachable floor is not defined for readings.
 pub(in crate::document) fn unreachable() -> Answered {
-    ("not stated: whatever moved the instrument is not known to this program".into(), Vec::new())
+    ("not stated: this program has no data on the vehicle that carried the instrument".into(), Vec::new())
 }
 
-/// Readings have no tether.
+/// Readings contain no tether.
 pub(in crate::document) fn tether() -> Answered {
-    ("not recorded in readings".into(), Vec::new())
+    ("not part of the readings".into(), Vec::new())
 }
 
-/// How the true error of readings came about.
+/// The source of the true error of readings.
 pub(in crate::document) fn accuracy_how(inside: &str) -> String {
     format!(
-        "by the true places that stand in the readings (a total station, or a simulator); within the 95 % ellipse in {inside} % of \
-         the moments"
+        "from the true positions in the readings (a total station, or a simulator); within the 95 % ellipse \
+         in {inside} % of the estimates"
     )
 }
 
-/// What must be decided before readings are signed.
+/// The decisions that readings require before signing.
 pub(in crate::document) fn decisions(document: &Document, located: &Located) -> Vec<Decision> {
     let facts = &document.inspection;
     if located.tool_on_s.is_none() {
         return vec![Decision {
-            what: "The readings do not say when the tool was on, so no coverage is stated: accept that, or locate them again with a \
-                   column tool_on or with --tool-on."
+            what: "No coverage is stated because the readings do not state when the tool was on: accept \
+                   that, or locate them again with a column tool_on or with --tool-on."
                 .into(),
             section: 3,
             key: "coverage_waiver",
@@ -78,7 +78,8 @@ pub(in crate::document) fn decisions(document: &Document, located: &Located) -> 
     let left_m2 = (1.0 - whole.scanned) * whole.area_m2;
     let decision = Decision {
         what: format!(
-            "{left_m2:.1} of {:.1} m² of floor did not come under the tool with a known position: accept, scan, or inspect by hand.",
+            "The tool did not pass {left_m2:.1} of {:.1} m² of floor with a known position: accept, scan, \
+             or inspect by hand.",
             whole.area_m2
         ),
         section: 3,

@@ -1,4 +1,4 @@
-//! The map of a report on readings: the track, and the floor that the tool passed if that is known.
+//! The map of a report on located readings: the track and, if known, the floor that the tool passed.
 
 use super::super::{
     Figure, Indication,
@@ -11,7 +11,7 @@ use crate::{
     joined::PastRun,
 };
 
-/// Draws it; `tool_is_known`: whether the readings say when the tool was on.
+/// Draws the map; `tool_is_known`: whether the readings state when the tool was on.
 pub(in crate::document) fn map(
     layers: &Layers<'_>,
     past: &[PastRun],
@@ -41,8 +41,8 @@ pub(in crate::document) fn map(
     if tool_is_known {
         let cells = (0..floor.len()).filter(|cell| is_scanned(*cell)).count();
         let m2 = format!("{:.2} m²", cells as f64 * floor.cell_m2());
-        entries.push(legend(filled(colour::TWICE), "came under the tool while it was on", m2));
-        entries.push(legend(filled("#fff"), "did not, or with an unknown position", String::new()));
+        entries.push(legend(filled(colour::TWICE), "passed by the tool while it was on", m2));
+        entries.push(legend(filled("#fff"), "not passed, or with an unknown position", String::new()));
     }
     if !indications.is_empty() {
         let mark = swatch(&format!(
@@ -53,9 +53,9 @@ pub(in crate::document) fn map(
         entries.push(legend(mark, "indication, I and its number", indications.len().to_string()));
     }
     let caption = if tool_is_known {
-        "Where the instrument was, by the readings, and the floor under its tool while that was on"
+        "Track of the instrument from the readings, and the floor that the tool passed while it was on"
     } else {
-        "Where the instrument was, by the readings; whether its tool was on is not known"
+        "Track of the instrument from the readings; it is not known when the tool was on"
     };
     Figure { caption: caption.into(), svg: sheet.svg("Map of the located track", "full"), legend: entries }
 }

@@ -1,4 +1,5 @@
-//! The sections of a report on readings. They have the numbers of those of a mission, so that every reference holds.
+//! The sections of a report on located readings. They keep the section numbers of a mission report, so that
+//! references stay valid.
 
 use super::{
     super::{
@@ -10,10 +11,10 @@ use super::{
 };
 use account::clock;
 
-const NOT_KNOWN: &str = "The readings do not say when the tool was on (column tool_on, or --tool-on FILE of tankops locate), so that \
-    nothing is stated about scanned floor.";
+const NOT_KNOWN: &str = "The readings do not state when the tool was on (column tool_on, or --tool-on FILE \
+    of tankops locate), so nothing is stated about scanned floor.";
 
-/// All of them.
+/// Returns all sections.
 pub(in crate::document) fn sections(document: &Document, located: &Located) -> [Section; 12] {
     [
         section("Scope", scope(document, located)),
@@ -44,18 +45,27 @@ fn scope(document: &Document, located: &Located) -> Vec<Block> {
         )),
         Block::Heading("Definitions".into()),
         Block::Words(vec![
-            ("Located", "the position was computed from ranges to the stations, and from the motion if that was measured".into()),
+            (
+                "Located",
+                "the position was computed from ranges to the stations and, if it was measured, \
+                from the motion"
+                    .into(),
+            ),
             ("95 % error", "the longer half axis of the 95 % ellipse of the estimated position".into()),
-            ("Whole floor", "all floor within the shell, excluding the footprint of obstacles on the drawing".into()),
+            (
+                "Whole floor",
+                "all floor within the shell, excluding the footprint of obstacles on the drawing".into(),
+            ),
             (
                 "Scanned",
                 format!(
-                    "the tool was on, the centre of the cell came under it, and its 95 % position error was at most {} m; between two \
-                     readings only where the robot cannot have strayed further from the straight line",
+                    "the tool was on and passed over the centre of the cell, and the 95 % position error \
+                     was at most {} m; between two readings, only where the robot cannot have strayed from \
+                     the straight line by more than that",
                     floor.position_limit_m
                 ),
             ),
-            ("Guaranteed", "scanned wherever the robot was within its 95 % position error".into()),
+            ("Guaranteed", "scanned for every position of the robot within its 95 % position error".into()),
         ]),
     ]
 }
@@ -68,8 +78,9 @@ fn under_tool(document: &Document, located: &Located) -> Vec<Block> {
     let Some(on_s) = located.tool_on_s else { return vec![Block::Text(NOT_KNOWN.into())] };
     let whole = &document.floor.whole;
     vec![Block::Text(format!(
-        "The tool was on for {} of {}. Meanwhile {:.2} of {:.2} m² of floor came under it with a known position, {:.1} %. The rest was \
-         not to be scanned by this program, so that no floor counts as missed and no reasons are given.",
+        "The tool was on for {} of {}. During that time it passed {:.2} of {:.2} m² of floor with a known \
+         position, {:.1} %. No scan of the rest was planned, so no floor counts as missed and no reasons \
+         are given.",
         clock(on_s),
         clock(located.time_s),
         whole.scanned * whole.area_m2,
@@ -118,7 +129,7 @@ fn plates(document: &Document, located: &Located) -> Vec<Block> {
         let found = document.indications.iter().filter(|found| found.plate.as_ref() == Some(&plate.name));
         table.row(vec![
             plate.name.clone().into(),
-            format!("{:?}", plate.kind).to_lowercase().into(),
+            plate.kind.to_string().into(),
             format!("{:.2}", plate.shares.area_m2).into(),
             known(p.scanned),
             known(p.guaranteed.unwrap_or(0.0)),
@@ -137,20 +148,26 @@ fn limitations(document: &Document) -> Vec<Block> {
     let has_truth = document.runs.iter().any(|run| run.positioning.is_some());
     let runs = counted(document.runs.len() as u64, "run");
     let mut items = vec![
-        format!("The positions of {runs} were computed from readings that others measured. This program neither moved nor saw the robot."),
-        "The readings are taken as they were exported: their clock, their stations and the state of the tool are not checked.".to_owned(),
+        format!(
+            "The positions of {runs} were computed from readings that were measured by other equipment. \
+            This program neither controlled nor observed the robot."
+        ),
+        "The readings are used as exported: their clock, their stations and the tool state are not checked."
+            .to_owned(),
         "Only obstacles on the drawing are shown.".to_owned(),
-        "\u{201c}Scanned\u{201d} does not say that a defect would have been detected; that rests on the instrument, its calibration and the \
-         surface."
+        "\u{201c}Scanned\u{201d} does not mean that a defect would have been detected; that depends on the \
+         instrument, its calibration and the surface."
             .to_owned(),
-        "The 95 % error is by the covariance: errors of the survey of the stations and of the speed of sound, and the offset of the tool \
-         on the robot are not in it."
+        "The 95 % error is computed from the covariance; it does not include errors of the station survey, \
+         of the speed of sound, or of the tool's offset on the robot."
             .to_owned(),
-        "Nothing here replaces the inspector's own assessment of completeness under the code that applies.".to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the applicable code."
+            .to_owned(),
     ];
     if has_truth {
         items.push(
-            "The readings hold true places. If these come from a simulator, so do the readings.".to_owned(),
+            "The readings contain true positions. If these come from a simulator, so do the readings."
+                .to_owned(),
         );
     }
     let code = Value::fact(document.inspection.code.as_ref(), "code");

@@ -8,7 +8,7 @@ use super::{
     Document, cm, number,
 };
 
-/// Equipment, calibration and what the run says of the stations.
+/// Equipment, calibration, and the fixes of the run station by station.
 pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let floor = &document.floor;
@@ -58,34 +58,39 @@ pub(in crate::document) fn equipment(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// What the report does not say.
+/// The limitations of the report.
 pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut items = Vec::new();
     if document.is_simulation {
         items.push(
-            "This report is of a simulation. It shows the form of the record, not the state of any floor."
+            "This report describes a simulation. It shows the form of the record, not the state of any floor."
                 .to_owned(),
         );
     }
     let of_scans = [
-        "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does not say that a defect would have \
-         been detected; that rests on the instrument, its calibration and the surface."
+        "\u{201c}Scanned\u{201d} means that the tool passed over the place with a known position. It does \
+         not mean that a defect would have been detected; that depends on the instrument, its calibration \
+         and the surface."
             .to_owned(),
         format!(
-            "Figures depend on cells of {} cm and a swath of {} m. Areas are sums of cells.",
+            "All figures depend on the cell size of {} cm and the swath of {} m. Areas are sums of cells.",
             number(100.0 * floor.cell_m, 1),
             floor.swath_m
         ),
-        "\u{201c}Guaranteed\u{201d} holds for the position error by the covariance: errors of the heading, of the survey of the stations and \
-         of the speed of sound, and the offset of the tool on the robot are not in it."
+        "\u{201c}Guaranteed\u{201d} refers to the position error by the covariance; this does not include \
+         errors of the heading, of the station survey, of the speed of sound, or of the tool's offset on \
+         the robot."
             .to_owned(),
-        "The critical zone is evaluated in 15 layers of 5 mm at every 25 mm of shell, along the drawn shell.".to_owned(),
+        "The critical zone is evaluated in 15 layers of 5 mm every 25 mm along the shell as drawn."
+            .to_owned(),
     ];
     items.extend(of_scans.into_iter().filter(|_| document.is_to_scan));
     items.extend([
-        "Obstacles are as the robot estimated them; what it did not see is not in this report.".to_owned(),
-        "Nothing here replaces the inspector's own assessment of completeness under the code that applies."
+        "Obstacles are where the robot estimated them; obstacles that it did not sense are not in this \
+         report."
+            .to_owned(),
+        "Nothing here replaces the inspector's own assessment of completeness under the applicable code."
             .to_owned(),
     ]);
     let code = Value::fact(document.inspection.code.as_ref(), "code");
@@ -95,7 +100,7 @@ pub(in crate::document) fn limitations(document: &Document) -> Vec<Block> {
 /// The thirteen items.
 pub(in crate::document) fn gate(document: &Document) -> Vec<Block> {
     let mut table = Table::new(
-        "The gate: a report is signed when every item is answered",
+        "The gate: the report can be signed once every item is answered",
         &[("", "", "r"), ("State", "", "nw"), ("Item", "", ""), ("Answer", "", "")],
     );
     for item in &document.gate {
@@ -110,14 +115,14 @@ pub(in crate::document) fn gate(document: &Document) -> Vec<Block> {
     vec![Block::Table(table)]
 }
 
-/// Who signs, and what was signed before.
+/// Signature blocks, and earlier signatures.
 pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
     let facts = &document.inspection;
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     let mut blocks = Vec::new();
     if !open.is_empty() {
         blocks.push(Block::Barred(format!(
-            "{} of {} items {} open ({}). A signed report is a revision of its own and is never changed.",
+            "{} of {} items {} open ({}). A signed report is a separate revision and is never changed.",
             open.len(),
             document.gate.len(),
             if open.len() == 1 { "is" } else { "are" },
@@ -148,7 +153,7 @@ pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
         ),
         block(
             "Owner",
-            "accepts the record",
+            "accepts the inspection record",
             Value::fact(facts.approver.as_ref(), "approver"),
             none(),
             String::new(),
@@ -176,11 +181,9 @@ pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
         ]);
     }
     let (at, what, hash) = match &document.signature {
-        Some(signature) => (
-            signature.at.as_str(),
-            format!("signed by {}", signature.by),
-            "in the list of signatures of the run",
-        ),
+        Some(signature) => {
+            (signature.at.as_str(), format!("signed by {}", signature.by), "in the run's list of signatures")
+        }
         None => ("", "draft, not signed".to_owned(), ""),
     };
     table.row(vec![document.revision.clone().into(), at.into(), what.into(), hash.into()]);
@@ -188,7 +191,7 @@ pub(in crate::document) fn signatures(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// Everything that proves where the figures come from.
+/// The provenance of the figures.
 pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     for run in &document.runs {
@@ -197,11 +200,11 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
             |bytes: Option<u64>| bytes.map(|n| format!("{:.1} MB", n as f64 / 1e6)).unwrap_or_default();
         let state = match files.are_as_reported {
             Some(true) if files.recovered.is_some() => {
-                "equal to the digests when the run was recovered".to_owned()
+                "matches the digest fixed when the run was recovered".to_owned()
             }
-            Some(true) => "equal to the digests at the end of the run".to_owned(),
+            Some(true) => "matches the digest written at the end of the run".to_owned(),
             Some(false) => format!("DIFFERENT: {}", files.doubts.join("; ")),
-            None => "there is no report of the end of the run".to_owned(),
+            None => "no digest was written at the end of the run".to_owned(),
         };
         if let Some(readings) = located_as(document, &run.run) {
             blocks.extend(of_readings(
@@ -229,7 +232,7 @@ pub(in crate::document) fn provenance(document: &Document) -> Vec<Block> {
             ),
             (
                 "To repeat",
-                format!("tankops verify {} computes the run again and compares every event", run.run).into(),
+                format!("tankops verify {} recomputes the run and compares every event", run.run).into(),
             ),
         ];
         facts.extend(files.recovered.as_ref().map(|how| ("Killed, recovered", how.to_string().into())));
@@ -253,7 +256,7 @@ fn located_as<'a>(document: &'a Document, run: &str) -> Option<&'a Readings> {
     document.located.as_ref()?.readings.iter().find(|readings| readings.run == run)
 }
 
-/// Where the figures of readings come from.
+/// The provenance of the figures of located readings.
 fn of_readings(run: &RunPart, readings: &Readings, journal: String) -> [Block; 2] {
     let facts = Block::Facts(vec![
         ("Run", run.run.clone().into()),
@@ -277,7 +280,7 @@ fn of_readings(run: &RunPart, readings: &Readings, journal: String) -> [Block; 2
     [facts, Block::Hashes(stated.collect())]
 }
 
-/// A digest in groups of eight.
+/// A digest in groups of eight characters.
 fn grouped(hash: &str) -> String {
     let chars: Vec<char> = hash.chars().collect();
     chars.chunks(8).map(|group| group.iter().collect::<String>()).collect::<Vec<_>>().join(" ")

@@ -10,9 +10,9 @@ use super::{
 };
 use world::coverage::percent_text;
 
-/// Arcs of the critical zone that are listed.
+/// Maximum number of arcs of the critical zone listed.
 const MOST_ARCS: usize = 8;
-/// Numbers of missed areas that stand beside a plate.
+/// Most numbers of missed areas that are listed beside a plate.
 const MOST_NUMBERS: usize = 3;
 
 /// The coverage map.
@@ -34,8 +34,9 @@ pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     let scanned = zone.scanned.map_or_else(|| "none".to_owned(), |share| format!("{} %", per_cent(share)));
     let mut blocks = vec![
         Block::Text(format!(
-            "{state}: the full width of {:.0} mm was scanned along {:.1} of {:.1} m of shell, {scanned} of the area of the zone. The zone is \
-             done when its full width is scanned along 99.5 % of the shell.",
+            "{state}: the full width of {:.0} mm was scanned along {:.1} of {:.1} m of shell, and {scanned} \
+             of the area of the zone was scanned. The zone is done when its full width is scanned along \
+             99.5 % of the shell.",
             1000.0 * zone.width_m,
             zone.done_m,
             zone.length_m
@@ -49,20 +50,20 @@ pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     let which =
         if all > MOST_ARCS { format!("The {MOST_ARCS} longest of {all}") } else { format!("All {all}") };
     let mut table = Table::new(
-        format!("{which} arcs of 0.1 m and more that are not done (arcs less than 0.1 m apart count as one)"),
+        format!("{which} arcs of at least 0.1 m that are not done (arcs less than 0.1 m apart count as one)"),
         &[
             ("From x, y", "m", "r nw"),
             ("To x, y", "m", "r nw"),
             ("Along the shell", "m", "r nw"),
             ("Not done", "m", "r"),
-            ("Scanned from", "mm off the shell, median", "r"),
-            ("At worst", "mm", "r"),
+            ("Scanned from", "mm from the shell, median", "r"),
+            ("Worst", "mm", "r"),
         ],
     );
     let place = |p: world::Point| format!("{}, {}", number(p.x, 2), number(p.y, 2));
     let width_m = zone.width_m;
     let mm =
-        |m: f64| if m >= width_m - 1e-9 { "whole width".to_owned() } else { format!("{:.0}", 1000.0 * m) };
+        |m: f64| if m >= width_m - 1e-9 { "full width".to_owned() } else { format!("{:.0}", 1000.0 * m) };
     for arc in &arcs {
         table.row(vec![
             place(arc.from).into(),
@@ -100,7 +101,7 @@ pub(in crate::document) fn zone(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// How good the position was, run by run.
+/// The accuracy of the position, run by run.
 pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
     let mut table = Table::new(
         "Accuracy statement",
@@ -119,7 +120,7 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
                 format!("; {} fixes from {mean:.1} stations on average, {least} at least", a.fixes)
             });
             let how = format!(
-                "covariance of every tick; limit {} cm, exceeded on {} % of the way{}",
+                "covariance of every tick; limit {} cm, exceeded on {} % of the path{}",
                 number(100.0 * a.limit_m, 0),
                 per_cent(a.over_limit),
                 stations.unwrap_or_default()
@@ -138,7 +139,8 @@ pub(in crate::document) fn accuracy_statement(document: &Document) -> Table {
                 accuracy_how(&inside)
             } else {
                 format!(
-                    "simulation only; truth within the 95 % ellipse in {inside} % of the ticks; lost for {:.1} s",
+                    "simulation only; true position within the 95 % ellipse in {inside} % of the ticks; \
+                     lost for {:.1} s",
                     p.position_lost_s
                 )
             };
@@ -160,7 +162,8 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     let truth = document.coverage.by_truth.and_then(|truth| truth.scanned_truly.zip(truth.guaranteed_truly));
     let truth = truth.map(|(scanned, sure)| {
         Block::Text(format!(
-            "{} % of the floor reported as scanned was actually scanned, {} % of the floor reported as guaranteed (simulation only).",
+            "Of the floor reported as scanned, {} % was truly scanned; of the floor reported as guaranteed, \
+             {} % (simulation only).",
             per_cent(scanned),
             per_cent(sure)
         ))
@@ -171,10 +174,11 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     }
     let mut blocks = vec![
         Block::Text(
-            "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 standard deviations). A cell is \
-             guaranteed if it was scanned and lay, in one pass, under the tool narrowed on each side by 2.45 standard deviations across \
-             the heading: then it was under the tool wherever the robot stood within the ellipse. Neighbouring passes are not added \
-             together."
+            "The 95 % error is the longer half axis of the 95 % ellipse of the estimated position (2.45 \
+             standard deviations). A cell is guaranteed if a single pass of a narrower tool would have \
+             scanned it: the tool less 2.45 standard deviations across the heading on each side. Such a \
+             cell was under the tool for every position of the robot within the ellipse. Adjacent passes \
+             are not combined."
                 .into(),
         ),
         Block::Pair(vec![picture(&pictures.accuracy), picture(&pictures.guaranteed)]),
@@ -184,13 +188,17 @@ pub(super) fn accuracy(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// Every plate.
+/// The table of all plates.
 pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     if floor.plates.is_empty() {
         let waiver = Value::fact(document.inspection.plates_waiver.as_ref(), "plates_waiver");
         return vec![
-            Block::Text("The scenario has no layout of the plates ([plates]), so nothing can be stated plate by plate.".into()),
+            Block::Text(
+                "The scenario has no plate layout ([plates]), so nothing can be stated plate by \
+                plate."
+                    .into(),
+            ),
             Block::Facts(vec![("Waiver", waiver)]),
         ];
     }
@@ -199,7 +207,8 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
     let top = [0.02, 0.05, 0.1, 0.2, 0.5].into_iter().find(|top| worst <= *top).unwrap_or(1.0);
     let mut table = Table::new(
         format!(
-            "Every plate ({}); scanned, missed, unreachable and margin sum to 100.0 % of the plate; bar: not guaranteed, 0 to {} %",
+            "Every plate ({}); scanned, missed, unreachable and margin add up to 100.0 % of the plate; the \
+             bar shows the share not guaranteed, 0 to {} %",
             floor.plates.len(),
             number(100.0 * top, 0)
         ),
@@ -254,7 +263,7 @@ pub(in crate::document) fn plates(document: &Document) -> Vec<Block> {
         }
     };
     for plate in &floor.plates {
-        add(&plate.name, &format!("{:?}", plate.kind).to_lowercase(), &plate.shares, plate.error_p95_m, true);
+        add(&plate.name, &plate.kind.to_string(), &plate.shares, plate.error_p95_m, true);
     }
     add("Whole floor", "", &floor.whole, None, false);
     vec![Block::Legend(plate_legend()), Block::Table(table)]

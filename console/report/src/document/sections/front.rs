@@ -1,4 +1,4 @@
-//! The first sheet: title block, verdict, large figures, what is to be decided, scope and words.
+//! The first sheet: title block, verdict, large figures, decisions, scope and terms.
 
 use super::{
     super::{
@@ -6,12 +6,12 @@ use super::{
         decisions::{Decision, decisions, is_complete},
         page::{Block, Field, Page, Section, Share, Table, Todo, Value, Verdict},
     },
-    Document, counted, escaped, number, number_of, task,
+    Document, counted, number, number_of, task,
 };
 use account::Shares;
 use mission::Outcome;
 
-/// The page around its sections.
+/// Builds the page without its sections.
 pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let answered = document.gate.iter().filter(|item| item.is_answered).count();
     let status = match &document.signature {
@@ -24,9 +24,9 @@ pub(super) fn page(document: &Document, sections: Vec<Section>) -> Page {
     let hash = first.and_then(|run| run.files.journal_sha256.as_ref());
     let hash = hash
         .map_or_else(String::new, |hash| format!("Journal SHA-256 {}...   ", &hash[..hash.len().min(16)]));
-    // A style sheet's text ends at a quote or at any end of a line.
+    // A CSS string ends at a quote or at a line break of any kind.
     let is_end = |letter: char| letter.is_control() || matches!(letter, '\\' | '"');
-    let css = |text: String| escaped(&text).replace(is_end, " ");
+    let css = |text: String| foreign::markup(&text).replace(is_end, " ");
     Page {
         heading: "Tank floor inspection: coverage and position record",
         banner: String::new(),
@@ -121,8 +121,8 @@ fn verdict(document: &Document) -> Verdict {
         return Verdict {
             class: if is_all { "" } else { "part" },
             lead: format!(
-                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed against the position error. The \
-                 critical zone along the shell is {zone}."
+                "{scanned:.1} % of the reachable floor was scanned; {sure:.1} % is guaranteed against the \
+                 position error. The critical zone along the shell is {zone}."
             ),
             cause: String::new(),
         };
@@ -133,13 +133,13 @@ fn verdict(document: &Document) -> Verdict {
         Some(other) => format!("the mission ended early ({})", other.word().replace('_', " ")),
     };
     let recovered = last.and_then(|run| run.files.recovered.as_ref());
-    let recovered = recovered.map(|how| format!("the run was killed, and closed {how}"));
+    let recovered = recovered.map(|how| format!("the run was killed, and later closed {how}"));
     let reason = last.and_then(|run| run.reason.clone()).or(recovered);
     Verdict {
         class: "bad",
         lead: format!(
-            "Not complete: {end}. {scanned:.1} % of the reachable floor was scanned, {missed_m2:.1} m² \
-             were not."
+            "Not complete: {end}. {scanned:.1} % of the reachable floor was scanned; {missed_m2:.1} m² was \
+             not."
         ),
         cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
     }
@@ -175,7 +175,8 @@ fn shares(document: &Document) -> Vec<Share> {
             unit: "%",
             of: "of the reachable floor, guaranteed",
             about: format!(
-                "{} m² under the tool wherever the robot stood within its 95 % position error; {:.1} % of the whole floor",
+                "{} m² scanned for every position of the robot within its 95 % error; {:.1} % of the whole \
+                 floor",
                 m2(sure, reachable),
                 whole.percent.guaranteed.unwrap_or(0.0)
             ),
@@ -224,13 +225,13 @@ fn todo(document: &Document) -> Vec<Todo> {
     let mut todo: Vec<Todo> = decisions(document).into_iter().map(decision).collect();
     let open: Vec<String> = document.open_items().map(|item| item.number.to_string()).collect();
     if !open.is_empty() {
-        let text = format!("Open items of the gate: {}.", open.join(", "));
+        let text = format!("Open gate items: {}.", open.join(", "));
         todo.push(Todo { text, value: Value::default(), section: number_of(document.is_to_scan, 10) });
     }
     todo
 }
 
-/// What was asked for, and what the words mean.
+/// The scope of the mission and the terms of the report.
 pub(super) fn scope(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let zone_mm = 1000.0 * floor.critical_zone.width_m;
@@ -243,8 +244,9 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
     let asked = &document.gate[1].answer;
     vec![
         Block::Text(format!(
-            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned if its centre came under \
-             the tool while the 95 % position error was at most {} m. Every percentage names its base.",
+            "Scenario {}: {asked}. From {}: {}. Tool: swath {} m. Cells of {} cm; a cell counts as scanned \
+             if the tool passed over its centre while the 95 % position error was at most {} m. Every \
+             percentage states what it refers to.",
             document.scenario,
             counted(runs.len() as u64, "run"),
             runs.join(", "),
@@ -255,13 +257,29 @@ pub(super) fn scope(document: &Document) -> Vec<Block> {
         Block::Heading("Definitions".into()),
         Block::Words(vec![
             ("Whole floor", "all floor within the shell, excluding the footprint of obstacles".into()),
-            ("Reachable floor", "floor that the tool can cover from where the robot may stand, with hull and clearance".into()),
-            ("Scanned", "the centre of the cell came under the tool while the 95 % position error was within the limit".into()),
-            ("Guaranteed", "scanned wherever the robot was within its 95 % position error".into()),
-            ("Missed", "reachable, but not scanned; each area has a number, a place and a reason".into()),
+            (
+                "Reachable floor",
+                "floor that the tool can reach from positions with room for hull and \
+                clearance"
+                    .into(),
+            ),
+            (
+                "Scanned",
+                "the tool passed over the centre of the cell while the 95 % position error was \
+                within the limit"
+                    .into(),
+            ),
+            ("Guaranteed", "scanned for every position of the robot within its 95 % position error".into()),
+            ("Missed", "reachable, but not scanned; each area has a number, a position and a reason".into()),
             ("Unreachable", "beside obstacles, in no-go zones, or closed off".into()),
-            ("Shell margin", "out of reach because the robot keeps its distance from the shell".into()),
-            ("Critical zone", format!("{zone_mm:.0} mm along the shell, evaluated separately in layers of 5 mm")),
+            ("Shell margin", "unreachable because the robot keeps its distance from the shell".into()),
+            (
+                "Critical zone",
+                format!(
+                    "{zone_mm:.0} mm along the shell, evaluated separately in layers of 5 \
+                mm"
+                ),
+            ),
         ]),
     ]
 }

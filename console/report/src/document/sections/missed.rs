@@ -7,17 +7,17 @@ use super::{
 use account::{Area, Cause, MissReason, OutOfReach};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// With more missed areas than this, small ones are said in few words.
+/// With more missed areas than this, small ones are listed in short form.
 const MOST_ROWS: usize = 40;
-/// Smaller ones are small, square metres.
+/// Missed areas below this size are small, square metres.
 const SMALL_M2: f64 = 0.05;
 
-/// Missed areas, and what is out of reach.
+/// Lists missed areas and unreachable floor.
 pub(super) fn missed(document: &Document) -> Vec<Block> {
     let floor = &document.floor;
     let mut blocks = vec![Block::Text(
-        "Cells that touch make one area, whatever plates they lie on. Every reason states its value; where an area has \
-         several causes, each is listed with its part of the area."
+        "Cells that touch form one area, even across plates. Every reason states its value; an area with \
+         several causes lists each cause with its share of the area."
             .into(),
     )];
     let mut table = Table::new(
@@ -70,7 +70,8 @@ pub(super) fn missed(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// How many of the missed areas, the largest first, have a row of their own: all, or of many those that are not small.
+/// The number of missed areas, the largest first, that have a table row: all of them or, if there are many, only
+/// those that are not small.
 fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
     if missed.len() > MOST_ROWS {
         missed.partition_point(|area| area.area_m2 >= SMALL_M2)
@@ -79,7 +80,7 @@ fn listed_one_by_one(missed: &[Area<MissReason>]) -> usize {
     }
 }
 
-/// Small areas in few words: a letter for each reason, with its value. `first`: the number of the first of them.
+/// Small areas in short form: a letter for each reason, with its value. `first`: the number of the first of them.
 fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     let reasons: BTreeSet<MissReason> =
         areas.iter().flat_map(|area| &area.causes).map(|cause| cause.reason).collect();
@@ -94,33 +95,35 @@ fn shortly(areas: &[Area<MissReason>], first: usize) -> Vec<Block> {
     let entry = |(no, area): (usize, &Area<MissReason>)| {
         let causes = area.causes.iter().map(cause).collect::<Vec<_>>().join(", ");
         let (x, y) = (number(area.at.x, 2), number(area.at.y, 2));
-        // No line ends between a number and its unit.
+        // A no-break space keeps a number and its unit on one line.
         (no, format!("{x}, {y} m; {:.3} m²; {causes}", area.area_m2).replace(" m", "\u{a0}m"))
     };
     let key = letters.iter().map(|(reason, letter)| format!("{letter}: {}", reason.plainly()));
     vec![
         Block::Heading(format!("Missed areas under {SMALL_M2} m²")),
         Block::Text(format!(
-            "Number, place, area, and the value behind each reason. {}. CSV and JSON have every sentence.",
+            "Number, position, area, and the value for each reason. {}. The CSV and JSON files contain the \
+             reasons in full.",
             key.collect::<Vec<_>>().join("; ")
         )),
         Block::Columns((first..).zip(areas).map(entry).collect()),
     ]
 }
 
-/// Why the whole floor is not the sum of the reachable floor and what is out of reach.
+/// Explains the difference between the whole floor and the reachable floor.
 fn balance(document: &Document) -> String {
     let (whole, reachable) = (&document.floor.whole, &document.floor.reachable);
     let thousandths = |m2: f64| (1000.0 * m2).round();
     let all = thousandths(whole.area_m2 - reachable.area_m2);
     let [unreachable, margin] =
         [whole.unreachable, whole.margin].map(|share| thousandths(share * whole.area_m2));
-    // The rest of what is printed, so that the line adds up to its last digit.
+    // The remainder of the printed figures, so that the sum is exact to the last digit.
     let [all, unreachable, margin, scanned] =
         [all, unreachable, margin, all - unreachable - margin].map(|m2| m2 / 1000.0);
     let beyond = format!(
-        " + {scanned:.3} m² scanned although not counted as reachable: the robot came closer to the shell or to an obstacle than hull \
-         and clearance allow, or the floor was reachable before an obstacle was found"
+        " + {scanned:.3} m² scanned although not counted as reachable: the robot came closer to the shell \
+         or to an obstacle than hull and clearance allow, or the floor was reachable before an obstacle was \
+         found"
     );
     format!(
         "Whole floor minus reachable floor: {all:.3} m² = {unreachable:.3} m² unreachable + {margin:.3} m² shell margin{}.",
@@ -134,7 +137,7 @@ fn plates_of(area: &Area<MissReason>) -> String {
     if more > 0 { format!("{names} +{more}") } else { names }
 }
 
-/// The no-go zone in which most of an area lies.
+/// The no-go zone that contains most of an area.
 fn zone_of(area: &Area<OutOfReach>) -> Option<&str> {
     let cause = area.causes.first().filter(|cause| cause.reason == OutOfReach::NoGo)?;
     cause.measure.as_ref()?.near.as_deref()
@@ -143,12 +146,12 @@ fn zone_of(area: &Area<OutOfReach>) -> Option<&str> {
 fn unreachable(document: &Document) -> Table {
     let floor = &document.floor;
     let mut table = Table::new(
-        "Floor out of reach of the tool",
+        "Unreachable floor",
         &[
             ("Reason", "", ""),
             ("Areas", "", "r"),
             ("Area", "m²", "r"),
-            ("Largest: place in m, reason", "", ""),
+            ("Largest: position in m, reason", "", ""),
         ],
     );
     let mut by_reason: BTreeMap<_, Vec<_>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The section on what each run did: track, tether, chart, incidents, indications.
+//! The section on each run: track, tether, chart, incidents, indications.
 
 use super::{
     super::{
@@ -12,10 +12,10 @@ use account::clock;
 use mission::Severity;
 use world::coverage::percent_text;
 
-/// Incidents that are listed for a run; plans and orders are left out first.
+/// Maximum number of incidents listed for a run; plans and orders are omitted first.
 const MOST_INCIDENTS: usize = 120;
 
-/// Every run, then the indications.
+/// All runs, then the indications.
 pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
     let mut blocks = Vec::new();
     for ((number, run), figures) in (1..).zip(&document.runs).zip(&document.pictures.runs) {
@@ -43,7 +43,7 @@ pub(in crate::document) fn runs(document: &Document) -> Vec<Block> {
     blocks
 }
 
-/// The least clearance, flagged if it is below what was to be kept.
+/// The minimum clearance, flagged if it is below the required one.
 fn clearance(run: &RunPart) -> String {
     let (Some(least_m), limit_m) = (run.clearance_min_m, run.clearance_m) else { return String::new() };
     let flag = if least_m < limit_m { "BELOW the required" } else { "required:" };
@@ -176,7 +176,8 @@ fn indications(document: &Document) -> Vec<Block> {
         return vec![Block::Heading("Indications".into()), Block::Facts(vec![("Statement", stated)])];
     }
     let mut table = Table::new(
-        "Indications of the instrument, placed by time on the track, or where the instrument says",
+        "Indications of the instrument, placed on the track by time, or at the position given by the \
+         instrument",
         &[
             ("No.", "", "r"),
             (if document.runs.len() > 1 { "Run" } else { "" }, "", "c"),

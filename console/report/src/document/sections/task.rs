@@ -1,4 +1,4 @@
-//! The report on a run that was not there to scan: what it was to do, and how it did it.
+//! The report on a run whose task was not to scan: the task and how well it was done.
 
 use super::{
     super::{
@@ -10,7 +10,7 @@ use super::{
 use account::{Tracking, clock};
 use mission::Outcome;
 
-/// The sections in their order; their numbers are in [`super::number_of`].
+/// The sections in order; [`super::number_of`] gives their numbers.
 pub(super) fn sections(document: &Document, task: &TaskPart) -> Vec<Section> {
     vec![
         section("Scope", scope(document, task)),
@@ -25,7 +25,7 @@ pub(super) fn sections(document: &Document, task: &TaskPart) -> Vec<Section> {
     ]
 }
 
-/// What is said in one sentence.
+/// The verdict.
 pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
     let run = document.runs.last();
     let outcome = run.and_then(|run| run.outcome);
@@ -41,12 +41,12 @@ pub(super) fn verdict(document: &Document, task: &TaskPart) -> Verdict {
     let reason = run.and_then(|run| run.reason.clone()).filter(|_| !is_complete);
     Verdict {
         class: if is_complete { "" } else { "bad" },
-        lead: lead + " Scanning the floor was not part of this mission: no floor was missed.",
+        lead: lead + " Scanning the floor was not part of this mission, so no floor counts as missed.",
         cause: reason.map(|reason| format!("Cause: {reason}.")).unwrap_or_default(),
     }
 }
 
-/// The large figures.
+/// The large figures of the first sheet.
 pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
     let figure =
         |value: String, unit: &'static str, of: &'static str, about: String| Share { value, unit, of, about };
@@ -97,7 +97,7 @@ pub(super) fn shares(document: &Document, task: &TaskPart) -> Vec<Share> {
     }
 }
 
-/// What the run was to do, and what the words mean.
+/// The scope of the mission and the terms of the report.
 fn scope(document: &Document, task: &TaskPart) -> Vec<Block> {
     let run = document.runs.first().map_or("", |run| run.run.as_str());
     vec![Block::Text(format!(
@@ -128,7 +128,7 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
                 format!("{}, {} m", number(goal.x, 2), number(goal.y, 2)),
                 format!("reached within {tolerance_m} m"),
             ),
-            ("Straight from start to goal", metres(*straight_m, 2), none()),
+            ("Straight line from start to goal", metres(*straight_m, 2), none()),
             (
                 "Distance to the goal at the end",
                 left_m.map_or_else(none, |m| metres(m, 3)),
@@ -178,7 +178,7 @@ fn rows(document: &Document, task: &TaskPart) -> Vec<(&'static str, String, Stri
         ));
         rows.extend(
             run.clearance_min_m
-                .map(|m| ("Least clearance", metres(m, 3), format!("required: {} m", run.clearance_m))),
+                .map(|m| ("Minimum clearance", metres(m, 3), format!("required: {} m", run.clearance_m))),
         );
         rows.extend(run.collisions.map(|n| ("Collisions", n.to_string(), none())));
     }

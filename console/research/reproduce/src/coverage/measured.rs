@@ -1,4 +1,4 @@
-//! What one planner makes of one tank.
+//! The result of one planner in one tank.
 
 use crate::study::{Method, Planned, Planners, Result, Runner, StudyError};
 use mission::{Cause, Fault};
@@ -11,28 +11,28 @@ use trials::{
 };
 use world::{Pose, tether::TetherError};
 
-/// Cells of large tanks are coarser, so that the count takes no longer than the plan, metres.
+/// Edge of a cell in large tanks, metres; coarser, so that counting does not take longer than planning.
 const COARSE_CELL_M: f64 = 0.1;
 /// Radius from which a tank counts as large, metres.
 const LARGE_M: f64 = 20.0;
-/// Distance from the anchor at which the robot is back, metres.
+/// Distance from the anchor at which the robot counts as back, metres.
 const TOLERANCE_M: f64 = 0.3;
 
 /// A plan and its figures.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Measured {
-    /// The figures; none if there is no path.
+    /// The figures; `None` if there is no path.
     pub figures: Option<(Scan, Entanglement)>,
-    /// Why there is no path, or not all of it.
+    /// The reason why there is no path, or only part of it.
     pub reason: Option<String>,
-    /// Time between question and answer, milliseconds; none without an answer.
+    /// Time between request and answer, milliseconds; `None` without an answer.
     pub plan_time_ms: Option<f64>,
 }
 
-/// Lets a planner plan a tank, given with case and seed, and draws the plan if plans are to be drawn.
+/// Has a planner plan a tank, identified by case and seed, and draws the plan if plans are drawn.
 ///
 /// # Errors
-/// There is no such planner, or it refuses its parameters: anything else is a result.
+/// The planner does not exist, or it refuses its parameters. Anything else is a result.
 pub(super) fn measure(
     runner: &Runner<'_>,
     planners: &Planners,
@@ -72,7 +72,7 @@ pub(super) fn measure(
     }
 }
 
-/// A planner that breaks down on a tank is a result; one that is not there, or refuses its parameters, is a mistake.
+/// A planner that fails in a tank is a result; a missing planner, or refused parameters, is an error.
 fn is_result(fault: &Fault) -> bool {
     !matches!(fault.cause, Cause::Refused | Cause::Planner(Code::Config))
 }

@@ -5,16 +5,16 @@ use crate::study::{Block, Row, Sample};
 use trials::{Entanglement, Scan};
 use world::tether::capstan_factor;
 
-/// Friction between cable and column for the pull.
+/// Coefficient of friction between cable and column, for the pull.
 const FRICTION: f64 = 0.3;
-/// Coverage of the reachable floor that a tank should get.
+/// Required coverage of the reachable floor.
 const GOAL: f64 = 0.995;
-/// Cable out on return that counts as reeled in, metres.
+/// Length of cable still out on return that counts as reeled in, metres.
 const IN_M: f64 = 0.3;
-/// Layouts named in a note at most.
+/// Maximum number of layouts named in a note.
 const NAMED_MAX: usize = 12;
 
-/// What is measured of a flown plan, and which of its ends is the bad one.
+/// A figure of a plan, and the end of its range that is bad.
 struct Figure {
     metric: &'static str,
     unit: &'static str,
@@ -69,7 +69,7 @@ const FIGURES: &[Figure] = &[
     figure("cut_crossings", "", Worst::Max, |scan, _| scan.certificate.cut_crossings as f64),
 ];
 
-/// A share of the layouts that should be all of them.
+/// A rate that should be 1: the share of layouts that meet a condition.
 struct Rate {
     metric: &'static str,
     is_met: fn(&Measured) -> bool,
@@ -96,9 +96,10 @@ fn is_reeled_in(one: &Measured) -> bool {
     })
 }
 
-/// The rows of what was measured on layouts of these seeds.
+/// The rows for measurements on the layouts of these seeds.
 ///
-/// Rates are shares of all layouts; figures are those of the layouts with a path, and say how many these are.
+/// Rates are shares of all layouts; figures are those of the layouts with a path, and state the number of these
+/// layouts.
 pub(super) fn rows(block: &Block<'_>, all: &[(u64, &Measured)]) -> Vec<Row> {
     let mut rows: Vec<Row> = RATES.iter().map(|rate| rate.row(block, all)).collect();
     rows.extend(FIGURES.iter().flat_map(|figure| figure.rows(block, all)));
@@ -117,7 +118,7 @@ impl Rate {
 }
 
 impl Figure {
-    /// The mean, and the bad end with its seed.
+    /// The mean, and the worst value with its seed.
     fn rows(&self, block: &Block<'_>, all: &[(u64, &Measured)]) -> Vec<Row> {
         let value = |(scan, tether): &(Scan, Entanglement)| (self.of)(scan, tether);
         let values: Vec<(u64, f64)> =
@@ -137,7 +138,7 @@ impl Figure {
     }
 }
 
-/// The layouts that miss a rate, the first ones with the reason.
+/// The layouts that do not meet a condition; the first ones with the reason.
 fn named(metric: &str, missed: &[&(u64, &Measured)]) -> String {
     let listed: Vec<String> =
         missed.iter().take(NAMED_MAX).map(|(seed, one)| named_one(metric, *seed, one)).collect();

@@ -7,7 +7,7 @@ use super::{
 use crate::study::{Job, Method, Result, Row};
 use trials::tanks::{Known, Tank};
 
-/// A kind of tanks: id of the case, and the tank of a seed.
+/// A kind of tank: the id of the case, and the function that makes the tank of a seed.
 type Case = (&'static str, fn(u64) -> Tank);
 
 fn methods() -> [Method; 6] {
@@ -22,7 +22,7 @@ fn methods() -> [Method; 6] {
     ]
 }
 
-/// The tanks with a name.
+/// The named tanks.
 pub(super) fn pan_maps(job: &Job<'_>) -> Result<Vec<Row>> {
     let cases: [Case; 3] = [
         (Known::E1.id(), |seed| Known::E1.tank(seed)),

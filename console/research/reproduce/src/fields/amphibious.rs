@@ -10,21 +10,20 @@ use trials::{
 };
 use world::{Amphibious, Boundary, Medium, Mode, Point, Pose, Shape, Zone, ZoneKind, polyline};
 
-/// Steps of transition compared; the paper has none and 20.
+/// The numbers of transition steps compared; the paper has none and 20.
 const TRANSITIONS: [u32; 3] = [0, 20, 60];
-/// Length of a step, seconds.
+/// Duration of a step, seconds.
 const STEP_S: f64 = 0.1;
 /// The goal counts as reached at this distance, metres.
 const TOLERANCE_M: f64 = 0.15;
-/// Speeds above the limit by less than this are rounding, metres per second.
+/// Speeds above the limit by less than this count as rounding errors, metres per second.
 const ROUNDING_M_PER_S: f64 = 1e-6;
 
 const OURS: &str = "virtual goals are the corners of the shortest path on the known map (ours)";
-const PAPER: &str =
-    "virtual goals on a square round the goal, used in a minimum, as published; its size is not printed";
+const PAPER: &str = "virtual goals on a square round the goal, used in a minimum, as published; the size of the square is not printed";
 const LAYOUT: &str = "the paper shows one layout of each group without coordinates; ours are random";
 
-/// The planner with some transition.
+/// The planner with this number of transition steps.
 struct Entry {
     method: Method,
     transition_steps: u32,
@@ -52,7 +51,7 @@ fn entries() -> impl Iterator<Item = Entry> {
     guides.into_iter().flat_map(move |guide| TRANSITIONS.map(|steps| entry(guide, steps)))
 }
 
-/// Figs 12 to 15 on many layouts.
+/// The study of Figs 12 to 15 on many layouts.
 pub(super) fn hybrid(job: &Job<'_>) -> Result<Vec<Row>> {
     let groups = job.cases(Group::ALL, |group| group.id().into())?;
     let entries = job.methods(entries(), |entry| entry.method.id.clone())?;
@@ -115,7 +114,7 @@ fn measure(
     })
 }
 
-/// How far the speed from place to place exceeds the limit of the moment, at most, metres per second.
+/// The largest excess of the speed between two places over the limit at that moment, metres per second.
 fn overspeed_m_per_s(path: &[Point], water: &[Point], transition_steps: u32) -> f64 {
     let zone = Zone {
         name: String::new(),
@@ -156,16 +155,16 @@ fn summary(block: &Block<'_>, all: &[Measured]) -> Vec<Row> {
         block.row("min_clearance", of_all(|one| one.clearance_m).min(), "m", n),
         block
             .row("overspeed", of_all(|one| one.overspeed_m_per_s).max(), "m/s", n)
-            .note("largest excess over the limit of the moment in any step"),
+            .note("largest excess over the limit at that moment, in any step"),
         block.row("overspeed_rate", share(|one| one.overspeed_m_per_s > 0.0), "", n),
         block.row("plan_time_ms", of_all(|one| one.plan_time_ms).mean(), "ms", n),
         block
             .row("step_time_us", step_times.median(), "us", n)
-            .note("time of the plan over its steps, including the call over the plugin boundary"),
+            .note("time of the plan divided by its steps, including the call across the plugin boundary"),
     ]
 }
 
-/// What more steps of transition change, layout by layout, where both arrive.
+/// The effect of more transition steps, layout by layout, where both runs arrive.
 fn differences(block: &Block<'_>, measured: [&[Measured]; 2]) -> Vec<Row> {
     let pairs = || measured[0].iter().zip(measured[1]).filter(|(a, b)| a.arrived && b.arrived);
     let row = |metric: &str, sample: &Sample, unit: &str| {

@@ -1,4 +1,5 @@
-//! What the papers plot over the way: forces (Xu et al. 2022, Figs 14 to 16), distances (Yang et al. 2021, Figs 12 to 15).
+//! The figures that the papers plot along the path: forces (Xu et al. 2022, Figs 14 to 16), distances (Yang et al.
+//! 2021, Figs 12 to 15).
 
 use super::{
     flown::{Flown, Trip, fly},
@@ -10,15 +11,15 @@ use std::f64::consts::FRAC_PI_4;
 use trials::amphibious::{AmphibiousLayout, Group};
 use world::Pose;
 
-const NO_NUMBERS: &str = "as flown; the paper's figure has no numbers in our copy";
+const NO_NUMBERS: &str = "as flown; in our copy the paper's figure has no numbers";
 const DISTANCES: &str = "as flown, virtual goals on a square round the goal as published; the paper shows one layout of each group \
                          without coordinates, ours are random";
 
-/// Longest flight over the floor of Table 2, seconds at a metre a second.
+/// Time limit of a flight over the floor of Table 2, seconds, at one metre per second.
 const FORCES_S: f64 = 250.0;
-/// Longest flight over a floor of Figs 12 to 15, seconds.
+/// Time limit of a flight over a floor of Figs 12 to 15, seconds.
 const DISTANCES_S: f64 = 300.0;
-/// The names under which the planners report.
+/// The names of the figures that the planners report.
 const PULL: &str = "F_att";
 const PUSH: &str = "F_rep";
 const NEAREST: &str = "obstacle_distance";
@@ -67,7 +68,7 @@ pub(super) fn distances(job: &Job<'_>) -> Result<Vec<Row>> {
         let names: Vec<&str> = flown.figures.keys().map(String::as_str).collect();
         let mut shown: Vec<&str> =
             names.into_iter().filter(|name| name.starts_with(NEAREST) || *name == SAFE).collect();
-        // Number 2 before number 10.
+        // Sorts number 2 before number 10.
         shown.sort_by_key(|name| (*name == SAFE, name.len()));
         draw(job, (group.id(), *seed, &method.id), "distance, m", &flown, &shown);
         Ok(flown)
@@ -111,7 +112,7 @@ fn share(is: bool) -> f64 {
     f64::from(u8::from(is))
 }
 
-/// Draws some of the figures of a flight, if pictures are asked for.
+/// Draws some of the figures of a flight, if pictures are requested.
 fn draw(job: &Job<'_>, name: (&str, u64, &str), unit: &str, flown: &Flown, shown: &[&str]) {
     let Some(gallery) = job.runner.gallery() else { return };
     let figures = shown.iter().filter_map(|name| flown.figures.get_key_value(*name));

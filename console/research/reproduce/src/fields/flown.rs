@@ -1,4 +1,4 @@
-//! A flight over a known floor, over the plugin boundary, with the figures that the planner reports in every tick.
+//! A flight over a known floor, across the plugin boundary, with the figures that the planner reports in every tick.
 
 use crate::study::{Method, Planners, Result, StudyError};
 use geometry::{PathFollower, unit_vector};
@@ -9,28 +9,28 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use world::{Point, Pose};
 
-/// The planner is given so much of its plan ahead of the robot, metres.
+/// Length of its plan ahead of the robot that the planner receives, metres.
 const SHOWN_M: f64 = 4.0;
-/// The flight ends when the planner says for so long that it is stuck, seconds.
+/// The flight ends after the planner has reported being stuck for this long, seconds.
 const STUCK_S: f64 = 60.0;
 
 /// A trip.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trip {
-    /// Where the robot is put down.
+    /// The start of the robot.
     pub start: Pose,
-    /// Where it is to go, metres.
+    /// The goal, metres.
     pub goal: Point,
     /// Distance at which the goal counts as reached, metres.
     pub tolerance_m: f64,
-    /// When the flight ends at the latest, seconds.
+    /// Time limit of the flight, seconds.
     pub most_s: f64,
 }
 
-/// A flight and what the planner reported on it.
+/// A flight, and the figures that the planner reported.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Flown {
-    /// Places, one each tick.
+    /// Places of the robot, one per tick.
     pub path: Vec<Point>,
     /// Whether the goal was reached.
     pub arrived: bool,
@@ -38,10 +38,10 @@ pub(super) struct Flown {
     pub figures: BTreeMap<String, Vec<(f64, f64)>>,
 }
 
-/// Flies a trip: positions are exact, and the robot moves as it is told.
+/// Flies a trip: positions are exact, and the robot carries out every command exactly.
 ///
 /// # Errors
-/// The planner is missing, refuses its parameters or breaks down.
+/// The planner is missing, refuses its parameters or fails.
 pub(super) fn fly(planners: &Planners, method: &Method, site: &Site<'_>, trip: &Trip) -> Result<Flown> {
     let failed = |fault| StudyError::planner(&method.planner, fault);
     let mut host = planners.prepare(method, site).map_err(failed)?;
@@ -54,7 +54,7 @@ pub(super) fn fly(planners: &Planners, method: &Method, site: &Site<'_>, trip: &
     let request = PlanRequest::new(&Reason::Start, exact(start), Task::Goto { goal, tolerance_m }, site);
     let mut plan = match host.plan(&request) {
         Ok(reply) => (reply.value.path.len() > 1).then(|| PathFollower::new(reply.value.path)),
-        // A planner that finds no plan may still know how to move.
+        // A planner without a plan may still give useful commands.
         Err(fault) if matches!(fault.cause, Cause::Planner(_)) => None,
         Err(fault) => return Err(failed(fault)),
     };

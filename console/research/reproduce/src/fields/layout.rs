@@ -1,4 +1,4 @@
-//! A floor with discs, a start and a goal, and what a planner makes of it.
+//! A floor with discs, a start and a goal, and the result of a planner on it.
 
 use super::flown::{Flown, Trip, fly};
 use crate::study::{Block, Method, Planned, Planners, Result, Row, Runner, StudyError};
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use trials::discs;
 use world::{Boundary as WallOf, Point, Pose, Vector, polyline, shape::rectangle};
 
-/// The wall stands this far from everything: the papers have none, metres.
+/// Distance of the wall from everything else, metres; the papers have no wall.
 const WALL_OFF_M: f64 = 20.0;
-/// A flight ends this near to the goal, metres.
+/// Distance from the goal at which a flight ends, metres.
 const FLOWN_TOLERANCE_M: f64 = 0.1;
-/// Every plan is made this many times, and the fastest counts.
+/// Number of times that every plan is made; the fastest counts.
 const TIMED: usize = 5;
 
 /// A floor with discs.
@@ -19,9 +19,9 @@ const TIMED: usize = 5;
 pub(super) struct GotoLayout {
     /// Id of the case.
     pub id: &'static str,
-    /// Where the robot is put down, metres.
+    /// The start of the robot, metres.
     pub start: Point,
-    /// Where it is to go.
+    /// The goal.
     pub goal: Point,
     /// Centres and radii, metres; radius 0 is a point.
     pub discs: Vec<(Point, f64)>,
@@ -47,10 +47,10 @@ pub(super) struct Measured {
 }
 
 impl GotoLayout {
-    /// Asks a planner for a plan, several times for the sake of the plan's time.
+    /// Asks a planner for a plan, several times to measure its planning time.
     ///
     /// # Errors
-    /// The planner is missing, refuses its parameters or broke down.
+    /// The planner is missing, refuses its parameters or fails.
     pub(super) fn measure(&self, planners: &Planners, method: &Method) -> Result<Measured> {
         let mut best = self.plan(planners, method)?;
         for _ in 1..TIMED {
@@ -66,10 +66,10 @@ impl GotoLayout {
         planners.plan(method, self.start(), task, &self.site(&corners, &obstacles))
     }
 
-    /// Lets a planner fly it for at most this many seconds, at one metre per second.
+    /// Has a planner fly the layout for at most this many seconds, at one metre per second.
     ///
     /// # Errors
-    /// The planner is missing, refuses its parameters or broke down.
+    /// The planner is missing, refuses its parameters or fails.
     pub(super) fn fly(&self, planners: &Planners, method: &Method, most_s: f64) -> Result<Flown> {
         let (corners, obstacles) = (self.corners(), discs::obstacles(&self.discs));
         let (start, goal) = (self.start(), self.goal);
@@ -77,7 +77,7 @@ impl GotoLayout {
         fly(planners, method, &self.site(&corners, &obstacles), &trip)
     }
 
-    /// Draws a plan, if plans are to be drawn.
+    /// Draws a plan, if plans are drawn.
     pub(super) fn draw(&self, runner: &Runner<'_>, method: &Method, measured: &Measured) {
         let Some(gallery) = runner.gallery() else { return };
         let world = discs::world(WallOf::Polygon { vertices: self.corners() }, &self.discs);
@@ -144,7 +144,7 @@ pub(super) fn wall_of_discs(
 }
 
 impl Measured {
-    /// Everything but what the paper prints.
+    /// The fields that the paper does not print.
     pub(super) fn rows(&self, block: &Block<'_>) -> Vec<Row> {
         let row = |metric: &str, ours: f64, unit: &str| block.row(metric, ours, unit, 1);
         let mut rows = vec![row("success_rate", f64::from(u8::from(self.arrived)), "")];

@@ -5,12 +5,12 @@ use crate::study::{Job, Method, Result, Row};
 use std::f64::consts::FRAC_PI_4;
 use world::Point;
 
-/// Radius of the robot in the traps; the paper's is a point, ours cannot pass between touching discs, metres.
+/// Radius of the robot in the traps, metres. The paper's robot is a point; ours must not pass between touching discs.
 const HULL_M: f64 = 0.3;
-/// Radius and spacing of the discs that a trap is made of, metres; the paper shows pictures only.
+/// Radius and spacing of the discs of a trap, metres; the paper shows only pictures.
 const DISC_M: f64 = 0.7;
 const SPACING_M: f64 = 1.2;
-/// The goal counts as reached at twice the step of the paper, metres.
+/// Distance at which the goal counts as reached, metres: twice the step of the paper.
 const TOLERANCE_M: f64 = 0.02;
 
 const APF: &str = "attraction k rho, repulsion from the outline; ends when the last steps make no progress, the paper's \
@@ -20,7 +20,7 @@ const ALWAYS: &str = "left tangent force always on at a weight of 0.02, fitted t
 const FULL: &str = "left tangent force always on at its full weight; radius and gain, which the paper does not print, fitted \
                     to the printed stops";
 const BLOCKING: &str =
-    "tangent force only round what blocks the path: the other reading; the paper does not decide";
+    "tangent force only round obstacles that block the path: the other reading; the paper leaves this open";
 const LITERAL: &str = "with our corrections where the paper's formulas cannot be applied: eq. 14 (cotangent of a cosine) and eq. 17 \
                        (never true) read as an angle at the mouth with room for the seal, eq. 4 near the goal as \
                        log2(1/rho + 1), eq. 10 as vectors, our oscillation rule";
@@ -42,15 +42,15 @@ struct Gains {
     step_m: f64,
 }
 
-/// Gain and range of the repulsion and weight of the tangent force are fitted to the printed stops; the radius of the
-/// obstacle is not printed.
+/// Gain and range of the repulsion and the weight of the tangent force are fitted to the printed stopping points; the
+/// radius of the obstacle is not printed.
 const TABLE1: Gains = Gains { tangent_weight: 0.02, k_rep: 39.5, rho_0_m: 5.0, step_m: 0.01 };
-/// Another set that gives both stops, about an obstacle of another radius.
+/// A different set that gives both stopping points, with an obstacle of a different radius.
 const TABLE1_WIDE: Gains = Gains { tangent_weight: 1.0, k_rep: 0.285, ..TABLE1 };
 const WIDE: &str = "table1/wide";
 const WIDE_M: f64 = 3.3;
 const TRAPS: Gains = Gains { k_rep: 10.0, rho_0_m: 2.0, ..TABLE1 };
-/// The step that gives the printed number of steps.
+/// The step size that gives the printed number of steps.
 const TABLE2: Gains = Gains { step_m: 0.0071, ..TRAPS };
 
 fn methods(gains: Gains) -> Vec<Method> {
@@ -81,7 +81,7 @@ fn methods(gains: Gains) -> Vec<Method> {
 }
 
 /// The three methods whose forces the paper plots, over the floor of Table 2; the classical field is flown by `tapf`
-/// without its tangent force, whose flight keeps to the law.
+/// without its tangent force, because its flight follows the law.
 pub(super) fn methods_of_forces(note: &'static str) -> Vec<Method> {
     let tapf = |id: &str| {
         let method = Method::new(id, "tapf", note).number("k_rep", TABLE2.k_rep);
@@ -95,14 +95,14 @@ pub(super) fn methods_of_forces(note: &'static str) -> Vec<Method> {
     ]
 }
 
-/// A printed line: stop, success, steps.
+/// A printed row: stopping point, success, steps.
 #[derive(Debug, Clone, Copy)]
 struct Printed {
     method: &'static str,
     stop: (f64, f64),
     success: f64,
     steps: Option<f64>,
-    /// Figures to which a number or the layout was fitted.
+    /// The printed figures to which a number or the layout was fitted.
     fitted: &'static [&'static str],
 }
 
@@ -139,7 +139,7 @@ fn layout(id: &'static str, start: (f64, f64), goal: (f64, f64), discs: Vec<(Poi
     GotoLayout { id, start, goal, discs, hull_m: HULL_M, tolerance_m: TOLERANCE_M }
 }
 
-/// The only layout that is printed, but for the radius.
+/// The only printed layout; the radius is not printed.
 fn behind_an_obstacle(id: &'static str, radius_m: f64) -> GotoLayout {
     let discs = vec![(Point::new(42.0, 52.0), radius_m)];
     GotoLayout { hull_m: 0.0, ..layout(id, (0.0, 0.0), (44.0, 55.0), discs) }
@@ -169,7 +169,7 @@ pub(super) fn holistic() -> GotoLayout {
     layout("table2", (1.0, 1.0), (50.0, 55.0), discs)
 }
 
-/// What the paper leaves open of a case for the virtual obstacles, and what difference it makes.
+/// A note for the virtual obstacles: the details of a case that the paper leaves open, and their effect.
 fn left_open(case: &str) -> Option<&'static str> {
     Some(match case {
         "triangle" => {
@@ -206,7 +206,7 @@ pub(super) fn table2(job: &Job<'_>) -> Result<Vec<Row>> {
     rows(job, &[(holistic(), TABLE2)], &PRINTED_TABLE2)
 }
 
-/// Whether the paper prints a stop of the method.
+/// Whether the paper prints a stopping point for the method.
 fn has_stop(method: &str) -> bool {
     ["apf", "tapf", "bvo-apf/literal"].contains(&method)
 }
@@ -247,7 +247,7 @@ fn with_printed(row: Row, line: Option<&Printed>) -> Row {
     if line.fitted.contains(&row.metric.as_str()) { row.fitted() } else { row }
 }
 
-/// With what the paper leaves open, where it makes a difference.
+/// Adds the details that the paper leaves open, where they make a difference.
 fn with_open(row: Row) -> Row {
     let is_way = row.method == "bvo-apf/literal" && matches!(row.metric.as_str(), "steps" | "length_m");
     let is_stop = row.case == "table2" && row.method == "tapf" && row.metric.starts_with("stop");

@@ -4,9 +4,9 @@ use super::layout::{GotoLayout, Measured};
 use crate::study::{Block, Job, Method, Result, Row};
 use world::Point;
 
-/// The last step of a walk goes onto the goal, metres.
+/// Distance within which the last step of a walk ends on the goal, metres.
 const TOLERANCE_M: f64 = 1e-6;
-/// Iterations of the paper.
+/// Number of iterations in the paper.
 const STEPS: i64 = 200;
 
 const TRADITIONAL_ID: &str = "apf-virtual-goals/traditional";
@@ -14,20 +14,20 @@ const IMPROVED_ID: &str = "apf-virtual-goals";
 
 const TRADITIONAL: &str = "linear pull, no virtual goals; steps proportional to the force up to 0.1 m: the printed lengths \
                            of runs that fail fit neither this nor fixed steps, which give 20 m always";
-const IMPROVED: &str = "gains and ranges of the paper's Table 2. Read as: eq. 15 pushing away (as stored it attracts), \
+const IMPROVED: &str = "gains and ranges of the paper's Table 2. Interpreted as follows: eq. 15 repels (as printed it attracts), \
                         eq. 17c with the constant pull k d_0 (its potential has no slope), eq. 18 with the second vector \
                         reversed (as printed the blocked direction scores best), \"F = 0\" as a force below k_att / 2 or \
                         six steps without progress";
 const TUNED: &str = "layout not printed: start, goal and obstacles tuned to the printed length";
 const DERIVED: &str = "layout not printed: any free path from (0, 0) to (10, 10) gives this length";
 
-/// A case and what is printed of it.
+/// A case and its printed values.
 struct Case {
     layout: GotoLayout,
     note: &'static str,
     /// Distance of the virtual goals from the goal, metres: not printed.
     square_m: f64,
-    /// Length and time of the traditional and of the improved field, metres and seconds; whether the former arrives.
+    /// Length (metres) and time (seconds) of the traditional and of the improved field; whether the former arrives.
     traditional: (f64, f64, bool),
     improved: (f64, f64),
 }

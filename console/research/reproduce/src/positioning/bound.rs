@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use world::{Point, Station};
 
-/// Mean error of the best unbiased estimator for normal noise: the Cramér-Rao bound at a truth, metres.
+/// Mean error of the best unbiased estimator for normal noise: the Cramér-Rao bound at a true position, metres.
 ///
 /// A normal error of covariance `C` has the mean length `sqrt(pi / 2)` times the mean over all directions of
 /// `sqrt(a cos^2 + b sin^2)`, with `a` and `b` the eigenvalues of `C`.

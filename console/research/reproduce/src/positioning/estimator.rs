@@ -29,7 +29,7 @@ impl Estimator {
         (self.solve)(&self.ranges(sets, &noise)?, &setup.stations, &noise)
     }
 
-    /// How the fixes of some cycles compare with the truth.
+    /// Compares the fixes of some cycles with the truth.
     pub(super) fn outcomes(&self, setup: &Setup, cycles: &[Cycle]) -> Vec<Outcome> {
         let outcome = |cycle: &Cycle| {
             let began = Instant::now();
@@ -64,25 +64,25 @@ pub(super) const WEIGHTED: Estimator = Estimator {
 };
 /// Nonlinear least squares on the means.
 pub(super) const NLS: Estimator = Estimator { id: "nls", aggregation: Aggregation::Mean, solve: nls };
-/// The same on the midranges.
+/// Nonlinear least squares on the midranges.
 pub(super) const NLS_MIDRANGE: Estimator =
     Estimator { id: "nls/midrange", aggregation: Aggregation::Midrange, solve: nls };
-/// The same on the posterior means.
+/// Nonlinear least squares on the posterior means.
 pub(super) const NLS_POSTERIOR: Estimator =
     Estimator { id: "nls/posterior", aggregation: Aggregation::Posterior, solve: nls };
-/// The same on the trimmed means.
+/// Nonlinear least squares on the trimmed means.
 pub(super) const NLS_TRIMMED: Estimator =
     Estimator { id: "nls/trimmed", aggregation: Aggregation::TrimmedMean, solve: nls };
-/// The same, leaving out one station that contradicts all others.
+/// Nonlinear least squares, leaving out one station that contradicts all others.
 pub(super) const NLS_SCREENED: Estimator = Estimator {
     id: "nls/screened",
     aggregation: Aggregation::TrimmedMean,
     solve: |ranges, stations, _| Screened(Nls).solve(ranges, stations, None),
 };
-/// The positions within all bounds.
+/// The set of positions within all bounds.
 pub(super) const BOUNDED: Estimator =
     Estimator { id: "bounded", aggregation: Aggregation::Mean, solve: bounded };
-/// The same; nonlinear least squares where no position is left.
+/// The set of positions within all bounds, or nonlinear least squares if the set is empty.
 pub(super) const BOUNDED_OR_NLS: Estimator = Estimator {
     id: "bounded/or-nls",
     aggregation: Aggregation::TrimmedMean,
@@ -90,7 +90,7 @@ pub(super) const BOUNDED_OR_NLS: Estimator = Estimator {
         bounded(ranges, stations, noise).or_else(|_| nls(ranges, stations, noise))
     },
 };
-/// What most stations agree on.
+/// The position on which most stations agree.
 pub(super) const CONSENSUS: Estimator = Estimator {
     id: "consensus",
     aggregation: Aggregation::TrimmedMean,

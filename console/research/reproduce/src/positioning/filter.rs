@@ -1,4 +1,4 @@
-//! Filters on the spiral: one cycle of ranges and one step of odometry in turn.
+//! Filters on the spiral: cycles of ranges and steps of odometry alternate.
 
 use super::{
     estimator,
@@ -20,7 +20,7 @@ pub(super) const STUDY: Study = Study {
     run,
 };
 
-/// What the filters expect of the tracks.
+/// The odometry noise that the filters assume for the tracks.
 const MOTION: MotionNoise = MotionNoise {
     sigma_per_m: 0.03,
     way_sigma_ratio: 0.05,
@@ -28,9 +28,9 @@ const MOTION: MotionNoise = MotionNoise {
     heading_sigma_per_tick_rad: 0.001,
     slip_chance: SLIP_CHANCE,
 };
-/// Steps that the smoother looks back.
+/// Number of steps that the smoother looks back.
 const LAG: usize = 10;
-/// How well the manway is surveyed, metres and radians.
+/// Standard deviations of the surveyed manway, metres and radians.
 const START: (f64, f64) = (0.01, 0.01);
 const PARTICLES: usize = 2000;
 
@@ -72,7 +72,7 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
             }
         }
     }
-    // Dead reckoning knows no ellipse.
+    // Dead reckoning has no ellipse.
     rows.retain(|row| row.method != METHODS[0] || row.metric != "in_95_ellipse");
     Ok(rows)
 }
@@ -109,7 +109,7 @@ fn dead_reckoning(track: &Track) -> Vec<Outcome> {
     track.steps.iter().map(step).collect()
 }
 
-/// The filter's outcomes, and those of looking back.
+/// The outcomes of the filter and of the smoother.
 fn filtered(track: &Track, ranges: &[Vec<Ranging>], stations: &[Station]) -> (Vec<Outcome>, Vec<Outcome>) {
     let mut smoother = FixedLag::new(Ekf::new(track.start, START.0, START.1, MOTION), LAG);
     let (mut now, mut back) = (Vec::new(), Vec::new());
@@ -128,7 +128,7 @@ fn filtered(track: &Track, ranges: &[Vec<Ranging>], stations: &[Station]) -> (Ve
         let smoothed = smoother.smoothed();
         let past = |ago: usize| track.steps.get((k + 1).checked_sub(ago + 1)?).map(|(_, truth)| *truth);
         if k + 1 == track.steps.len() {
-            // At the end everything remembered is reported.
+            // At the end, report all remaining steps.
             back.extend(
                 smoothed
                     .iter()
@@ -149,7 +149,7 @@ fn particles(track: &Track, ranges: &[Vec<Ranging>], setup: &Setup, seed: u64) -
     let mut outcomes = Vec::new();
     for ((odometry, truth), ranges) in track.steps.iter().zip(ranges) {
         filter.predict(odometry);
-        // Ranges that no place explains leave the particles as they are.
+        // Impossible ranges leave the particles unchanged.
         let _ = filter.update(ranges, &setup.stations);
         let (pose, covariance) = filter.estimate();
         let covariance = covariance.fixed_view::<2, 2>(0, 0).into_owned();

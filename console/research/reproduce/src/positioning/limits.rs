@@ -1,4 +1,4 @@
-//! Every estimator over the floor, on the same ranges, with the bounds beside it.
+//! Every estimator over the floor, on the same ranges, beside the theoretical bounds.
 
 use super::{
     bound::cramer_rao_m,
@@ -73,7 +73,7 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
 
 #[derive(Serialize, Deserialize)]
 struct Session {
-    /// For each method, one for each truth.
+    /// The errors of each method, one per true position.
     outcomes: Vec<Vec<Outcome>>,
     bounds_m: Vec<f64>,
 }

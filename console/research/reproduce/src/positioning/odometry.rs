@@ -5,25 +5,25 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use world::{Odometry, Point, Pose, geometry::wrap_angle_rad};
 
-/// Scatter of the measured way of a step as a share of it.
+/// Scatter of the measured length of a step, as a share of the length.
 const WAY_SIGMA: f64 = 0.05;
-/// Chance that the tracks slip through in a step.
+/// Probability of a strong slip of the tracks in a step.
 pub(super) const SLIP_CHANCE: f64 = 0.02;
 /// Scatter of the measured turn of a step, radians.
 const TURN_SIGMA_RAD: f64 = 0.01;
-/// Standard deviation of the gyro's bias, radians a step.
+/// Standard deviation of the gyro's bias, radians per step.
 const BIAS_SIGMA_RAD: f64 = 0.001;
 
-/// A run along the spiral: true places and what the odometry made of the steps between them.
+/// A run along the spiral: the true places, and the odometry of the steps between them.
 pub(super) struct Track {
     /// The first pose is known.
     pub start: Pose,
-    /// For each step what was measured and where it truly led.
+    /// For each step, the measured motion and the true pose at its end.
     pub steps: Vec<(Odometry, Point)>,
 }
 
-/// The spiral driven with slip of 1 to 5 % throughout, 5 % scatter, steps in which the tracks slip through by 30 to
-/// 70 %, and a gyro with a bias.
+/// The spiral driven with 1 to 5 % slip throughout, 5 % scatter, some steps with 30 to 70 % slip, and a gyro with a
+/// bias.
 pub(super) fn track(seed: u64) -> Track {
     let mut rng = rng(seed, 7);
     let truths = spiral();
@@ -37,7 +37,7 @@ pub(super) fn track(seed: u64) -> Track {
     for (k, to) in truths.iter().enumerate().skip(1) {
         let next_heading = truths.get(k + 1).map_or(pose.heading_rad, |next| heading(*to, *next));
         let way = to - pose.position;
-        // Half of the turn lies before the way; the robot drives an arc.
+        // Half of the turn comes before the straight step: the robot drives an arc.
         let along = pose.heading_rad + wrap_angle_rad(next_heading - pose.heading_rad) / 2.0;
         let forward = way.x * along.cos() + way.y * along.sin();
         let sideways = -way.x * along.sin() + way.y * along.cos();

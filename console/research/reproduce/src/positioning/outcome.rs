@@ -1,4 +1,4 @@
-//! How a method did over many truths.
+//! The results of a method over many true positions.
 
 use crate::study::{Block, Result, Row, Sample};
 use nalgebra::Matrix2;
@@ -6,31 +6,31 @@ use positioning::{Fix, FixError, Integrity};
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// A fix further off than this without a warning is a danger, metres.
+/// A fix with a larger error than this and no warning is dangerous, metres.
 const DANGER_M: f64 = 0.3;
 
-/// What became of one cycle.
+/// The outcome of one cycle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Outcome {
-    /// Distance from the truth, metres; none without a fix.
+    /// Distance from the true position, metres; `None` without a fix.
     pub error_m: Option<f64>,
-    /// Whether the truth lies in the 95 % ellipse.
+    /// Whether the true position is inside the 95 % ellipse.
     pub is_inside: bool,
     /// Whether the fix was trusted.
     pub is_trusted: bool,
-    /// Time it took, microseconds.
+    /// Computing time, microseconds.
     pub time_us: f64,
 }
 
 impl Outcome {
-    /// How a fix compares with the truth.
+    /// Compares a fix with the true position.
     pub(super) fn of(fix: &Result<Fix, FixError>, truth: Point, time_us: f64) -> Self {
         let Ok(fix) = fix else { return Self { time_us, ..Self::default() } };
         let is_trusted = fix.integrity == Integrity::Ok;
         Self { is_trusted, time_us, ..Self::of_estimate(fix.position, &fix.covariance, truth) }
     }
 
-    /// How an estimate with its covariance (square metres) compares with the truth.
+    /// Compares an estimate and its covariance (square metres) with the true position.
     pub(super) fn of_estimate(position: Point, covariance: &Matrix2<f64>, truth: Point) -> Self {
         let off = position - truth;
         let squared = covariance.try_inverse().map(|inverse| off.dot(&(inverse * off)));
@@ -40,7 +40,7 @@ impl Outcome {
     }
 }
 
-/// The errors of those cycles that gave a fix, metres.
+/// The errors of the cycles that gave a fix, metres.
 pub(super) fn errors<'a>(outcomes: impl IntoIterator<Item = &'a Outcome>) -> Sample {
     outcomes.into_iter().filter_map(|outcome| outcome.error_m).collect()
 }
@@ -67,7 +67,7 @@ pub(super) fn rows(block: &Block<'_>, outcomes: &[Outcome]) -> Vec<Row> {
     ]
 }
 
-/// The rows of one method over whole runs: means and deviation of the runs, and what holds for all of their steps.
+/// The rows of one method over whole runs: mean and deviation of the runs, and figures over all of their steps.
 pub(super) fn run_rows(block: &Block<'_>, runs: &[&Vec<Outcome>]) -> Vec<Row> {
     let n = runs.len();
     let means: Sample = runs.iter().filter_map(|run| errors(*run).mean()).collect();

@@ -1,4 +1,4 @@
-//! Estimators when the ranges are not what they should be.
+//! Estimators with faulty ranges.
 
 use super::{
     estimator::{self, Estimator},
@@ -24,10 +24,10 @@ const METHODS: [Estimator; 6] = [
     estimator::BOUNDED_OR_NLS,
     estimator::CONSENSUS,
 ];
-/// Id of the method that finds the speed of sound from its session.
+/// Id of the method that estimates the speed of sound from its session.
 const CALIBRATED: &str = "nls/calibrated";
 
-/// What goes wrong in a case, by its id.
+/// The disturbance of a case, by its id.
 type Impairment = (&'static str, fn(&mut Setup));
 
 const IMPAIRMENTS: [Impairment; 13] = [

@@ -1,4 +1,4 @@
-//! Tanks, stations, truths and their ranges; all from seeds.
+//! Tanks, stations, true positions and their ranges, all generated from seeds.
 
 use positioning::RangeNoise;
 use rand::{RngExt, SeedableRng};
@@ -11,17 +11,17 @@ use world::{Boundary, Obstacle, ObstacleId, Point, RangeSet, Shape, Station, Sta
 pub(super) const RADIUS_M: f64 = 10.0;
 /// Radius of the columns of a case with columns, metres.
 const COLUMN_M: f64 = 0.35;
-/// Radius of the robot, which stands beside columns, metres.
+/// Radius of the robot, which keeps beside columns, metres.
 const HULL_M: f64 = 0.25;
 /// Number of cycles of a session.
 pub(super) const SESSION: usize = 250;
 
-/// Where stations stand.
+/// The arrangement of the stations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Layout {
     /// The paper's three stations.
     Paper,
-    /// So many on a ring of this radius, metres.
+    /// This number of stations on a ring of this radius, metres.
     Ring(u32, f64),
 }
 
@@ -36,7 +36,7 @@ impl Layout {
         (1..).zip(places).map(station).collect()
     }
 
-    /// The part of a case's id.
+    /// The part of a case's id that names the arrangement.
     pub(super) fn id(self) -> String {
         match self {
             Self::Paper => "3-stations".into(),
@@ -53,12 +53,12 @@ fn on_ring(n: u32, radius_m: f64, turned_rad: f64) -> Vec<Point> {
         .collect()
 }
 
-/// What is measured how.
+/// The measurement setup of a case.
 #[derive(Debug, Clone)]
 pub(super) struct Setup {
-    /// The stations where they are believed to be.
+    /// The stations at their surveyed positions.
     pub stations: Vec<Station>,
-    /// The ranging.
+    /// The ranging model.
     pub ae: AeConfig,
     /// Whether six columns stand in the tank.
     pub has_columns: bool,
@@ -66,16 +66,16 @@ pub(super) struct Setup {
     pub is_biased: bool,
 }
 
-/// A truth, and the ranges measured from it.
+/// A true position, and the ranges measured from it.
 pub(super) struct Cycle {
-    /// Where the robot is.
+    /// The true position of the robot.
     pub truth: Point,
-    /// One for each station and repetition.
+    /// The ranges, one for each station and repetition.
     pub sets: Vec<RangeSet>,
 }
 
 impl Setup {
-    /// Undisturbed ranges with this noise, so many repetitions in a cycle.
+    /// Undisturbed ranges with this noise and this number of repetitions per cycle.
     pub(super) fn new(layout: Layout, noise: NoiseModel, repetitions: u32) -> Self {
         let ae = AeConfig {
             period_s: 1.0,
@@ -89,7 +89,7 @@ impl Setup {
         Self { stations: layout.stations(), ae, has_columns: false, is_biased: false }
     }
 
-    /// What an estimator may know of the noise.
+    /// The noise parameters that an estimator receives.
     pub(super) fn noise(&self) -> RangeNoise {
         match self.ae.noise {
             NoiseModel::None => RangeNoise::Gaussian { sigma_ratio: 1e-3 },
@@ -113,7 +113,7 @@ impl Setup {
         (1..).zip(on_ring(6, 5.0, PI / 12.0)).map(column).collect()
     }
 
-    /// What gives the ranges.
+    /// The simulated ranging system.
     pub(super) fn sounder(&self, seed: u64) -> Sounder {
         let world = World {
             boundary: Boundary::Circle { radius_m: RADIUS_M },
@@ -130,13 +130,13 @@ impl Setup {
         Sounder::new(ae, &world, seed)
     }
 
-    /// A cycle of ranges at each of these truths in turn.
+    /// A cycle of ranges at each of these true positions in turn.
     pub(super) fn cycles(&self, truths: &[Point], seed: u64) -> Vec<Cycle> {
         let mut sounder = self.sounder(seed);
         truths.iter().map(|truth| Cycle { truth: *truth, sets: sounder.cycle(0.0, *truth) }).collect()
     }
 
-    /// For each seed a cycle of ranges somewhere on the free floor.
+    /// For each seed, a cycle of ranges at a random place on the free floor.
     pub(super) fn session(&self, seeds: &[u64]) -> Vec<Cycle> {
         let obstacles = self.obstacles();
         let is_free = |at: &Point| obstacles.iter().all(|o| o.shape.distance_m(*at) > HULL_M);
@@ -149,14 +149,14 @@ impl Setup {
     }
 }
 
-/// A random number generator for one purpose of one draw.
+/// The random number generator for one purpose of one draw.
 pub(super) fn rng(seed: u64, purpose: u64) -> Pcg64 {
     Pcg64::seed_from_u64(
         seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ purpose.wrapping_mul(0xbf58_476d_1ce4_e5b9),
     )
 }
 
-/// A point evenly on the floor.
+/// A random point, uniform on the floor.
 pub(super) fn on_disc(rng: &mut Pcg64) -> Point {
     loop {
         let point = in_square(rng);
@@ -166,7 +166,7 @@ pub(super) fn on_disc(rng: &mut Pcg64) -> Point {
     }
 }
 
-/// A point evenly in the square around the floor.
+/// A random point, uniform in the square around the floor.
 pub(super) fn in_square(rng: &mut Pcg64) -> Point {
     Point::new(rng.random_range(-RADIUS_M..=RADIUS_M), rng.random_range(-RADIUS_M..=RADIUS_M))
 }

@@ -3,7 +3,8 @@
 use crate::study::Sample;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Probability of a mean at least this far from 0 if it were 0: one sample, two sides, n - 1 degrees of freedom.
+/// Probability of a sample mean at least this far from 0 if the true mean is 0: one sample, two sides, n - 1 degrees
+/// of freedom.
 pub(super) fn p_value(sample: &Sample) -> Option<f64> {
     let n = sample.len() as f64;
     let t = sample.mean()? / (sample.standard_deviation()? / n.sqrt());

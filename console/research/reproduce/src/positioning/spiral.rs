@@ -11,7 +11,7 @@ use sim::NoiseModel;
 
 pub(super) const STUDY: Study = Study {
     name: "wang-spiral-fix",
-    about: "Wang et al. 2023, section 3.3: positioning error along the spiral, and what is possible with the same ranges",
+    about: "Wang et al. 2023, section 3.3: positioning error along the spiral, and the theoretical limit with the same ranges",
     layouts: 30,
     run,
 };
@@ -23,11 +23,11 @@ const METHODS: [Estimator; 5] = [
     estimator::NLS_POSTERIOR,
     estimator::BOUNDED,
 ];
-/// Largest error of a range as a share of it.
+/// Largest error of a range, as a share of the range.
 const RATIO: f64 = 0.05;
 const REPETITIONS: u32 = 20;
 const LITERAL: &str = "spiral/literal";
-/// What the paper prints of its own method, metres.
+/// The printed values of the paper's own method, metres.
 const PRINTED: [(&str, f64); 2] = [("mean_error", 0.0748), ("std", 0.0032)];
 
 fn run(job: &Job<'_>) -> Result<Vec<Row>> {
@@ -54,7 +54,8 @@ fn run(job: &Job<'_>) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The rows of the paper's method, also as the printed mean comes out, with the printed values.
+/// The rows of the paper's method, as printed and in the variant that gives the printed mean, with the printed
+/// values.
 fn with_printed(block: &Block<'_>, mut rows: Vec<Row>) -> Vec<Row> {
     let note = "error divided by the square root of two, which gives the printed mean";
     let parity = Block { case: "spiral/parity", note, ..*block };

@@ -26,12 +26,13 @@ pub(super) const STUDY: Study = Study {
     run,
 };
 
-/// How the table is read.
+/// The interpretation of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Profile {
-    /// As the equations say: points on the floor, Euclidean error.
+    /// As in the equations: points on the floor, Euclidean error.
     Literal,
-    /// As the printed numbers come out: points in the square around the floor, error divided by the square root of two.
+    /// In the way that gives the printed numbers: points in the square around the floor, error divided by the square
+    /// root of two.
     Parity,
 }
 

@@ -7,15 +7,15 @@ use super::{
 };
 use crate::study::{Block, Row, Sample};
 
-/// Rounding of clearances, metres.
+/// Tolerance for rounding of clearances, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// What counts as success.
+/// The criterion for success.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Success {
-    /// The paper's: arrives, not trapped, lag of a coil at most; collisions do not count.
+    /// The paper's criterion: arrives, is not trapped, lags by at most one coil; collisions do not count.
     Walk,
-    /// Ours: arrives, keeps the clearance and the wall.
+    /// Our criterion: arrives, keeps the clearance and stays inside the wall.
     Safe,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn rows(block: &Block<'_>, run: &Run, plans: &[Measured], success: Su
     rows
 }
 
-/// How many arrive, and what happens to the others.
+/// The number of plans that arrive, and the outcome of the others.
 fn outcome(block: &Block<'_>, plans: &[Measured], success: Success) -> Vec<Row> {
     let n = plans.len();
     let count = |is: &dyn Fn(&Measured) -> bool| plans.iter().filter(|plan| is(plan)).count();
@@ -48,12 +48,15 @@ fn outcome(block: &Block<'_>, plans: &[Measured], success: Success) -> Vec<Row> 
     let n_proved = count(&|plan| says(plan, "blocked") && says(plan, "proved:"));
     let note = match n_without {
         0 => block.note.to_owned(),
-        _ => join(block.note, &format!("{n_without} of {n} layouts give no path, as the start is blocked")),
+        _ => join(
+            block.note,
+            &format!("{n_without} of {n} layouts give no path, because the start is blocked"),
+        ),
     };
     let proved_rate = (n_refused > 0).then(|| n_proved as f64 / n_refused as f64);
     let touches = |plan: &Measured| plan.has_path() && plan.safety.clearance_m < CLEARANCE_M - ROUNDING_M;
     let leaves = |plan: &Measured| plan.has_path() && plan.safety.wall_m < -ROUNDING_M;
-    let collisions = "layouts whose path comes nearer than 0.3 m to an obstacle point; the paper counts none";
+    let collisions = "layouts whose path comes nearer than 0.3 m to an obstacle point; the paper does not count collisions";
     vec![
         block.row("ok_rate", count(&|plan| success.is_ok(plan)) as f64 / n as f64, "", n).note(note),
         block.row("blocked_proved_rate", proved_rate, "", n_refused),
@@ -110,7 +113,7 @@ pub(super) fn with_path(plans: &[Measured]) -> impl Iterator<Item = &Measured> {
     plans.iter().filter(|plan| plan.has_path())
 }
 
-/// Two notes as one.
+/// Joins two notes.
 pub(super) fn join(a: &str, b: &str) -> String {
     if a.is_empty() || b.is_empty() { format!("{a}{b}") } else { format!("{a}; {b}") }
 }

@@ -35,7 +35,7 @@ struct Journey<'a> {
 /// Flies from start to goal.
 ///
 /// # Errors
-/// The planner is missing, refuses its parameters or breaks down.
+/// The planner is missing, refuses its parameters or fails.
 pub(super) fn fly(planners: &Planners, method: &Method, trap: &Trap, range_m: f64) -> Result<Attempt> {
     let all = trap.obstacles(true);
     let mut journey = Journey {

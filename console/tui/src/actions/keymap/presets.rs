@@ -1,11 +1,11 @@
-//! Keys that are chosen together.
+//! The preset key assignments.
 
 use crate::keys::Key;
 
-/// Keys that differ from the table's, by action.
+/// Keys that differ from those of the table, by action.
 pub(super) type Changes = &'static [(&'static str, &'static [Key])];
 
-/// Arrows and named keys only: no letter moves anything.
+/// Arrows and named keys only: no letter moves the robot.
 const ARROWS: Changes = &[
     ("pan-west", &[Key::Left]),
     ("pan-east", &[Key::Right]),
@@ -21,7 +21,7 @@ const ARROWS: Changes = &[
     ("zoom-out", &[Key::Char('-')]),
 ];
 
-/// Letters before arrows, and the keys of a pager.
+/// Letters instead of arrows, and the keys of a pager.
 const VIM: Changes = &[
     ("pan-west", &[Key::Char('h'), Key::Left]),
     ("pan-east", &[Key::Char('l'), Key::Right]),

@@ -1,4 +1,4 @@
-//! Alarms, missed areas and events, and what is done about them.
+//! Alarms, missed areas and events, and the actions on them.
 
 use crate::actions::action::{Action, Reach, action};
 use crate::actions::argument::{may, must};

@@ -20,12 +20,12 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::GoTo, "goto", "Show a screen", &[], &[Context::Screen]).args(&[must("screen", Kind::Screen)]),
 ];
 
-/// How a screen and the console are left.
+/// Actions that leave a screen or the console.
 #[rustfmt::skip]
 pub(super) const LEAVING: &[Action] = &[
     action(ActionId::Reload, "reload", "Rescan the plugins", &[Key::Char('r')], &[On(Screen::Plugins)]).label("reload").reaches(Reach::Mission)
         .when(|m| demand(!m.live.run.is_running(), "hold the robot to rescan plugins; <hold>: HOLD")).does(|_| vec![Effect::Survey]),
-    action(ActionId::Back, "back", "Go back; the mission goes on", &[Key::Char('q')], &[Context::Screen]).label("back").does(|m| go::back(m).unwrap_or_else(|| act::leave(m))),
+    action(ActionId::Back, "back", "Go back; the mission continues", &[Key::Char('q')], &[Context::Screen]).label("back").does(|m| go::back(m).unwrap_or_else(|| act::leave(m))),
     action(ActionId::Leave, "leave", "Quit; a running mission is held first", &[], &[Context::Screen]).also(&["quit", "exit"]).does(act::leave),
     action(ActionId::Theme, "theme", "Choose the colours", &[], &[Context::Screen]).args(&[must("theme", Kind::Theme)]),
 ];

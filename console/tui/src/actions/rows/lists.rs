@@ -1,4 +1,4 @@
-//! Lists, lines of text and questions.
+//! Lists, input lines and questions.
 
 use crate::actions::action::{Action, action};
 use crate::actions::context::Context;

@@ -1,4 +1,4 @@
-//! The mission: its start, its pace, its planner, its end.
+//! The mission: start, speed, planner and end.
 
 use crate::actions::action::{Action, Reach, action};
 use crate::actions::argument::{may, must};
@@ -25,9 +25,9 @@ pub(super) const ROWS: &[Action] = &[
         .when(|m| accepted(m, &Order::FlyUncertified)).does(|m| ask(m, Ask::FlyUncertified)),
     action(ActionId::Step, "step", "Move for one tick (while held)", &[Key::Char('.')], &[On(Screen::Mission)]).label("step").risk(Risk::Moves)
         .when(|m| accepted(m, &Order::Step)).does(|m| act::step(m, Order::Step)),
-    action(ActionId::Slower, "slower", "Slower simulation", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
+    action(ActionId::Slower, "slower", "Slow the simulation down", &[Key::Char('<')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
         .when(|m| offer::speed(m, false)).does(|m| act::change_speed(m, false)),
-    action(ActionId::Faster, "faster", "Faster simulation", &[Key::Char('>')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
+    action(ActionId::Faster, "faster", "Speed the simulation up", &[Key::Char('>')], &[Context::Screen]).label("speed").repeats().reaches(Reach::Pace)
         .when(|m| offer::speed(m, true)).does(|m| act::change_speed(m, true)),
     action(ActionId::SetSpeed, "speed", "Set the speed of the simulation", &[], &[Context::Screen]).args(&[must("factor", Kind::Speed)]).also(&["rate", "pace"]).reaches(Reach::Pace).when(offer::simulating),
     action(ActionId::Abort, "end", "HOLD, then ask to end the mission", &[Key::Char('X')], &[Context::Screen]).label("end").risk(Risk::Destroys).also(&["abort", "finish"])
@@ -36,9 +36,9 @@ pub(super) const ROWS: &[Action] = &[
         .when(offer::swap).does(|m| act::choose(m, Purpose::Drive)),
     action(ActionId::Shadow, "shadow", "Fly a planner in shadow", &[], &[Context::Screen]).args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
         .when(shadow::can_begin).does(|m| act::choose(m, Purpose::Shadow)),
-    action(ActionId::Promote, "promote", "Let the planner in shadow take over", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
-    action(ActionId::DropShadow, "shadow-off", "End the shadow", &[], &[Context::Screen]).reaches(Reach::Mission).when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),
-    action(ActionId::TakePlan, "take-plan", "Take the better plan that is offered", &[Key::Char('T')], &[On(Screen::Mission)]).risk(Risk::Moves)
+    action(ActionId::Promote, "promote", "Promote the planner in shadow", &[], &[Context::Screen]).risk(Risk::Moves).when(|m| accepted(m, &Order::Promote)).does(|m| ask(m, Ask::Promote)),
+    action(ActionId::DropShadow, "shadow-off", "Stop the planner in shadow", &[], &[Context::Screen]).reaches(Reach::Mission).when(|m| accepted(m, &Order::DropShadow)).does(|m| send(m, Order::DropShadow)),
+    action(ActionId::TakePlan, "take-plan", "Take the better plan on offer", &[Key::Char('T')], &[On(Screen::Mission)]).risk(Risk::Moves)
         .when(|m| accepted(m, &Order::TakePlan)).does(|m| ask(m, Ask::TakePlan)),
     action(ActionId::Parameters, "parameters", "View and change planner parameters", &[Key::Char('p')], &[On(Screen::Plan), On(Screen::Mission)]).label("parameters")
         .when(offer::parameters).does(overlay::open_parameters),
@@ -48,17 +48,17 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::NextCandidate, "next-candidate", "Next forecast", &[Key::Right, Key::Char('l')], &[Context::WhatIf]).label("select").repeats().looks(|m| what_if::select(m, 1)),
     action(ActionId::PreviousCandidate, "previous-candidate", "Previous forecast", &[Key::Left, Key::Char('h')], &[Context::WhatIf]).label("select").repeats().looks(|m| what_if::select(m, -1)),
     action(ActionId::AddCandidate, "add-candidate", "Forecast another planner", &[Key::Char('+')], &[Context::WhatIf]).label("add").does(|m| act::choose(m, Purpose::WhatIf)),
-    action(ActionId::TryParameters, "try-parameters", "Change parameters for a further forecast", &[Key::Char('p')], &[Context::WhatIf]).label("parameters").does(what_if::draft),
+    action(ActionId::TryParameters, "try-parameters", "Change parameters for another forecast", &[Key::Char('p')], &[Context::WhatIf]).label("parameters").does(what_if::draft),
     action(ActionId::ForecastDraft, "forecast-draft", "Forecast with these parameters", &[Key::Char('w')], &[Context::Draft]).label("forecast").does(what_if::forecast_draft),
     action(ActionId::PresetLoad, "preset-load", "Show what a parameter preset changes", &[], &[Context::Screen]).args(&[must("preset", Kind::Preset)]).when(preset::can_load),
     action(ActionId::PresetSave, "preset-save", "Save the parameters as a preset", &[], &[Context::Screen]).args(&[must("name", Kind::Text)]).when(offer::parameters),
     action(ActionId::Preflight, "preflight", "Run the pre-flight checks", &[Key::Char('A')], &[On(Screen::Plan), On(Screen::Mission)]).label("pre-flight").reaches(Reach::Mission)
-        .when(|m| demand(m.live.waits(), "checks are made before the start")).does(preflight::open),
-    action(ActionId::Compare, "compare", "Plan with another planner, side by side", &[Key::Char('c')], &[On(Screen::Plan)]).label("compare").args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
-        .when(|m| demand(m.live.waits(), "plans are compared before the start").and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
+        .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
+    action(ActionId::Compare, "compare", "Compare with another planner's plan", &[Key::Char('c')], &[On(Screen::Plan)]).label("compare").args(&[may("planner", Kind::Planner)]).reaches(Reach::Mission)
+        .when(|m| demand(m.live.waits(), "plans can only be compared before the start").and(offer::has_planners(m))).does(|m| act::choose(m, Purpose::Compare)),
     action(ActionId::Preflight, "check-again", "Check again", &[Key::Char('r')], &[Context::Preflight]).label("check again").reaches(Reach::Mission)
-        .when(|m| demand(m.live.waits(), "checks are made before the start")).does(preflight::open),
-    action(ActionId::PlanAgain, "plan-again", "Plan once more", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
+        .when(|m| demand(m.live.waits(), "checks can only be run before the start")).does(preflight::open),
+    action(ActionId::PlanAgain, "plan-again", "Plan again", &[], &[On(Screen::Plan)]).reaches(Reach::Mission)
         .when(|m| demand(m.live.waits(), "no mission is waiting to start")).does(|_| vec![Effect::Order(Order::Plan)]),
-    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparing", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").reaches(Reach::Mission).when(offer::cancel_plan).does(overlay::cancel_plan),
+    action(ActionId::CancelPlan, "cancel-plan", "Cancel planning or comparison", &[Key::Esc], &[On(Screen::Plan)]).label("cancel").reaches(Reach::Mission).when(offer::cancel_plan).does(overlay::cancel_plan),
 ];

@@ -1,4 +1,4 @@
-//! Past runs: played back, compared, reported.
+//! Past runs: replay, comparison and reports.
 
 use crate::actions::action::{Action, Reach, action};
 use crate::actions::argument::{may, must};
@@ -11,7 +11,7 @@ use crate::update::{go, offer, replay, review};
 
 #[rustfmt::skip]
 pub(super) const ROWS: &[Action] = &[
-    action(ActionId::Play, "play", "Play the run, or pause it (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),
+    action(ActionId::Play, "play", "Play or pause the run (<hold>)", &[], &[Context::Replay]).when(replay::is_loaded).does(replay::toggle),
     action(ActionId::Jump(Jump::TickBack), "tick-back", "Step back one tick", &[Key::Char(',')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::Tick), "tick-on", "Step forward one tick", &[Key::Char('.')], &[Context::Replay]).label("tick").repeats().when(replay::is_loaded),
     action(ActionId::Jump(Jump::EventBack), "event-back", "Go to the previous event", &[Key::Char('[')], &[Context::Replay]).label("event").repeats().when(replay::is_loaded),
@@ -36,7 +36,7 @@ pub(super) const ROWS: &[Action] = &[
     action(ActionId::CompareRun, "compare-run", "Compare a run with the one played back", &[Key::Char('c')], &[On(Screen::Review)]).label("compare").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(replay::can_compare).does(|m| go::begin(m, ActionId::CompareRun)),
     action(ActionId::Sort, "sort", "Cycle the sort order", &[Key::Char('s')], &[On(Screen::Review)]).label("sort").when(|m| offer::on_screen(m, Screen::Review)).does(review::sort),
-    action(ActionId::Rescan, "rescan", "Scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
+    action(ActionId::Rescan, "rescan", "Re-scan what a run missed", &[Key::Char('r')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("re-scan").args(&[may("run", Kind::Run)]).reaches(Reach::Runs)
         .when(offer::rescan).does(|m| go::begin(m, ActionId::Rescan)),
     action(ActionId::Verify, "verify", "Recompute a run, compare its journal", &[Key::Char('v')], &[On(Screen::Home), On(Screen::Review), On(Screen::Result)]).label("verify").args(&[may("run", Kind::Run)])
         .when(offer::run).does(|m| go::begin(m, ActionId::Verify)),

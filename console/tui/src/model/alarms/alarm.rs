@@ -1,4 +1,4 @@
-//! One alarm and its life.
+//! An alarm and its life cycle.
 
 use super::Cause;
 use mission::Severity;
@@ -6,73 +6,74 @@ use serde::{Deserialize, Serialize};
 use std::{cmp::Ordering, collections::VecDeque};
 use world::Point;
 
-/// Events kept of an alarm, the last ones.
+/// The number of most recent events kept for an alarm.
 const MAX_EVENTS: usize = 8;
 
-/// Where an alarm stands in its life.
+/// The state of an alarm in its life cycle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum State {
-    /// Its cause persists, and the operator has not seen it.
+    /// The cause persists, and the operator has not acknowledged the alarm.
     Unacknowledged,
-    /// Its cause persists, and the operator has seen it.
+    /// The cause persists, and the operator has acknowledged the alarm.
     Acknowledged,
-    /// Its cause is gone, and the operator has not seen it.
+    /// The cause is gone, and the operator has not acknowledged the alarm.
     Returned,
-    /// The operator has put it aside.
+    /// The operator has shelved the alarm.
     Shelved(Shelf),
-    /// Its cause is gone, and nothing is left to do.
+    /// The cause is gone, and nothing is left to do.
     Cleared,
 }
 
-/// For how long an alarm is put aside, and why.
+/// How long an alarm is shelved, and why.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shelf {
-    /// Mission time at which it comes back, seconds.
+    /// Mission time at which the alarm comes back, seconds.
     pub until_s: f64,
-    /// Why, in the words of the operator.
+    /// The reason, in the operator's words.
     pub reason: String,
-    /// Whether its cause persists.
+    /// Whether the cause persists.
     pub active: bool,
 }
 
-/// The figure that an alarm is about, and its limit, with their units.
+/// The figure that an alarm is about, and its limit, both with units.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Reading {
-    /// What was measured last while the cause persisted.
+    /// The last value measured while the cause persisted.
     pub now: String,
-    /// What is allowed.
+    /// The limit.
     pub limit: String,
 }
 
 /// One alarm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Alarm {
-    /// What it is about.
+    /// The cause of the alarm.
     pub cause: Cause,
-    /// How much it asks of the operator.
+    /// The severity.
     pub severity: Severity,
     /// What is wrong, as a sentence.
     pub text: String,
-    /// Mission time since when, seconds.
+    /// Mission time at which the alarm was raised, seconds.
     pub since_s: f64,
-    /// Where it stands in its life.
+    /// The state in the life cycle.
     pub state: State,
-    /// The lower severity to which it has fallen since, with its words; shown once the operator has seen the worse.
+    /// The lower severity and text that the alarm has dropped to since; shown once the operator has acknowledged the
+    /// higher one.
     #[serde(default)]
     pub fallen: Option<(Severity, String)>,
-    /// How often its cause came up.
+    /// How many times the cause has occurred.
     pub count: u32,
-    /// Mission time at which its cause was last gone, seconds.
+    /// Mission time at which the cause was last gone, seconds.
     pub cleared_s: Option<f64>,
-    /// The figure that it is about, if there is one.
+    /// The figure that the alarm is about, if there is one.
     pub reading: Option<Reading>,
-    /// Where it is, metres, tank frame, if it is anywhere.
+    /// The position that the alarm is about, metres, tank frame; `None` if it has none.
     pub place: Option<Point>,
-    /// Numbers of its last lines in the log, oldest first.
+    /// Numbers of the alarm's latest log lines, oldest first.
     pub events: VecDeque<u64>,
-    /// The burst of alarms that it came up in.
+    /// The burst of alarms in which this one occurred.
     pub burst: u32,
-    /// Whether it was the first of that burst.
+    /// Whether the alarm was the first of its burst.
     pub is_first: bool,
 }
 
@@ -95,7 +96,7 @@ impl Alarm {
         }
     }
 
-    /// Whether its cause persists.
+    /// Whether the cause persists.
     pub fn is_active(&self) -> bool {
         match &self.state {
             State::Unacknowledged | State::Acknowledged => true,
@@ -104,24 +105,25 @@ impl Alarm {
         }
     }
 
-    /// Whether it waits for the operator to have seen it.
+    /// Whether the alarm awaits acknowledgement.
     pub fn is_unacknowledged(&self) -> bool {
         matches!(self.state, State::Unacknowledged | State::Returned)
     }
 
-    /// Whether it counts among the alarms: neither cleared nor shelved.
+    /// Whether the alarm is open: neither cleared nor shelved.
     pub fn is_open(&self) -> bool {
         matches!(self.state, State::Unacknowledged | State::Acknowledged | State::Returned)
     }
 
-    /// How much it asks for the operator: the more the greater.
+    /// The urgency of the alarm; greater is more urgent.
     pub(super) fn rank(&self) -> impl Ord + use<> {
         (self.is_unacknowledged(), self.severity, self.is_active())
     }
 
-    /// Takes what its cause says now. What the operator has not seen is never replaced by something less severe.
+    /// Updates the alarm with the latest severity and text of its cause. An unacknowledged text is never replaced by
+    /// a less severe one.
     pub(super) fn take(&mut self, severity: Severity, text: String, t_s: f64) {
-        // Each obstacle that is found is news of its own.
+        // Each new obstacle is a separate alarm condition.
         let is_new = !self.is_active() || self.cause == Cause::Map;
         self.count = self.count.saturating_add(u32::from(is_new));
         let next = match &self.state {
@@ -143,7 +145,7 @@ impl Alarm {
         (self.severity, self.text, self.fallen) = (severity, text, None);
     }
 
-    /// Notes that its cause is gone.
+    /// Records that the cause is gone.
     pub(super) fn clear(&mut self, t_s: f64) {
         if self.is_active() {
             self.cleared_s = Some(t_s);
@@ -156,8 +158,8 @@ impl Alarm {
         }
     }
 
-    /// Notes that the operator has seen it. The words of the lower severity were not seen, and may be about something else of
-    /// the same cause: they are to be acknowledged next.
+    /// Records the operator's acknowledgement. If the alarm has since dropped to a lower severity, its text was not
+    /// on the screen and may be about something else with the same cause, so the operator must acknowledge it next.
     pub(super) fn acknowledge(&mut self) {
         if let Some((severity, text)) = self.fallen.take() {
             (self.severity, self.text) = (severity, text);
@@ -170,17 +172,17 @@ impl Alarm {
         }
     }
 
-    /// Why it cannot be put aside, if it cannot.
+    /// Why the alarm cannot be shelved; `None` if it can.
     pub fn cannot_be_shelved(&self) -> Option<&'static str> {
         match self.state {
-            State::Returned => Some("it has cleared; <acknowledge>: acknowledge"),
-            State::Cleared => Some("it has cleared"),
+            State::Returned => Some("the alarm has cleared; <acknowledge>: acknowledge"),
+            State::Cleared => Some("the alarm has cleared"),
             _ if self.severity == Severity::Crit => Some("a CRIT alarm cannot be shelved"),
             _ => None,
         }
     }
 
-    /// Puts it aside until some mission time, if it can be.
+    /// Shelves the alarm until the given mission time, if shelving is allowed.
     pub(super) fn shelve(&mut self, until_s: f64, reason: &str) {
         if self.cannot_be_shelved().is_none() {
             self.fallen = None;
@@ -189,14 +191,14 @@ impl Alarm {
         }
     }
 
-    /// Takes it back from the shelf: nobody has seen it since.
+    /// Unshelves the alarm; it counts as unacknowledged again.
     pub(super) fn unshelve(&mut self) {
         if let State::Shelved(shelf) = &self.state {
             self.state = if shelf.active { State::Unacknowledged } else { State::Cleared };
         }
     }
 
-    /// Takes it back from the shelf when its time is over.
+    /// Unshelves the alarm when its time is up.
     pub(super) fn expire(&mut self, t_s: f64) {
         let is_over = |shelf: &Shelf| t_s.partial_cmp(&shelf.until_s).is_none_or(Ordering::is_ge);
         if matches!(&self.state, State::Shelved(shelf) if is_over(shelf)) {
@@ -204,7 +206,7 @@ impl Alarm {
         }
     }
 
-    /// Keeps the number of a line of the log that is about it.
+    /// Records the number of a log line that is about the alarm.
     pub(super) fn note(&mut self, number: u64) {
         if self.events.back() == Some(&number) {
             return;

@@ -1,9 +1,9 @@
-//! What an alarm is about.
+//! The causes of alarms.
 
 use mission::{EventKind, HoldReason};
 use serde::{Deserialize, Serialize};
 
-/// What an alarm is about; each cause has one alarm at most.
+/// The cause of an alarm; there is at most one alarm per cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cause {
     /// The position error is beyond the limit.
@@ -12,38 +12,38 @@ pub enum Cause {
     Contradiction,
     /// The ranges give no position.
     NoFix,
-    /// A station is left out.
+    /// A station is not used in the fix.
     Station(world::StationId),
     /// An obstacle was found that is not on the drawing.
     Map,
-    /// The cable comes near a limit or has reached it: which one.
+    /// The tether is near or at a limit; the word names the limit.
     Tether(String),
     /// The last plan could not be certified for the tether.
     Certificate,
     /// The planner failed.
     Planner,
-    /// The robot gets nowhere.
+    /// The robot makes no progress.
     Stuck,
-    /// The run ended otherwise than complete.
+    /// The run ended with any outcome other than complete.
     Ended,
-    /// The run is not being written down.
+    /// The run is not being recorded.
     Recording,
-    /// The console that flies the run that is looked on at is gone.
+    /// The console that runs the watched mission has exited.
     Writer,
     /// A part of the console failed.
     Console,
-    /// The console answers keys slowly.
+    /// The console responds slowly to keys.
     Response,
-    /// The console cannot draw as often as things change.
+    /// The console cannot draw as often as its data changes.
     Frames,
     /// The recorder is behind the mission.
     RecorderLag,
-    /// Little space is left for runs.
+    /// The disk that holds the runs is nearly full.
     Disk,
 }
 
 impl Cause {
-    /// The alarm that an event belongs to, whether it raises it, clears it or follows from it.
+    /// The cause that an event is about, whether the event raises the alarm, clears it or follows from it.
     pub fn of(kind: &EventKind) -> Option<Self> {
         Some(match kind {
             EventKind::StationRejected { station, .. } | EventKind::StationRestored { station } => {
@@ -64,7 +64,7 @@ impl Cause {
         })
     }
 
-    /// Its name in journals: the same in every run and whatever the alarm says.
+    /// The cause's name in journals: the same in every run, whatever the text of the alarm.
     pub fn key(&self) -> String {
         match self {
             Self::PositionLost => "position_lost".into(),
@@ -101,7 +101,7 @@ impl Cause {
         }
     }
 
-    /// Every cause once; for tests that go through all of them.
+    /// Every cause once, for tests that go through all of them.
     #[doc(hidden)]
     pub fn every() -> Vec<Self> {
         let tether = ["reel", "wrap", "total wrap", "snag", "return path", "stray"];
@@ -126,7 +126,7 @@ impl Cause {
         .into_iter()
         .chain(tether.map(|word| Self::Tether(word.into())))
         .collect();
-        // A new cause does not compile until it is in the list above.
+        // A new cause fails to compile until it is added to the list above.
         for cause in &all {
             match cause {
                 Self::PositionLost

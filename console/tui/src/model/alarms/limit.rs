@@ -1,23 +1,23 @@
-//! Limits of figures that the console itself watches, with a deadband and delays, so that a figure at its limit does not make
-//! an alarm come and go.
+//! Limits for figures that the console itself watches. A deadband and delays keep a figure near its limit from
+//! raising and clearing an alarm repeatedly.
 
 use serde::{Deserialize, Serialize};
 
-/// A limit.
+/// A limit with its deadband and delays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// The alarm comes at this value.
+    /// The value at which the alarm is raised.
     pub alarm: f64,
-    /// It goes at this one. Greater than `alarm`, it is what falls that alarms.
+    /// The value at which the alarm clears. If it is greater than `alarm`, the alarm is raised when the figure falls.
     pub clear: f64,
-    /// For how long the value has to be there before the alarm comes, seconds.
+    /// How long the value must be beyond the limit before the alarm is raised, seconds.
     pub on_delay_s: f64,
-    /// For how long it has to be back before the alarm goes, seconds.
+    /// How long the value must be back before the alarm clears, seconds.
     pub off_delay_s: f64,
 }
 
 impl Limit {
-    /// Whether a value is beyond the alarm limit, and whether it is back within the other one.
+    /// Whether a value is beyond the alarm value, and whether it is back at the clearing value.
     fn sides(&self, value: f64) -> (bool, bool) {
         if self.clear > self.alarm {
             (value <= self.alarm, value >= self.clear)
@@ -27,25 +27,26 @@ impl Limit {
     }
 }
 
-/// A figure that is compared with its limit again and again.
+/// A figure that is repeatedly compared with its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Watch {
     is_on: bool,
-    /// Since when the figure has asked for a change, seconds.
+    /// The time since which the figure has called for a change, seconds.
     since_s: Option<f64>,
 }
 
-/// What a comparison led to.
+/// The result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
-    /// The alarm comes.
+    /// The alarm is raised.
     Raised,
-    /// The alarm goes.
+    /// The alarm clears.
     Cleared,
 }
 
 impl Watch {
-    /// Compares a value at some moment, seconds; both delays count from the first value that asks for the change.
+    /// Compares a value with the limit at the given time, seconds. Both delays count from the first value that calls
+    /// for the change.
     pub fn take(&mut self, limit: &Limit, value: f64, now_s: f64) -> Option<Edge> {
         let (beyond, back) = limit.sides(value);
         let (asks, delay_s) = if self.is_on { (back, limit.off_delay_s) } else { (beyond, limit.on_delay_s) };
@@ -61,12 +62,12 @@ impl Watch {
         Some(if self.is_on { Edge::Raised } else { Edge::Cleared })
     }
 
-    /// Whether the alarm is there.
+    /// Whether the alarm is raised.
     pub fn is_on(&self) -> bool {
         self.is_on
     }
 
-    /// Whether the alarm is there or may come: the figure has to be looked at again even if nothing happens.
+    /// Whether the alarm is raised or about to be: the figure must be checked again even if nothing happens.
     pub fn is_pending(&self) -> bool {
         self.is_on || self.since_s.is_some()
     }

@@ -1,4 +1,4 @@
-//! Every alarm of a run.
+//! The alarms of a run.
 
 use super::alarm::{Alarm, Reading, State};
 use super::cause::Cause;
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
 use world::Point;
 
-/// Most alarms kept; there are fewer causes than that.
+/// The maximum number of alarms kept; there are fewer causes than that.
 const MAX_ALARMS: usize = 64;
-/// An alarm that comes up later than this after the one before it begins a new burst, seconds of mission time: what a failure
-/// brings with it follows within a few ranging cycles and hold times.
+/// An alarm more than this long after the previous one begins a new burst, seconds of mission time. The consequences
+/// of a failure follow within a few ranging cycles and hold times.
 const BURST_S: f64 = 10.0;
 
-/// Every alarm of a run, in the order in which they first came up.
+/// The alarms of a run, in the order in which they first occurred.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Alarms {
     list: Vec<Alarm>,
@@ -22,8 +22,8 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    /// Raises an alarm. One that is active already takes the new words; it needs another acknowledgement only if it became
-    /// more severe.
+    /// Raises an alarm. If the alarm is already active, it takes the new text; it needs another acknowledgement only
+    /// if its severity has risen.
     pub fn raise(&mut self, cause: Cause, severity: Severity, text: String, t_s: f64) {
         let Some(index) = self.place_of(cause) else { return };
         if !self.list[index].is_active() {
@@ -32,7 +32,7 @@ impl Alarms {
         self.list[index].take(severity, text, t_s);
     }
 
-    /// Where the alarm of a cause is; a new one takes the place of one that cleared long ago if there are too many.
+    /// The index of the alarm of a cause. If the list is full, a new alarm replaces one that cleared long ago.
     fn place_of(&mut self, cause: Cause) -> Option<usize> {
         if let Some(index) = self.list.iter().position(|alarm| alarm.cause == cause) {
             return Some(index);
@@ -55,14 +55,14 @@ impl Alarms {
         }
     }
 
-    /// Notes that a cause is gone.
+    /// Records that a cause is gone.
     pub fn clear(&mut self, cause: &Cause, t_s: f64) {
         if let Some(alarm) = self.get_mut(cause) {
             alarm.clear(t_s);
         }
     }
 
-    /// Takes in what the operator did about an alarm. Words that the operator has not seen are not acknowledged.
+    /// Applies what the operator did about an alarm. A text that the operator has not seen is not acknowledged.
     pub fn take(&mut self, noted: &Noted, t_s: f64) {
         let (Noted::Acknowledged { alarm: key, .. }
         | Noted::Shelved { alarm: key, .. }
@@ -81,24 +81,24 @@ impl Alarms {
         }
     }
 
-    /// The worst alarm that the operator has not acknowledged, the oldest of them.
+    /// The most severe unacknowledged alarm; the oldest if there are several.
     pub fn worst_unacknowledged(&self) -> Option<&Alarm> {
         self.worst().filter(|alarm| alarm.is_unacknowledged())
     }
 
-    /// Takes back what was shelved until now.
+    /// Unshelves the alarms whose time is up.
     pub fn expire(&mut self, t_s: f64) {
         self.list.iter_mut().for_each(|alarm| alarm.expire(t_s));
     }
 
-    /// Takes the figure of an alarm whose cause persists.
+    /// Updates the figure of an alarm whose cause persists.
     pub fn read(&mut self, cause: &Cause, reading: impl FnOnce() -> Reading) {
         if let Some(alarm) = self.get_mut(cause).filter(|alarm| alarm.is_active()) {
             alarm.reading = Some(reading());
         }
     }
 
-    /// Keeps the number of a line of the log that is about an alarm, and where that is.
+    /// Records the number of a log line that is about an alarm, and the position that the line is about.
     pub fn note(&mut self, cause: &Cause, number: u64, place: Option<Point>) {
         if let Some(alarm) = self.get_mut(cause) {
             alarm.note(number);
@@ -108,7 +108,7 @@ impl Alarms {
         }
     }
 
-    /// The alarm of a cause.
+    /// The alarm of a cause, if there is one.
     pub fn get(&self, cause: &Cause) -> Option<&Alarm> {
         self.list.iter().find(|alarm| alarm.cause == *cause)
     }
@@ -117,18 +117,18 @@ impl Alarms {
         self.list.iter_mut().find(|alarm| alarm.cause == *cause)
     }
 
-    /// Every alarm of the run, also those that have cleared, in the order in which they first came up.
+    /// All alarms of the run, including cleared ones, in the order in which they first occurred.
     pub fn list(&self) -> &[Alarm] {
         &self.list
     }
 
-    /// The alarms that are neither cleared nor shelved.
+    /// The open alarms: neither cleared nor shelved.
     pub fn open(&self) -> impl DoubleEndedIterator<Item = &Alarm> {
         self.list.iter().filter(|alarm| alarm.is_open())
     }
 
-    /// Every alarm as the table shows them: the open ones, unacknowledged and worst first, then the shelved ones, then the
-    /// cleared ones, newest first.
+    /// All alarms in the order of the table: open ones with the unacknowledged and most severe first, then shelved
+    /// ones, then cleared ones with the newest first.
     pub fn table(&self) -> Vec<&Alarm> {
         let mut open: Vec<&Alarm> = self.open().collect();
         open.sort_by_key(|alarm| Reverse(alarm.rank()));
@@ -140,17 +140,18 @@ impl Alarms {
         open.into_iter().chain(shelved).chain(cleared).collect()
     }
 
-    /// The alarm to show where there is room for one: unacknowledged before acknowledged, then the worst, then what persists.
+    /// The alarm to show where only one fits: unacknowledged before acknowledged, then by severity, then those whose
+    /// cause persists.
     pub fn worst(&self) -> Option<&Alarm> {
         self.open().rev().max_by_key(|alarm| alarm.rank())
     }
 
-    /// How many open ones there are of a severity.
+    /// The number of open alarms of a severity.
     pub fn count(&self, severity: Severity) -> usize {
         self.open().filter(|alarm| alarm.severity == severity).count()
     }
 
-    /// How many of a severity the operator has not acknowledged.
+    /// The number of unacknowledged alarms of a severity.
     pub fn unacknowledged(&self, severity: Severity) -> usize {
         self.open().filter(|alarm| alarm.severity == severity && alarm.is_unacknowledged()).count()
     }

@@ -1,17 +1,17 @@
-//! What some floor counts as, when looked at from any height.
+//! The class of some floor, at any zoom.
 
 use super::Raster;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 use world::{FloorClass, Point};
 
-/// From this share on floor counts as scanned, and from the other as scanned in part.
+/// The shares from which floor counts as scanned and as partially scanned.
 const WHOLLY_SCANNED: f64 = 0.95;
 const PARTLY_SCANNED: f64 = 0.05;
-/// From this share of the scanned floor on it counts as scanned again.
+/// The re-scanned share of the scanned floor from which it counts as scanned again.
 const MOSTLY_AGAIN: f64 = 0.5;
 
-/// Cells of a block: floor, those of it that have been scanned, and those that have been scanned again.
+/// The numbers of cells in a block: floor, scanned, and scanned again.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Tally {
     pub floor: u32,
@@ -28,14 +28,14 @@ impl AddAssign for Tally {
 }
 
 impl Tally {
-    /// A part of it counts as something else now.
+    /// Replaces the counts of a part that has changed.
     pub(super) fn replace(&mut self, before: Self, now: Self) {
         self.floor = self.floor - before.floor + now.floor;
         self.scanned = self.scanned - before.scanned + now.scanned;
         self.again = self.again - before.again + now.again;
     }
 
-    /// What the scanned part says; `None` if next to nothing is scanned.
+    /// The class of the scanned part; `None` if next to nothing is scanned.
     fn class(self) -> Option<FloorClass> {
         let share = f64::from(self.scanned) / f64::from(self.floor.max(1));
         match share {
@@ -48,8 +48,8 @@ impl Tally {
 }
 
 impl Raster {
-    /// What the floor in a square of some edge about a point counts as, in a mission that has ended or not; `None` where
-    /// there is no floor.
+    /// The class of the floor in a square around a point, in a mission that has ended or not; `None` where there is
+    /// no floor.
     pub fn class_in(&self, center: Point, edge_m: f64, has_ended: bool) -> Option<FloorClass> {
         let tally = self.tally(center, edge_m);
         if tally.floor == 0 {
@@ -60,14 +60,15 @@ impl Raster {
         Some(seen(tally.class().unwrap_or_else(unscanned), has_ended))
     }
 
-    /// What the cell under a point counts as, and how often it was scanned; `None` where there is no floor.
+    /// The class of the cell under a point, and how often the cell was scanned; `None` where there is no floor.
     pub fn class_at(&self, point: Point, has_ended: bool) -> Option<(FloorClass, u32)> {
         let index = self.floor().cell_at(point).filter(|index| self.floor().is_floor(*index))?;
         let times = self.cell_tally(index).scanned * (1 + u32::from(self.overlap.again(index)));
         Some((seen(FloorClass::of(self.floor().kind(index), times), has_ended), times))
     }
 
-    /// What a cell counts as of which next to nothing is scanned; a block of some floor may have no floor in its middle.
+    /// The class of a cell of which next to nothing is scanned. A block that contains floor may have none in its
+    /// middle.
     fn unscanned(&self, index: usize) -> FloorClass {
         match FloorClass::of(self.floor().kind(index), 0) {
             FloorClass::Outside => FloorClass::ToDo,
@@ -75,16 +76,16 @@ impl Raster {
         }
     }
 
-    /// A single cell.
+    /// The tally of a single cell.
     pub(super) fn cell_tally(&self, index: usize) -> Tally {
         let floor = u32::from(self.floor().is_floor(index));
         let scanned = floor * u32::from(self.grid.is_covered(index));
         Tally { floor, scanned, again: scanned * u32::from(self.overlap.again(index) > 0) }
     }
 
-    /// The cells in a square of some edge about a point.
+    /// The tally of the cells in a square around a point.
     pub(super) fn tally(&self, center: Point, edge_m: f64) -> Tally {
-        // A square that is hardly larger than a cell takes the cell under its centre.
+        // For a square hardly larger than a cell, the cell under its centre is used.
         if edge_m < 1.5 * self.floor().cell_m {
             return self.block_at(center, 0.0);
         }
@@ -97,7 +98,7 @@ impl Raster {
         sum
     }
 
-    /// The block under a point, of the largest blocks no wider than `edge_m`.
+    /// The block under a point, from the level with the largest blocks no wider than `edge_m`.
     fn block_at(&self, point: Point, edge_m: f64) -> Tally {
         let floor = self.floor();
         let Some(index) = floor.cell_at(point) else { return Tally::default() };
@@ -112,7 +113,7 @@ impl Raster {
     }
 }
 
-/// The same in a mission that has ended or not.
+/// Adjusts a class to whether the mission has ended.
 fn seen(class: FloorClass, has_ended: bool) -> FloorClass {
     if has_ended { class.when_over() } else { class }
 }

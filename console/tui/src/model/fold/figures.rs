@@ -1,4 +1,4 @@
-//! Events into the figures of alarms whose cause persists.
+//! Copies figures from events into alarms whose cause persists.
 
 use crate::model::alarms::Reading;
 use crate::model::{Cause, Run};
@@ -6,7 +6,7 @@ use mission::{EventKind, event::TetherAlarm};
 use positioning::{Exclusion, Fix, FixError};
 
 impl Run {
-    /// Takes the figures that an event has for the alarms.
+    /// Updates the figures of the alarms from an event.
     pub(super) fn read_figures(&mut self, kind: &EventKind) {
         match kind {
             EventKind::Estimated { .. } | EventKind::PositionLost { .. } => self.read_error(kind),

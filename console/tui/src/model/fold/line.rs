@@ -1,4 +1,4 @@
-//! Events into lines of the log.
+//! Turns events into log lines.
 
 use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What, slim};
@@ -6,7 +6,7 @@ use mission::{Event, EventKind};
 use positioning::Ranging;
 
 impl Run {
-    /// Writes an event into the log, if it has a line; returns the number of that line.
+    /// Writes the log line of an event, if it has one; returns the number of the line.
     pub(super) fn write_line(&mut self, event: &Event) -> Option<u64> {
         let line = event.log_line(self.stations())?;
         self.log.push(Entry {

@@ -1,4 +1,4 @@
-//! Events of planners into a run.
+//! Folds planner events into a run.
 
 use crate::model::{Cause, Change, Offer, PlanShown, Run, Trail, Withdrawn};
 use mission::{
@@ -6,13 +6,13 @@ use mission::{
 };
 use planner_api::{Command, Drawing};
 
-/// Most drawings kept of one tick.
+/// The maximum number of drawings kept of one tick.
 const MAX_DRAWINGS: usize = 512;
-/// Most figures kept of one tick.
+/// The maximum number of figures kept of one tick.
 const MAX_SCALARS: usize = 32;
 
 impl Run {
-    /// Takes in an event of a planner.
+    /// Folds in a planner event.
     pub(super) fn planned(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::PlannerPrepared { ask, .. } => self.planning.candidate = Some(ask.worker),
@@ -22,7 +22,7 @@ impl Run {
             }
             EventKind::ParametersChanged { choice, .. } => self.planning.choice = Some(choice.clone()),
             EventKind::Planned { ask, path, length_m, complete, .. } => {
-                // One that is being prepared: its plan flies when it takes over.
+                // The planner is a candidate: its plan is flown once it takes over.
                 self.planning.proposed = ask.is_some_and(|ask| self.planning.candidate == Some(ask.worker));
                 if self.planning.proposed {
                     return;
@@ -39,7 +39,7 @@ impl Run {
                 self.planning.scalars = scalars.iter().take(MAX_SCALARS).cloned().collect();
             }
             EventKind::PlannerFailed { fault, .. } => {
-                // A planner that was refused does not replace the active one.
+                // A refused planner does not replace the active one.
                 if self.planner_id() == Some(fault.planner.as_str()) {
                     self.planning.fault = Some(fault.clone());
                     if fault.during == During::Plan {
@@ -49,7 +49,7 @@ impl Run {
                 self.raise_as_logged(event, Cause::Planner);
                 change.withdraw(Withdrawn::All);
             }
-            // No alarm: the planner works again, and a fault before may not be acknowledged yet.
+            // No alarm: the planner works again, but an earlier fault may still be unacknowledged.
             EventKind::PlannerLate { planner, ticks } => {
                 change.say(Severity::Watch, late_text(planner, *ticks));
             }
@@ -62,7 +62,11 @@ impl Run {
                         .as_ref()
                         .is_some_and(|about| about.mission.better_plan == BetterPlan::Take);
                     self.planning.offer = Some(Offer { flown, better, begins, is_taken });
-                    let next = if is_taken { "taken where it begins" } else { "<take-plan>: take it" };
+                    let next = if is_taken {
+                        "taken automatically at its first point"
+                    } else {
+                        "<take-plan>: take it"
+                    };
                     let saving = better.saving(&flown);
                     change.say(Severity::Watch, format!("better plan saves {saving}; {next}"));
                 }
@@ -85,10 +89,10 @@ impl Run {
         }
     }
 
-    /// Another planner becomes active.
+    /// Makes a different planner active.
     fn seat(&mut self, choice: &PlannerChoice, info: &PlannerInfo) {
         if *self.phase() == Phase::Waiting {
-            // Nothing was flown yet: a plan of the planner before is of no interest any more.
+            // Nothing was flown yet, so the previous planner's plan no longer matters.
             self.planning.plan = None;
         }
         (self.planning.choice, self.planning.info) = (Some(choice.clone()), Some(info.clone()));

@@ -1,4 +1,4 @@
-//! Events of the robot's position into a run.
+//! Folds position events into a run.
 
 use crate::model::{Cause, Change, Run, Withdrawn, position};
 use mission::{Event, EventKind, Passage, Severity};
@@ -6,7 +6,7 @@ use planner_api::PoseEstimate;
 use world::Pose;
 
 impl Run {
-    /// Takes in an event of the robot's position.
+    /// Folds in a position event.
     pub(super) fn locate(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::Ranged { ranges } => self.position.ranged(event.t_s, ranges),
@@ -52,7 +52,7 @@ impl Run {
         }
     }
 
-    /// Passes the tool over the floor between the last estimate and this one, as the mission does.
+    /// Marks the floor between the last estimate and this one as scanned, as the mission does.
     fn scan(&mut self, here: &PoseEstimate) {
         let Some(mission) = self.about.as_ref().map(|about| &about.mission) else { return };
         let passage = Passage::of(self.phase(), position::ellipse_95(here).0, mission.scan_limit_m());

@@ -1,10 +1,10 @@
-//! Events of a planner in shadow into a run.
+//! Folds events of the planner in shadow into a run.
 
 use crate::model::{Change, Run, Shadow};
 use mission::{Event, EventKind, Order, Severity};
 
 impl Run {
-    /// Takes in an event of the planner in shadow, or an order about it.
+    /// Folds in an event of the planner in shadow, or an order about it.
     pub(super) fn shadowed(&mut self, event: &Event, change: &mut Change) {
         match &event.kind {
             EventKind::Ordered { order: Order::Shadow(choice) } => {

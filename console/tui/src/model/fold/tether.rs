@@ -1,15 +1,15 @@
-//! Events of the tether into a run.
+//! Folds tether events into a run.
 
 use crate::model::{Cause, Run};
 use mission::{Event, EventKind, Severity, event::TetherAlarm};
 
 impl Run {
-    /// The plan that was certified last is not flown any more.
+    /// Forgets the last certificate, because its plan is no longer flown.
     pub(super) fn forget_certificate(&mut self) {
         self.tether.iter_mut().for_each(|tether| tether.certified = None);
     }
 
-    /// Takes in an event of the tether.
+    /// Folds in a tether event.
     pub(super) fn tethered(&mut self, event: &Event) {
         match &event.kind {
             EventKind::TetherAlarmRaised { alarm, .. } => {
@@ -24,7 +24,7 @@ impl Run {
                 }
                 self.clear(&Cause::Tether(alarm.word().to_owned()));
             }
-            // A planner that is being prepared; why it does not take over is reported when it is rejected.
+            // The planner is a candidate; the reason why it does not take over is reported when it is rejected.
             EventKind::Certified { .. } if self.planning.proposed => {}
             EventKind::Certified { planner, refused, certificate } => {
                 self.tether.get_or_insert_default().certified = Some(certificate.certified);

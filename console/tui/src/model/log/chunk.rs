@@ -1,29 +1,29 @@
-//! A stretch of the log: its lines, and beside them what a filter looks at, packed so that it is found fast.
+//! A chunk of the log: its lines, and beside them the data that a filter reads, packed for fast searching.
 
 use super::entry::Entry;
 use mission::Severity;
 use serde::{Deserialize, Serialize};
 
-/// Lines of a full chunk.
+/// The number of lines in a full chunk.
 pub(super) const LINES: usize = 1024;
-/// Between source and text; nobody types it.
+/// The separator between source and text; a character that nobody types.
 const BETWEEN: char = '\u{1f}';
 
-/// A stretch of the log.
+/// A chunk of the log.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Chunk {
     entries: Vec<Entry>,
     keys: Vec<Key>,
-    /// Source and text of every line in small letters, one behind the other.
+    /// The source and text of all lines in lower case, one after another.
     words: String,
 }
 
-/// What a filter looks at, apart from words.
+/// The data that a filter reads, apart from the words.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Key {
     severity: Severity,
     t_s: f64,
-    /// Where its words end.
+    /// The end of the line's words.
     end: usize,
 }
 
@@ -33,12 +33,12 @@ pub(super) struct Line<'a> {
     pub severity: Severity,
     /// Mission time, seconds.
     pub t_s: f64,
-    /// Source and text in small letters.
+    /// Source and text in lower case.
     pub words: &'a str,
 }
 
 impl Line<'_> {
-    /// Who speaks, in small letters.
+    /// The source, in lower case.
     pub(super) fn source(&self) -> &str {
         self.words.split(BETWEEN).next().unwrap_or_default()
     }
@@ -53,7 +53,7 @@ impl Chunk {
         self.entries.push(entry);
     }
 
-    /// The last line once more, as another one of the same words.
+    /// Adds an entry with the same words as the last line.
     pub(super) fn repeat_last(&mut self, mut entry: Entry) {
         if let (Some(last), Some(key)) = (self.entries.last_mut(), self.keys.last_mut()) {
             entry.count = last.count.saturating_add(1);
@@ -70,7 +70,7 @@ impl Chunk {
         self.entries.len() >= LINES
     }
 
-    /// The lines from an index on, as a filter sees them, each with its index.
+    /// The lines from an index on, as a filter sees them, with their indices.
     pub(super) fn lines(&self, from: usize) -> impl Iterator<Item = (usize, Line<'_>)> {
         let mut start = from.checked_sub(1).and_then(|before| self.keys.get(before)).map_or(0, |key| key.end);
         self.keys.iter().enumerate().skip(from).map(move |(index, key)| {
@@ -80,7 +80,7 @@ impl Chunk {
         })
     }
 
-    /// Memory that it takes, bytes; near enough.
+    /// The approximate memory use, bytes.
     pub(super) fn bytes(&self) -> usize {
         let entries: usize = self.entries.iter().map(Entry::bytes).sum();
         entries + self.words.len() + self.keys.len() * size_of::<Key>()

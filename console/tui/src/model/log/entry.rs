@@ -9,35 +9,35 @@ use std::borrow::Cow;
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// The tick of it.
+    /// The tick.
     pub tick: u64,
     /// Mission time, seconds.
     pub t_s: f64,
-    /// How much it asks of the operator.
+    /// The severity.
     pub severity: Severity,
-    /// Who speaks.
+    /// The source of the line.
     pub source: Cow<'static, str>,
-    /// What.
+    /// The text.
     pub text: String,
-    /// How often in a row; the time is that of the last one.
+    /// How many times in a row the line occurred; the time is that of the last occurrence.
     pub count: u32,
-    /// The event behind it.
+    /// The event that the line reports.
     pub what: What,
 }
 
 impl Entry {
-    /// The line as it is copied out of the console.
+    /// The line as copied to the clipboard.
     pub fn line(&self) -> String {
         format!("T+{} {} {} {}", clock(self.t_s), severity_word(self.severity), self.source, self.text)
     }
 
-    /// Memory that it takes, bytes; near enough.
+    /// The approximate memory use, bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of::<Self>() + self.text.len() + self.what.bytes()
     }
 }
 
-/// How a severity is written.
+/// The word for a severity.
 pub fn severity_word(severity: Severity) -> &'static str {
     match severity {
         Severity::Info => "INFO",

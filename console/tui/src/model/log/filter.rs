@@ -1,4 +1,4 @@
-//! What the operator types to find events: terms that all have to hold.
+//! The event filter that the operator types: terms that must all match.
 //!
 //! ```text
 //! sev>=watch source=ae,tether station=C t>00:05 "position lost" -text
@@ -15,25 +15,25 @@ use std::ops::Range;
 use term::Term;
 use word::{Word, words};
 
-/// A filter as it was understood.
+/// A parsed filter.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Filter {
     terms: Vec<Term>,
-    /// What was not understood, in the order of the text; it filters nothing.
+    /// The parts that could not be parsed, in order; they are ignored when filtering.
     pub problems: Vec<Problem>,
 }
 
-/// A part of a filter that was not understood.
+/// A part of a filter that could not be parsed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Problem {
-    /// Where it stands in the text, bytes.
+    /// The position in the text, bytes.
     pub at: Range<usize>,
-    /// Why, as a sentence.
+    /// The reason, as a sentence.
     pub why: String,
 }
 
 impl Filter {
-    /// Understands as much of a text as it can. Terms are separated by spaces.
+    /// Parses as much of the text as possible. Terms are separated by spaces.
     pub fn parse(text: &str) -> Self {
         let mut filter = Self::default();
         for word in words(text) {
@@ -45,18 +45,18 @@ impl Filter {
         filter
     }
 
-    /// Whether a line passes. What is critical always does.
+    /// Whether a line passes the filter. Critical lines always pass.
     pub(super) fn passes(&self, line: &Line) -> bool {
         line.severity == Severity::Crit || self.terms.iter().all(|term| term.passes(line))
     }
 
-    /// The least severity that it asks for.
+    /// The minimum severity that the filter requires.
     pub fn least(&self) -> Severity {
         self.terms.iter().filter_map(Term::least).max().unwrap_or(Severity::Info)
     }
 }
 
-/// A text with another least severity instead of its own.
+/// The filter text with its minimum severity replaced.
 pub fn with_least(text: &str, least: Severity) -> String {
     let rest = without_least(text);
     match least {
@@ -65,7 +65,7 @@ pub fn with_least(text: &str, least: Severity) -> String {
     }
 }
 
-/// A text without its least severity.
+/// The filter text without its minimum severity.
 pub fn without_least(text: &str) -> String {
     let is_kept = |word: &Word| Term::parse(word).ok().and_then(|term| term.least()).is_none();
     let kept: Vec<&str> = words(text).filter(is_kept).map(|word| &text[word.at]).collect();

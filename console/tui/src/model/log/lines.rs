@@ -1,4 +1,4 @@
-//! Every line of a run, as far as they are kept.
+//! The log lines of a run, up to a limit.
 
 use super::chunk::{self, Chunk};
 use super::entry::Entry;
@@ -8,36 +8,36 @@ use mission::Severity;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, collections::VecDeque, sync::Arc};
 
-/// Lines that are kept at least; older ones go a chunk of 1024 at a time.
+/// The minimum number of lines kept; older lines are dropped in chunks of 1024.
 pub const MAX_LINES: usize = 100_000;
-/// Most memory that full chunks take, bytes. A rejected station takes about 0.7 kB with everything that its detail shows, so
-/// that the number of lines is what ends a log; only texts of planners can be long.
+/// The maximum memory for full chunks, bytes. A rejected station takes about 0.7 kB with everything its detail shows,
+/// so the number of lines is normally the limit that applies; only planner messages can be longer.
 const MAX_BYTES: usize = 96 << 20;
-/// Longest text of a line, characters; planners write what they like.
+/// The longest text of a line, characters; planner messages can be of any length.
 const MAX_TEXT: usize = 1000;
 
-/// What happened, newest last. Each line has a number that stays its own: the first of a run is 0.
+/// The log, newest line last. Each line keeps its own number; the first line of a run is 0.
 ///
-/// A copy shares its full chunks.
+/// A clone shares the full chunks.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Log {
     chunks: VecDeque<Arc<Chunk>>,
-    /// How many lines were dropped.
+    /// The number of dropped lines.
     dropped: u64,
-    /// How many lines there are.
+    /// The number of lines kept.
     len: usize,
-    /// Memory that the full chunks take, bytes.
+    /// The memory used by full chunks, bytes.
     bytes: usize,
 }
 
 impl Log {
-    /// Adds a line of the console itself.
+    /// Adds a line about the console itself.
     pub fn add(&mut self, t_s: f64, severity: Severity, source: &'static str, text: String) {
         let source = Cow::Borrowed(source);
         self.push(Entry { tick: 0, t_s, severity, source, text, count: 1, what: What::Console });
     }
 
-    /// Adds a line; the same line again raises the count of the last one.
+    /// Adds a line; a repeat of the last line only raises its count.
     pub fn push(&mut self, mut entry: Entry) {
         if let Some((cut, _)) = entry.text.char_indices().nth(MAX_TEXT) {
             entry.text.truncate(cut);
@@ -69,19 +69,19 @@ impl Log {
         }
     }
 
-    /// The line of a number, if it is kept.
+    /// The line with the given number, if it is still kept.
     pub fn get(&self, number: u64) -> Option<&Entry> {
         let (chunk, index) = self.at(number)?;
         self.chunks.get(chunk)?.entries().get(index)
     }
 
-    /// In which chunk a line is, and where.
+    /// The chunk that holds a line, and the index in the chunk.
     fn at(&self, number: u64) -> Option<(usize, usize)> {
         let index = usize::try_from(number.checked_sub(self.dropped)?).ok()?;
         Some((index / chunk::LINES, index % chunk::LINES))
     }
 
-    /// Numbers of the lines from one on that pass a filter.
+    /// The numbers of the lines from `from` on that pass a filter.
     pub(super) fn passing<'a>(&'a self, filter: &'a Filter, from: u64) -> impl Iterator<Item = u64> + 'a {
         let (first, index) = self.at(from).unwrap_or_default();
         self.chunks.iter().enumerate().skip(first).flat_map(move |(at, chunk)| {
@@ -96,22 +96,22 @@ impl Log {
         self.end().checked_sub(1).filter(|_| !self.is_empty())
     }
 
-    /// The number of the oldest line that is kept.
+    /// The number of the oldest line kept.
     pub fn oldest(&self) -> u64 {
         self.dropped
     }
 
-    /// The number of the next line.
+    /// The number that the next line will get.
     pub fn end(&self) -> u64 {
         self.dropped + self.len as u64
     }
 
-    /// How many lines there are.
+    /// The number of lines kept.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether nothing happened yet.
+    /// Whether the log is empty.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -1,4 +1,4 @@
-//! The lines that pass a filter, kept up to date while lines come and the filter is typed.
+//! The lines that pass a filter, kept up to date as lines arrive and the filter changes.
 
 use super::entry::Entry;
 use super::filter::Filter;
@@ -8,30 +8,30 @@ use std::collections::VecDeque;
 
 /// The lines that pass a filter.
 ///
-/// A new line is looked at once, and all of them only when another filter is typed: 2 to 6 ms for
+/// Each new line is tested once. All lines are tested again only when the filter changes, which takes 2 to 6 ms for
 /// 100,000 lines (bench `events`).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Matches {
     text: String,
     filter: Filter,
-    /// Numbers of the lines that pass, ascending.
+    /// The numbers of the lines that pass, ascending.
     found: VecDeque<u64>,
-    /// The lines before this number were looked at.
+    /// All lines before this number have been tested.
     seen: u64,
 }
 
 impl Matches {
-    /// Brings it up to date with a filter and a log.
+    /// Updates the matches for a filter and a log.
     pub fn refresh(&mut self, text: &str, log: &Log) {
         if self.text != text {
             (self.text, self.filter) = (text.to_owned(), Filter::parse(text));
             self.seen = 0;
         }
-        // Another run begins with fewer lines.
+        // A new run begins with fewer lines.
         if self.seen > log.end() {
             self.seen = 0;
         }
-        // The line that was the newest may have been counted again since.
+        // The newest line may have been repeated since.
         let from = self.seen.saturating_sub(1).max(log.oldest());
         while self.found.back().is_some_and(|number| *number >= from) {
             self.found.pop_back();
@@ -43,12 +43,12 @@ impl Matches {
         self.seen = log.end();
     }
 
-    /// The filter as it was understood.
+    /// The parsed filter.
     pub fn filter(&self) -> &Filter {
         &self.filter
     }
 
-    /// How many lines pass.
+    /// The number of lines that pass.
     pub fn len(&self) -> usize {
         self.found.len()
     }
@@ -58,23 +58,23 @@ impl Matches {
         self.found.is_empty()
     }
 
-    /// How many lines that pass are newer than one.
+    /// The number of passing lines that are newer than the given one.
     pub fn newer_than(&self, number: u64) -> usize {
         self.found.len() - self.found.partition_point(|found| *found <= number)
     }
 
-    /// Number of the line that so many newer ones precede; of the oldest one if there are not so many.
+    /// The number of the passing line that has `newer` newer ones; the oldest line if there are fewer.
     pub fn number(&self, newer: usize) -> Option<u64> {
         let index = self.found.len().checked_sub(1)?.saturating_sub(newer);
         self.found.get(index).copied()
     }
 
-    /// Numbers and lines from the newest on, without so many of them.
+    /// Numbers and lines, newest first, skipping the first `skip`.
     pub fn newest<'a>(&'a self, log: &'a Log, skip: usize) -> impl Iterator<Item = (u64, &'a Entry)> {
         self.found.iter().rev().skip(skip).filter_map(|number| Some((*number, log.get(*number)?)))
     }
 
-    /// The next line of the same kind as one, among so many that follow it or, `back`, go before it.
+    /// The next line of the same kind among the `among` following lines, or among the preceding ones if `back`.
     pub fn next_like(&self, log: &Log, number: u64, back: bool, among: usize) -> Option<u64> {
         let what = &log.get(number)?.what;
         let at = self.found.partition_point(|found| *found < number);

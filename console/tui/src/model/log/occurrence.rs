@@ -1,4 +1,4 @@
-//! What a line of the log keeps of its event.
+//! The part of an event that a log line keeps.
 
 use mission::EventKind;
 use positioning::Ranging;
@@ -6,43 +6,43 @@ use serde::{Deserialize, Serialize};
 use std::mem::{discriminant, size_of};
 use world::Point;
 
-/// What a line of the log is about.
+/// The subject of a log line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum What {
-    /// News of the console itself.
+    /// A message about the console itself.
     Console,
-    /// The run was opened: what it is about is known to the run.
+    /// The opening of the run; the run itself holds the details.
     Opened,
     /// An event of the mission.
     Event(Box<Occurrence>),
 }
 
-/// An event of the mission, without its paths and lists, and what was known when it happened.
+/// An event of the mission without its paths and lists, and the circumstances at the time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
     /// The event.
     pub kind: EventKind,
-    /// Where the robot was.
+    /// The robot's estimated state at the time.
     pub robot: Option<Robot>,
-    /// For an event of a station: its last range.
+    /// For an event about a station: its last range.
     pub range: Option<Ranging>,
 }
 
-/// Where the robot believed to be.
+/// The robot's estimated state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
     /// Position, metres, tank frame.
     pub at: Point,
     /// Heading, radians.
     pub heading_rad: f64,
-    /// Half width of the 95 % error, metres.
+    /// The 95 % error, metres.
     pub error_m: f64,
     /// Speed over ground, metres per second.
     pub speed_m_per_s: Option<f64>,
 }
 
 impl What {
-    /// The event, if it is one of the mission.
+    /// The mission event, if the line is about one.
     pub fn event(&self) -> Option<&Occurrence> {
         match self {
             Self::Event(occurrence) => Some(occurrence),
@@ -50,7 +50,7 @@ impl What {
         }
     }
 
-    /// Whether two lines are about the same kind of event.
+    /// Whether two lines report the same kind of event.
     pub fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Event(one), Self::Event(other)) => discriminant(&one.kind) == discriminant(&other.kind),
@@ -58,7 +58,7 @@ impl What {
         }
     }
 
-    /// The place that it is about: of the station, the obstacle, or where the robot was.
+    /// The position of the event: that of the station or the obstacle, otherwise that of the robot.
     pub fn place(&self, station: impl Fn(world::StationId) -> Option<Point>) -> Option<Point> {
         let event = self.event()?;
         match &event.kind {
@@ -70,7 +70,7 @@ impl What {
         }
     }
 
-    /// Memory that it takes beyond itself, bytes; near enough.
+    /// Approximate memory use beyond the struct itself, bytes.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Self::Console | Self::Opened => 0,
@@ -79,7 +79,7 @@ impl What {
     }
 }
 
-/// An event without what would make a long log large: of a path the ends are left, of a planner its name.
+/// The event without the parts that would make a long log large: a path keeps only its ends, a planner only its name.
 pub(in crate::model) fn slim(kind: &EventKind) -> EventKind {
     match kind {
         EventKind::Planned { ask, return_path, planner, reason, path, length_m, complete, .. } => {

@@ -1,28 +1,28 @@
-//! Which moments of two runs correspond.
+//! Matches moments of two runs.
 
 use crate::model::Run;
 use serde::{Deserialize, Serialize};
 use world::Point;
 
-/// Least time between two samples of a track, seconds.
+/// The minimum time between two samples of a track, seconds.
 const SAMPLE_S: f64 = 1.0;
-/// Places that are farther from the nearest one than this are another pass, metres.
+/// Positions further from the nearest one than this belong to a different pass, metres.
 const SAME_PASS_M: f64 = 0.5;
 
-/// Which moments of two runs correspond.
+/// How moments of two runs are matched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Align {
-    /// Those at the same time after the start.
+    /// By the time since the start.
     #[default]
     Time,
-    /// Those at the same share of the path driven.
+    /// By the share of the path driven.
     Path,
-    /// Those at which the robot was at the same place: of several passes the one nearest in share of the path.
+    /// By the robot's position; of several passes, the one nearest in share of the path.
     Place,
 }
 
 impl Align {
-    /// The next one.
+    /// The next way of matching.
     #[must_use]
     pub fn next(self) -> Self {
         match self {
@@ -32,7 +32,7 @@ impl Align {
         }
     }
 
-    /// What it goes by.
+    /// The quantity that is matched.
     pub fn word(self) -> &'static str {
         match self {
             Self::Time => "time",
@@ -42,7 +42,7 @@ impl Align {
     }
 }
 
-/// Where the robot was, second by second.
+/// The robot's positions, one per second.
 #[derive(Debug, Clone, Default)]
 pub struct Track {
     samples: Vec<Sample>,
@@ -53,12 +53,12 @@ pub struct Track {
 struct Sample {
     t_s: f64,
     at: Point,
-    /// Way driven so far, metres, by the estimated position.
+    /// The distance driven so far, metres, by the estimated position.
     way_m: f64,
 }
 
 impl Track {
-    /// Takes in where a run is.
+    /// Records the current position of a run.
     pub fn add(&mut self, run: &Run) {
         self.started_s = run.clock.started_s.unwrap_or(0.0);
         let Some(at) = run.position.pose.as_ref().map(|pose| pose.position) else { return };
@@ -70,7 +70,7 @@ impl Track {
         }
     }
 
-    /// The sample at some time, or the last one before it.
+    /// The sample at the given time, or the last one before it.
     fn at(&self, t_s: f64) -> Option<Sample> {
         let index = self.samples.partition_point(|sample| sample.t_s <= t_s);
         self.samples.get(index.saturating_sub(1)).copied()
@@ -81,7 +81,7 @@ impl Track {
         if whole_m > 0.0 { sample.way_m / whole_m } else { 0.0 }
     }
 
-    /// The moment of another run that corresponds to one of this run, seconds of mission time.
+    /// The moment of the other run that corresponds to a moment of this one, seconds of mission time.
     pub fn moment_of(&self, other: &Self, align: Align, t_s: f64) -> f64 {
         let by_time = || t_s - self.started_s + other.started_s;
         let Some(sample) = self.at(t_s).filter(|sample| sample.t_s <= t_s) else { return by_time() };

@@ -1,18 +1,18 @@
-//! Which floor only one of two runs has scanned.
+//! The floor that only one of two runs has scanned.
 
 use crate::model::Raster;
 use world::{FloorClass, Point};
 
-/// Which of two runs scanned some floor.
+/// Which of two runs scanned a piece of floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scans {
-    /// Neither.
+    /// Neither run.
     None,
-    /// The one that is played.
+    /// Only the run being replayed.
     OnlyA,
-    /// The one that it is compared with.
+    /// Only the run that it is compared with.
     OnlyB,
-    /// Both.
+    /// Both runs.
     Both,
 }
 
@@ -26,7 +26,7 @@ impl Scans {
         }
     }
 
-    /// Which of two runs scanned the floor in a square of some edge about a point; `None` where the first has no floor.
+    /// Which of two runs scanned the floor in a square around a point; `None` where the first run has no floor.
     pub fn in_square(a: &Raster, b: &Raster, center: Point, edge_m: f64) -> Option<Self> {
         let first = a.class_in(center, edge_m, false)?;
         let second = b.class_in(center, edge_m, false).is_some_and(FloorClass::is_scanned);
@@ -34,7 +34,7 @@ impl Scans {
     }
 }
 
-/// How the reachable floor of the first run divides, as shares of it, 0 to 1.
+/// The shares of the first run's reachable floor, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shares {
     /// Scanned by the first run alone.
@@ -46,7 +46,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Counts every cell.
+    /// Computes the shares by counting every cell.
     pub fn of(a: &Raster, b: &Raster) -> Self {
         let (floor, is_same) = (a.floor(), a.floor().is_aligned_with(b.floor()));
         let in_b = |index: usize| if is_same { Some(index) } else { b.floor().cell_at(floor.center(index)) };

@@ -1,42 +1,42 @@
-//! What can be gone to in a run: events, alarms, holds.
+//! The marks that the operator can jump to in a run: events, alarms, holds.
 
 use crate::model::Run;
 use mission::{Event, EventKind, Severity};
 use serde::{Deserialize, Serialize};
 
-/// What a mark stands for.
+/// The kind of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum MarkKind {
     /// A line of the log.
     Event,
     /// The robot was held.
     Hold,
-    /// An alarm came up.
+    /// An alarm was raised.
     Alarm,
 }
 
-/// A moment that can be gone to.
+/// A moment that the operator can jump to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
     /// Mission time, seconds.
     pub t_s: f64,
-    /// How much it asks of the operator.
+    /// The severity.
     pub severity: Severity,
-    /// What it stands for.
+    /// The kind of the mark.
     pub kind: MarkKind,
 }
 
-/// Finds the marks while a run is folded.
+/// Finds the marks while folding a run.
 #[derive(Debug, Clone, Default)]
 pub struct Marker {
-    /// Lines of the log so far.
+    /// The number of log lines so far.
     lines: u64,
-    /// Alarms that were active.
+    /// The number of active alarms before the event.
     active: usize,
 }
 
 impl Marker {
-    /// Folds an event into a run; the mark that it leaves.
+    /// Folds an event into a run; returns the mark for it, if any.
     pub fn fold(&mut self, run: &mut Run, event: &Event) -> Option<Mark> {
         run.fold(event);
         let lines = run.log.end();

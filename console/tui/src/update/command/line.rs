@@ -1,4 +1,4 @@
-//! The words of a command line: `name {value | key=value}`, a value with spaces in double quotes.
+//! Splits a command line into words: `name {value | key=value}`, with values that contain spaces in double quotes.
 
 use crate::model::palette::LineFault;
 use std::ops::Range;
@@ -8,14 +8,14 @@ use std::ops::Range;
 pub(in crate::update) struct Word {
     /// The word without quotes.
     pub text: String,
-    /// Bytes of the line.
+    /// The byte range in the line.
     pub at: Range<usize>,
 }
 
-/// The words of a line.
+/// Splits a line into words.
 ///
 /// # Errors
-/// A quote that is not closed.
+/// Fails if a quote is not closed.
 pub(in crate::update) fn words(line: &str) -> Result<Vec<Word>, LineFault> {
     let mut words: Vec<Word> = Vec::new();
     let (mut is_open, mut quote) = (false, None);
@@ -37,12 +37,12 @@ pub(in crate::update) fn words(line: &str) -> Result<Vec<Word>, LineFault> {
         }
     }
     match quote {
-        Some(at) => Err(LineFault { at: at..line.len(), what: "the quote is not closed".into() }),
+        Some(at) => Err(LineFault { at: at..line.len(), what: "missing closing quote".into() }),
         None => Ok(words),
     }
 }
 
-/// Where the word begins with which a text ends.
+/// The beginning of the last word of a text.
 pub(in crate::update) fn word_begin(text: &str) -> usize {
     let mut begin = 0;
     let mut is_quoted = false;
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn a_quote_that_is_not_closed_is_pointed_at() {
         let fault = words("filter \"lost").expect_err("a fault");
-        assert_eq!((fault.at, fault.what.as_str()), (7..12, "the quote is not closed"));
+        assert_eq!((fault.at, fault.what.as_str()), (7..12, "missing closing quote"));
     }
 
     #[test]

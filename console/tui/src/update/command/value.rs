@@ -1,4 +1,4 @@
-//! The values of commands: what there is to choose from, and what a typed word means.
+//! The values of commands: the choices, and the meaning of a typed word.
 
 use crate::actions::{Kind, duration_s, moment_s};
 use crate::guide;
@@ -8,38 +8,38 @@ use crate::theme::ThemeName;
 use mission::{ParamKind, ParamValue, PlannerInfo, RangeFault, Severity, spelling::nearest};
 use world::{Point, StationId, Vector};
 
-/// A value, checked.
+/// A parsed value.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::update) enum Value {
     /// A speed of the simulation.
     Speed(Speed),
-    /// A planner that was found.
+    /// An installed planner.
     Planner(PlannerInfo),
     /// A parameter of the planner and its value.
     Parameter { key: String, value: ParamValue },
     /// A scenario.
     Scenario(Source),
-    /// Name of a past run.
+    /// The name of a past run.
     Run(String),
     /// A layer of the map.
     Layer(MapLayer),
-    /// From the middle of the tank to a place, metres.
+    /// The offset of a place from the tank's centre, metres.
     Place(Vector),
-    /// A severity of events.
+    /// An event severity.
     Severity(Severity),
     /// A theme.
     Theme(ThemeName),
     /// A screen.
     Screen(Screen),
-    /// Name of a preset.
+    /// The name of a preset.
     Preset(String),
-    /// A span of time, seconds.
+    /// A duration, seconds.
     Duration(f64),
     /// An alarm.
     Alarm(Cause),
     /// An AE station.
     Station(StationId),
-    /// What is wrong with a station.
+    /// A range fault.
     Fault(RangeFault),
     /// A corner of a box, tank frame, metres.
     Corner(Point),
@@ -49,7 +49,7 @@ pub(in crate::update) enum Value {
     Text(String),
 }
 
-/// What there is to choose from; `typed` is the beginning of the word.
+/// The values to choose from; `typed` is the beginning of the word.
 pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> {
     let all: Vec<String> = match kind {
         Kind::Speed => speeds(),
@@ -72,10 +72,10 @@ pub(super) fn candidates(model: &Model, kind: Kind, typed: &str) -> Vec<String> 
     all.into_iter().map(|value| if value.contains(' ') { format!("\"{value}\"") } else { value }).collect()
 }
 
-/// Reads a typed word.
+/// Parses a typed word.
 ///
 /// # Errors
-/// What is wrong with it and what would be right, as a clause.
+/// Returns what is wrong and how to correct it, as a clause.
 pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, String> {
     match kind {
         Kind::Speed => Speed::parse(text).map(Value::Speed),
@@ -90,13 +90,12 @@ pub(super) fn read(model: &Model, kind: Kind, text: &str) -> Result<Value, Strin
             "scenario `{text}` cannot be opened: {}",
             problem_of(model, text).unwrap_or_default()
         )),
-        _ => {
-            named(model, kind, text).ok_or_else(|| wrong(&text_of(kind), text, &candidates(model, kind, "")))
-        }
+        _ => named(model, kind, text)
+            .ok_or_else(|| wrong(&kind.to_string(), text, &candidates(model, kind, ""))),
     }
 }
 
-/// A value that has a name.
+/// A value that is chosen by name.
 fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
     match kind {
         Kind::Planner => {
@@ -123,7 +122,7 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
         }
         Kind::Alarm => alarms(model).find(|(name, _)| name == text).map(|(_, cause)| Value::Alarm(cause)),
         Kind::Station => {
-            // As the scenario writes it, too: ae.S3.
+            // The scenario's notation is accepted as well: ae.S3.
             let name = text.strip_prefix("ae.").unwrap_or(text);
             let station = model.live.run.stations().iter().find(|station| station.name == name)?;
             Some(Value::Station(station.id))
@@ -139,7 +138,7 @@ fn named(model: &Model, kind: Kind, text: &str) -> Option<Value> {
     }
 }
 
-/// Severities by name.
+/// The severities by name.
 const SEVERITIES: [(&str, Severity); 4] = [
     ("info", Severity::Info),
     ("watch", Severity::Watch),
@@ -147,17 +146,13 @@ const SEVERITIES: [(&str, Severity); 4] = [
     ("crit", Severity::Crit),
 ];
 
-fn text_of(kind: Kind) -> String {
-    format!("{kind:?}").to_lowercase()
-}
-
-/// That there is no such thing, and the nearest or all there are.
+/// The message that nothing has this name, with the nearest name or the list of all names.
 fn wrong(what: &str, text: &str, known: &[String]) -> String {
     let none = format!("no {what} `{text}`");
     match nearest(text, known.iter().map(String::as_str)) {
         Some(near) => format!("{none}; did you mean {near}?"),
-        None if known.is_empty() => format!("{none}; there is none"),
-        None => format!("{none}; there are: {}", known.join(", ")),
+        None if known.is_empty() => format!("{none}; none available"),
+        None => format!("{none}; choose from: {}", known.join(", ")),
     }
 }
 
@@ -173,7 +168,7 @@ fn speeds() -> Vec<String> {
     all.iter().map(text).collect()
 }
 
-/// Names of parameters, or, behind the name and `=`, its values as far as they are words.
+/// Parameter names or, after a name and `=`, its values if they are words.
 fn parameters(model: &Model, typed: &str) -> Vec<String> {
     let all = model.planner().map(|info| info.parameters.as_slice()).unwrap_or_default();
     let Some((key, _)) = typed.split_once('=') else {
@@ -198,18 +193,22 @@ fn read_parameter(model: &Model, text: &str) -> Result<Value, String> {
     Ok(Value::Parameter { key: key.to_owned(), value: parameter::parse(info, value)? })
 }
 
-/// The alarms of the run that can be put aside, by name.
+/// The alarms of the run that can be shelved, by name.
 fn alarms(model: &Model) -> impl Iterator<Item = (String, Cause)> {
     let run = &model.live.run;
     run.alarms.open().map(|alarm| (guide::name(&alarm.cause, run), alarm.cause.clone()))
 }
 
-/// Longest range error that a fault may have, metres, as in a scenario.
+/// The largest range error of a fault, metres, as in a scenario.
 const LONGEST_M: f64 = 1000.0;
 
 fn read_fault(text: &str) -> Result<RangeFault, String> {
-    let wrong =
-        || format!("no fault `{text}`; write dead (silent) or offset=2.5 (metres too long, to {LONGEST_M})");
+    let wrong = || {
+        format!(
+            "unknown fault `{text}`; write dead (silent) or offset=2.5 (reads that many metres long, \
+            at most {LONGEST_M})"
+        )
+    };
     if text == "dead" {
         return Ok(RangeFault::Dead);
     }
@@ -223,7 +222,7 @@ fn read_fault(text: &str) -> Result<RangeFault, String> {
 fn read_corner(text: &str) -> Result<Point, String> {
     let number = |text: &str| text.trim().parse().ok().filter(|metres: &f64| metres.is_finite());
     let corner = text.split_once(',').and_then(|(x, y)| Some(Point::new(number(x)?, number(y)?)));
-    corner.ok_or_else(|| format!("no corner `{text}`; write x and y in metres, such as -1.5,2"))
+    corner.ok_or_else(|| format!("invalid corner `{text}`; write x and y in metres, such as -1.5,2"))
 }
 
 /// The scenarios that can be opened.
@@ -232,7 +231,7 @@ fn scenarios(model: &Model) -> impl Iterator<Item = (&str, &Source)> {
     all.filter(|entry| entry.problem.is_none()).map(|entry| (entry.name.as_str(), &entry.source))
 }
 
-/// What is wrong with a scenario that was found and cannot be opened.
+/// Why a scenario that was found cannot be opened.
 fn problem_of<'a>(model: &'a Model, name: &str) -> Option<&'a str> {
     let all = model.home.found.iter().flat_map(|found| &found.scenarios);
     all.filter(|entry| entry.name == name).find_map(|entry| entry.problem.as_deref())
@@ -245,17 +244,17 @@ fn runs(model: &Model) -> impl Iterator<Item = &str> {
 
 fn read_run(model: &Model, text: &str) -> Result<String, String> {
     if text == "latest" {
-        // The home screen may not have seen the run that has just ended.
+        // The home screen may not know the run that has just ended.
         let ended = model.live.result.as_ref().and_then(|result| result.name.as_deref());
         let latest = ended.or_else(|| runs(model).next());
-        return latest.map(str::to_owned).ok_or_else(|| "there are no runs".into());
+        return latest.map(str::to_owned).ok_or_else(|| "no runs yet".into());
     }
     let fitting: Vec<&str> = runs(model).filter(|name| name.starts_with(text)).collect();
     match fitting.as_slice() {
         [one] => Ok((*one).to_owned()),
         [] => Err(format!("no run begins with `{text}`")),
         many if many.contains(&text) => Ok(text.to_owned()),
-        [first, second, ..] => Err(format!("{} runs begin so: {first}, {second}...", fitting.len())),
+        [first, second, ..] => Err(format!("{} runs match: {first}, {second}...", fitting.len())),
     }
 }
 
@@ -263,7 +262,7 @@ fn word_of(layer: MapLayer) -> String {
     layer.name().to_lowercase().replace(' ', "-")
 }
 
-/// Stations and obstacles by name, from the middle of the tank, metres.
+/// Stations and obstacles by name, with their offsets from the tank's centre, metres.
 fn places(model: &Model) -> Vec<(String, Vector)> {
     let Some(about) = &model.live.run.about else { return Vec::new() };
     let (low, high) = about.world.boundary.bounds();

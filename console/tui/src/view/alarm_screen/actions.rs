@@ -1,4 +1,4 @@
-//! What can be done about an alarm.
+//! The actions on an alarm.
 
 use crate::guide::{Remedy, guide, name};
 use crate::model::{Alarm, Cause, Overlay};
@@ -9,12 +9,12 @@ use crate::view::look::{Look, Parts};
 use crate::view::{table, text};
 use ratatui::text::Line;
 
-/// Which keys run the actions while they are open.
+/// The keys that run the actions while the list is open.
 const NUMBERS: [&str; 4] = ["<first-action>", "<second-action>", "<third-action>", "<fourth-action>"];
-/// Rows around a list: its frame, and the three lines that stay visible.
+/// Rows that a list cannot use: its frame, and the three lines that stay visible.
 const FRAME: usize = 5;
 
-/// The numbered actions in some columns; while they are open the selected one is marked.
+/// The numbered actions; while the list is open, the selected one is marked.
 pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'static>> {
     let selected = match &look.model.ui.overlay {
         Overlay::Remedies { cause, selected } if *cause == alarm.cause => Some(*selected),
@@ -31,7 +31,7 @@ pub(super) fn lines(look: &Look, alarm: &Alarm, columns: usize) -> Vec<Line<'sta
         .collect()
 }
 
-/// The same as a list over the screen, with cause and effect.
+/// The actions as an overlay list, with cause and effect.
 pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns: u16) -> List {
     let room = usize::from(columns).saturating_sub(3);
     let guide = guide(cause);
@@ -44,7 +44,7 @@ pub(in crate::view) fn list(look: &Look, cause: &Cause, selected: usize, columns
     };
     let mut below: Vec<Parts> = paragraph(Role::Text, &chosen, room).collect();
     below.extend(paragraph(Role::Dim, &about, room));
-    // Every action is worth more than the last words about the alarm.
+    // If space is short, the last lines about the alarm are dropped, never an action.
     let free = usize::from(look.model.ui.height).saturating_sub(FRAME + guide.remedies.len());
     below.truncate(free);
     List {
@@ -72,7 +72,7 @@ fn number(look: &Look, index: usize) -> String {
     look.keys(NUMBERS.get(index).copied().unwrap_or_default())
 }
 
-/// What cannot be run now is of less weight.
+/// Actions that cannot be run now are dimmed.
 fn role(look: &Look, remedy: &Remedy) -> Role {
     match remedy.action {
         Some(action) if offered(look.model, action).is_err() => Role::Dim,

@@ -1,4 +1,4 @@
-//! What is known of one alarm.
+//! The details of one alarm.
 
 use crate::guide::{guide, name};
 use crate::model::alarms::State;
@@ -10,7 +10,7 @@ use crate::view::text;
 use positioning::Exclusion;
 use ratatui::text::Line;
 
-/// Columns of the names of figures.
+/// Width of the figure names, columns.
 const NAMES: usize = 10;
 
 pub(super) fn title(look: &Look, alarm: &Alarm) -> String {
@@ -63,7 +63,7 @@ fn since(look: &Look, alarm: &Alarm) -> String {
     words
 }
 
-/// The residuals of the last fix, station by station.
+/// The residuals of the last fix, by station.
 fn residuals(look: &Look) -> Option<String> {
     let fix = look.run.position.fix.as_ref()?;
     let used =

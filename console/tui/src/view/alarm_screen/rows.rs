@@ -9,9 +9,9 @@ use crate::view::look::{Look, Parts};
 use crate::view::{events, text};
 use mission::Severity;
 
-/// Columns before and behind the name of an alarm.
+/// The columns before and after the name of an alarm.
 struct Columns {
-    /// Marks, and the severity where there is room for its word.
+    /// The marks, and the word for the severity if it fits.
     front: usize,
     state: usize,
     since: usize,
@@ -28,13 +28,13 @@ impl Columns {
         if wide { WIDE } else { NARROW }
     }
 
-    /// What is left for the name.
+    /// The columns left for the name.
     fn name(&self, columns: usize) -> usize {
         columns.saturating_sub(self.front + self.state + self.since + self.count + self.now + self.limit)
     }
 }
 
-/// The line above the table.
+/// The column headings of the table.
 pub(super) fn heads(columns: usize, wide: bool) -> String {
     let at = Columns::of(wide);
     let right = |word: &str, columns: usize| format!("{word:>columns$}");
@@ -50,7 +50,7 @@ pub(super) fn heads(columns: usize, wide: bool) -> String {
     .concat()
 }
 
-/// What stands above the first alarm of a state; `None` for the open ones.
+/// The heading above the first alarm of a state; `None` for open alarms.
 pub(super) fn heading(state: &State) -> Option<&'static str> {
     match state {
         State::Unacknowledged | State::Acknowledged | State::Returned => None,
@@ -83,12 +83,12 @@ pub(super) fn row(look: &Look, alarm: &Alarm, columns: usize, wide: bool) -> Par
     ]
 }
 
-/// A word at the right end of its columns.
+/// A word, right-aligned in its columns.
 fn right(word: &str, columns: usize) -> String {
     format!("{:>columns$}", text::fit(word, columns.saturating_sub(1)))
 }
 
-/// The figure of an alarm; of one whose cause is gone the last figure before, which is not the one of now.
+/// The figure of an alarm; once the cause is gone, the last value before that, marked as past.
 fn right_now(alarm: &Alarm, last: &str, columns: usize) -> (Role, String) {
     if alarm.is_active() || last.is_empty() {
         return (Role::Text, right(last, columns));
@@ -98,7 +98,7 @@ fn right_now(alarm: &Alarm, last: &str, columns: usize) -> (Role, String) {
     (Role::Dim, right(if fits { &was } else { "over" }, columns))
 }
 
-/// The letter of a severity, as the top line counts them.
+/// The letter for a severity, as in the top line.
 fn letter(severity: Severity) -> char {
     match severity {
         Severity::Crit => 'C',

@@ -1,4 +1,4 @@
-//! What an event says, field by field.
+//! The contents of an event, field by field.
 
 use crate::model::Run;
 use crate::model::log::{Entry, Occurrence, Robot, What};
@@ -12,10 +12,10 @@ use planner_api::Reason;
 use positioning::{Exclusion, FixError, Ranging};
 use world::{Obstacle, Shape, StationId, tether::Certificate};
 
-/// What kind of event it is.
+/// The kind of an event.
 pub(super) fn title(what: &What) -> &'static str {
     let What::Event(event) = what else {
-        return if matches!(what, What::Opened) { "run opened" } else { "news of the console" };
+        return if matches!(what, What::Opened) { "run opened" } else { "console message" };
     };
     match &event.kind {
         EventKind::Ordered { .. } => "order",
@@ -41,12 +41,12 @@ pub(super) fn title(what: &What) -> &'static str {
         EventKind::PromotionRefused { .. } => "promotion refused",
         EventKind::Promoted { .. } => "planner promoted",
         EventKind::ShadowEnded { .. } => "shadow ended",
-        EventKind::PlannerLogged { .. } => "message of the planner",
+        EventKind::PlannerLogged { .. } => "planner message",
         EventKind::PlannerLate { .. } => "planner late",
         EventKind::PlannerFailed { .. } => "planner failed",
         EventKind::SpeedLimited { .. } => "speed limited",
         EventKind::MediumAwaited => "waiting for the pressure sensor",
-        EventKind::MediumKnown { .. } => "floor dry or flooded",
+        EventKind::MediumKnown { .. } => "floor medium detected",
         EventKind::Held { .. } => "mission held",
         EventKind::Resumed => "mission resumed",
         EventKind::Ended { .. } => "mission ended",
@@ -57,10 +57,10 @@ pub(super) fn title(what: &What) -> &'static str {
     }
 }
 
-/// What an event says beyond its line, and where the robot was.
+/// The contents of an event beyond its log line, and the robot's position at the time.
 pub(super) fn facts(run: &Run, entry: &Entry) -> Vec<Field> {
     match &entry.what {
-        What::Console => vec![("source", "console: no event of the mission".into())],
+        What::Console => vec![("source", "the console, not the mission".into())],
         What::Opened => opened(run),
         What::Event(event) => {
             let mut facts = of_event(run, event);
@@ -84,9 +84,9 @@ fn of_event(run: &Run, event: &Occurrence) -> Vec<Field> {
             vec![("error", metres(*error_m) + " (95 %)"), ("limit", metres(*limit_m))]
         }
         EventKind::SpeedLimited { asked_m_per_s, sent_m_per_s, needs_m } => vec![
-            ("asked for", format!("{} m/s", text::number(*asked_m_per_s, 2))),
+            ("requested", format!("{} m/s", text::number(*asked_m_per_s, 2))),
             ("sent", format!("{} m/s", text::number(*sent_m_per_s, 2))),
-            ("to stop", format!("{} from the speed asked for", metres(*needs_m))),
+            ("to stop", format!("{} from the requested speed", metres(*needs_m))),
         ],
         EventKind::MediumKnown { medium, pressure_pa } => {
             vec![
@@ -151,7 +151,7 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
         }
         EventKind::Planned { planner, reason, path, length_m, complete, return_path, .. } => {
             let ends: Vec<String> = path.iter().map(|point| text::place(*point)).collect();
-            let part = if *complete { "the whole task" } else { "a part of the task" };
+            let part = if *complete { "the whole task" } else { "part of the task" };
             let mut facts = vec![
                 ("planner", planner.clone()),
                 ("reason", planned_for(reason)),
@@ -159,23 +159,21 @@ fn of_planner(kind: &EventKind) -> Vec<Field> {
                 ("from, to", ends.join(" to ")),
             ];
             if *return_path > 0 {
-                facts.push(("return path", format!("{return_path} points along the tether go before it")));
+                facts.push(("return path", format!("after {return_path} points along the tether")));
             }
             facts
         }
-        EventKind::PlannerLogged { planner, level, message } => vec![
-            ("planner", planner.clone()),
-            ("level", format!("{level:?}").to_lowercase()),
-            ("message", message.clone()),
-        ],
+        EventKind::PlannerLogged { planner, level, message } => {
+            vec![("planner", planner.clone()), ("level", level.to_string()), ("message", message.clone())]
+        }
         EventKind::PlannerLate { planner, ticks } => {
             vec![("planner", planner.clone()), ("late by", format!("{ticks} ticks; the robot stood still"))]
         }
         EventKind::PlannerFailed { fault, .. } => vec![
             ("planner", fault.planner.clone()),
-            ("during", format!("{:?}", fault.during).to_lowercase()),
-            ("fault", format!("{:?}", fault.cause).to_lowercase()),
-            ("plugin", fault.plugin_sha256.clone().unwrap_or_else(|| "hash not known".into())),
+            ("during", fault.during.to_string()),
+            ("fault", fault.cause.to_string()),
+            ("plugin", fault.plugin_sha256.clone().unwrap_or_else(|| "hash unknown".into())),
         ],
         _ => Vec::new(),
     }
@@ -261,7 +259,7 @@ fn obstacle_facts(obstacle: &Obstacle) -> Vec<Field> {
         ("obstacle", obstacle.name.clone()),
         ("place", text::place(obstacle.shape.center())),
         ("form", form),
-        ("drawing", "not on it".into()),
+        ("drawing", "not on the drawing".into()),
     ]
 }
 
@@ -277,11 +275,11 @@ fn resumed(resumes: Resumes) -> String {
 fn planned_for(reason: &Reason) -> String {
     match reason {
         Reason::Start => "the mission begins".into(),
-        Reason::Blocked => "the robot could not go on along the plan".into(),
+        Reason::Blocked => "the robot could not continue along the plan".into(),
         Reason::MapChanged => "the map has changed".into(),
-        Reason::Operator => "the operator asked for it".into(),
-        Reason::Swap { from } => format!("it takes over from {from}"),
-        Reason::Recover => "the planner starts again after a fault".into(),
+        Reason::Operator => "requested by the operator".into(),
+        Reason::Swap { from } => format!("the planner takes over from {from}"),
+        Reason::Recover => "the planner restarts after a fault".into(),
     }
 }
 
@@ -315,7 +313,7 @@ fn tether(alarm: &TetherAlarm, reached: Option<bool>) -> Vec<Field> {
 fn certified(planner: &str, refused: bool, certificate: &Certificate) -> Vec<Field> {
     let judgement = match (refused, certificate.certified) {
         (true, _) => "refused: the plan is not run",
-        (false, false) => "not certified, run on the operator's order",
+        (false, false) => "not certified; run on the operator's order",
         (false, true) => "certified",
     };
     let wraps = (certificate.wrap_max_rad.to_degrees(), certificate.wrap_total_max_rad.to_degrees());

@@ -1,4 +1,4 @@
-//! The command line and its list; as help it shows every key.
+//! The command line and its list; opened as help, it shows every key.
 
 use super::list::{List, hint, paragraph};
 use crate::actions::{Action, ActionId, find, keymap::Keymap};
@@ -10,9 +10,9 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::next::joined;
 use crate::view::text;
 
-/// Columns of the keys of a command.
+/// Columns of a command's keys.
 const KEYS: usize = 10;
-/// What is before the line.
+/// The prompt of the command line.
 const PROMPT: &str = " > ";
 
 pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
@@ -37,7 +37,7 @@ pub(super) fn list(look: &Look, palette: &Palette, columns: u16) -> List {
     }
 }
 
-/// The line with what is wrong below it, and the column of the cursor.
+/// The input line with any error below it, and the column of the cursor.
 fn line(palette: &Palette, found: usize, room: usize) -> (Vec<Row>, usize) {
     let count = match found {
         0 => "   no match".to_owned(),
@@ -71,7 +71,7 @@ fn row(look: &Look, choice: &Choice, columns: u16) -> Row {
     }
 }
 
-/// Name and description where there is room, else the description, else the name.
+/// The row of a command: name and description if they fit, otherwise the description, otherwise the name.
 fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     let (name, about) = match columns {
         74.. => (16, usize::from(columns) - 2 - 1 - 16 - KEYS - 6),
@@ -89,7 +89,7 @@ fn command_row(look: &Look, action: &Action, columns: u16) -> Row {
     ]
 }
 
-/// How the selected command is written, and what keys do, as far as there is room.
+/// The usage of the selected command, and hints about keys, as far as they fit.
 fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     let usage = match selected {
         Some(Choice::Command(action)) if !action.args.is_empty() => Some(format!("{}.", action.usage())),
@@ -107,7 +107,7 @@ fn below(look: &Look, selected: Option<&Choice>, room: usize) -> Vec<Row> {
     vec![hint(&format!(" {}", joined(&clauses, room)))]
 }
 
-/// What holds everywhere; the keys in it come from the table.
+/// General rules; the keys in them come from the table.
 fn rules(keys: &Keymap, columns: usize) -> Vec<Row> {
     let of = |id: ActionId| {
         let action = crate::actions::ACTIONS.iter().rfind(|action| action.id == id);

@@ -1,4 +1,4 @@
-//! A list over the screen.
+//! An overlay list.
 
 use crate::theme::Role;
 use crate::view::look::{Look, Parts as Row};
@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph};
 
-/// A list with something above and below it.
+/// A list with lines above and below it.
 #[derive(Default)]
 pub(in crate::view) struct List {
     pub title: String,
@@ -17,9 +17,9 @@ pub(in crate::view) struct List {
     pub rows: Vec<Row>,
     pub selected: usize,
     pub below: Vec<Row>,
-    /// How many of the lines below are worth more than the list's last lines.
+    /// How many of the lines below take precedence over the list's last lines.
     pub needed_below: usize,
-    /// Where the cursor is: which of the lines above and below the list, counted from the first one above, and which column.
+    /// The position of the cursor: the line, counting those above the list and then those below, and the column.
     pub cursor: Option<(usize, usize)>,
 }
 
@@ -28,7 +28,7 @@ impl List {
         let block = look.block(Role::Focus, &self.title, &self.note);
         let inner = block.inner(area);
         let room = usize::from(inner.height).saturating_sub(self.above.len());
-        // The selected line is worth more than anything below the list.
+        // The selected line takes precedence over anything below the list.
         let below =
             self.below.len().min(room.saturating_sub(3).max(self.needed_below)).min(room.saturating_sub(1));
         let shown = table::window(self.selected, self.rows.len(), room - below);
@@ -49,14 +49,14 @@ impl List {
     }
 }
 
-/// Shows the terminal's cursor in a column and row of an area, if that is within it.
+/// Shows the terminal's cursor at a column and row of an area, if the position is within the area.
 pub(in crate::view) fn place_cursor(frame: &mut Frame, area: Rect, (column, row): (usize, usize)) {
     if column < usize::from(area.width) && row < usize::from(area.height) {
         frame.set_cursor_position((area.x + column as u16, area.y + row as u16));
     }
 }
 
-/// A sentence in as many lines as it takes.
+/// A sentence, wrapped into lines.
 pub(in crate::view) fn paragraph(
     role: Role,
     sentence: &str,
@@ -65,7 +65,7 @@ pub(in crate::view) fn paragraph(
     text::wrap(sentence, columns).into_iter().map(move |line| vec![(role, format!(" {line}"))])
 }
 
-/// A line of less weight.
+/// A dimmed line.
 pub(super) fn hint(text: &str) -> Row {
     vec![(Role::Dim, text.to_owned())]
 }

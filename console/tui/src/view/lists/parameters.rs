@@ -1,4 +1,4 @@
-//! The list of the planner's parameters, and the line in which a value is typed.
+//! The list of planner parameters, and the input line for a value.
 
 use super::list::{List, hint, paragraph};
 use crate::model::{parameter, ui::Edit};
@@ -12,7 +12,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         return List { title: "Parameters".into(), ..List::default() };
     };
     let room = usize::from(columns).saturating_sub(3);
-    // A narrow list goes without defaults.
+    // A narrow list omits the defaults.
     let (name, value, default, unit) = match columns {
         74.. => (20, 13, 15, 10),
         56.. => (16, 9, 11, 8),
@@ -43,11 +43,11 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
         if let Some(edit) = edit {
             let (rows, column) = edit_rows(info, edit, room);
             below.extend(rows);
-            // The first line below the head of the table.
+            // The first line below the table's heading.
             cursor = Some((1, column));
         }
         needed_below = below.len();
-        // A refusal names the range already.
+        // The error already names the range.
         if edit.is_none_or(|edit| edit.refusal.is_none()) {
             let allowed = format!(" {}: {}", info.key, parameter::range(info));
             below.push(vec![(Role::Dim, text::fit(&allowed, room))]);
@@ -69,7 +69,7 @@ pub(super) fn list(look: &Look, selected: usize, edit: Option<&Edit>, columns: u
     }
 }
 
-/// The value being typed, why it was refused, and the column of the cursor.
+/// The input line for the value, any error, and the column of the cursor.
 fn edit_rows(info: &mission::ParamInfo, edit: &Edit, room: usize) -> (Vec<Row>, usize) {
     let name = format!(" {} = ", info.key);
     let shown = field(&edit.line, room.saturating_sub(text::width(&name) + 1));

@@ -1,4 +1,4 @@
-//! The list of planners, and of the plugins that were refused.
+//! The list of planners and of refused plugins.
 
 use super::list::{List, hint, paragraph};
 use crate::model::ui::Purpose;
@@ -10,7 +10,7 @@ pub(super) fn list(look: &Look, purpose: Purpose, selected: usize, columns: u16)
     let (title, enter) = match purpose {
         Purpose::Drive => ("Planners", " <accept>: change planner (asks first); coverage is kept."),
         Purpose::Compare => ("Compare with", " <accept>: have it plan beside the active planner."),
-        Purpose::Shadow => ("Fly in shadow", " <accept>: fly it in shadow; it moves nothing."),
+        Purpose::Shadow => ("Fly in shadow", " <accept>: fly it in shadow; it does not move the robot."),
         Purpose::WhatIf => ("Forecast with", " <accept>: add it to the forecasts."),
     };
     let driving = look.run.planner_id();

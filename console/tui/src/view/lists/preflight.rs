@@ -1,4 +1,4 @@
-//! The list of checks before the start.
+//! The list of pre-flight checks.
 
 use super::list::{List, hint, paragraph};
 use crate::theme::Role;
@@ -6,7 +6,7 @@ use crate::view::look::{Look, Parts as Row};
 use crate::view::text;
 use mission::{Check, CheckOutcome};
 
-/// Columns of what is checked by itself.
+/// Columns for the names of the automatic checks.
 const WHAT: usize = 12;
 
 pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
@@ -33,7 +33,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
         (false, Some(why)) => (Role::Crit, format!(" Start is blocked: {why}.")),
     };
     below.push(vec![verdict]);
-    // The key that holds the robot ticks here: nothing moves yet.
+    // The key that holds the robot ticks an item here, where nothing moves yet.
     let tick = if model.n_by_hand() > 0 { " <hold>: tick " } else { "" };
     below.push(hint(&look.keys(&format!("{tick} <check-again>: check again  <cancel>: close"))));
     List {
@@ -47,7 +47,7 @@ pub(super) fn list(look: &Look, selected: usize, columns: u16) -> List {
     }
 }
 
-/// What blocks the start: checks that failed, and points that nobody has ticked.
+/// The checks that block the start: failed ones, and items not ticked.
 struct Blocks {
     failed: usize,
     not_ticked: usize,

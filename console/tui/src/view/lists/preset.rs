@@ -1,4 +1,4 @@
-//! What a preset changes.
+//! The changes that a preset makes.
 
 use super::list::{List, hint};
 use crate::model::{parameter, preset};
@@ -23,7 +23,7 @@ pub(super) fn list(look: &Look, name: &str, choice: &PlannerChoice, selected: us
     let head = ["name", "now", "preset", "unit"].map(|name| text::column(name, width));
     let changed = format!("{} of {} parameters change", differences.len(), info.parameters.len());
     let enter = match now {
-        Some(now) if now.id == choice.id => format!(" {changed}. <accept>: take them."),
+        Some(now) if now.id == choice.id => format!(" {changed}. <accept>: apply them."),
         _ => format!(" {changed} from their defaults. <accept>: change planner to {}.", choice.id),
     };
     List {
@@ -31,7 +31,7 @@ pub(super) fn list(look: &Look, name: &str, choice: &PlannerChoice, selected: us
         above: vec![hint(&format!(" {}", head.concat()))],
         rows: rows.collect(),
         selected,
-        below: vec![hint(&look.keys(&enter)), hint(" Nothing moves: the planner plans with them.")],
+        below: vec![hint(&look.keys(&enter)), hint(" Nothing moves: the planner replans with them.")],
         needed_below: 2,
         ..List::default()
     }

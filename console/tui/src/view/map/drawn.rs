@@ -1,18 +1,18 @@
-//! What the planner draws on the map: which of it is shown, and how.
+//! The planner's drawings on the map.
 
 use crate::model::ui::MapLayer;
 use crate::theme::Role;
 use crate::view::look::Look;
 use planner_api::{Drawing, Layer};
 
-/// Ticks after which the last drawings are no longer shown.
+/// Ticks after which the last drawings disappear.
 const SHOWN_TICKS: u64 = 10;
 
-/// Each kind of drawing: its role, and its word in the legend.
+/// The kinds of drawings, with role and legend text.
 pub(super) const KINDS: [(Role, &str); 3] =
     [(Role::Pull, "pull"), (Role::Push, "push"), (Role::Drawn, "planner")];
 
-/// The drawings that are shown.
+/// The visible drawings.
 pub(super) fn shown<'a>(look: &Look<'a>) -> &'a [Drawing] {
     let planning = &look.run.planning;
     let old = look.run.clock.tick.saturating_sub(planning.drawings_tick) > SHOWN_TICKS;

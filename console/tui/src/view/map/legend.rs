@@ -1,4 +1,4 @@
-//! What the marks on the map stand for: the floor on the left, lines and marks on the right.
+//! The legend of the map: the floor on the left, lines and marks on the right.
 
 use super::drawn;
 use super::shade::{Shade, compared};
@@ -13,13 +13,13 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Clear;
 use world::FloorClass;
 
-/// Columns of the right side, and most rows.
+/// Width of the right side, columns, and the maximum number of rows.
 const SIZE: (u16, u16) = (12, 10);
 
-/// A mark and its word.
+/// A legend entry: role, mark and text.
 type Entry = (Role, String, &'static str);
 
-/// Draws it in the upper corners of an area.
+/// Draws the legend in the upper corners of an area.
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let right = Rect { x: area.right().saturating_sub(SIZE.0), ..area };
     draw_side(look, frame, area, &floor(look));
@@ -37,7 +37,7 @@ fn draw_side(look: &Look, frame: &mut Frame, area: Rect, entries: &[Entry]) {
     }
 }
 
-/// The classes of floor that there are.
+/// The floor classes that occur.
 fn floor(look: &Look) -> Vec<Entry> {
     let (run, layers) = (look.run, look.model.ui.layers);
     let scanned = layers.shows(MapLayer::Scanned);

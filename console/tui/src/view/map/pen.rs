@@ -1,4 +1,4 @@
-//! What the model has, drawn on the canvas of the map.
+//! Draws the model on the canvas of the map.
 
 use super::drawn;
 use super::plates::{self, Outlines};
@@ -13,25 +13,25 @@ use ratatui::text::Line;
 use ratatui::widgets::canvas::Context;
 use world::{Boundary, Point, ZoneKind};
 
-/// Most missed areas that are numbered on the map: of the whole tank, and of a part of it.
+/// The maximum number of numbered missed areas on the map: with the whole tank shown, and with a part of it.
 const MISSED: (usize, usize) = (9, 99);
-/// Pieces of a round wall.
+/// The number of segments of a round wall.
 const WALL_PIECES: u32 = 256;
-/// Columns that a pass of the tool must be wide for all passes to be drawn.
+/// Passes are all drawn if a pass of the tool is at least this many columns wide.
 const PASS_COLUMNS: f64 = 2.0;
-/// Length of trail and plan where not all of it is drawn, in columns.
+/// Length of the trail and plan when they are not drawn completely, columns.
 const REACH_COLUMNS: f64 = 40.0;
-/// Dots of a character.
+/// Dots per character.
 pub(super) const DOTS: (u16, u16) = (2, 4);
 
-/// Draws on the canvas what the model has.
+/// Draws the model on the canvas.
 pub(super) struct Pen<'a> {
     pub look: Look<'a>,
     pub window: Window,
 }
 
 impl Pen<'_> {
-    /// Without braille each kind of line has a character of its own, on a layer of its own.
+    /// Without braille, each kind of line has its own character and layer.
     pub(super) fn take_up(&self, ctx: &mut Context<'_>, plain: char) {
         if !self.look.caps.glyphs.has_dots() {
             ctx.marker(Marker::Custom(plain));
@@ -43,7 +43,7 @@ impl Pen<'_> {
         ctx.draw(&Stroke { points, window: self.window, dotted, color });
     }
 
-    /// The characters of the map: dots where the terminal has them.
+    /// The markers of the map: dots if the terminal has them.
     pub(super) fn marker(&self) -> Marker {
         if self.look.caps.glyphs == Glyphs::Octant { Marker::Octant } else { Marker::Braille }
     }
@@ -84,7 +84,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Another planner's plan or forecast, where they are compared.
+    /// The plan or forecast of a different planner, during a comparison.
     fn ghost(&self, ctx: &mut Context<'_>) {
         self.other(ctx);
         let (live, ui) = (&self.look.model.live, &self.look.model.ui);
@@ -105,7 +105,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The run with which the one that is played back is compared.
+    /// The run that the replay is compared with.
     fn other(&self, ctx: &mut Context<'_>) {
         let other = self.look.model.live.replay.as_ref().and_then(|replay| replay.other.as_ref());
         let Some(other) = other.filter(|_| self.look.model.ui.screen == Screen::Mission) else { return };
@@ -115,8 +115,8 @@ impl Pen<'_> {
         self.stroke(ctx, behind, Role::Ghost, false);
     }
 
-    /// How much of plan and trail is drawn, metres: where neighbouring passes would merge on the map, only what lies
-    /// close before and behind the robot. The scanned cells show the rest.
+    /// How much of the plan and trail is drawn, metres. Where neighbouring passes would merge on the map, only the
+    /// stretch close to the robot is drawn; the scanned cells show the rest.
     fn reach_m(&self) -> Option<f64> {
         let swath_m = self.look.run.about.as_ref()?.mission.swath_m;
         (swath_m < PASS_COLUMNS * self.window.column_m).then_some(REACH_COLUMNS * self.window.column_m)
@@ -151,7 +151,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The taut cable, above all else that does not move.
+    /// The taut cable, on top of everything else that does not move.
     pub(super) fn tether(&self, ctx: &mut Context<'_>) {
         if let Some(tether) = &self.look.run.tether {
             self.take_up(ctx, '~');
@@ -159,7 +159,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The hull and the 95 % error, where they are large enough to be seen.
+    /// The hull and the 95 % error, if large enough to be visible.
     pub(super) fn robot(&self, ctx: &mut Context<'_>) {
         let Some(pose) = &self.look.run.position.pose else { return };
         self.take_up(ctx, '+');
@@ -212,7 +212,7 @@ impl Pen<'_> {
     }
 }
 
-/// The first points of a path up to some length.
+/// The points of a path up to a given length.
 pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
     let mut walked_m = 0.0;
     let steps = path.windows(2).take_while(|pair| {
@@ -223,14 +223,14 @@ pub(super) fn within(path: &[Point], length_m: f64) -> &[Point] {
     path.get(..=last).unwrap_or(path)
 }
 
-/// Index of the point of a path that is nearest to a place; 0 for an empty path.
+/// The index of the path point nearest to a place; 0 for an empty path.
 pub(super) fn nearest(path: &[Point], place: Point) -> usize {
     let distance = |point: &Point| (point - place).norm_squared();
     let best = path.iter().enumerate().min_by(|one, other| distance(one.1).total_cmp(&distance(other.1)));
     best.map_or(0, |(index, _)| index)
 }
 
-/// The robot, looking where it looks.
+/// The robot's arrow, pointing in its heading.
 fn arrow(glyphs: Glyphs, heading_rad: f64) -> &'static str {
     const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
     if glyphs == Glyphs::Ascii || !heading_rad.is_finite() {

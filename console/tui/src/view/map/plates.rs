@@ -1,4 +1,4 @@
-//! The plates of the floor on the map: their outlines, and their names where there is room.
+//! The floor plates on the map: their outlines, and their names where they fit.
 
 use super::pen::DOTS;
 use super::shapes::Window;
@@ -9,23 +9,23 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use world::{Floor, PlateMap, Point, Vector};
 
-/// Zoom from which plates are drawn: twice the whole tank.
+/// The zoom from which plates are drawn: twice the scale of the whole tank.
 const FROM_ZOOM: u8 = 1;
 
-/// What the drawing depends on.
+/// The inputs of the drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Key(world::PlateLayout, usize, Window, bool);
 
 /// The plates in a window.
 #[derive(Debug, PartialEq, Default)]
 pub(crate) struct PlateDrawing {
-    /// Dots of outlines, from the north west.
+    /// The dots of the outlines, from the north-west.
     dots: Vec<(u16, u16)>,
-    /// Names, each with the middle of what is seen of its plate.
+    /// The names, each with the centre of the plate's visible part.
     pub names: Vec<(Point, String)>,
 }
 
-/// The plates in a window, if they are known and the map is enlarged enough.
+/// The plates in a window, if they are known and the zoom is high enough.
 pub(super) fn plates(look: &Look, window: Window) -> Option<Rc<PlateDrawing>> {
     if look.model.ui.map.zoom < FROM_ZOOM {
         return None;
@@ -37,14 +37,14 @@ pub(super) fn plates(look: &Look, window: Window) -> Option<Rc<PlateDrawing>> {
     Some(look.cache.borrow_mut().plates(key, || Rc::new(drawing(&map, floor, window, has_dots))))
 }
 
-/// The plate of every cell.
+/// The plate of each cell.
 fn map(look: &Look) -> Option<Rc<PlateMap>> {
     let (about, raster) = (look.run.about.as_ref()?, look.run.coverage.as_ref()?);
     let mut cache = look.cache.borrow_mut();
     Some(cache.plate_map(about.plates.as_ref()?, &about.world.boundary, raster.floor()))
 }
 
-/// Name of the plate under a point.
+/// The name of the plate under a point.
 pub(super) fn name_at(look: &Look, at: Point) -> Option<String> {
     let cell = look.run.coverage.as_ref()?.floor().cell_at(at)?;
     let map = map(look)?;
@@ -78,10 +78,10 @@ fn drawing(map: &PlateMap, floor: &Floor, window: Window, has_dots: bool) -> Pla
     PlateDrawing { dots, names: names.collect() }
 }
 
-/// Characters that must be seen of a plate for its name to be written.
+/// Minimum visible size of a plate for its name to be drawn, characters.
 const LEAST_CHARACTERS: u32 = 24;
 
-/// The outlines as a shape of the canvas.
+/// The outlines as a canvas shape.
 pub(super) struct Outlines<'a>(pub &'a PlateDrawing, pub Color);
 
 impl Shape for Outlines<'_> {

@@ -1,4 +1,4 @@
-//! The lines at the foot of the map: where the robot is, and what is known of the place under the cursor.
+//! The lines at the bottom of the map: the robot's position, and details of the place under the cursor.
 
 use super::plates;
 use crate::model::ui::Ui;
@@ -7,7 +7,7 @@ use crate::view::look::Look;
 use crate::view::text;
 use world::{FloorClass, Point};
 
-/// The robot's place and the error of it, in words.
+/// The robot's position and its error, in words.
 pub(super) fn robot(look: &Look, width: u16) -> (Role, String) {
     let position = &look.run.position;
     let name = if width >= 60 { "robot " } else { "" };
@@ -21,7 +21,7 @@ pub(super) fn robot(look: &Look, width: u16) -> (Role, String) {
     (role, format!("{lost}{stale}{name}{at} ±{error} m "))
 }
 
-/// The place under the cursor: coordinates, radius and bearing from the middle of the tank.
+/// The place under the cursor: coordinates, and radius and bearing from the tank's centre.
 pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)> {
     let at = ui.cursor?;
     let (low, high) = look.run.about.as_ref()?.world.boundary.bounds();
@@ -31,7 +31,7 @@ pub(super) fn cursor(look: &Look, ui: &Ui, width: u16) -> Option<(Role, String)>
     Some((Role::Title, format!(" {name}{}  r {radius} m, {bearing}°", text::place(at))))
 }
 
-/// What is known of the floor there: plate, class, expected error of a fix.
+/// The floor there: plate, class, expected error of a fix.
 pub(super) fn floor(look: &Look, at: Point) -> String {
     let raster = look.run.coverage.as_ref();
     let class = raster.and_then(|raster| raster.class_at(at, look.run.has_missed()));

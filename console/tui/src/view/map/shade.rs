@@ -1,4 +1,4 @@
-//! The floor below everything else on the map: what has been scanned and what not, each by a character and a colour.
+//! The floor layer at the bottom of the map: scanned and unscanned floor, each with its own character and colour.
 
 use super::shapes::Window;
 use crate::model::{Raster, replay::Scans, ui::MapLayer};
@@ -9,28 +9,28 @@ use ratatui::layout::Rect;
 use std::rc::Rc;
 use world::{FloorClass, Point};
 
-/// How some floor is shown.
+/// The shade of some floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shade {
-    /// By what it counts as; never [`FloorClass::ToDo`].
+    /// The shade of a floor class; never [`FloorClass::ToDo`].
     Floor(FloorClass),
-    /// The stations are forecast to locate beyond the limit here, or not at all.
+    /// Forecast: fixes exceed the error limit here, or are impossible.
     PoorFix,
-    /// They are forecast to locate beyond half of the limit here.
+    /// Forecast: fixes exceed half of the error limit here.
     WeakFix,
-    /// Of two runs only the one that is played scanned it.
+    /// Scanned only by the run being replayed.
     OnlyA,
-    /// Only the one that it is compared with.
+    /// Scanned only by the run that it is compared with.
     OnlyB,
 }
 
 impl Shade {
-    /// What is still to be scanned, and what is no floor, is not shaded.
+    /// The shade of a class; `None` for floor still to be scanned and for places that are not floor.
     fn of(class: FloorClass) -> Option<Self> {
         (!matches!(class, FloorClass::Outside | FloorClass::ToDo)).then_some(Self::Floor(class))
     }
 
-    /// The character for it, and what its colour stands for.
+    /// The character and role.
     fn look(self) -> (char, Role) {
         match self {
             Self::Floor(FloorClass::Outside | FloorClass::ToDo) => (' ', Role::Dim),
@@ -47,31 +47,31 @@ impl Shade {
         }
     }
 
-    /// The character for it.
+    /// The character.
     pub(super) fn glyph(self) -> char {
         self.look().0
     }
 
-    /// What its colour stands for.
+    /// The role.
     pub(super) fn role(self) -> Role {
         self.look().1
     }
 
-    /// The colour behind it, on which lines are drawn.
+    /// The background role, on which lines are drawn.
     fn ground(self) -> Option<Role> {
         matches!(self, Self::Floor(FloorClass::Scanned | FloorClass::Again)).then_some(Role::Scanned)
     }
 }
 
-/// The shades in a window, row by row from the north west.
+/// The shades in a window, row by row from the north-west.
 pub(crate) type Shades = Rc<[Option<Shade>]>;
 
-/// What the shades of the floor depend on: the stamp of the raster, the window, rows per row, whether the mission has ended,
-/// and the stamp of the raster of which the difference is shown.
+/// The inputs of the floor's shades: the stamp of the raster, the window, shade rows per character row, whether the
+/// mission has ended, and the stamp of the raster that it is compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Key(u64, Window, u16, bool, Option<u64>);
 
-/// Paints the floor where nothing else is drawn, and its ground below lines.
+/// Paints the floor where nothing else is drawn, and its background under lines.
 pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer) {
     let halves = !look.is_plain();
     let shades = shades(look, window, if halves { 2 } else { 1 });
@@ -87,7 +87,7 @@ pub(super) fn paint(look: &Look, window: Window, area: Rect, buffer: &mut Buffer
     }
 }
 
-/// One character: where its halves differ, each has its colour.
+/// Paints one character; if its halves differ, each half has its own colour.
 fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mut ratatui::buffer::Cell) {
     let color = |shade: Shade| look.theme.color(shade.role());
     if cell.symbol() == " " {
@@ -115,7 +115,8 @@ fn paint_cell(look: &Look, upper: Option<Shade>, lower: Option<Shade>, cell: &mu
     }
 }
 
-/// The forecast where it is shown, else the floor: that changes rarely and is kept from frame to frame.
+/// The shades of the forecast if it is shown, otherwise of the floor, which rarely changes and is cached between
+/// frames.
 fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     let (run, layers) = (look.run, look.model.ui.layers);
     let raster = run.coverage.as_ref().filter(|_| layers.shows(MapLayer::Scanned));
@@ -137,7 +138,7 @@ fn shades(look: &Look, window: Window, rows_per_row: u16) -> Shades {
     })
 }
 
-/// The floor of the run with which the one that is played is compared, if their difference is shown.
+/// The floor of the run that the replay is compared with, if the difference is shown.
 pub(super) fn compared<'a>(look: &Look<'a>) -> Option<&'a Raster> {
     let replay = look.model.live.replay.as_ref().filter(|replay| replay.shows_difference)?;
     replay.other.as_ref()?.run.coverage.as_ref()
@@ -156,7 +157,7 @@ fn floor(raster: &Raster, at: Point, edge_m: f64, has_missed: bool) -> Option<Sh
     raster.class_in(at, edge_m, has_missed).and_then(Shade::of)
 }
 
-/// Where the stations are forecast to locate badly: beyond the limit, and beyond half of it.
+/// The forecast shade at a point: beyond the limit, or beyond half of it.
 fn forecast(look: &Look, at: Point) -> Option<Shade> {
     let limit_m = look.run.about.as_ref()?.mission.position_limit_m;
     match look.run.accuracy.as_ref()?.at(at)?.error_95_m {

@@ -1,4 +1,4 @@
-//! The planner in shadow on the map: its plan, and a ghost of the robot that its command would lead.
+//! The planner in shadow on the map: its plan, and the ghost of the robot under its command.
 
 use super::pen::{Pen, within};
 use super::shapes::ellipse;
@@ -7,11 +7,11 @@ use crate::theme::Role;
 use ratatui::widgets::canvas::Context;
 use world::Point;
 
-/// Length of its plan that is drawn, metres.
+/// Length of its plan to draw, metres.
 const AHEAD_M: f64 = 4.0;
 
 impl Pen<'_> {
-    /// Draws plan and ghost.
+    /// Draws the plan and the ghost.
     pub(super) fn shadow(&self, ctx: &mut Context<'_>) {
         let run = self.look.run;
         let Some(shadow) = run.shadow.as_ref().filter(|_| run.is_running()) else { return };

@@ -4,21 +4,21 @@ use ratatui::style::Color;
 use ratatui::widgets::canvas::{Painter, Shape};
 use world::{Point, Vector};
 
-/// The part of the floor that is seen.
+/// The visible part of the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Window {
-    /// West and east edge, metres.
+    /// The west and east edges, metres.
     pub x: [f64; 2],
-    /// South and north edge, metres.
+    /// The south and north edges, metres.
     pub y: [f64; 2],
-    /// Width of a column, metres; a row is twice as high.
+    /// The width of a column, metres; a row is twice as high.
     pub column_m: f64,
-    /// Columns and rows.
+    /// The number of columns and rows.
     pub size: (u16, u16),
 }
 
 impl Window {
-    /// A window about a point.
+    /// Makes a window around a point.
     pub(super) fn new(center: Point, column_m: f64, size: (u16, u16)) -> Self {
         let half_x = f64::from(size.0) * column_m / 2.0;
         let half_y = f64::from(size.1) * column_m;
@@ -30,13 +30,14 @@ impl Window {
         }
     }
 
-    /// The middle of a character, counted from the north west.
+    /// The centre of a character cell, counted from the north-west.
     pub(crate) fn middle_of(&self, column: u16, row: u16) -> Point {
         let x = self.x[0] + (f64::from(column) + 0.5) * self.column_m;
         Point::new(x, self.y[1] - (2.0 * f64::from(row) + 1.0) * self.column_m)
     }
 
-    /// Middles of the dots of one or half a character, row by row from the north west, and their edge, metres.
+    /// The centres of the dots, one per character or half character, row by row from the north-west, and the width of
+    /// a dot, metres.
     pub(super) fn dots(self, rows_per_row: u16) -> impl Iterator<Item = (Point, f64)> {
         let (columns, rows) = (self.size.0, self.size.1 * rows_per_row);
         let row_m = 2.0 * self.column_m / f64::from(rows_per_row);
@@ -134,7 +135,7 @@ impl Shape for Filled<'_> {
                 }
             }
         }
-        // A pipe thinner than a dot still shows.
+        // A pipe thinner than a dot must still be visible.
         let middle = self.shape.center();
         if let Some((column, row)) = painter.get_point(middle.x, middle.y) {
             painter.paint(column, row, self.color);
@@ -142,7 +143,7 @@ impl Shape for Filled<'_> {
     }
 }
 
-/// Points of an ellipse about a centre, closed.
+/// The points of a closed ellipse around a centre.
 pub(super) fn ellipse(center: Point, half_m: (f64, f64), turned_rad: f64, pieces: u32) -> Vec<Point> {
     let (sin, cos) = turned_rad.sin_cos();
     (0..=pieces)

@@ -1,4 +1,4 @@
-//! What a plan promises, in figures, beside those of a second plan.
+//! The estimate for a plan in figures, beside that of a second plan.
 
 use crate::theme::Role;
 use crate::view::look::{Look, Parts, fill};
@@ -8,7 +8,7 @@ use mission::MissionConfig;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-/// Rows of the table, its head included.
+/// Rows of the table, including its heading.
 pub(super) const ROWS: u16 = 9;
 /// Columns of a label.
 const LABEL: usize = 12;
@@ -22,7 +22,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     let width = columns.saturating_sub(LABEL + 2) / if ghost.is_some() { 2 } else { 1 };
     let mine = look.run.planner_id().unwrap_or("-");
     let head = match ghost.map(|(ghost, _)| ghost.choice.id.as_str()) {
-        // Who is compared is said beside the planner.
+        // The planner pane names the second planner.
         Some(other) if text::width(mine).max(text::width(other)) >= width => ("active", Some("compared")),
         other => (mine, other),
     };
@@ -46,7 +46,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect) {
     fill(frame, area, block, rows.into_iter().map(|parts| look.line(parts)).collect());
 }
 
-/// A cell of the table.
+/// A cell of the table: role and text.
 type Figured = (Role, String);
 
 fn row(label: &str, (mine, other): (Figured, Option<Figured>), width: usize) -> Parts {
@@ -55,7 +55,7 @@ fn row(label: &str, (mine, other): (Figured, Option<Figured>), width: usize) -> 
     std::iter::once((Role::Dim, format!(" {label:<LABEL$}"))).chain(cells).collect()
 }
 
-/// A figure that breaks a limit of the mission, with the limit where there is room.
+/// A figure that exceeds a limit of the mission, with the limit if it fits.
 fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig, width: usize) -> Option<String> {
     let said = |found: String, limit: String| {
         text::wording([format!("{found} > {limit}"), format!("{found}!")], width.saturating_sub(1))
@@ -85,7 +85,7 @@ fn beyond(label: &str, estimate: &Estimate, mission: &MissionConfig, width: usiz
 
 type Figure = fn(&Estimate, usize) -> String;
 
-/// The figures in the order of the table; where there is room, also the place where a figure is worst.
+/// The figures in the order of the table; if space allows, also where a figure is worst.
 const FIGURES: [(&str, Figure); 8] = [
     ("time", |e, _| text::clock(e.time_s)),
     ("length", |e, _| format!("{} m", text::number(e.length_m, 1))),

@@ -1,4 +1,4 @@
-//! What was changed of the planner's parameters.
+//! The changed parameters of the planner.
 
 use crate::model::parameter;
 use crate::theme::Role;
@@ -28,7 +28,7 @@ fn row(key: &str, change: &str, columns: usize) -> Parts {
     ]
 }
 
-/// Parameters that differ from their defaults: key, and default and value.
+/// The parameters that differ from their defaults: key, then default and value.
 fn changed(look: &Look) -> Vec<(String, String)> {
     let infos = look.model.planner().map_or(&[][..], |info| info.parameters.as_slice());
     infos

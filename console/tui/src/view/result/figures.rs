@@ -1,4 +1,4 @@
-//! What was achieved against what the plan promised.
+//! The achieved figures beside the plan's estimate.
 
 use super::role;
 use crate::model::RunResult;
@@ -9,13 +9,13 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// A figure: what it is, as the plan promised it, as it came, and the limit; whether it broke the limit.
+/// A figure: its name, the estimate, the achieved value, the limit, and whether the limit was exceeded.
 struct Figure {
     cells: [String; 4],
     is_beyond: bool,
 }
 
-/// Rows of the table, in some columns.
+/// The rows that the table needs.
 pub(super) fn rows(look: &Look, result: &RunResult, columns: u16) -> u16 {
     let words = reason(result, columns.into()).len() + trouble(look, result, columns.into()).len();
     1 + (words + figures(look, result).len()) as u16
@@ -40,7 +40,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, title: &str, resu
         (role, row.cells)
     }));
     lines.extend(table.map(|(role, [what, predicted, actual, limit])| {
-        // Without colours the mark says that a limit was broken.
+        // Without colours, the mark shows that a limit was exceeded.
         let mark = if role == Role::Warn { "!" } else { " " };
         look.line([
             (Role::Dim, format!(" {}", text::column(&what, label))),
@@ -60,7 +60,7 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     let metres = |decimals| move |m: f64| format!("{} m", text::number(m, decimals));
     let degrees = |rad: f64| format!("{}°", text::number(rad.to_degrees(), 0));
     let clearance = promised.and_then(|p| p.clearance_min).map(|worst| worst.value);
-    // The plan and the limit are about the time that the mission does not wait.
+    // The estimate and the limit refer to the time in which the mission does not wait.
     let moving_s = Some(run.clock.moving_s);
     let mut figures = vec![
         at_most(
@@ -110,12 +110,12 @@ fn figures(look: &Look, result: &RunResult) -> Vec<Figure> {
     figures
 }
 
-/// A figure that shall not be larger than its limit: as promised, as it came, the limit.
+/// A figure that must not exceed its limit; `values` are the estimate, the achieved value and the limit.
 fn at_most(what: &str, written: impl Fn(f64) -> String, values: [Option<f64>; 3]) -> Figure {
     figure(what, written, values, |actual, limit| actual > limit)
 }
 
-/// A figure that shall not be smaller than its limit: as promised, as it came, the limit.
+/// A figure that must not fall below its limit; `values` are the estimate, the achieved value and the limit.
 fn at_least(what: &str, written: impl Fn(f64) -> String, values: [Option<f64>; 3]) -> Figure {
     figure(what, written, values, |actual, limit| actual < limit)
 }
@@ -128,7 +128,7 @@ fn figure(
 ) -> Figure {
     let [_, actual, limit] = values;
     let [predicted, came, most] = values.map(|value| value.map_or_else(dash, &written));
-    // What is printed alike is alike.
+    // Values that print the same count as equal.
     let is_beyond = came != most && actual.zip(limit).is_some_and(|(actual, limit)| is_beyond(actual, limit));
     Figure { cells: [what.to_owned(), predicted, came, most], is_beyond }
 }

@@ -1,4 +1,4 @@
-//! How the floor divides, on every base, and the zone along the shell.
+//! The shares of the floor on every base, and the critical zone along the shell.
 
 use crate::model::{RunResult, Source};
 use crate::theme::Role;
@@ -9,7 +9,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-/// Missed share of a plate, per cent, up to which it counts as scanned but for slivers.
+/// Missed share of a plate up to which the plate counts as scanned except for slivers, per cent.
 const MISSED_PERCENT: f64 = 1.0;
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResult) {
@@ -28,7 +28,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
             }
         }
     }
-    // A note that does not fit would be half a sentence; the report has all of them.
+    // A note that does not fit would end in mid-sentence; the report has all notes.
     for note in notes(look, result, columns) {
         if rows.len() + note.len() <= usize::from(block.inner(area).height) {
             rows.extend(note.into_iter().map(|line| vec![(Role::Text, format!(" {line}"))]));
@@ -38,7 +38,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, result: &RunResul
     fill(frame, area, block, lines);
 }
 
-/// Whether there is room for the area and for what cannot be reached.
+/// Whether the areas and the unreachable floor fit.
 fn is_wide(columns: usize) -> bool {
     columns >= 59
 }
@@ -68,7 +68,7 @@ fn shares(label: &str, shares: &Shares, columns: usize) -> String {
     }
 }
 
-/// Which runs are taken together, or why none are.
+/// The runs that are combined, or why they are not.
 fn of_all_runs(look: &Look) -> Option<String> {
     let live = &look.model.live;
     let earlier = match &live.source {
@@ -94,7 +94,7 @@ fn of_all_runs(look: &Look) -> Option<String> {
     }
 }
 
-/// What the table does not say: notes in lines.
+/// Notes below the table, in lines.
 fn notes(look: &Look, result: &RunResult, columns: usize) -> Vec<Vec<String>> {
     let summary = &result.summary;
     let overlap = summary.coverage.as_ref().and_then(|coverage| coverage.overlap);

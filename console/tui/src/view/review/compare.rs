@@ -28,7 +28,7 @@ const fn figure(
     Figure { what, unit, decimals, of }
 }
 
-/// The figures, those that matter most first.
+/// The figures, most important first.
 const FIGURES: [Figure; 15] = [
     figure("scanned", "% reach.", 1, |s| s.coverage.as_ref().map(|c| percent(c.reachable))),
     figure("missed", "m²", 2, |s| s.coverage.as_ref()?.missed_area_m2),
@@ -48,7 +48,7 @@ const FIGURES: [Figure; 15] = [
 ];
 
 pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): (&Replay, &Other)) {
-    let block = look.block(Role::Border, "Compare", &look.keys("<compare-run>: other run, twice: none"));
+    let block = look.block(Role::Border, "Compare", &look.keys("<compare-run>: other run, same run: none"));
     let columns = usize::from(block.inner(area).width);
     let rows = usize::from(block.inner(area).height).saturating_sub(2);
     let a = look.model.live.result.as_ref().map(|result| &*result.summary);
@@ -62,7 +62,7 @@ pub(super) fn draw(look: &Look, frame: &mut Frame, area: Rect, (replay, other): 
     fill(frame, area, block, lines);
 }
 
-/// Columns of the name of a figure with its unit.
+/// Columns of a figure's name with its unit.
 const LABEL: usize = 17;
 
 fn line(
@@ -73,7 +73,7 @@ fn line(
 ) -> Line<'static> {
     let [a, b] = [a, b].map(|summary| summary.and_then(figure.of));
     let number = |value: Option<f64>| value.map_or_else(|| "-".into(), |v| text::number(v, figure.decimals));
-    // Of the numbers as they are shown.
+    // The difference of the numbers as shown.
     let scale = 10_f64.powi(figure.decimals as i32);
     let shown = |value: f64| (value * scale).round() / scale;
     let difference = a.zip(b).map(|(a, b)| shown(a) - shown(b));
@@ -88,7 +88,7 @@ fn row(look: &Look, role: Role, label: &str, values: [String; 3], width: usize) 
     look.line([(Role::Dim, format!(" {}", text::column(label, LABEL))), (role, values)])
 }
 
-/// Whether the two runs can be compared at all.
+/// The line that states what the two runs have in common, so that the reader can judge the comparison.
 fn same(replay: &Replay, other: &Other, summaries: (Option<&Summary>, Option<&Summary>)) -> String {
     let (Some(a), Some(b)) = summaries else {
         let missing = if summaries.0.is_none() { &replay.name } else { &other.name };

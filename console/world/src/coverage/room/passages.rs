@@ -1,8 +1,8 @@
-//! Which places with room are connected, and which of them with the start.
+//! Determines which free places are connected to each other, and to the start.
 //!
-//! Cells with room that lie side by side are connected. What cells cannot show is decided between two solids that leave a
-//! passage about as wide as the robot: there the way from cell to cell is tested, and where no cell lies in the passage, it is
-//! followed from its narrowest place to both sides.
+//! Adjacent free cells are connected. The cells are too coarse where two solids leave a passage about as wide as the
+//! robot. There, the line from cell to cell is tested; if no cell lies in the passage, it is followed from its
+//! narrowest place in both directions.
 
 use super::{Core, Room, TIE_M};
 use crate::coverage::floor::Floor;
@@ -12,54 +12,54 @@ use std::{
     f64::consts::TAU,
 };
 
-/// What passages are wider than what the robot needs by, in cells, if cells show them for certain.
+/// If a passage exceeds the required width by this much, in cells, the cells are fine enough to show it.
 const WIDE_CELLS: f64 = 3.0;
-/// Length of a step along a passage, in cells.
+/// The length of a step along a passage, in cells.
 const STEP_CELLS: f64 = 0.5;
-/// Directions that are tried for a step, and how often their range is narrowed.
+/// The number of directions tried for a step, and how often their range is narrowed.
 const DIRECTIONS: u32 = 9;
 const NARROWINGS: u32 = 4;
-/// How far a step may turn to each side, radians.
+/// The largest turn in one step, to either side, radians.
 const TURN_RAD: f64 = 1.2;
-/// Most steps along a passage.
+/// The most steps along a passage.
 const MOST_STEPS: usize = 2_000;
-/// Cells with room are looked for this far around a place.
+/// Free cells are searched this far around a place, in cells.
 const ABOUT_CELLS: i64 = 2;
 
-/// The group of a cell without room.
+/// The group of a cell that is not free.
 const NONE: u32 = u32::MAX;
 
-/// Places with room, in groups of those that the robot can drive between.
+/// Free places in groups; the robot can drive between all places of a group.
 #[derive(Clone)]
 pub(in crate::coverage) struct Connected {
     groups: Groups,
-    /// Group of the place from which the robot starts.
+    /// The group of the robot's start.
     home: u32,
 }
 
 #[derive(Clone)]
 struct Groups {
     of_cell: Vec<u32>,
-    /// For every group another one that it is part of, or itself.
+    /// For every group, a group that it is part of, or itself.
     parents: Vec<u32>,
-    /// Places with room that were followed to a group, by their cell.
+    /// Free places on a followed passage, with their group, by cell.
     trails: BTreeMap<(i64, i64), Vec<(Point, u32)>>,
 }
 
-/// The narrowest place of a passage, and the way through it.
+/// The narrowest place of a passage, and its direction.
 struct Neck {
     at: Point,
     through: Vector,
 }
 
 impl Connected {
-    /// Nowhere to drive.
+    /// Creates the groups of a floor on which the robot cannot drive anywhere.
     pub(in crate::coverage) fn nowhere(floor: &Floor) -> Self {
         let groups = Groups { of_cell: vec![NONE; floor.len()], parents: vec![], trails: BTreeMap::new() };
         Self { groups, home: NONE }
     }
 
-    /// The groups of the cells with room, of the passages between them, and of the corners of the rim.
+    /// Groups the free cells, the passages between them, and the corners of the rim.
     pub(in crate::coverage) fn new(room: &Room, floor: &Floor, has_room: &[bool], start: Point) -> Self {
         let necks = room.necks(WIDE_CELLS * floor.cell_m);
         let doubtful = doubtful(floor, room, &necks);
@@ -80,20 +80,20 @@ impl Connected {
         Self { groups, home }
     }
 
-    /// Whether a cell is one with room to which the robot can drive from the start.
+    /// Whether a cell is free and the robot can drive to it from the start.
     pub(in crate::coverage) fn is_home(&self, cell: usize) -> bool {
         let group = self.groups.of_cell[cell];
         group != NONE && self.groups.root(group) == self.home
     }
 
-    /// Whether the robot can drive from the start to a place with room.
+    /// Whether the robot can drive from the start to a free place.
     pub(in crate::coverage) fn leads_to(&self, room: &Room, floor: &Floor, place: Point) -> bool {
         self.groups.seen_from(room, floor, place, None).is_some_and(|group| group == self.home)
     }
 }
 
 impl Groups {
-    /// Groups of cells with room that lie side by side; where it is doubtful, only with room on the way between them.
+    /// Groups adjacent free cells; where the connection is doubtful, only if the line between them is free.
     fn of_cells(room: &Room, floor: &Floor, has_room: &[bool], doubtful: &[bool]) -> Self {
         let mut groups =
             Self { of_cell: vec![NONE; has_room.len()], parents: vec![], trails: BTreeMap::new() };
@@ -137,7 +137,7 @@ impl Groups {
         self.parents[one.max(other) as usize] = one.min(other);
     }
 
-    /// The group to which the robot can drive straight from a place with room, towards `ahead` if that is given.
+    /// Returns the group to which the robot can drive straight from a free place, in the direction `ahead` if given.
     fn seen_from(
         &self,
         room: &Room,
@@ -164,7 +164,7 @@ impl Groups {
         found.map(|(_, group)| self.root(group))
     }
 
-    /// The group to which a passage leads from a place in some direction; a new one if it ends.
+    /// Returns the group to which a passage leads from a place in a direction; a new group if the passage ends.
     fn follow(&mut self, room: &Room, floor: &Floor, from: Point, way: Vector) -> u32 {
         let (mut here, mut ahead) = (from, way);
         let mut trail = vec![from];
@@ -184,7 +184,7 @@ impl Groups {
         group
     }
 
-    /// The group of the start; of the nearest cell with room, if the start has none.
+    /// Returns the group of the start; if it has none, the group of the nearest free cell.
     fn home(&self, room: &Room, floor: &Floor, has_room: &[bool], start: Point) -> u32 {
         let at_start = room.has(start).then(|| self.seen_from(room, floor, start, None)).flatten();
         let off_m = |cell: &usize| (floor.center(*cell) - start).norm();
@@ -195,13 +195,13 @@ impl Groups {
     }
 }
 
-/// The column and row of the cell under a place, also outside the grid.
+/// Returns the column and row of the cell under a place, even outside the grid.
 fn cell_under(floor: &Floor, place: Point) -> (i64, i64) {
     let offset = (place - floor.origin) / floor.cell_m;
     (offset.x.floor() as i64, offset.y.floor() as i64)
 }
 
-/// The cells about the narrow places of passages; all of them, if the robot needs hardly any room.
+/// Marks the cells around the necks of passages; all cells, if the required clearance is smaller than a cell.
 fn doubtful(floor: &Floor, room: &Room, necks: &[Neck]) -> Vec<bool> {
     let mut doubtful = vec![room.keep_m < floor.cell_m; floor.len()];
     for neck in necks {
@@ -212,7 +212,7 @@ fn doubtful(floor: &Floor, room: &Room, necks: &[Neck]) -> Vec<bool> {
     doubtful
 }
 
-/// The next place along a passage: where there is most room ahead; `None` where it ends.
+/// Returns the next place along a passage, with the most clearance ahead; `None` where the passage ends.
 fn step(room: &Room, here: Point, ahead: Vector, length_m: f64) -> Option<Point> {
     let lengths = [1.0, 0.5, 0.25, 0.1].map(|share| share * length_m);
     let next = |length_m: f64| {
@@ -227,7 +227,7 @@ fn step(room: &Room, here: Point, ahead: Vector, length_m: f64) -> Option<Point>
     lengths.into_iter().find_map(next)
 }
 
-/// The direction in which there is most room from a place where it has just room.
+/// Returns the direction with the most clearance from a place where the robot barely fits.
 fn widest_way(room: &Room, here: Point, length_m: f64) -> Option<Vector> {
     let angles = (0..16).map(|k| TAU * f64::from(k) / 16.0);
     let room_m = |angle: f64| room.map.clearance_m(place(here, length_m, angle));
@@ -248,7 +248,7 @@ fn place(from: Point, length_m: f64, angle_rad: f64) -> Point {
 }
 
 impl Room {
-    /// The narrowest places of the passages that are up to `more_m` narrower or wider than the robot needs.
+    /// Returns the necks of the passages that are up to `more_m` narrower or wider than the robot needs.
     fn necks(&self, more_m: f64) -> Vec<Neck> {
         let needs_m = 2.0 * self.keep_m;
         let mut necks = Vec::new();
@@ -279,7 +279,7 @@ impl Room {
 }
 
 impl Core {
-    /// Where it and another are nearest to each other: a place on each outline.
+    /// Returns the points where two cores are nearest to each other, one on each outline.
     fn nearest_to(&self, other: &Self) -> (Point, Point) {
         let pairs = [
             (self.a, nearest_on_segment(other.a, other.b, self.a)),

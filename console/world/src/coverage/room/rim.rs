@@ -1,12 +1,12 @@
-//! The rim of the floor on which the robot's middle has room, curve by curve.
+//! The rim of the free floor, curve by curve.
 
 use geometry::{Boundary, Point, Shape, Vector, polyline::edges};
 use std::collections::BTreeSet;
 
-/// How far two curves may stay apart and still touch, metres: tangents meet only up to rounding.
+/// The largest gap at which two curves still touch, metres: tangents meet only up to rounding.
 const TOUCH_M: f64 = 1e-9;
 
-/// Something solid, as a line with a thickness; a disc has both ends in its middle.
+/// Something solid, as a line with a thickness; for a disc, both ends are at its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Core {
     pub a: Point,
@@ -15,7 +15,7 @@ pub(super) struct Core {
     pub radius_m: f64,
 }
 
-/// A piece of the rim: what lies at some distance from a core, whatever else stands there.
+/// A piece of the rim: points at a given distance from a core, regardless of other cores.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Rim {
     Arc { center: Point, radius_m: f64 },
@@ -23,7 +23,7 @@ pub(super) enum Rim {
 }
 
 impl Core {
-    /// The sides of a wall.
+    /// Returns the sides of a wall.
     pub(super) fn of_wall(boundary: &Boundary) -> Vec<Self> {
         match boundary {
             Boundary::Circle { .. } => Vec::new(),
@@ -31,7 +31,7 @@ impl Core {
         }
     }
 
-    /// The outline of a shape.
+    /// Returns the outline of a shape.
     pub(super) fn of_shape(shape: &Shape) -> Vec<Self> {
         match shape {
             Shape::Disc { center, radius_m } => vec![Self { a: *center, b: *center, radius_m: *radius_m }],
@@ -47,7 +47,7 @@ impl Core {
         edges(vertices).map(|(a, b)| Self { a, b, radius_m: 0.0 }).collect()
     }
 
-    /// The pieces of the rim at `room_m` from some cores.
+    /// Returns the pieces of the rim at `room_m` from some cores.
     pub(super) fn rims(cores: &[Self], room_m: f64) -> Vec<Rim> {
         let mut rims = Vec::new();
         let mut seen = BTreeSet::new();
@@ -69,7 +69,7 @@ impl Core {
 }
 
 impl Rim {
-    /// A segment and a distance within which all of it lies.
+    /// Returns a segment and a radius around it that together contain the whole piece.
     pub(super) fn around(&self) -> (Point, Point, f64) {
         match self {
             Self::Arc { center, radius_m } => (*center, *center, *radius_m),
@@ -77,7 +77,7 @@ impl Rim {
         }
     }
 
-    /// Where it crosses or touches another.
+    /// Returns the points where the piece crosses or touches another.
     pub(super) fn crossings(&self, other: &Self) -> Vec<Point> {
         match (*self, *other) {
             (Self::Arc { center, radius_m }, Self::Arc { center: to, radius_m: to_m }) => {

@@ -73,7 +73,7 @@ fn limits_and_collisions_are_reported_with_place_and_figure() {
     let limits = Limits { reel_length_m: 9.0, wrap_max_rad: 0.1, wrap_total_max_rad: 0.2 };
     let certificate = certify(&Case { limits, ..case(&path, &columns, &[]) }).unwrap();
     let words = certificate.reasons.join("; ");
-    for part in ["by C0", "the reel holds 9.0 m", "around C", "total tether wrap"] {
+    for part in ["near C0", "the reel holds 9.0 m", "around C", "total tether wrap"] {
         assert!(words.contains(part), "{part}: {words}");
     }
 }
@@ -86,11 +86,12 @@ fn a_collision_is_reported_at_the_narrowest_place_with_its_obstacle() {
     // Far from where the piece begins.
     let by_the_wall = words(&[(0., 0.), (9.9, 0.), (0., 0.)], &[]);
     assert!(
-        by_the_wall.contains("2 segments of the path lack room, the first at 9.90, 0.00 m by the wall"),
+        by_the_wall
+            .contains("2 segments of the path lack clearance, the first at 9.90, 0.00 m near the wall"),
         "{by_the_wall}"
     );
     let past = words(&[(0., 0.), (0., 0.5), (8., 0.5), (9., 2.), (0., 2.), (0., 0.)], &[column(0, 4.0, 0.0)]);
-    assert!(past.contains("1 segment of the path lacks room, at 4.00, 0.50 m by C0"), "{past}");
+    assert!(past.contains("1 segment of the path lacks clearance, at 4.00, 0.50 m near C0"), "{past}");
 }
 
 #[test]

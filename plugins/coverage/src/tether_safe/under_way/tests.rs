@@ -148,8 +148,8 @@ fn a_repair_that_leads_a_long_way_round_is_taken_where_a_new_plan_is_longer_stil
     let mut tank = Known::E2.tank(44);
     tank.columns.rotate_left(3);
     let left = UnderWay::find(tank, &[("pattern", 1.0), ("kicks", 0.5)]);
-    let is_long = has(&left, "a new plan may be shorter than a repair");
-    assert!(is_long && !has(&left, "repaired after all"), "{:?}", left.bench.logs());
+    let is_long = has(&left, "a new plan may be shorter than the repair");
+    assert!(is_long && !has(&left, "the repair is used after all"), "{:?}", left.bench.logs());
     let scan = left.tank.score(&left.driven(), &[], CELL_M).unwrap();
     assert!(scan.certificate.collisions == 0 && scan.certificate.end_length_m.is_some_and(|m| m < 1e-6));
     assert!(scan.coverage_reachable > 0.985, "{}", scan.coverage_reachable);

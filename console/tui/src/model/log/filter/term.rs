@@ -6,7 +6,7 @@ use mission::Severity;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Fields and their values, as the screen explains them.
+/// The field names, as the screen lists them.
 const FIELDS: &str = "sev source station t";
 
 const SEVERITIES: [(&str, Severity); 4] = [
@@ -27,15 +27,15 @@ pub(super) struct Term {
 enum Test {
     Severity(Compare, Severity),
     Source(Vec<String>),
-    /// With the word before each name.
+    /// Station names, each preceded by the word "station".
     Station(Vec<String>),
-    /// Seconds of mission time.
+    /// Mission time, seconds.
     Time(Compare, f64),
-    /// Anywhere in source or text.
+    /// Text anywhere in the source or text of a line.
     Text(String),
 }
 
-/// How a value is compared with that of an event.
+/// The comparison between the term's value and the event's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Compare {
     Less,
@@ -65,7 +65,7 @@ impl Term {
             Some(rest) => (true, rest),
             None => (false, text),
         };
-        // What stands in quotes is text, whatever signs it has.
+        // Quoted words are plain text, whatever operators they contain.
         let plain = word.quoted_from.map_or(text, |from| &text[..from]);
         let plain = plain.get(usize::from(negated)..).unwrap_or_default();
         let test = match field(plain) {
@@ -86,7 +86,7 @@ impl Term {
         holds != self.negated
     }
 
-    /// The least severity, if the term asks for one.
+    /// The minimum severity, if the term requires one.
     pub(super) fn least(&self) -> Option<Severity> {
         match self.test {
             Test::Severity(Compare::AtLeast, severity) if !self.negated => Some(severity),
@@ -95,7 +95,7 @@ impl Term {
     }
 }
 
-/// The name of a field, how it is compared, and where its value begins; `None` for plain text.
+/// The field name, the comparison, and the start of the value; `None` for plain text.
 fn field(word: &str) -> Option<(&str, Compare, usize)> {
     let sign = word.find(['=', ':', '<', '>'])?;
     let name = &word[..sign];
@@ -122,32 +122,32 @@ fn field_test(name: &str, compare: Compare, value: &str) -> Result<Test, String>
             let names = list(value, "station=C")?;
             Ok(Test::Station(names.iter().map(|name| format!("station {name}")).collect()))
         }
-        ("source" | "station", _) => Err(format!("{name} takes = only")),
-        ("t", Compare::Equal) => Err("t takes < <= > >= only".into()),
+        ("source" | "station", _) => Err(format!("{name} takes only =")),
+        ("t", Compare::Equal) => Err("t takes only < <= > >=".into()),
         ("t", _) => time_s(value).map(|t_s| Test::Time(compare, t_s)),
-        _ => Err(format!("no field `{name}`; fields: {FIELDS}; quote text with = : < >")),
+        _ => Err(format!("unknown field `{name}`; fields: {FIELDS}; quote text that contains = : < >")),
     }
 }
 
-/// A severity by the beginning of its word.
+/// The severity whose word begins with the given text.
 fn severity(value: &str) -> Result<Severity, String> {
     let typed = value.to_ascii_lowercase();
     let mut found = SEVERITIES.iter().filter(|(word, _)| !typed.is_empty() && word.starts_with(&typed));
     match (found.next(), found.next()) {
         (Some((_, severity)), None) => Ok(*severity),
-        _ => Err("sev takes info, watch, warn or crit".into()),
+        _ => Err("sev must be info, watch, warn or crit".into()),
     }
 }
 
 fn list(value: &str, example: &str) -> Result<Vec<String>, String> {
     let names: Vec<String> =
         value.split(',').filter(|name| !name.is_empty()).map(str::to_lowercase).collect();
-    if names.is_empty() { Err(format!("a value is missing, such as {example}")) } else { Ok(names) }
+    if names.is_empty() { Err(format!("value missing, for example {example}")) } else { Ok(names) }
 }
 
-/// Mission time as the screen writes it, hours and minutes first, or as seconds.
+/// Parses mission time: as the screen writes it, with hours and minutes first, or as seconds.
 fn time_s(value: &str) -> Result<f64, String> {
-    let wrong = || "t takes hh:mm, hh:mm:ss or seconds".to_owned();
+    let wrong = || "t must be hh:mm, hh:mm:ss or seconds".to_owned();
     let parts: Vec<&str> = value.trim_start_matches("T+").trim_end_matches('s').split(':').collect();
     let numbers: Vec<f64> = parts.iter().map_while(|part| part.parse().ok()).collect();
     match numbers[..] {
@@ -159,7 +159,7 @@ fn time_s(value: &str) -> Result<f64, String> {
     }
 }
 
-/// Whether words speak of a station, and not of one whose name only begins like it.
+/// Whether the words name this station, rather than one whose name merely begins the same way.
 fn names_station(words: &str, station: &str) -> bool {
     let ends = |at: usize| !words[at..].starts_with(char::is_alphanumeric);
     words.match_indices(station).any(|(at, _)| ends(at + station.len()))

@@ -66,11 +66,11 @@ fn every_kind_of_term_selects_what_it_says_and_what_is_critical_always_passes() 
 #[test]
 fn what_is_not_understood_is_marked_and_explained_and_filters_nothing() {
     let table = [
-        ("sevv>=watch", "no field `sevv`"),
+        ("sevv>=watch", "unknown field `sevv`"),
         ("sev>=w", "info, watch, warn or crit"),
         ("sev=", "info, watch, warn or crit"),
         ("source=", "source=ae,tether"),
-        ("source>ae", "source takes = only"),
+        ("source>ae", "source takes only ="),
         ("t=5", "t takes < <= > >="),
         ("t>soon", "hh:mm"),
         ("t>1:2:3:4", "hh:mm"),

@@ -1,14 +1,14 @@
-//! Filters as words.
+//! Splits filters into words.
 
 use std::ops::Range;
 
-/// A word of a filter: what stands between separators, or in quotes.
+/// A word of a filter: text between separators, or in quotes.
 pub(super) struct Word {
-    /// Where it stands in the text, bytes.
+    /// The position in the text, bytes.
     pub at: Range<usize>,
-    /// Without quotes.
+    /// The word without its quotes.
     pub text: String,
-    /// Where in `text` the first quote opened, bytes.
+    /// The position in `text` where the first quote opened, bytes.
     pub quoted_from: Option<usize>,
 }
 
